@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every leaf CMakeLists.txt is written with: hc_layer, hc_module, hc_test, hc_fuzz, hc_bench.
+
+include(GNUInstallDirs)
+
+option(HC_DEVELOPER_MODE "Build tests and benchmarks; a warning is an error" OFF)
+option(HC_COVERAGE "Count the lines that tests run" OFF)
+set(HC_SANITIZE "" CACHE STRING "Sanitizers, such as address,undefined")
+option(HC_LIBFUZZER "Link the fuzz targets with libFuzzer (clang)" OFF)
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(HC_CCACHE ccache)
+if(HC_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${HC_CCACHE})
+endif()
+
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(jpeg REQUIRED IMPORTED_TARGET libjpeg)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(OpenCV 4 REQUIRED COMPONENTS core imgproc imgcodecs videoio calib3d highgui)
+
+# Flags that are ours, not our users'.
+add_library(hc_flags INTERFACE)
+target_compile_options(hc_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+if(HC_DEVELOPER_MODE)
+  target_compile_options(hc_flags INTERFACE -Werror)
+  enable_testing()
+  find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
+  include(GoogleTest)
+endif()
+if(HC_SANITIZE)
+  add_compile_options(-fsanitize=${HC_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${HC_SANITIZE})
+endif()
+if(HC_LIBFUZZER)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+if(HC_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
+
+set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
+set(HC_TEST_SECONDS 120) # a test that takes longer hangs
+set_property(GLOBAL PROPERTY HC_LAYERS "")
+
+# hc_layer(wire DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
+# One layer of the core: target hc::wire, its headers installed, its tests built with it.
+function(hc_layer name)
+  cmake_parse_arguments(arg "" "" "DEPENDS;HEADERS;SOURCES;TESTS;LIBS;PUBLIC_LIBS" ${ARGN})
+  set(target hc_${name})
+  set(scope PUBLIC)
+  if(arg_SOURCES)
+    add_library(${target} STATIC ${arg_SOURCES})
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:hc_flags> ${arg_LIBS})
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(hc::${name} ALIAS ${target})
+  list(TRANSFORM arg_DEPENDS PREPEND hc_)
+  target_link_libraries(${target} ${scope} ${arg_DEPENDS} ${arg_PUBLIC_LIBS})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/lib
+                                    FILES ${arg_HEADERS})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
+  install(TARGETS ${target} EXPORT hypercolumn FILE_SET HEADERS)
+  set_property(GLOBAL APPEND PROPERTY HC_LAYERS ${target})
+  if(arg_TESTS)
+    hc_test(${name}_test SOURCES ${arg_TESTS} LIBS hc::${name})
+  endif()
+endfunction()
+
+# hc_test(wire_test SOURCES a_test.cpp LIBS hc::wire)
+function(hc_test name)
+  if(NOT HC_DEVELOPER_MODE)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE hc_flags ${arg_LIBS} GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE HC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             HC_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
+                       DISCOVERY_TIMEOUT 60)
+endfunction()
+
+# hc_module(depth LIBS hc::opencv hc::vision)
+# A module: main.cpp, with depth.h and depth.cpp and their test where they exist, and its cases/.
+function(hc_module name)
+  cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
+  set(sources main.cpp)
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp)
+    list(APPEND sources ${name}.cpp)
+  endif()
+  add_executable(module_${name} ${sources})
+  set_target_properties(module_${name} PROPERTIES
+    OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/libexec/hypercolumn)
+  target_link_libraries(module_${name} PRIVATE hc_flags hc::node ${arg_LIBS})
+  install(TARGETS module_${name} DESTINATION ${HC_LIBEXEC})
+  set_property(GLOBAL APPEND PROPERTY HC_MODULES module_${name})
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+    set(test_sources ${name}_test.cpp)
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp)
+      list(APPEND test_sources ${name}.cpp)
+    endif()
+    hc_test(module_${name}_test SOURCES ${test_sources} LIBS hc::node ${arg_LIBS})
+  endif()
+  hc_cases(${name})
+endfunction()
+
+# Every folder of cases/ here is a test: the command in `cmd`, fed with `in`, prints `out`.
+function(hc_cases name)
+  if(NOT HC_DEVELOPER_MODE)
+    return()
+  endif()
+  file(GLOB cases CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cases/*/cmd)
+  foreach(cmd ${cases})
+    cmake_path(GET cmd PARENT_PATH folder)
+    cmake_path(GET folder FILENAME case)
+    add_test(NAME case.${name}.${case}
+             COMMAND ${PROJECT_SOURCE_DIR}/scripts/run_case ${PROJECT_BINARY_DIR} ${folder})
+    set_tests_properties(case.${name}.${case} PROPERTIES TIMEOUT ${HC_TEST_SECONDS})
+  endforeach()
+endfunction()
+
+# hc_fuzz(header LIBS hc::wire): tests/fuzz/header.cpp, a fuzzer where libFuzzer is linked, and in
+# every other build a program that replays tests/fuzz/corpus/header as a test.
+function(hc_fuzz name)
+  cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
+  add_executable(fuzz_${name} ${name}.cpp)
+  target_link_libraries(fuzz_${name} PRIVATE hc_flags ${arg_LIBS})
+  set_target_properties(fuzz_${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz OUTPUT_NAME ${name})
+  if(HC_LIBFUZZER)
+    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  else()
+    target_sources(fuzz_${name} PRIVATE replay_main.cpp)
+  endif()
+  add_test(NAME fuzz.${name}
+           COMMAND fuzz_${name} -runs=0 ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name})
+  set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT ${HC_TEST_SECONDS})
+endfunction()
+
+# hc_bench(header LIBS hc::wire): bench/header.cpp with Google Benchmark.
+function(hc_bench name)
+  cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
+  add_executable(bench_${name} ${name}.cpp)
+  target_link_libraries(bench_${name} PRIVATE hc_flags ${arg_LIBS} benchmark::benchmark_main)
+  set_target_properties(bench_${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bench OUTPUT_NAME ${name})
+endfunction()
+
+# The package that other projects find: find_package(hypercolumn), hypercolumn::hc or one layer.
+function(hc_install_package)
+  add_library(hc_all INTERFACE)
+  set_target_properties(hc_all PROPERTIES EXPORT_NAME hc)
+  target_link_libraries(hc_all INTERFACE hc_base hc_wire hc_compress hc_link hc_node)
+  install(TARGETS hc_all EXPORT hypercolumn)
+  set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/hypercolumn)
+  install(EXPORT hypercolumn NAMESPACE hypercolumn:: DESTINATION ${folder}
+          FILE hypercolumn-targets.cmake)
+  include(CMakePackageConfigHelpers)
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/hypercolumn-config-version.cmake
+                                   COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/hypercolumn-config.cmake
+                ${PROJECT_BINARY_DIR}/hypercolumn-config-version.cmake DESTINATION ${folder})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/graphs DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn)
+  install(FILES ${PROJECT_SOURCE_DIR}/spec/mtp-1.md
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn/spec)
+endfunction()

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a function gives that the world can make fail: a value, or an Error that says why.
+// Names follow std::expected, which is to replace Result where compilers have it.
+
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include <hc/base/check.h>
+
+namespace hc {
+
+/// The kinds of failure. `doc/reference.md` lists them with the exit status they lead to.
+enum class Code {
+  Malformed,    ///< bytes that break a rule of the format
+  Unsupported,  ///< a version, encoding, transport or device that this build does not have
+  TooLarge,     ///< more than a limit allows
+  Truncated,    ///< a stream that ended inside a message
+  Closed,       ///< the other side has gone, or we were asked to stop
+  NotFound,     ///< a name that nothing has
+  Usage,        ///< arguments, parameters or a graph file that make no sense
+  System,       ///< a system call or a library failed; the detail says which and why
+};
+
+/// Name of a code as error lines show it, such as "Malformed".
+std::string_view name(Code code);
+
+/// Why something failed.
+struct Error {
+  Code code = Code::System;
+  std::string detail;  ///< one sentence with the values, without a line end
+
+  /// "Malformed: R7 src: -1 is below 0, at byte 2"
+  [[nodiscard]] std::string text() const;
+};
+
+/// A value of type T, or an Error.
+///
+///     Result<Header> header = parse_header(line);
+///     if (!header) return header.error();
+///     use(header->width);
+///
+/// Taking the value of a failed Result, or the error of a good one, is a bug and aborts.
+template <typename T>
+class [[nodiscard]] Result {
+ public:
+  // NOLINTNEXTLINE(google-explicit-constructor): `return value;` is the point
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): `return error;` is the point
+  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+  [[nodiscard]] bool has_value() const { return state_.index() == 0; }
+  explicit operator bool() const { return has_value(); }
+
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(value()); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+
+  [[nodiscard]] T& value() {
+    HC_CHECK(has_value(), std::get<1>(state_).text());
+    return *std::get_if<0>(&state_);
+  }
+  [[nodiscard]] const T& value() const {
+    HC_CHECK(has_value(), std::get<1>(state_).text());
+    return *std::get_if<0>(&state_);
+  }
+  [[nodiscard]] T value_or(T other) const { return has_value() ? value() : std::move(other); }
+
+  [[nodiscard]] const Error& error() const {
+    HC_CHECK(!has_value());
+    return *std::get_if<1>(&state_);
+  }
+
+  /// Calls `next` with the value, or hands the error on; `next` returns a Result.
+  template <typename F>
+  auto and_then(F&& next) const -> std::invoke_result_t<F, const T&> {
+    if (!has_value()) return error();
+    return std::forward<F>(next)(value());
+  }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+/// Success without a value, or an Error.
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): `return error;` is the point
+  Result(Error error) : failed_(true), error_(std::move(error)) {}
+
+  [[nodiscard]] bool has_value() const { return !failed_; }
+  explicit operator bool() const { return has_value(); }
+
+  [[nodiscard]] const Error& error() const {
+    HC_CHECK(failed_);
+    return error_;
+  }
+
+ private:
+  bool failed_ = false;
+  Error error_;
+};
+
+using Status = Result<void>;
+
+}  // namespace hc

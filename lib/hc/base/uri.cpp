@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/base/uri.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace hc {
+namespace {
+
+constexpr std::size_t kMaxUriBytes = 4096;
+
+bool is_scheme(std::string_view text) {
+  auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  auto is_rest = [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '+' || c == '-';
+  };
+  return !text.empty() && is_letter(text.front()) && std::all_of(text.begin(), text.end(), is_rest);
+}
+
+Error usage(std::string_view what, std::string_view text) {
+  return {Code::Usage, std::string(what) + ": \"" + std::string(text.substr(0, 80)) + "\""};
+}
+
+Status parse_options(std::string_view text, Uri& uri) {
+  while (true) {
+    auto end = std::min(text.find('&'), text.size());
+    std::string_view pair = text.substr(0, end);
+    auto equals = pair.find('=');
+    if (equals == 0 || equals == std::string_view::npos)
+      return usage("an option of a URI is KEY=VALUE", pair);
+    std::string key{pair.substr(0, equals)};
+    for (const auto& option : uri.options)
+      if (option.first == key) return usage("option of a URI given twice", key);
+    uri.options.push_back({std::move(key), std::string(pair.substr(equals + 1))});
+    if (end == text.size()) return {};
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+std::string_view Uri::option(std::string_view key, std::string_view otherwise) const {
+  for (const auto& [name, value] : options)
+    if (name == key) return value;
+  return otherwise;
+}
+
+std::string Uri::text() const {
+  std::string text = scheme == "-" ? scheme : scheme + ":" + rest;
+  char before = '?';
+  for (const auto& [key, value] : options) {
+    text.append(1, before).append(key).append("=").append(value);
+    before = '&';
+  }
+  return text;
+}
+
+Result<Uri> parse_uri(std::string_view text) {
+  if (text.empty()) return usage("a URI cannot be empty", text);
+  if (text.size() > kMaxUriBytes)
+    return Error{Code::Usage,
+                 "a URI is at most 4096 bytes long, this one has " + std::to_string(text.size())};
+  auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
+  if (std::any_of(text.begin(), text.end(), is_control))
+    return Error{Code::Usage, "a URI holds no control characters"};
+
+  auto question = std::min(text.find('?'), text.size());
+  std::string_view place = text.substr(0, question);
+  auto colon = place.find(':');
+  auto path_sign = place.find_first_of("/.");
+
+  Uri uri;
+  if (place == "-") {
+    uri.scheme = "-";
+  } else if (colon == std::string_view::npos || path_sign < colon) {
+    uri.scheme = "file";
+    uri.rest = place;
+  } else {
+    uri.scheme = place.substr(0, colon);
+    uri.rest = place.substr(colon + 1);
+    if (!is_scheme(uri.scheme)) return usage("a URI's scheme is a word in small letters", text);
+  }
+  if (question < text.size())
+    if (auto parsed = parse_options(text.substr(question + 1), uri); !parsed) return parsed.error();
+  return uri;
+}
+
+Result<HostPort> parse_host_port(std::string_view text) {
+  HostPort result;
+  std::string_view port = text;
+  if (text.starts_with('[')) {
+    auto close = text.find(']');
+    if (close == std::string_view::npos) return usage("no ] after an IPv6 address", text);
+    result.host = text.substr(1, close - 1);
+    port = text.substr(close + 1);
+    if (!port.starts_with(':')) return usage("no :PORT after the address", text);
+    port.remove_prefix(1);
+  } else if (auto colon = text.rfind(':'); colon != std::string_view::npos) {
+    result.host = text.substr(0, colon);
+    port = text.substr(colon + 1);
+    if (result.host.find(':') != std::string::npos)
+      return usage("an IPv6 address stands in brackets", text);
+  }
+  const char* end = port.data() + port.size();
+  auto [stop, status] = std::from_chars(port.data(), end, result.port);
+  if (port.empty() || status != std::errc() || stop != end)
+    return usage("a port is a number from 0 to 65535", text);
+  return result;
+}
+
+}  // namespace hc

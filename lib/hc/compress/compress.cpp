@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/compress/compress.h>
+
+#include <zstd.h>
+#include <zstd_errors.h>
+
+#include <string>
+
+#include <hc/compress/jpeg.h>
+
+namespace hc {
+namespace {
+
+Error damaged(int rule, std::string_view what) {
+  return {Code::Malformed, "R" + std::to_string(rule) + " elements: " + std::string(what)};
+}
+
+Result<Message> plain_message(const Message& message, SharedBytes bytes) {
+  Message result{message.header, {bytes.get(), message.header.element_bytes()}, bytes};
+  result.header.info.encoding = Encoding::Binary;
+  return result;
+}
+
+Result<Message> expand_zstd(const Message& message) {
+  std::uint64_t promised = message.header.element_bytes();
+  if (message.elements.empty()) return damaged(36, "no zstd frame");
+  // All in one call: it writes into our bytes alone, needs no window, and stops at their end.
+  SharedBytes bytes = allocate_bytes(promised);
+  std::size_t size =
+      ZSTD_decompress(bytes.get(), promised, message.elements.data(), message.elements.size());
+  if (ZSTD_getErrorCode(size) == ZSTD_error_dstSize_tooSmall)
+    return damaged(36, "the zstd frames hold more than the " + std::to_string(promised) +
+                           " bytes that the header promises");
+  if (ZSTD_isError(size) != 0) return damaged(36, std::string("zstd: ") + ZSTD_getErrorName(size));
+  if (size != promised)
+    return damaged(36, "the zstd frames hold " + std::to_string(size) +
+                           " bytes, the header promises " + std::to_string(promised));
+  return plain_message(message, std::move(bytes));
+}
+
+Result<Message> compress_zstd(const Message& message, int level) {
+  std::size_t bound = ZSTD_compressBound(message.elements.size());
+  SharedBytes bytes = allocate_bytes(bound);
+  std::size_t size =
+      ZSTD_compress(bytes.get(), bound, message.elements.data(), message.elements.size(), level);
+  HC_CHECK(ZSTD_isError(size) == 0, ZSTD_getErrorName(size));
+  return Message{message.header, {bytes.get(), size}, bytes};
+}
+
+}  // namespace
+
+Result<Message> expand(const Message& message) {
+  switch (message.header.info.encoding) {
+    case Encoding::Text:
+    case Encoding::Binary:
+      return message;
+    case Encoding::Zstd:
+      return expand_zstd(message);
+    case Encoding::Jpeg:
+      break;
+  }
+  SharedBytes pixels = allocate_bytes(message.header.element_bytes());
+  if (auto fault = internal::read_jpeg(message.elements, message.header, pixels.get()))
+    return damaged(37, *fault);
+  return plain_message(message, std::move(pixels));
+}
+
+Result<Message> compress(const Message& message, Encoding encoding,
+                         const CompressOptions& options) {
+  if (message.header.info.encoding == encoding) return message;
+  auto plain = expand(message);
+  if (!plain) return plain.error();
+  plain->header.info.encoding = encoding;
+  if (auto valid = check(plain->header, {~std::uint64_t{0}}); !valid)
+    return Error{Code::Unsupported, valid.error().detail};
+  switch (encoding) {
+    case Encoding::Text:
+    case Encoding::Binary:
+      return plain;
+    case Encoding::Zstd:
+      return compress_zstd(*plain, options.zstd_level);
+    case Encoding::Jpeg:
+      break;
+  }
+  return internal::write_jpeg(*plain, options.jpeg_quality);
+}
+
+}  // namespace hc

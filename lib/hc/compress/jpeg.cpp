@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/compress/jpeg.h>
+
+// jpeglib.h wants these two before it.
+#include <cstddef>
+#include <cstdio>
+
+#include <jpeglib.h>
+
+#include <csetjmp>
+#include <cstdlib>
+
+namespace hc::internal {
+namespace {
+
+constexpr int kMaxScans = 100;  // of a progressive picture; each costs the decoder a whole pass
+constexpr int kFullColourQuality = 90;
+
+/// libjpeg reports errors by a call that must not come back; these go back to where we began.
+/// No object with a destructor lives between setjmp and longjmp.
+struct ErrorHandler {
+  jpeg_error_mgr manager;  // first, so that libjpeg's pointer to it is ours
+  std::jmp_buf start;
+  char text[JMSG_LENGTH_MAX] = {};
+};
+
+void fail(j_common_ptr info) {
+  auto* handler = reinterpret_cast<ErrorHandler*>(info->err);
+  (*info->err->format_message)(info, handler->text);
+  std::longjmp(handler->start, 1);
+}
+
+/// Warnings (level -1) mean damaged data; the rest is chatter.
+void judge_message(j_common_ptr info, int level) {
+  if (level < 0) fail(info);
+}
+
+jpeg_error_mgr* install(ErrorHandler& handler) {
+  jpeg_std_error(&handler.manager);
+  handler.manager.error_exit = fail;
+  handler.manager.emit_message = judge_message;
+  return &handler.manager;
+}
+
+/// Refuses what would keep the decoder busy for longer than a picture is worth.
+void count_scans(j_common_ptr info) {
+  auto* picture = reinterpret_cast<j_decompress_ptr>(info);
+  if (picture->input_scan_number <= kMaxScans) return;
+  auto* handler = reinterpret_cast<ErrorHandler*>(info->err);
+  std::snprintf(handler->text, sizeof handler->text, "more than %d scans", kMaxScans);
+  std::longjmp(handler->start, 1);
+}
+
+/// What is wrong with a picture whose header has been read; null when it is as promised.
+const char* find_mismatch(const jpeg_decompress_struct& picture, const Header& header) {
+  if (picture.image_width != static_cast<JDIMENSION>(header.width) ||
+      picture.image_height != static_cast<JDIMENSION>(header.height))
+    return "the JPEG picture has another width or height than the header says";
+  if (picture.num_components != header.info.components)
+    return "the JPEG picture has another number of components than the header says";
+  if (picture.data_precision != 8) return "the JPEG picture does not have 8 bits";
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<std::string> read_jpeg(std::span<const std::byte> bytes, const Header& header,
+                                     std::byte* pixels) {
+  ErrorHandler handler;
+  jpeg_decompress_struct picture;
+  jpeg_progress_mgr progress{};
+  progress.progress_monitor = count_scans;
+  picture.err = install(handler);
+  if (setjmp(handler.start) != 0) {
+    jpeg_destroy_decompress(&picture);
+    return std::string("JPEG: ") + handler.text;
+  }
+  jpeg_create_decompress(&picture);
+  picture.progress = &progress;
+  jpeg_mem_src(&picture, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&picture, TRUE);
+  if (const char* mismatch = find_mismatch(picture, header)) {
+    jpeg_destroy_decompress(&picture);
+    return mismatch;
+  }
+  picture.out_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  jpeg_start_decompress(&picture);
+  std::size_t row_bytes = header.row_numbers();
+  while (picture.output_scanline < picture.output_height) {
+    auto* row = reinterpret_cast<JSAMPROW>(pixels + picture.output_scanline * row_bytes);
+    jpeg_read_scanlines(&picture, &row, 1);
+  }
+  jpeg_finish_decompress(&picture);
+  bool left_over = picture.src->bytes_in_buffer > 0;
+  jpeg_destroy_decompress(&picture);
+  if (left_over) return "bytes follow the JPEG picture";
+  return std::nullopt;
+}
+
+Message write_jpeg(const Message& message, int quality) {
+  const Header& header = message.header;
+  ErrorHandler handler;
+  jpeg_compress_struct picture;
+  unsigned char* buffer = nullptr;
+  unsigned long size = 0;
+  picture.err = install(handler);
+  if (setjmp(handler.start) != 0) HC_CHECK(false, handler.text);  // memory alone can fail
+  jpeg_create_compress(&picture);
+  jpeg_mem_dest(&picture, &buffer, &size);
+  picture.image_width = static_cast<JDIMENSION>(header.width);
+  picture.image_height = static_cast<JDIMENSION>(header.height);
+  picture.input_components = header.info.components;
+  picture.in_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  jpeg_set_defaults(&picture);
+  jpeg_set_quality(&picture, quality, TRUE);
+  if (quality >= kFullColourQuality)
+    picture.comp_info[0].h_samp_factor = picture.comp_info[0].v_samp_factor = 1;
+  jpeg_start_compress(&picture, TRUE);
+  auto* pixels = reinterpret_cast<const unsigned char*>(message.elements.data());
+  while (picture.next_scanline < picture.image_height) {
+    auto* row = const_cast<JSAMPROW>(pixels + picture.next_scanline * header.row_numbers());
+    jpeg_write_scanlines(&picture, &row, 1);
+  }
+  jpeg_finish_compress(&picture);
+  jpeg_destroy_compress(&picture);
+  std::shared_ptr<unsigned char> owner(buffer, std::free);
+  return {header, {reinterpret_cast<const std::byte*>(buffer), size}, owner};
+}
+
+}  // namespace hc::internal

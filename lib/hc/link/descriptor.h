@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// File descriptors that close themselves, and system calls that say what failed. Internal.
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include <hc/base/result.h>
+
+namespace hc::internal {
+
+/// Owns a file descriptor, or none (-1).
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor() { reset(); }
+
+  [[nodiscard]] int get() const { return number_; }
+  explicit operator bool() const { return number_ >= 0; }
+  void reset() {
+    if (number_ >= 0) ::close(number_);
+    number_ = -1;
+  }
+
+ private:
+  int number_ = -1;
+};
+
+/// "open(eyes.mtp): No such file or directory", from errno as it stands.
+inline Error system_error(std::string_view call, std::string_view argument, int number = errno) {
+  Code code = number == ENOENT                                                    ? Code::NotFound
+              : number == EPIPE || number == ECONNRESET || number == ECONNREFUSED ? Code::Closed
+                                                                                  : Code::System;
+  std::string detail(call);
+  detail.append("(").append(argument).append("): ").append(std::strerror(number));
+  return {code, std::move(detail)};
+}
+
+/// Makes a system call that gives -1 when it fails, again as long as signals interrupt it.
+template <typename Call>
+Result<std::invoke_result_t<Call>> system_call(std::string_view name, std::string_view argument,
+                                               Call&& call) {
+  while (true) {
+    auto value = call();
+    if (value != -1) return value;
+    if (errno != EINTR) return system_error(name, argument);
+  }
+}
+
+}  // namespace hc::internal

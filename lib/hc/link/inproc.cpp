@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// `inproc:NAME`: between threads of one process, without bytes: the elements are shared.
+#include <sys/eventfd.h>
+
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include <hc/link/stream_link.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::size_t kCapacity = 64;  // messages under way before the sender waits
+
+/// What the two ends share. Each end holds it; the last one frees it.
+struct Channel {
+  std::mutex mutex;
+  std::deque<Message> messages;
+  bool has_source = false, has_sink = false;
+  bool source_left = false, sink_left = false;
+  Descriptor readable;  // eventfd: messages wait, or the sink has left
+  Descriptor writable;  // eventfd: there is room again, or the source has left
+};
+
+void raise(const Descriptor& event) {
+  ::eventfd_write(event.get(), 1);
+}
+void lower(const Descriptor& event) {
+  eventfd_t count;
+  ::eventfd_read(event.get(), &count);
+}
+
+/// The channels by name, for as long as somebody holds them.
+class Channels {
+ public:
+  Result<std::shared_ptr<Channel>> join(const std::string& name, bool Channel::*end) {
+    std::lock_guard lock(mutex_);
+    std::erase_if(channels_, [](const auto& entry) { return entry.second.expired(); });
+    auto channel = channels_[name].lock();
+    if (channel == nullptr) {
+      channel = std::make_shared<Channel>();
+      for (Descriptor* event : {&channel->readable, &channel->writable}) {
+        auto number =
+            system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
+        if (!number) return number.error();
+        *event = Descriptor(*number);
+      }
+      channels_[name] = channel;
+    }
+    std::lock_guard channel_lock(channel->mutex);
+    if ((*channel).*end)
+      return Error{Code::System, "inproc:" + name + ": this end is in use already"};
+    (*channel).*end = true;
+    return channel;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::weak_ptr<Channel>> channels_;
+};
+
+/// A name that two threads agree on needs one place in the process to meet.
+Channels& channels() {
+  static Channels all;
+  return all;
+}
+
+class InprocSource final : public Source {
+ public:
+  explicit InprocSource(std::shared_ptr<Channel> channel) : channel_(std::move(channel)) {}
+  ~InprocSource() override {
+    std::lock_guard lock(channel_->mutex);
+    channel_->source_left = true;
+    channel_->messages.clear();
+    raise(channel_->writable);
+  }
+
+  Result<Got> take(Message& message) override {
+    std::lock_guard lock(channel_->mutex);
+    if (channel_->messages.empty()) {
+      if (channel_->sink_left) return Got::End;
+      lower(channel_->readable);
+      return Got::Nothing;
+    }
+    message = std::move(channel_->messages.front());
+    ++traffic_.messages;
+    traffic_.bytes += message.elements.size();
+    channel_->messages.pop_front();
+    raise(channel_->writable);
+    return Got::Message;
+  }
+
+  [[nodiscard]] int descriptor() const override { return channel_->readable.get(); }
+  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+
+ private:
+  Traffic traffic_;
+  std::shared_ptr<Channel> channel_;
+};
+
+class InprocSink final : public Sink {
+ public:
+  InprocSink(std::shared_ptr<Channel> channel, int stop)
+      : channel_(std::move(channel)), stop_(stop) {}
+  ~InprocSink() override { leave(); }
+
+  Status send(const Message& message) override {
+    while (true) {
+      {
+        std::lock_guard lock(channel_->mutex);
+        if (channel_->source_left) return Error{Code::Closed, "the reader has gone"};
+        if (channel_->messages.size() < kCapacity) {
+          channel_->messages.push_back(message.keep());
+          raise(channel_->readable);
+          ++traffic_.messages;
+          traffic_.bytes += message.elements.size();
+          return {};
+        }
+        lower(channel_->writable);
+      }
+      if (auto room = wait_for(channel_->writable.get(), POLLIN, stop_); !room) return room;
+    }
+  }
+
+  Status close() override {
+    leave();
+    return {};
+  }
+
+  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+
+ private:
+  void leave() {
+    std::lock_guard lock(channel_->mutex);
+    channel_->sink_left = true;
+    raise(channel_->readable);
+  }
+
+  std::shared_ptr<Channel> channel_;
+  int stop_;
+  Traffic traffic_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> open_inproc_source(const Uri& uri, const LinkOptions&) {
+  auto channel = channels().join(uri.rest, &Channel::has_source);
+  if (!channel) return channel.error();
+  return std::unique_ptr<Source>(new InprocSource(std::move(*channel)));
+}
+
+Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions& options) {
+  auto channel = channels().join(uri.rest, &Channel::has_sink);
+  if (!channel) return channel.error();
+  return std::unique_ptr<Sink>(new InprocSink(std::move(*channel), options.stop));
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/link.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string>
+#include <vector>
+
+#include <hc/link/descriptor.h>
+#include <hc/link/transports.h>
+
+namespace hc {
+namespace {
+
+using internal::Transport;
+
+/// Every transport there is. `?` options that a scheme has are named here, so that one misspelt is
+/// refused and not overlooked.
+constexpr std::array<Transport, 7> kTransports = {{
+    {"-", "", internal::open_stdin, internal::open_stdout},
+    {"file", "", internal::open_file_source, internal::open_file_sink},
+    {"tcp", "wait", internal::open_tcp_source, internal::open_tcp_sink},
+    {"tcp-listen", "readers", internal::listen_tcp_source, internal::listen_tcp_sink},
+    {"unix", "wait", internal::open_unix_source, internal::open_unix_sink},
+    {"unix-listen", "readers", internal::listen_unix_source, internal::listen_unix_sink},
+    {"inproc", "", internal::open_inproc_source, internal::open_inproc_sink},
+}};
+
+Result<const Transport*> find_transport(const Uri& uri) {
+  std::string known;
+  for (const Transport& transport : kTransports) {
+    if (transport.scheme != uri.scheme) {
+      known.append(known.empty() ? "" : ", ").append(transport.scheme);
+      continue;
+    }
+    for (const auto& option : uri.options)
+      if (option.first != transport.option)
+        return Error{
+            Code::Unsupported,
+            uri.scheme + " has no option \"" + option.first + "\"" +
+                (transport.option.empty() ? ""
+                                          : ", only \"" + std::string(transport.option) + "\"")};
+    return &transport;
+  }
+  return Error{Code::Unsupported, "no transport \"" + uri.scheme + "\"; there are " + known};
+}
+
+}  // namespace
+
+Status Source::resume() {
+  return Error{Code::Unsupported, "only a file can be read on after an error"};
+}
+
+Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
+  auto transport = find_transport(uri);
+  if (!transport) return transport.error();
+  return (*transport)->open_source(uri, options);
+}
+
+Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
+  auto transport = find_transport(uri);
+  if (!transport) return transport.error();
+  return (*transport)->open_sink(uri, options);
+}
+
+Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,
+                                  std::chrono::milliseconds timeout) {
+  std::vector<pollfd> polled;
+  for (int descriptor : descriptors) polled.push_back({descriptor, POLLIN, 0});
+  polled.push_back({stop, POLLIN, 0});
+  auto ready = internal::system_call("poll", "", [&] {
+    return ::poll(polled.data(), polled.size(), static_cast<int>(timeout.count()));
+  });
+  if (!ready) return ready.error();
+  if (polled.back().revents != 0) return Error{Code::Closed, "stopped"};
+  auto first = std::find_if(polled.begin(), polled.end() - 1,
+                            [](const pollfd& entry) { return entry.revents != 0; });
+  return static_cast<std::size_t>(first - polled.begin());
+}
+
+Result<bool> receive(Source& source, Message& message, int stop) {
+  while (true) {
+    auto got = source.take(message);
+    if (!got) return got.error();
+    if (*got == Got::Message) return true;
+    if (*got == Got::End) return false;
+    std::array<int, 1> descriptors = {source.descriptor()};
+    if (auto ready = wait_readable(descriptors, stop); !ready) return ready.error();
+  }
+}
+
+namespace internal {
+
+Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t otherwise) {
+  auto text = uri.option(key, "");
+  if (text.empty()) return otherwise;
+  std::int64_t value = 0;
+  const char* end = text.data() + text.size();
+  auto [stop, status] = std::from_chars(text.data(), end, value);
+  if (stop != end || status != std::errc() || value < 0 || value > 86400)
+    return Error{Code::Usage, "option " + std::string(key) + " is a whole number from 0 to 86400"};
+  return value;
+}
+
+}  // namespace internal
+}  // namespace hc

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Links carry messages one way: a Sink puts them in, a Source takes them out. A URI says what
+// carries them; link.cpp has the one table of schemes, and each transport is a file of its own.
+// An object is used from one thread; different objects from different threads.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <hc/base/log.h>
+#include <hc/base/result.h>
+#include <hc/base/uri.h>
+#include <hc/wire/message.h>
+
+namespace hc {
+
+/// What came of asking a source.
+enum class Got {
+  Message,  ///< a message
+  Nothing,  ///< none now; descriptor() tells when to ask again
+  End,      ///< none any more: the other side has closed, or the file is at its end
+};
+
+/// What went over a link.
+struct Traffic {
+  std::uint64_t messages = 0;
+  std::uint64_t bytes = 0;  ///< as on the wire; of elements alone where there is no wire (inproc)
+};
+
+/// The end of a link where messages come out.
+class Source {
+ public:
+  virtual ~Source() = default;
+
+  /// Takes the next message; never waits. `message` keeps its elements alive by itself.
+  ///
+  /// Errors: those of StreamReader, Truncated, System; the link is of no use afterwards. A
+  /// listening source closes the connection at fault, tells the log, and goes on with the others.
+  virtual Result<Got> take(Message& message) = 0;
+
+  /// A descriptor for poll(): readable when take() may have something. The same for life.
+  [[nodiscard]] virtual int descriptor() const = 0;
+
+  /// What take() has given so far.
+  [[nodiscard]] virtual Traffic traffic() const = 0;
+
+  /// Goes on after an error that take() gave, at the next valid header (R40).
+  ///
+  /// Errors: Unsupported for everything that cannot be read once more; files can.
+  virtual Status resume();
+};
+
+/// The end of a link where messages go in.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+
+  /// Puts a message in, whole; waits as long as the link is full or has no reader yet.
+  ///
+  /// Errors: Closed (the reader has gone, or LinkOptions::stop became readable), System.
+  virtual Status send(const Message& message) = 0;
+
+  /// Ends the link: the reader finds End behind the last message. Errors as send().
+  virtual Status close() = 0;
+
+  /// What send() has taken so far; a message to several readers counts once.
+  [[nodiscard]] virtual Traffic traffic() const = 0;
+};
+
+/// How a link behaves, whatever carries it.
+struct LinkOptions {
+  Limits limits;  ///< of what is read
+  LogSink log;    ///< hears of connections that came and failed; may be empty
+  int stop = -1;  ///< descriptor that is readable when waiting is to end; -1: none
+};
+
+/// Opens the end of a link where messages come out, or go in.
+///
+/// `-` is standard input or output, `file:PATH` a file, `tcp:HOST:PORT` and `unix:PATH` a peer that
+/// listens (`unix:@NAME` in the abstract namespace, which leaves no file), `tcp-listen:[HOST:]PORT`
+/// and `unix-listen:PATH` wait for peers, `inproc:NAME` another thread of this process.
+/// Listening is on loopback unless a host is given. Options in the URI:
+/// - `wait=SECONDS` (tcp, unix): how long to try while nobody listens yet; default 0.
+/// - `readers=N` (listening sinks): how many readers to wait for before the first message and
+///   before the end; default 1 before the first message, and none before the end.
+///
+/// Errors: Unsupported (no such scheme; an option that it does not have), Usage, NotFound (no such
+/// file or host), Closed (nobody listens; stopped), System (name in use, …).
+Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
+Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
+
+/// Waits until one of `descriptors` is readable; gives its index.
+///
+/// Gives `descriptors.size()` when `timeout` has passed. Errors: Closed (`stop` is readable).
+Result<std::size_t> wait_readable(
+    std::span<const int> descriptors, int stop = -1,
+    std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
+
+/// Takes the next message, waiting for it; false at the end.
+///
+/// Errors: as Source::take, and Closed when `stop` becomes readable.
+Result<bool> receive(Source& source, Message& message, int stop = -1);
+
+}  // namespace hc

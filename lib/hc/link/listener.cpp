@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/listener.h>
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr int kBacklog = 128;
+
+Result<Descriptor> open_socket(const void* address) {
+  int family = static_cast<const sockaddr*>(address)->sa_family;
+  auto number = system_call("socket", "", [&] {
+    return ::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  });
+  if (!number) return number.error();
+  return Descriptor(*number);
+}
+
+/// Small messages leave at once; harmless where the socket is not TCP.
+void send_at_once(int socket) {
+  int on = 1;
+  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
+/// One try; whether nobody listened there.
+Result<bool> try_to_connect(int socket, const sockaddr* address, unsigned size,
+                            const std::string& name, int stop) {
+  if (::connect(socket, address, size) == 0) return true;
+  if (errno == EINPROGRESS) {
+    if (auto ready = wait_for(socket, POLLOUT, stop); !ready) return ready.error();
+    int status = 0;
+    socklen_t status_size = sizeof status;
+    ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &status, &status_size);
+    if (status == 0) return true;
+    errno = status;
+  }
+  // EAGAIN: the backlog of a Unix socket is full for now.
+  if (errno == ECONNREFUSED || errno == ENOENT || errno == EAGAIN) return false;
+  return system_error("connect", name);
+}
+
+}  // namespace
+
+ListeningSocket::~ListeningSocket() {
+  if (descriptor && !unlink_path.empty()) ::unlink(unlink_path.c_str());
+}
+
+Result<Descriptor> connect_to(const void* address, unsigned size, const std::string& name,
+                              std::chrono::seconds wait, int stop) {
+  using std::chrono::milliseconds;
+  constexpr milliseconds kLongestPause{200};
+  auto give_up = std::chrono::steady_clock::now() + wait;
+  for (milliseconds pause{1};; pause = std::min(2 * pause, kLongestPause)) {
+    auto socket = open_socket(address);
+    if (!socket) return socket.error();
+    auto connected =
+        try_to_connect(socket->get(), static_cast<const sockaddr*>(address), size, name, stop);
+    if (!connected) return connected.error();
+    if (*connected) {
+      send_at_once(socket->get());
+      return socket;
+    }
+    if (std::chrono::steady_clock::now() >= give_up)
+      return Error{Code::Closed, "connect(" + name + "): nobody listens there"};
+    if (auto waited = wait_readable({}, stop, pause); !waited) return waited.error();
+  }
+}
+
+Result<Descriptor> listen_on(const void* address, unsigned size, const std::string& name) {
+  auto socket = open_socket(address);
+  if (!socket) return socket.error();
+  int on = 1;
+  ::setsockopt(socket->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  auto bound = system_call("bind", name, [&] {
+    return ::bind(socket->get(), static_cast<const sockaddr*>(address), size);
+  });
+  if (!bound) return bound.error();
+  auto listening = system_call("listen", name, [&] { return ::listen(socket->get(), kBacklog); });
+  if (!listening) return listening.error();
+  return socket;
+}
+
+Result<Descriptor> accept_peer(const ListeningSocket& socket, const LinkOptions& options) {
+  while (true) {
+    int number = ::accept4(socket.descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (number >= 0) {
+      Descriptor peer(number);
+      auto admitted = socket.admit ? socket.admit(number) : Status();
+      if (!admitted) {
+        if (options.log) options.log(Severity::Warning, admitted.error().text());
+        continue;
+      }
+      send_at_once(number);
+      return peer;
+    }
+    if (errno == EAGAIN || errno == EWOULDBLOCK) return Descriptor();
+    if (errno != EINTR && errno != ECONNABORTED) return system_error("accept", "");
+  }
+}
+
+Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
+                                                      const LinkOptions& options) {
+  auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+  if (!poll) return poll.error();
+  std::unique_ptr<ListeningSource> source(
+      new ListeningSource(std::move(socket), Descriptor(*poll), options));
+  if (auto watched = source->watch(source->socket_.descriptor.get()); !watched)
+    return watched.error();
+  return std::unique_ptr<Source>(std::move(source));
+}
+
+Status ListeningSource::watch(int descriptor) {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.fd = descriptor;
+  auto added = system_call(
+      "epoll_ctl", "", [&] { return ::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event); });
+  if (!added) return added.error();
+  return {};
+}
+
+void ListeningSource::forget(int descriptor) {
+  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, descriptor, nullptr);
+}
+
+Status ListeningSource::accept_all() {
+  while (peers_.size() < kMaxPeers) {
+    auto peer = accept_peer(socket_, options_);
+    if (!peer) return peer.error();
+    if (!*peer) return {};
+    int number = peer->get();
+    peers_.push_back(std::make_unique<StreamSource>(std::move(*peer), options_));
+    if (auto watched = watch(number); !watched) return watched;
+  }
+  forget(socket_.descriptor.get());  // until one leaves; those who wait do so in the backlog
+  return {};
+}
+
+void ListeningSource::leave(std::size_t peer, std::string_view why) {
+  if (!why.empty() && options_.log) options_.log(Severity::Warning, why);
+  if (peers_.size() == kMaxPeers) static_cast<void>(watch(socket_.descriptor.get()));
+  Traffic traffic = peers_[peer]->traffic();
+  left_.messages += traffic.messages;
+  left_.bytes += traffic.bytes;
+  peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
+}
+
+Traffic ListeningSource::traffic() const {
+  Traffic all = left_;
+  for (const auto& peer : peers_) {
+    all.messages += peer->traffic().messages;
+    all.bytes += peer->traffic().bytes;
+  }
+  return all;
+}
+
+Result<Got> ListeningSource::take(Message& message) {
+  if (auto accepted = accept_all(); !accepted) return accepted.error();
+  for (std::size_t tried = 0; tried < peers_.size();) {
+    turn_ %= peers_.size();
+    auto got = peers_[turn_]->take(message);
+    if (!got || *got == Got::End) {
+      leave(turn_, got ? "" : got.error().text());
+    } else if (*got == Got::Message) {
+      ++turn_;
+      return Got::Message;
+    } else {
+      ++turn_;
+      ++tried;
+    }
+  }
+  return Got::Nothing;
+}
+
+Result<std::unique_ptr<Sink>> make_listening_sink(ListeningSocket socket, const Uri& uri,
+                                                  const LinkOptions& options) {
+  auto readers = number_option(uri, "readers", 0);
+  if (!readers) return readers.error();
+  return std::unique_ptr<Sink>(new ListeningSink(
+      std::move(socket), std::max<std::int64_t>(*readers, 1), *readers > 0, options));
+}
+
+Status ListeningSink::accept_ready() {
+  while (true) {
+    auto peer = accept_peer(socket_, options_);
+    if (!peer) return peer.error();
+    if (!*peer) return {};
+    peers_.push_back(std::make_unique<StreamSink>(std::move(*peer), options_));
+  }
+}
+
+Status ListeningSink::await(std::size_t readers) {
+  while (true) {
+    if (auto accepted = accept_ready(); !accepted) return accepted;
+    if (peers_.size() >= readers) return {};
+    std::array<int, 1> listening = {socket_.descriptor.get()};
+    if (auto ready = wait_readable(listening, options_.stop); !ready) return ready.error();
+  }
+}
+
+Status ListeningSink::send(const Message& message) {
+  auto pieces = encoder_.encode(message);
+  while (true) {
+    auto awaited = await(begun_ ? 1 : static_cast<std::size_t>(readers_));
+    if (!awaited) return awaited;
+    begun_ = true;
+    bool taken = false;
+    for (std::size_t i = 0; i < peers_.size();) {
+      auto sent = peers_[i]->send_pieces(pieces);
+      if (sent) {
+        taken = true;
+        ++i;
+        continue;
+      }
+      if (sent.error().detail == "stopped") return sent;
+      peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(i));  // it has left
+    }
+    if (!taken) continue;
+    ++traffic_.messages;
+    for (auto piece : pieces) traffic_.bytes += piece.size();
+    return {};
+  }
+}
+
+Status ListeningSink::close() {
+  Status awaited;
+  if (wait_at_end_ && !begun_) awaited = await(static_cast<std::size_t>(readers_));
+  for (auto& peer : peers_) static_cast<void>(peer->close());
+  peers_.clear();
+  return awaited;
+}
+
+}  // namespace hc::internal

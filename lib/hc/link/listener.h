@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The listening ends of tcp and unix links: any number of peers come and go. Internal.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/link/stream_link.h>
+
+namespace hc::internal {
+
+/// A socket that listens, and what is to be cleaned up when it stops.
+struct ListeningSocket {
+  Descriptor descriptor;
+  /// Whether a peer that was accepted is wanted; an error says why not. May be empty.
+  std::function<Status(int peer)> admit;
+  std::string unlink_path;  ///< removed at the end; empty: nothing
+
+  ListeningSocket() = default;
+  ListeningSocket(ListeningSocket&&) = default;
+  ListeningSocket& operator=(ListeningSocket&&) = default;
+  ~ListeningSocket();
+};
+
+/// Takes messages from all peers that connect, in the order in which they come. A peer that breaks
+/// a rule is closed and the log told; the others notice nothing. Never ends by itself.
+class ListeningSource final : public Source {
+ public:
+  static constexpr std::size_t kMaxPeers = 256;  ///< at once; more wait until one has left
+
+  static Result<std::unique_ptr<Source>> make(ListeningSocket socket, const LinkOptions& options);
+
+  Result<Got> take(Message& message) override;
+  [[nodiscard]] int descriptor() const override { return poll_.get(); }
+  [[nodiscard]] Traffic traffic() const override;
+
+ private:
+  ListeningSource(ListeningSocket socket, Descriptor poll, const LinkOptions& options)
+      : socket_(std::move(socket)), poll_(std::move(poll)), options_(options) {}
+
+  Status watch(int descriptor);
+  void forget(int descriptor);
+  Status accept_all();
+  void leave(std::size_t peer, std::string_view why);
+
+  ListeningSocket socket_;
+  Descriptor poll_;  // an epoll instance of the listening socket and all peers
+  LinkOptions options_;
+  std::vector<std::unique_ptr<StreamSource>> peers_;
+  Traffic left_;          // of the peers that have left
+  std::size_t turn_ = 0;  // whose messages come next, so that a busy peer cannot starve another
+};
+
+/// Puts each message to every peer that is connected. Waits for the first ones to come; peers that
+/// leave are forgotten, and those that come later hear what is sent from then on.
+class ListeningSink final : public Sink {
+ public:
+  /// @param readers  how many peers to wait for before the first message, at least 1, and, where
+  ///     the URI gave a number, before the end.
+  ListeningSink(ListeningSocket socket, std::int64_t readers, bool wait_at_end,
+                const LinkOptions& options)
+      : socket_(std::move(socket)),
+        readers_(readers),
+        wait_at_end_(wait_at_end),
+        options_(options) {}
+
+  Status send(const Message& message) override;
+  Status close() override;
+  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+
+ private:
+  Status accept_ready();
+  Status await(std::size_t readers);
+
+  ListeningSocket socket_;
+  std::int64_t readers_;
+  bool wait_at_end_;
+  bool begun_ = false;  // the readers that were to be waited for have come
+  LinkOptions options_;
+  Encoder encoder_;
+  Traffic traffic_;
+  std::vector<std::unique_ptr<StreamSink>> peers_;
+};
+
+/// A ListeningSink with the readers that the URI's option says. Errors: Usage.
+Result<std::unique_ptr<Sink>> make_listening_sink(ListeningSocket socket, const Uri& uri,
+                                                  const LinkOptions& options);
+
+/// Connects to an address; tries again, with growing pauses, while nobody listens there and `wait`
+/// has not passed.
+///
+/// Errors: Closed (refused to the end; stopped), System.
+Result<Descriptor> connect_to(const void* address, unsigned size, const std::string& name,
+                              std::chrono::seconds wait, int stop);
+
+/// A socket that listens on an address; its name is for error lines.
+Result<Descriptor> listen_on(const void* address, unsigned size, const std::string& name);
+
+/// Takes the next peer that has connected; none (-1) when there is none just now.
+///
+/// Errors: System, but not for a peer that left before it was accepted.
+Result<Descriptor> accept_peer(const ListeningSocket& socket, const LinkOptions& options);
+
+}  // namespace hc::internal

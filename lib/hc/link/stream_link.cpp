@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream_link.h>
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hc::internal {
+namespace {
+
+constexpr int kPipeBytes = 1 << 20;
+
+bool would_wait(int number) {
+  return number == EAGAIN || number == EWOULDBLOCK;
+}
+
+}  // namespace
+
+Result<Got> StreamSource::take(Message& message) {
+  while (true) {
+    auto got = reader_.next(message);
+    if (!got) return got.error();
+    if (*got) return Got::Message;
+    auto space = reader_.space();
+    ssize_t size = ::read(descriptor_.get(), space.data(), space.size());
+    if (size > 0) {
+      reader_.commit(static_cast<std::size_t>(size));
+      continue;
+    }
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0 && would_wait(errno)) return Got::Nothing;
+    // A peer that was killed with our bytes unread resets the connection: the end of what it said.
+    if (size < 0 && errno != ECONNRESET) return system_error("read", "");
+    auto end = reader_.finish();
+    if (!end) return end.error();
+    return Got::End;
+  }
+}
+
+Status StreamSource::resume() {
+  // The reader begins again where the refused message began, and so must the file.
+  auto begin = static_cast<off_t>(reader_.message_begin());
+  struct stat status {};
+  if (::fstat(descriptor_.get(), &status) != 0 || !S_ISREG(status.st_mode)) return Source::resume();
+  auto moved =
+      system_call("lseek", "", [&] { return ::lseek(descriptor_.get(), begin, SEEK_SET); });
+  if (!moved) return moved.error();
+  reader_.resume();
+  return {};
+}
+
+Status StreamSink::send(const Message& message) {
+  return send_pieces(encoder_.encode(message));
+}
+
+Status StreamSink::send_pieces(const Pieces& pieces) {
+  std::array<iovec, std::tuple_size_v<Pieces>> parts{};
+  std::size_t used = 0, left = 0;
+  for (auto piece : pieces) {
+    if (piece.empty()) continue;
+    parts[used++] = {const_cast<std::byte*>(piece.data()), piece.size()};
+    left += piece.size();
+  }
+  iovec* part = parts.data();
+  traffic_.bytes += left;
+  while (left > 0) {
+    msghdr header{};
+    header.msg_iov = part;
+    header.msg_iovlen = used - static_cast<std::size_t>(part - parts.data());
+    ssize_t size = is_socket_
+                       ? ::sendmsg(descriptor_.get(), &header, MSG_NOSIGNAL)
+                       : ::writev(descriptor_.get(), part, static_cast<int>(header.msg_iovlen));
+    if (size < 0) {
+      if (errno == ENOTSOCK && is_socket_) {
+        is_socket_ = false;
+      } else if (would_wait(errno)) {
+        if (auto ready = wait_for(descriptor_.get(), POLLOUT, stop_); !ready) return ready;
+      } else if (errno != EINTR) {
+        return system_error("write", "");
+      }
+      continue;
+    }
+    left -= static_cast<std::size_t>(size);
+    for (auto rest = static_cast<std::size_t>(size); rest > 0;) {
+      std::size_t taken = std::min(rest, part->iov_len);
+      part->iov_base = static_cast<std::byte*>(part->iov_base) + taken;
+      part->iov_len -= taken;
+      rest -= taken;
+      if (part->iov_len == 0) ++part;
+    }
+  }
+  ++traffic_.messages;
+  return {};
+}
+
+Status StreamSink::close() {
+  if (is_socket_) ::shutdown(descriptor_.get(), SHUT_WR);
+  descriptor_.reset();
+  return {};
+}
+
+Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
+  struct stat status {};
+  auto looked = system_call("fstat", "", [&] { return ::fstat(number, &status); });
+  if (!looked) return looked.error();
+  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode)) {
+    // A second open gets flags of its own; setting them on the first would set them for the shell
+    // and for everybody else who shares it.
+    std::string path = "/proc/self/fd/" + std::to_string(number);
+    Descriptor own(::open(path.c_str(), access_mode | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (own) {
+      if (S_ISFIFO(status.st_mode)) ::fcntl(own.get(), F_SETPIPE_SZ, kPipeBytes);
+      return own;
+    }
+  }
+  auto copy = system_call("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
+  if (!copy) return copy.error();
+  if (S_ISSOCK(status.st_mode)) ::fcntl(*copy, F_SETFL, ::fcntl(*copy, F_GETFL) | O_NONBLOCK);
+  return Descriptor(*copy);
+}
+
+Status wait_for(int descriptor, short events, int stop) {
+  std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};
+  auto ready = system_call("poll", "", [&] { return ::poll(polled.data(), polled.size(), -1); });
+  if (!ready) return ready.error();
+  if (polled[0].revents == 0 && polled[1].revents != 0) return Error{Code::Closed, "stopped"};
+  return {};
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Messages over any descriptor that carries a stream of bytes: pipe, file, terminal, socket.
+// Internal: what stdio, file, tcp and unix share.
+
+#include <cstdint>
+#include <memory>
+
+#include <hc/link/descriptor.h>
+#include <hc/link/link.h>
+#include <hc/wire/codec.h>
+#include <hc/wire/stream_reader.h>
+
+namespace hc::internal {
+
+/// Takes messages from a descriptor whose reads do not wait.
+class StreamSource final : public Source {
+ public:
+  StreamSource(Descriptor descriptor, const LinkOptions& options)
+      : descriptor_(std::move(descriptor)), reader_(options.limits) {}
+
+  Result<Got> take(Message& message) override;
+  [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
+  [[nodiscard]] Traffic traffic() const override { return {reader_.messages(), reader_.bytes()}; }
+  Status resume() override;
+
+ private:
+  Descriptor descriptor_;
+  StreamReader reader_;
+};
+
+/// Puts messages into a descriptor whose writes do not wait.
+class StreamSink final : public Sink {
+ public:
+  StreamSink(Descriptor descriptor, const LinkOptions& options)
+      : descriptor_(std::move(descriptor)), stop_(options.stop) {}
+
+  Status send(const Message& message) override;
+  Status close() override;
+  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+
+  /// Sends what an encoder made; several sinks can share one encoding.
+  Status send_pieces(const Pieces& pieces);
+  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
+
+ private:
+  Descriptor descriptor_;
+  int stop_;
+  bool is_socket_ = true;  // until a first write says otherwise
+  Encoder encoder_;
+  Traffic traffic_;
+};
+
+/// A descriptor for what `number` is open on, whose reads and writes do not wait, without changing
+/// that for the other processes that share it.
+Result<Descriptor> reopen_without_waiting(int number, int access_mode);
+
+/// Waits until `descriptor` has one of the poll events. Errors: Closed when `stop` is readable.
+Status wait_for(int descriptor, short events, int stop);
+
+}  // namespace hc::internal

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The transports, one pair of functions a scheme. Internal: link.cpp has the table of them.
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include <hc/link/link.h>
+
+namespace hc::internal {
+
+struct Transport {
+  std::string_view scheme;
+  std::string_view option;  ///< the one URI option that it has; empty: none
+  Result<std::unique_ptr<Source>> (*open_source)(const Uri&, const LinkOptions&);
+  Result<std::unique_ptr<Sink>> (*open_sink)(const Uri&, const LinkOptions&);
+};
+
+Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Sink>> open_stdout(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Source>> open_file_source(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Sink>> open_file_sink(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Source>> open_tcp_source(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Sink>> open_tcp_sink(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Source>> listen_tcp_source(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Sink>> listen_tcp_sink(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Source>> open_unix_source(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Sink>> open_unix_sink(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Source>> listen_unix_source(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Sink>> listen_unix_sink(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Source>> open_inproc_source(const Uri&, const LinkOptions&);
+Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri&, const LinkOptions&);
+
+/// A URI's option that is a whole number. Errors: Usage.
+Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t otherwise);
+
+}  // namespace hc::internal

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// `unix:PATH` and `unix-listen:PATH`: between processes of one host. `@NAME` is in the abstract
+// namespace: it leaves no file, and only processes of the same user are let in.
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <algorithm>
+
+#include <hc/link/listener.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+struct UnixAddress {
+  sockaddr_un address{};
+  unsigned size = 0;
+};
+
+bool is_abstract(const Uri& uri) {
+  return uri.rest.starts_with('@');
+}
+
+Result<UnixAddress> address_of(const Uri& uri) {
+  UnixAddress result;
+  result.address.sun_family = AF_UNIX;
+  // A path ends with a NUL; an abstract name begins with one in place of its @.
+  if (uri.rest.empty() || uri.rest.size() >= sizeof result.address.sun_path)
+    return Error{Code::Usage, "a Unix socket's path has 1 to " +
+                                  std::to_string(sizeof result.address.sun_path - 1) +
+                                  " bytes: \"" + uri.rest + "\""};
+  std::copy(uri.rest.begin(), uri.rest.end(), result.address.sun_path);
+  if (is_abstract(uri)) result.address.sun_path[0] = '\0';
+  result.size = static_cast<unsigned>(offsetof(sockaddr_un, sun_path) + uri.rest.size() +
+                                      (is_abstract(uri) ? 0 : 1));
+  return result;
+}
+
+/// An abstract name has no permissions of its own.
+Status admit_same_user(int peer) {
+  ucred credentials{};
+  socklen_t size = sizeof credentials;
+  auto asked = system_call("getsockopt", "SO_PEERCRED", [&] {
+    return ::getsockopt(peer, SOL_SOCKET, SO_PEERCRED, &credentials, &size);
+  });
+  if (!asked) return asked.error();
+  if (credentials.uid == ::geteuid() || credentials.uid == 0) return {};
+  return Error{Code::Closed, "refused process " + std::to_string(credentials.pid) + " of user " +
+                                 std::to_string(credentials.uid)};
+}
+
+Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options) {
+  auto wait = number_option(uri, "wait", 0);
+  if (!wait) return wait.error();
+  auto address = address_of(uri);
+  if (!address) return address.error();
+  auto connected = connect_to(&address->address, address->size, uri.rest,
+                              std::chrono::seconds(*wait), options.stop);
+  if (!connected || !is_abstract(uri)) return connected;
+  if (auto same = admit_same_user(connected->get()); !same) return same.error();
+  return connected;
+}
+
+Result<ListeningSocket> listen_unix(const Uri& uri) {
+  auto address = address_of(uri);
+  if (!address) return address.error();
+  ListeningSocket socket;
+  if (is_abstract(uri)) {
+    socket.admit = admit_same_user;
+  } else {
+    // A file that nobody listens on was left behind by a process that was killed.
+    auto listener =
+        connect_to(&address->address, address->size, uri.rest, std::chrono::seconds(0), -1);
+    if (listener) return Error{Code::System, "bind(" + uri.rest + "): somebody listens there"};
+    if (listener.error().code == Code::Closed) ::unlink(uri.rest.c_str());
+  }
+  auto descriptor = listen_on(&address->address, address->size, uri.rest);
+  if (!descriptor) return descriptor.error();
+  socket.descriptor = std::move(*descriptor);
+  if (!is_abstract(uri)) socket.unlink_path = uri.rest;
+  return socket;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> open_unix_source(const Uri& uri, const LinkOptions& options) {
+  auto connected = connect_unix(uri, options);
+  if (!connected) return connected.error();
+  return std::unique_ptr<Source>(new StreamSource(std::move(*connected), options));
+}
+
+Result<std::unique_ptr<Sink>> open_unix_sink(const Uri& uri, const LinkOptions& options) {
+  auto connected = connect_unix(uri, options);
+  if (!connected) return connected.error();
+  return std::unique_ptr<Sink>(new StreamSink(std::move(*connected), options));
+}
+
+Result<std::unique_ptr<Source>> listen_unix_source(const Uri& uri, const LinkOptions& options) {
+  auto socket = listen_unix(uri);
+  if (!socket) return socket.error();
+  return ListeningSource::make(std::move(*socket), options);
+}
+
+Result<std::unique_ptr<Sink>> listen_unix_sink(const Uri& uri, const LinkOptions& options) {
+  auto socket = listen_unix(uri);
+  if (!socket) return socket.error();
+  return make_listening_sink(std::move(*socket), uri, options);
+}
+
+}  // namespace hc::internal

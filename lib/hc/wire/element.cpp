@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/wire/element.h>
+
+#include <array>
+#include <iterator>
+
+namespace hc {
+namespace {
+
+constexpr std::uint16_t kAllScalars = 0x3ff;
+constexpr std::uint16_t kFloats = 0x300;
+constexpr std::uint16_t kU8 = 0x001;
+constexpr std::uint16_t kU8U16Floats = 0x305;
+
+/// One row of the specification's registry of matrix types.
+struct TypeRule {
+  std::string_view name;
+  std::uint16_t scalars;           ///< bit S: the type has scalar S
+  std::uint8_t least, most, step;  ///< components
+  std::string_view components_in_words;
+};
+
+constexpr std::array<TypeRule, 12> kTypes = {{
+    {"position", kFloats, 3, 9, 3, "3, 6 or 9"},
+    {"rotation", kFloats, 3, 9, 3, "3, 6 or 9"},
+    {"rgb_image", kU8U16Floats, 3, 4, 1, "3 or 4"},
+    {"intensity_image", kAllScalars, 1, 1, 1, "1"},
+    {"vector_field", kAllScalars, 1, 99, 1, "1 to 99"},
+    {"string", kU8, 1, 1, 1, "1"},
+    {"transformation", kFloats, 1, 1, 1, "1"},
+    {"dense_graph", kAllScalars, 1, 99, 1, "1 to 99"},
+    {"sparse_graph", kAllScalars, 2, 99, 1, "2 to 99"},
+    {"sound", kAllScalars, 1, 99, 1, "1 to 99"},
+    {"map", kAllScalars, 1, 99, 1, "1 to 99"},
+    {"table", kAllScalars, 1, 99, 1, "1 to 99"},
+}};
+constexpr std::array<std::string_view, 10> kScalarNames = {"u8",  "i8",  "u16", "i16", "u32",
+                                                           "i32", "u64", "i64", "f32", "f64"};
+constexpr std::array<std::string_view, 4> kEncodingNames = {"text", "binary", "zstd", "jpeg"};
+
+const TypeRule& rule_of(MatrixType type) {
+  return kTypes[static_cast<std::size_t>(type) - 1];
+}
+
+template <typename E, typename Names>
+std::optional<E> find_name(const Names& names, std::string_view wanted, int first) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == wanted) return static_cast<E>(static_cast<int>(i) + first);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view name(MatrixType type) {
+  return rule_of(type).name;
+}
+std::string_view name(Scalar scalar) {
+  return kScalarNames[static_cast<std::size_t>(scalar)];
+}
+std::string_view name(Encoding encoding) {
+  return kEncodingNames[static_cast<std::size_t>(encoding)];
+}
+
+std::optional<MatrixType> matrix_type_of(std::string_view name) {
+  for (std::size_t i = 0; i < kTypes.size(); ++i)
+    if (kTypes[i].name == name) return static_cast<MatrixType>(i + 1);
+  return std::nullopt;
+}
+std::optional<Scalar> scalar_of(std::string_view name) {
+  return find_name<Scalar>(kScalarNames, name, 0);
+}
+std::optional<Encoding> encoding_of(std::string_view name) {
+  return find_name<Encoding>(kEncodingNames, name, 0);
+}
+
+std::string text(const Info& info) {
+  return std::string(name(info.type)) + " " + std::to_string(info.components) + " x " +
+         std::string(name(info.scalar)) + ", " + std::string(name(info.encoding));
+}
+
+std::optional<InfoError> find_error(const Info& info) {
+  auto type = static_cast<std::size_t>(info.type);
+  if (type < 1 || type > kTypes.size())
+    return InfoError{17, std::to_string(type) + " is no matrix type (1 to 12)"};
+  const TypeRule& rule = rule_of(info.type);
+  const std::string type_name{rule.name};
+
+  if (info.components < rule.least || info.components > rule.most ||
+      (info.components - rule.least) % rule.step != 0)
+    return InfoError{18, type_name + " has " + std::string(rule.components_in_words) +
+                             " components, not " + std::to_string(info.components)};
+  if ((rule.scalars >> static_cast<unsigned>(info.scalar) & 1U) == 0)
+    return InfoError{19, type_name + " has no scalar " + std::string(name(info.scalar))};
+  auto encoding = static_cast<std::size_t>(info.encoding);
+  if (encoding >= kEncodingNames.size())
+    return InfoError{20, "encoding " + std::to_string(encoding) +
+                             " is reserved (0 text, 1 binary, 2 zstd, 3 jpeg)"};
+
+  bool is_picture = (info.type == MatrixType::RgbImage && info.components == 3) ||
+                    info.type == MatrixType::IntensityImage;
+  if (info.encoding == Encoding::Jpeg && !(is_picture && info.scalar == Scalar::U8))
+    return InfoError{21, "jpeg is for images of 1 or 3 components of u8, not " + type_name + " " +
+                             std::to_string(info.components) + " x " +
+                             std::string(name(info.scalar))};
+  return std::nullopt;
+}
+
+Result<Info> parse_info(std::int64_t code) {
+  if (code < 10000 || code > 129999)
+    return Error{Code::Malformed, "R17: info " + std::to_string(code) +
+                                      " names no matrix type (TTCCSE, TT 1 to 12)"};
+  Info info{static_cast<MatrixType>(code / 10000), static_cast<std::uint8_t>(code / 100 % 100),
+            static_cast<Scalar>(code / 10 % 10), static_cast<Encoding>(code % 10)};
+  if (auto error = find_error(info)) {
+    auto kind = error->rule == 20 ? Code::Unsupported : Code::Malformed;
+    return Error{kind, "R" + std::to_string(error->rule) + ": " + error->what};
+  }
+  return info;
+}
+
+}  // namespace hc

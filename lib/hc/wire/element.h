@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the elements of a message are: matrix type, components, scalar, encoding, and the header's
+// `info` field that says so in six decimal digits (spec/mtp-1.md, section 3). Pure.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include <hc/base/result.h>
+
+namespace hc {
+
+/// What a matrix means; TT of the info field.
+enum class MatrixType : std::uint8_t {
+  Position = 1,
+  Rotation,
+  RgbImage,
+  IntensityImage,
+  VectorField,
+  String,
+  Transformation,
+  DenseGraph,
+  SparseGraph,
+  Sound,
+  Map,
+  Table,
+};
+
+/// What one number is; S of the info field.
+enum class Scalar : std::uint8_t { U8, I8, U16, I16, U32, I32, U64, I64, F32, F64 };
+
+/// How the elements stand on the wire; E of the info field.
+enum class Encoding : std::uint8_t { Text, Binary, Zstd, Jpeg };
+
+/// Name in the specification, such as "rgb_image", "f64", "zstd".
+std::string_view name(MatrixType type);
+std::string_view name(Scalar scalar);
+std::string_view name(Encoding encoding);
+
+/// The type, scalar or encoding of that name; nothing where there is none.
+std::optional<MatrixType> matrix_type_of(std::string_view name);
+std::optional<Scalar> scalar_of(std::string_view name);
+std::optional<Encoding> encoding_of(std::string_view name);
+
+/// Bytes that a scalar takes: 1, 2, 4 or 8.
+constexpr std::size_t size_of(Scalar scalar) {
+  constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+  return kSizes[static_cast<std::size_t>(scalar)];
+}
+
+/// The C++ types that are scalars of the format.
+template <typename T>
+concept ScalarType =
+    (std::is_integral_v<T> && !std::is_same_v<std::remove_cv_t<T>, bool>) ||
+    std::is_same_v<std::remove_cv_t<T>, float> || std::is_same_v<std::remove_cv_t<T>, double>;
+
+/// The scalar that a C++ type is: scalar_for<float>() is Scalar::F32.
+template <ScalarType T>
+constexpr Scalar scalar_for() {
+  if constexpr (std::is_floating_point_v<T>) {
+    return sizeof(T) == 4 ? Scalar::F32 : Scalar::F64;
+  } else {
+    constexpr int kLog = sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 1 : sizeof(T) == 4 ? 2 : 3;
+    return static_cast<Scalar>(2 * kLog + (std::is_signed_v<T> ? 1 : 0));
+  }
+}
+
+/// Calls `f` with a value-initialised scalar of the C++ type that `scalar` stands for.
+///
+///     visit_scalar(info.scalar, [&](auto zero) { using T = decltype(zero); … });
+template <typename F>
+decltype(auto) visit_scalar(Scalar scalar, F&& f) {
+  switch (scalar) {
+    case Scalar::U8:
+      return f(std::uint8_t{});
+    case Scalar::I8:
+      return f(std::int8_t{});
+    case Scalar::U16:
+      return f(std::uint16_t{});
+    case Scalar::I16:
+      return f(std::int16_t{});
+    case Scalar::U32:
+      return f(std::uint32_t{});
+    case Scalar::I32:
+      return f(std::int32_t{});
+    case Scalar::U64:
+      return f(std::uint64_t{});
+    case Scalar::I64:
+      return f(std::int64_t{});
+    case Scalar::F32:
+      return f(float{});
+    case Scalar::F64:
+      break;
+  }
+  return f(double{});
+}
+
+/// What the elements of a message are and how they are written.
+struct Info {
+  MatrixType type = MatrixType::Position;
+  std::uint8_t components = 3;  ///< numbers in an element, 1 … 99
+  Scalar scalar = Scalar::F64;
+  Encoding encoding = Encoding::Text;
+
+  /// The header's field, TTCCSE: 10390 for a position of three f64 in text.
+  [[nodiscard]] constexpr std::int32_t code() const {
+    return static_cast<std::int32_t>(type) * 10000 + components * 100 +
+           static_cast<std::int32_t>(scalar) * 10 + static_cast<std::int32_t>(encoding);
+  }
+
+  /// Bytes that one element takes in binary form.
+  [[nodiscard]] constexpr std::size_t element_bytes() const { return components * size_of(scalar); }
+
+  bool operator==(const Info&) const = default;
+};
+
+/// "position 3 x f64, text"
+std::string text(const Info& info);
+
+/// Why an info is refused: the rule of the specification that it breaks, and how.
+struct InfoError {
+  int rule = 0;  ///< 17 … 21
+  std::string what;
+};
+
+/// Whether type, components, scalar and encoding go together (R17 … R21); nothing when they do.
+std::optional<InfoError> find_error(const Info& info);
+
+/// Reads the header's info field, `code` ≥ 0.
+///
+/// Errors: Malformed or Unsupported; the detail begins with the rule, "R18: …".
+Result<Info> parse_info(std::int64_t code);
+
+}  // namespace hc

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/wire/message.h>
+
+#include <new>
+
+namespace hc {
+
+SharedBytes allocate_bytes(std::size_t size) {
+  constexpr std::align_val_t kAlignment{64};
+  auto* bytes = static_cast<std::byte*>(::operator new(size == 0 ? 1 : size, kAlignment));
+  return {bytes, [](std::byte* freed) { ::operator delete(freed, kAlignment); }};
+}
+
+Message Message::keep() const {
+  if (owner != nullptr) return *this;
+  SharedBytes bytes = allocate_bytes(elements.size());
+  if (!elements.empty()) std::memcpy(bytes.get(), elements.data(), elements.size());
+  return {header, {bytes.get(), elements.size()}, bytes};
+}
+
+Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
+  Header header;
+  header.info = info;
+  header.width = width;
+  header.height = height;
+  return make(header);
+}
+
+Draft Draft::make(const Header& header) {
+  auto valid = check(header, {~std::uint64_t{0}});
+  HC_CHECK(valid, valid.error().text());
+  Draft draft;
+  draft.header = header;
+  draft.size_ = header.element_bytes();
+  draft.bytes_ = allocate_bytes(draft.size_);
+  return draft;
+}
+
+Message Draft::finish() && {
+  Message message{header, {bytes_.get(), size_}, std::move(bytes_)};
+  size_ = 0;
+  return message;
+}
+
+}  // namespace hc

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// How the wire layer words an error: rule, field, what is wrong, where. Internal. Pure.
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <hc/base/result.h>
+
+namespace hc::internal {
+
+/// "R7 src: -1 is below 0, at byte 2"
+inline Error refusal(Code code, int rule, std::string_view field, std::string_view what,
+                     std::uint64_t byte) {
+  std::string detail = "R" + std::to_string(rule) + " ";
+  detail.append(field).append(": ").append(what);
+  detail += ", at byte " + std::to_string(byte);
+  return {code, std::move(detail)};
+}
+
+/// Bytes from outside as part of an error line: quoted, at most 24 of them, the rest made visible.
+inline std::string quoted(std::string_view bytes) {
+  constexpr std::size_t kShown = 24;
+  constexpr std::string_view kHex = "0123456789abcdef";
+  std::string result = "\"";
+  for (char c : bytes.substr(0, std::min(bytes.size(), kShown))) {
+    if (c >= 0x20 && c < 0x7f && c != '"' && c != '\\') {
+      result += c;
+    } else {
+      auto value = static_cast<unsigned char>(c);
+      result += "\\x";
+      result += kHex[value >> 4];
+      result += kHex[value & 15];
+    }
+  }
+  return result + (bytes.size() > kShown ? "…\"" : "\"");
+}
+
+}  // namespace hc::internal
