@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// --help and --describe: what a module says of itself.
+#include <cmath>
+
+#include <hc/node/arguments.h>
+#include <hc/wire/text.h>
+
+namespace hc::internal {
+namespace {
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+/// A JSON object that is being written, one key after the other.
+class Object {
+ public:
+  Object& add(std::string_view key, const std::string& json) {
+    text_.append(text_.size() > 1 ? "," : "").append(quoted(key)).append(":").append(json);
+    return *this;
+  }
+  Object& add_text(std::string_view key, std::string_view text) { return add(key, quoted(text)); }
+  Object& add_number(std::string_view key, double number) {
+    if (!std::isfinite(number)) return *this;
+    std::string digits;
+    append_number(number, digits);
+    return add(key, digits);
+  }
+  [[nodiscard]] std::string text() const { return text_ + "}"; }
+
+ private:
+  std::string text_ = "{";
+};
+
+template <typename List, typename Describe>
+std::string array(const List& list, Describe describe) {
+  std::string text = "[";
+  for (const auto& each : list) text.append(text.size() > 1 ? "," : "").append(describe(each));
+  return text + "]";
+}
+
+std::string describe_type(const PortType& type) {
+  return Object()
+      .add_text("type", name(type.info.type))
+      .add_number("components", type.info.components)
+      .add_text("scalar", name(type.info.scalar))
+      .add_number("width", type.width)
+      .add_number("height", type.height)
+      .add_number("coord", type.coord)
+      .text();
+}
+
+std::string value_as_json(const ParameterValue& value) {
+  return std::holds_alternative<std::string>(value) ? quoted(text(value)) : text(value);
+}
+
+std::string describe_parameter(const ParameterState& parameter) {
+  Object object;
+  object.add_text("name", parameter.name)
+      .add_text("type", type_name(parameter.value))
+      .add_text("unit", parameter.unit)
+      .add("default", value_as_json(parameter.otherwise))
+      .add_number("least", parameter.options.least)
+      .add_number("most", parameter.options.most);
+  if (!parameter.options.choices.empty())
+    object.add("choices", array(parameter.options.choices,
+                                [](const std::string& choice) { return quoted(choice); }));
+  return object.add_text("doc", parameter.doc).text();
+}
+
+std::string in_words(const PortType& type) {
+  std::string text(name(type.info.type));
+  text += " " + std::to_string(type.info.components) + " x " + std::string(name(type.info.scalar));
+  if (type.width != 0) text += ", width " + std::to_string(type.width);
+  if (type.height != 0) text += ", height " + std::to_string(type.height);
+  if (type.coord != 0) text += ", coordinate system " + std::to_string(type.coord);
+  return text;
+}
+
+std::string line(const std::string& left, const std::string& right) {
+  constexpr std::size_t kColumn = 28;
+  std::string pad(left.size() + 3 < kColumn ? kColumn - left.size() - 2 : 1, ' ');
+  return "  " + left + pad + right + "\n";
+}
+
+std::string in_words(const std::vector<PortType>& types) {
+  std::string text = types.empty() ? "anything" : "";
+  for (const auto& type : types) text.append(text.empty() ? "" : " or ").append(in_words(type));
+  return text;
+}
+
+std::string parameter_line(const ParameterState& parameter) {
+  std::string left = (parameter.options.positional ? "[--" : "--") + parameter.name +
+                     (parameter.options.positional ? "]" : "");
+  std::string right = parameter.doc;
+  if (!parameter.unit.empty()) right += " [" + parameter.unit + "]";
+  for (const auto& choice : parameter.options.choices)
+    right += (&choice == &parameter.options.choices.front() ? ": " : ", ") + choice;
+  std::string otherwise = text(parameter.otherwise);
+  return line(left, right + " (default " + (otherwise.empty() ? "none" : otherwise) + ")");
+}
+
+}  // namespace
+
+std::string describe(const Module& module) {
+  auto input = [](const auto& port) {
+    return Object()
+        .add_text("name", port->name)
+        .add("types", array(port->types, describe_type))
+        .add_text("doc", port->doc)
+        .text();
+  };
+  auto output = [](const auto& port) {
+    return Object()
+        .add_text("name", port->name)
+        .add("types", "[" + describe_type(port->type) + "]")
+        .add_text("encoding", name(port->type.info.encoding))
+        .add_text("doc", port->doc)
+        .text();
+  };
+  auto parameter = [](const auto& state) { return describe_parameter(*state); };
+  return Object()
+             .add_text("name", module.name())
+             .add_text("summary", module.summary())
+             .add("inputs", array(module.inputs(), input))
+             .add("outputs", array(module.outputs(), output))
+             .add("parameters", array(module.parameters(), parameter))
+             .text() +
+         "\n";
+}
+
+std::string help(const Module& module) {
+  std::string text = module.summary() + "\n\nUsage: hc " + module.name() + " [OPTION …]\n";
+  if (!module.inputs().empty()) text += "\nInputs:\n";
+  for (const auto& port : module.inputs())
+    text += line(port->name, port->doc + " (" + in_words(port->types) + ")");
+  if (!module.outputs().empty()) text += "\nOutputs:\n";
+  for (const auto& port : module.outputs())
+    text += line(port->name, port->doc + " (" + in_words(port->type) + ")");
+  if (!module.parameters().empty()) text += "\nParameters:\n";
+  for (const auto& parameter : module.parameters()) text += parameter_line(*parameter);
+  text += "\nLinks and common options:\n";
+  if (!module.inputs().empty())
+    text += line("--in [PORT=]URI", "link an input; without any, inputs share standard input");
+  if (!module.outputs().empty()) {
+    text += line("--out [PORT=]URI", "link an output; without any, all go to standard output");
+    text += line("--address PORT=NUMBER", "the src of an output's messages");
+    text += line("--encoding [PORT=]NAME", "text, binary, zstd or jpeg");
+  }
+  text += line("--limit BYTES", "largest elements that are taken (default 268435456)");
+  text += line("--name NAME", "what the module is called in its lines");
+  text += line("--describe", "print ports and parameters as JSON");
+  return text + line("--help", "print this");
+}
+
+}  // namespace hc::internal

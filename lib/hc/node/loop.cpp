@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/node/loop.h>
+
+#include <algorithm>
+
+#include <hc/compress/compress.h>
+
+namespace hc {
+namespace {
+
+using internal::LinkedSink;
+using internal::LinkedSource;
+using internal::Stopped;
+
+constexpr std::chrono::seconds kReportPeriod{1};
+
+/// What ends a module: cleanly when it was told to stop, else with the name of who failed.
+[[noreturn]] void fail(const std::string& who, const Error& error) {
+  if (error.detail == "stopped") throw Stopped();
+  throw ModuleError(Error{error.code, who + ": " + error.detail});
+}
+
+}  // namespace
+
+Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
+    : module_(module) {
+  options_.limits = arguments.limits;
+  options_.stop = stop;
+  options_.log = [this](Severity, std::string_view line) { module_.log(line); };
+  open_outputs(arguments);
+  if (arguments.manage) {
+    auto sink = open_sink(*arguments.manage, options_);
+    if (!sink) fail(arguments.manage->text(), sink.error());
+    manage_ = std::move(*sink);
+  }
+  open_inputs(arguments);
+}
+
+void Module::Loop::open_outputs(const internal::Arguments& arguments) {
+  auto open = [&](const Uri& uri) {
+    auto sink = open_sink(uri, options_);
+    if (!sink) fail(uri.text(), sink.error());
+    auto link = std::make_shared<LinkedSink>();
+    link->uri = uri.text();
+    link->sink = std::move(*sink);
+    sinks_.push_back(link);
+    return link;
+  };
+  for (const auto& [port, uri] : arguments.outputs)
+    module_.outputs_[port]->links.push_back(open(uri));
+  if (!arguments.outputs.empty() || module_.outputs_.empty()) return;
+  auto standard_output = open({"-", "", {}});
+  for (auto& output : module_.outputs_) output->links.push_back(standard_output);
+}
+
+void Module::Loop::open_inputs(const internal::Arguments& arguments) {
+  auto open = [&](const Uri& uri, std::vector<internal::InputState*> inputs) {
+    auto source = open_source(uri, options_);
+    if (!source) fail(uri.text(), source.error());
+    sources_.push_back({uri.text(), std::move(*source), std::move(inputs), {}});
+  };
+  for (const auto& [port, uri] : arguments.inputs) open(uri, {module_.inputs_[port].get()});
+  if (!arguments.inputs.empty() || module_.inputs_.empty()) return;
+  std::vector<internal::InputState*> all;
+  for (auto& input : module_.inputs_) all.push_back(input.get());
+  open({"-", "", {}}, std::move(all));
+}
+
+void Module::Loop::run() {
+  if (module_.start_) module_.start_();
+  auto has_ended = [](const LinkedSource& link) { return link.source == nullptr; };
+  while (true) {
+    if (internal::stop_requested()) throw Stopped();
+    bool any = false;
+    for (auto& link : sources_) any = take_one(link) || any;
+    report();
+    if (any) continue;
+    if (module_.generate_) {
+      if (!module_.generate_()) break;
+    } else if (std::all_of(sources_.begin(), sources_.end(), has_ended)) {
+      break;
+    } else {
+      wait();
+    }
+  }
+  module_.handled_time_ = 0;
+  if (module_.end_) module_.end_();
+}
+
+bool Module::Loop::take_one(LinkedSource& link) {
+  if (link.source == nullptr) return false;
+  Message message;
+  auto got = link.source->take(message);
+  if (!got) fail(link.inputs.size() == 1 ? link.inputs[0]->name : link.uri, got.error());
+  if (*got == Got::End) {
+    link.traffic = link.source->traffic();
+    link.source.reset();
+  }
+  if (*got != Got::Message) return false;
+  deliver(link, message);
+  return true;
+}
+
+void Module::Loop::deliver(LinkedSource& link, const Message& message) {
+  Status fit;
+  for (auto* input : link.inputs) {
+    fit = input->types.empty() ? Status() : Error{Code::Malformed, ""};
+    for (const auto& type : input->types)
+      if (fit = fits(message.header, type); fit) break;
+    if (!fit) continue;
+    if (!input->handler) return;
+    module_.handled_time_ = message.header.time;
+    module_.handled_mode_ = message.header.mode;
+    auto plain = expand(message);
+    if (!plain) fail(input->name, plain.error());
+    input->handler(*plain);
+    module_.handled_time_ = 0;
+    return;
+  }
+  fail(link.inputs.back()->name, fit.error());
+}
+
+void Module::Loop::wait() {
+  std::vector<int> descriptors;
+  for (const auto& link : sources_)
+    if (link.source != nullptr) descriptors.push_back(link.source->descriptor());
+  auto timeout = manage_ ? std::chrono::milliseconds(kReportPeriod) : std::chrono::milliseconds(-1);
+  auto ready = wait_readable(descriptors, options_.stop, timeout);
+  if (!ready) fail("poll", ready.error());
+}
+
+void Module::Loop::report() {
+  if (manage_ == nullptr || module_.clock_.monotonic() - reported_ < kReportPeriod) return;
+  reported_ = module_.clock_.monotonic();
+  auto links = sources_.size() + sinks_.size();
+  Draft draft = Draft::make(table<std::int64_t>(2).type.info, 1, static_cast<std::int32_t>(links));
+  auto rows = draft.view<std::int64_t>();
+  std::size_t row = 0;
+  auto put = [&](const Traffic& traffic) {
+    rows.at(row, 0, 0) = static_cast<std::int64_t>(traffic.messages);
+    rows.at(row, 0, 1) = static_cast<std::int64_t>(traffic.bytes);
+    ++row;
+  };
+  for (const auto& link : sources_) put(link.source ? link.source->traffic() : link.traffic);
+  for (const auto& link : sinks_) put(link->sink ? link->sink->traffic() : link->traffic);
+  draft.header.seq = reports_++;
+  draft.header.time = module_.now();
+  // Who does not listen to our counters does not stop our work.
+  if (!manage_->send(std::move(draft).finish())) manage_.reset();
+}
+
+void Module::Loop::close() {
+  for (auto& link : sinks_) {
+    if (link->sink == nullptr) continue;
+    auto closed = link->sink->close();
+    link->traffic = link->sink->traffic();
+    if (!closed && closed.error().code != Code::Closed) fail(link->uri, closed.error());
+  }
+  reported_ = MonotonicTime(0);
+  report();
+}
+
+}  // namespace hc

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/node/parameter.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace hc {
+namespace {
+
+template <typename T>
+bool read_all(std::string_view text, T& value) {
+  auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return status == std::errc() && stop == text.data() + text.size() && !text.empty();
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> written;
+  return {written.data(),
+          std::to_chars(written.data(), written.data() + written.size(), value).ptr};
+}
+
+}  // namespace
+
+std::string_view type_name(const ParameterValue& value) {
+  constexpr std::array<std::string_view, 4> kNames = {"bool", "integer", "number", "string"};
+  return kNames[value.index()];
+}
+
+std::string text(const ParameterValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
+  return std::get<std::string>(value);
+}
+
+Status ParameterState::set(std::string_view given) {
+  auto refuse = [&](const std::string& wanted) {
+    return Error{Code::Usage,
+                 "parameter " + name + ": \"" + std::string(given) + "\" is not " + wanted};
+  };
+  double number = 0;
+  if (auto* flag = std::get_if<bool>(&value)) {
+    if (given != "true" && given != "false") return refuse("true or false");
+    *flag = given == "true";
+    return {};
+  }
+  if (auto* string = std::get_if<std::string>(&value)) {
+    const auto& choices = options.choices;
+    if (!choices.empty() && std::find(choices.begin(), choices.end(), given) == choices.end()) {
+      std::string wanted = "one of";
+      for (const auto& choice : choices) wanted.append(" ").append(choice);
+      return refuse(wanted);
+    }
+    *string = given;
+    return {};
+  }
+  std::int64_t integer = 0;
+  bool whole = std::holds_alternative<std::int64_t>(value);
+  if (whole ? !read_all(given, integer) : !read_all(given, number))
+    return refuse(whole ? "a whole number" : "a number");
+  if (whole) number = static_cast<double>(integer);
+  if (!(number >= options.least && number <= options.most) || std::isnan(number))
+    return refuse("from " + number_text(options.least) + " to " + number_text(options.most));
+  if (whole)
+    value = integer;
+  else
+    value = number;
+  return {};
+}
+
+}  // namespace hc

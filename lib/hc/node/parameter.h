@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Parameters of a module: declared once with unit, default and range, set on the command line.
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <hc/base/result.h>
+
+namespace hc {
+
+/// What a parameter can be.
+using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
+
+/// What a parameter may be, beyond its type.
+struct ParameterOptions {
+  double least = -std::numeric_limits<double>::infinity();  ///< of a number
+  double most = std::numeric_limits<double>::infinity();    ///< of a number
+  std::vector<std::string> choices = {};                    ///< of a string; empty: any string
+  bool positional = false;  ///< may be given without its name, in the order of declaration
+};
+
+/// A parameter as declared, with its value.
+struct ParameterState {
+  std::string name;
+  std::string unit;  ///< [SI], "" for none
+  std::string doc;
+  ParameterOptions options;
+  ParameterValue otherwise;  ///< the default
+  ParameterValue value;
+
+  /// Sets the value from text: true, false, 12, 0.5, any string.
+  ///
+  /// Errors: Usage (not of the type, out of range, not one of the choices).
+  Status set(std::string_view text);
+};
+
+/// "bool", "integer", "number", "string"
+std::string_view type_name(const ParameterValue& value);
+
+/// The value as set() reads it.
+std::string text(const ParameterValue& value);
+
+/// A module's own view of a parameter: `*hue` is its value now.
+template <typename T>
+class Parameter {
+ public:
+  explicit Parameter(std::shared_ptr<const ParameterState> state) : state_(std::move(state)) {}
+  const T& operator*() const { return std::get<T>(state_->value); }
+  const T* operator->() const { return &**this; }
+
+ private:
+  std::shared_ptr<const ParameterState> state_;
+};
+
+}  // namespace hc
