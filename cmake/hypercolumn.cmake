@@ -31,11 +31,26 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
-find_package(OpenCV 4 REQUIRED COMPONENTS core imgproc imgcodecs videoio calib3d highgui)
+
+# Debian's single OpenCV packages have no CMake package, which is libopencv-dev's with everything.
+find_path(HC_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+foreach(module core imgproc imgcodecs videoio calib3d highgui)
+  find_library(HC_OPENCV_${module} opencv_${module} REQUIRED)
+  add_library(opencv_${module} UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(opencv_${module} PROPERTIES
+    IMPORTED_LOCATION ${HC_OPENCV_${module}} INTERFACE_INCLUDE_DIRECTORIES ${HC_OPENCV_INCLUDE})
+  if(NOT module STREQUAL core)
+    target_link_libraries(opencv_${module} INTERFACE opencv_core)
+  endif()
+endforeach()
 
 # Flags that are ours, not our users'.
 add_library(hc_flags INTERFACE)
 target_compile_options(hc_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # False for every "text" + std::string: https://gcc.gnu.org/bugzilla/show_bug.cgi?id=105651
+  target_compile_options(hc_flags INTERFACE -Wno-restrict)
+endif()
 if(HC_DEVELOPER_MODE)
   target_compile_options(hc_flags INTERFACE -Werror)
   enable_testing()

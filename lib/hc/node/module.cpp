@@ -112,6 +112,19 @@ void Module::log(std::string_view line) const {
   print(STDERR_FILENO, instance_ + ": " + std::string(line) + "\n");
 }
 
+void Module::keep_rate(double rate) {
+  auto period = std::chrono::duration_cast<MonotonicTime>(std::chrono::duration<double>(1 / rate));
+  MonotonicTime due = next_period_.value_or(clock_.monotonic());
+  while (true) {
+    MonotonicTime left = due - clock_.monotonic();
+    if (left <= MonotonicTime(0)) break;
+    auto waited = wait_readable({}, stop_event, std::chrono::ceil<std::chrono::milliseconds>(left));
+    if (!waited) throw internal::Stopped();
+  }
+  // Periods that were missed are not made up for.
+  next_period_ = std::max(due, clock_.monotonic() - period) + period;
+}
+
 bool internal::stop_requested() {
   return stop_asked != 0;
 }

@@ -107,6 +107,10 @@ class Module {
   /// until it gives false. The module ends then.
   void generate(std::function<bool()> handler) { generate_ = std::move(handler); }
 
+  /// For generators: waits until the next period of a rate begins, counted from the first call.
+  /// A module that is told to stop ends here. @param rate [Hz]
+  void keep_rate(double rate);
+
   /// Says something to the person who runs the module: one line on standard error, with the
   /// module's name before it.
   void log(std::string_view line) const;
@@ -150,6 +154,7 @@ class Module {
   SystemClock clock_;
   std::int64_t handled_time_ = 0;  // of the message being handled; 0: none
   std::int32_t handled_mode_ = 0;
+  std::optional<MonotonicTime> next_period_;
 };
 
 }  // namespace hc

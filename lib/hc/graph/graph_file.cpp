@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/graph_file.h>
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+namespace hc {
+namespace {
+
+bool is_name(std::string_view text) {
+  auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  return !text.empty() && text.size() <= 64 && text.front() >= 'a' && text.front() <= 'z' &&
+         std::all_of(text.begin(), text.end(), is_letter);
+}
+
+/// Letters to change, add or leave out until one word is the other.
+/// Source: Levenshtein's distance, by the usual table of which one row is kept.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// Walks through the tables of one file.
+class Reader {
+ public:
+  Reader(std::string_view file, const Environment& environment) : environment_(environment) {
+    graph_.file = file;
+  }
+
+  Result<Graph> read(const toml::table& root) {
+    auto known = check_keys(root, {"modules", "links"}, "at the top of a graph");
+    if (!known) return known.error();
+    const toml::node* modules = root.get("modules");
+    if (modules == nullptr || !modules->is_table())
+      return error(root, "a graph has a table [modules.NAME] for each module");
+    for (const auto& [key, node] : *modules->as_table()) {
+      auto read = read_module(key.str(), node);
+      if (!read) return read.error();
+    }
+    if (const toml::node* links = root.get("links")) {
+      if (!links->is_array()) return error(*links, "links are written as [[links]]");
+      for (const auto& node : *links->as_array()) {
+        auto read = read_link(node);
+        if (!read) return read.error();
+      }
+    }
+    // toml++ sorts its keys; people expect their modules in the order in which they wrote them.
+    std::sort(graph_.modules.begin(), graph_.modules.end(),
+              [](const auto& a, const auto& b) { return a.line < b.line; });
+    return std::move(graph_);
+  }
+
+ private:
+  static int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+
+  Error error(const toml::node& node, const std::string& what) const {
+    return {Code::Usage,
+            graph_.file + ":" + std::to_string(std::max(line_of(node), 1)) + ": " + what};
+  }
+
+  Status check_keys(const toml::table& table, const std::vector<std::string>& known,
+                    const std::string& where) const {
+    for (const auto& [key, node] : table)
+      if (std::find(known.begin(), known.end(), key.str()) == known.end())
+        return error(node, "no key \"" + std::string(key.str()) + "\" " + where +
+                               suggestion(key.str(), known));
+    return {};
+  }
+
+  Result<std::string> read_string(const toml::table& table, std::string_view key) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return error(table, "\"" + std::string(key) + "\" is missing");
+    if (!node->is_string()) return error(*node, "\"" + std::string(key) + "\" is a string");
+    return node->value<std::string>().value_or("");
+  }
+
+  Status read_module(std::string_view name, const toml::node& node) {
+    GraphModule module;
+    module.name = name;
+    module.program = name;
+    module.line = line_of(node);
+    if (!is_name(name))
+      return error(node, "a module's name is snake_case, not \"" + module.name + "\"");
+    if (!node.is_table()) return error(node, "a module is a table [modules." + module.name + "]");
+    const toml::table& table = *node.as_table();
+    auto known = check_keys(table, {"program", "parameters", "addresses", "encodings"},
+                            "in module " + module.name);
+    if (!known) return known;
+    if (table.contains("program")) {
+      auto program = read_string(table, "program");
+      if (!program) return program.error();
+      module.program = *program;
+    }
+    auto read =
+        read_values(table, "parameters", [&](const std::string& key, const toml::node& value) {
+          auto text = parameter_text(value);
+          if (!text) return Status(text.error());
+          module.parameters[key] = *text;
+          return Status();
+        });
+    if (!read) return read;
+    read = read_values(table, "addresses", [&](const std::string& key, const toml::node& value) {
+      auto address = value.value_exact<std::int64_t>().value_or(-1);
+      if (address < 0 || address > 2147483647)
+        return Status(error(value, "an address is a whole number from 0 to 2147483647"));
+      module.addresses[key] = address;
+      return Status();
+    });
+    if (!read) return read;
+    read = read_values(table, "encodings", [&](const std::string& key, const toml::node& value) {
+      if (!value.is_string())
+        return Status(error(value, "an encoding is \"text\", \"binary\", \"zstd\" or \"jpeg\""));
+      module.encodings[key] = value.value<std::string>().value_or("");
+      return Status();
+    });
+    if (!read) return read;
+    graph_.modules.push_back(std::move(module));
+    return {};
+  }
+
+  template <typename Take>
+  Status read_values(const toml::table& table, std::string_view key, Take take) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return {};
+    if (!node->is_table()) return error(*node, "\"" + std::string(key) + "\" is a table");
+    for (const auto& [name, value] : *node->as_table())
+      if (auto taken = take(std::string(name.str()), value); !taken) return taken;
+    return {};
+  }
+
+  Result<std::string> parameter_text(const toml::node& node) const {
+    if (auto string = node.value_exact<std::string>()) return expand(node, *string);
+    if (auto flag = node.value_exact<bool>()) return std::string(*flag ? "true" : "false");
+    if (node.is_integer() || node.is_floating_point()) {
+      std::ostringstream text;
+      if (auto number = node.value_exact<double>())
+        (text.precision(17), text << *number);
+      else
+        text << node.value<std::int64_t>().value_or(0);
+      return text.str();
+    }
+    return error(node, "a parameter is a string, a number, true or false");
+  }
+
+  /// Puts variables of the environment in.
+  Result<std::string> expand(const toml::node& node, std::string_view text) const {
+    std::string result;
+    while (true) {
+      auto begin = text.find("${");
+      result += text.substr(0, begin);
+      if (begin == std::string_view::npos) return result;
+      auto end = text.find('}', begin);
+      if (end == std::string_view::npos) return error(node, "no } after ${");
+      std::string variable{text.substr(begin + 2, end - begin - 2)};
+      text.remove_prefix(end + 1);
+      std::optional<std::string> otherwise;
+      if (auto split = variable.find(":-"); split != std::string::npos) {
+        otherwise = variable.substr(split + 2);
+        variable.resize(split);
+      }
+      const char* value = environment_(variable.c_str());
+      if (value == nullptr && !otherwise)
+        return error(node, "the environment has no variable " + variable + "; ${" + variable +
+                               ":-VALUE} gives a default");
+      result += value != nullptr && *value != '\0' ? value : otherwise.value_or("");
+    }
+  }
+
+  Result<GraphPort> read_port(const toml::table& table, std::string_view key) const {
+    auto text = read_string(table, key);
+    if (!text) return text.error();
+    auto dot = text->find('.');
+    if (dot == std::string::npos || !is_name(text->substr(0, dot)) ||
+        !is_name(text->substr(dot + 1)))
+      return error(*table.get(key), "\"" + *text + "\" is not MODULE.PORT");
+    return GraphPort{text->substr(0, dot), text->substr(dot + 1)};
+  }
+
+  Status read_link(const toml::node& node) {
+    if (!node.is_table()) return error(node, "a link is written as [[links]]");
+    const toml::table& table = *node.as_table();
+    if (auto known = check_keys(table, {"from", "to"}, "in a link"); !known) return known;
+    auto from = read_port(table, "from");
+    if (!from) return from.error();
+    auto to = read_port(table, "to");
+    if (!to) return to.error();
+    graph_.links.push_back({*from, *to, line_of(node)});
+    return {};
+  }
+
+  const Environment& environment_;
+  Graph graph_;
+};
+
+}  // namespace
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kNear = 3;
+  const std::string* best = nullptr;
+  std::size_t least = std::min(kNear, name.size() / 2 + 1);
+  for (const auto& word : known) {
+    std::size_t away = distance(name.substr(0, 64), word);
+    if (away < least || (away == least && best == nullptr && away < name.size())) {
+      least = away;
+      best = &word;
+    }
+  }
+  return best == nullptr ? "" : ", did you mean \"" + *best + "\"?";
+}
+
+GraphModule* Graph::find(std::string_view name) {
+  auto found = std::find_if(modules.begin(), modules.end(),
+                            [&](const GraphModule& module) { return module.name == name; });
+  return found == modules.end() ? nullptr : &*found;
+}
+
+Result<Graph> parse_graph(std::string_view text, std::string_view file,
+                          const Environment& environment) {
+  if (text.size() > kMaxGraphBytes)
+    return Error{Code::Usage, std::string(file) + ": a graph file has at most 1048576 bytes"};
+  try {
+    toml::table root = toml::parse(text, file);
+    return Reader(file, environment).read(root);
+  } catch (const toml::parse_error& error) {
+    return Error{Code::Usage, std::string(file) + ":" + std::to_string(error.source().begin.line) +
+                                  ": " + std::string(error.description())};
+  }
+}
+
+Status set_parameter(Graph& graph, std::string_view assignment) {
+  auto dot = assignment.find('.'), equals = assignment.find('=');
+  if (dot == std::string_view::npos || equals == std::string_view::npos || dot > equals)
+    return Error{Code::Usage, "\"" + std::string(assignment) + "\" is not MODULE.PARAMETER=VALUE"};
+  std::string name{assignment.substr(0, dot)};
+  GraphModule* module = graph.find(name);
+  if (module == nullptr) {
+    std::vector<std::string> known;
+    for (const auto& each : graph.modules) known.push_back(each.name);
+    return Error{Code::Usage,
+                 "no module \"" + name + "\" in " + graph.file + suggestion(name, known)};
+  }
+  module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] =
+      assignment.substr(equals + 1);
+  return {};
+}
+
+}  // namespace hc

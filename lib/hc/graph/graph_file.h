@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The graph file: which modules run, with which parameters, and how their ports are linked
+// (spec/graph.md). Pure, but for the environment's variables that strings name.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hc/base/result.h>
+
+namespace hc {
+
+/// A module of a graph.
+struct GraphModule {
+  std::string name;                               ///< snake_case
+  std::string program;                            ///< a module's name, or a path
+  std::map<std::string, std::string> parameters;  ///< as text, as on a command line
+  std::map<std::string, std::int64_t> addresses;  ///< of output ports
+  std::map<std::string, std::string> encodings;   ///< of output ports
+  int line = 0;                                   ///< of the file
+};
+
+/// A port of a module of a graph.
+struct GraphPort {
+  std::string module, port;
+  [[nodiscard]] std::string text() const { return module + "." + port; }
+};
+
+/// A link, from an output to an input.
+struct GraphLink {
+  GraphPort from, to;
+  int line = 0;
+};
+
+struct Graph {
+  std::string file;  ///< as it was given, for error lines
+  std::vector<GraphModule> modules;
+  std::vector<GraphLink> links;
+
+  /// The module of that name; null where there is none.
+  [[nodiscard]] GraphModule* find(std::string_view name);
+};
+
+/// Looks a variable of the environment up; null where it is not set.
+using Environment = std::function<const char*(const char* name)>;
+
+/// Largest graph file that is read. [byte]
+inline constexpr std::size_t kMaxGraphBytes = std::size_t{1} << 20;
+
+/// Reads a graph file's text. `${NAME:-otherwise}` in a parameter stands for a variable of the
+/// environment.
+///
+/// Errors: Usage; "depth.toml:12: …" with what is wrong and what would be right.
+Result<Graph> parse_graph(std::string_view text, std::string_view file,
+                          const Environment& environment);
+
+/// Sets a parameter, from "MODULE.PARAMETER=VALUE".
+///
+/// Errors: Usage (another form; no such module).
+Status set_parameter(Graph& graph, std::string_view assignment);
+
+/// ", did you mean "camera"?" where one of `known` is spelled nearly as `name`; else empty.
+std::string suggestion(std::string_view name, const std::vector<std::string>& known);
+
+}  // namespace hc

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/plan.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+namespace hc {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A module of the graph with what its program says of itself.
+struct Described {
+  const GraphModule* module;
+  Json description;
+};
+
+std::vector<std::string> names_of(const Json& list) {
+  std::vector<std::string> names;
+  for (const auto& each : list) names.push_back(each.at("name"));
+  return names;
+}
+
+const Json* find_named(const Json& list, const std::string& name) {
+  for (const auto& each : list)
+    if (each.at("name") == name) return &each;
+  return nullptr;
+}
+
+/// Whether what one port gives is what another takes; 0 and an empty list fit everything.
+bool type_fits(const Json& given, const Json& taken) {
+  for (const char* key : {"type", "components", "scalar"})
+    if (given.at(key) != taken.at(key)) return false;
+  for (const char* key : {"width", "height", "coord"})
+    if (given.at(key) != 0 && taken.at(key) != 0 && given.at(key) != taken.at(key)) return false;
+  return true;
+}
+
+std::string in_words(const Json& types) {
+  std::string text;
+  for (const auto& type : types) {
+    if (!text.empty()) text += " or ";
+    text += type.at("type").get<std::string>() + " " + type.at("components").dump() + " x " +
+            type.at("scalar").get<std::string>();
+    if (type.at("coord") != 0) text += " in coordinate system " + type.at("coord").dump();
+  }
+  return text;
+}
+
+class Planner {
+ public:
+  Planner(Graph graph, const Describe& describe, std::string_view token)
+      : graph_(std::move(graph)), describe_(describe), token_(token) {}
+
+  Result<Plan> plan() {
+    for (const auto& module : graph_.modules) {
+      auto planned = plan_module(module);
+      if (!planned) return planned.error();
+    }
+    // The counters of a module have its inputs first, so these are all counted before.
+    for (const auto& link : graph_.links) {
+      auto checked = check_link(link);
+      if (!checked) return checked.error();
+      ++plan_.modules[index_[link.to.module]].inputs;
+    }
+    std::map<std::string, std::size_t> outputs;
+    for (std::size_t i = 0; i < graph_.links.size(); ++i) add_link(graph_.links[i], i, outputs);
+    return std::move(plan_);
+  }
+
+ private:
+  Error error(int line, const std::string& what) const {
+    return {Code::Usage, graph_.file + ":" + std::to_string(line) + ": " + what};
+  }
+
+  Status plan_module(const GraphModule& module) {
+    auto text = describe_(module.program);
+    if (!text) return error(module.line, "module " + module.name + ": " + text.error().detail);
+    Json description = Json::parse(*text, nullptr, false);
+    if (!description.is_object() || !description.contains("inputs") ||
+        !description.contains("outputs") || !description.contains("parameters"))
+      return error(module.line, "module " + module.name + ": " + module.program +
+                                    " --describe prints no description of a module");
+    PlannedModule planned;
+    planned.name = module.name;
+    planned.command = {module.program, "--name", module.name};
+    auto add = [&](std::string option, std::string value) {
+      planned.command.push_back(std::move(option));
+      planned.command.push_back(std::move(value));
+    };
+    for (const auto& [name, value] : module.parameters) {
+      const Json* parameter = find_named(description["parameters"], name);
+      if (parameter == nullptr)
+        return error(module.line, "module " + module.name + " has no parameter \"" + name + "\"" +
+                                      suggestion(name, names_of(description["parameters"])));
+      planned.command.push_back("--" + name + "=" + value);
+    }
+    for (const auto& [port, address] : module.addresses) {
+      if (find_named(description["outputs"], port) == nullptr)
+        return no_port(module, module.line, "output", port, description["outputs"]);
+      if (address != 0 && !addresses_.insert(address).second)
+        return error(module.line, "address " + std::to_string(address) + " is given twice");
+      add("--address", port + "=" + std::to_string(address));
+    }
+    for (const auto& [port, encoding] : module.encodings) {
+      if (find_named(description["outputs"], port) == nullptr)
+        return no_port(module, module.line, "output", port, description["outputs"]);
+      add("--encoding", port + "=" + encoding);
+    }
+    planned.manage_uri = "unix-listen:@" + token_ + "-" + module.name;
+    add("--manage", "unix:@" + token_ + "-" + module.name);
+    index_[module.name] = plan_.modules.size();
+    plan_.modules.push_back(std::move(planned));
+    described_[module.name] = {&module, std::move(description)};
+    return {};
+  }
+
+  Error no_port(const GraphModule& module, int line, const std::string& kind,
+                const std::string& port, const Json& ports) const {
+    return error(line, "module " + module.name + " has no " + kind + " \"" + port + "\"" +
+                           suggestion(port, names_of(ports)));
+  }
+
+  Result<const Json*> find_port(const GraphPort& port, int line, const char* list,
+                                const std::string& kind) const {
+    auto found = described_.find(port.module);
+    if (found == described_.end()) {
+      std::vector<std::string> known;
+      for (const auto& module : graph_.modules) known.push_back(module.name);
+      return error(line, "no module \"" + port.module + "\"" + suggestion(port.module, known));
+    }
+    const Json& ports = found->second.description.at(list);
+    const Json* json = find_named(ports, port.port);
+    if (json == nullptr) return no_port(*found->second.module, line, kind, port.port, ports);
+    return json;
+  }
+
+  Status check_link(const GraphLink& link) {
+    auto from = find_port(link.from, link.line, "outputs", "output");
+    if (!from) return from.error();
+    auto to = find_port(link.to, link.line, "inputs", "input");
+    if (!to) return to.error();
+    const Json& taken = (*to)->at("types");
+    const Json& given = (*from)->at("types").at(0);
+    if (!taken.empty() && std::none_of(taken.begin(), taken.end(),
+                                       [&](const Json& type) { return type_fits(given, type); }))
+      return error(link.line, link.from.text() + " gives " + in_words((*from)->at("types")) + ", " +
+                                  link.to.text() + " takes " + in_words(taken));
+    if (!linked_.insert(link.from.text() + " " + link.to.text()).second)
+      return error(link.line, "the link from " + link.from.text() + " to " + link.to.text() +
+                                  " is there twice");
+    return {};
+  }
+
+  void add_link(const GraphLink& link, std::size_t number,
+                std::map<std::string, std::size_t>& outputs) {
+    std::string name = "@" + token_ + "-" + std::to_string(number);
+    std::size_t from = index_[link.from.module], to = index_[link.to.module];
+    auto add = [&](std::size_t module, std::string option, std::string value) {
+      plan_.modules[module].command.push_back(std::move(option));
+      plan_.modules[module].command.push_back(std::move(value));
+    };
+    // Each link is a socket of its own; its sender waits for its one reader, so nothing is lost
+    // whichever starts first.
+    add(from, "--out", link.from.port + "=unix-listen:" + name + "?readers=1");
+    add(to, "--in", link.to.port + "=unix:" + name + "?wait=60");
+    plan_.links.push_back(
+        {link.from, link.to, from, plan_.modules[from].inputs + outputs[link.from.module]++});
+  }
+
+  Graph graph_;
+  const Describe& describe_;
+  std::string token_;
+  Plan plan_;
+  std::map<std::string, Described> described_;
+  std::map<std::string, std::size_t> index_;
+  std::set<std::int64_t> addresses_;
+  std::set<std::string> linked_;
+};
+
+}  // namespace
+
+Result<Plan> make_plan(Graph graph, const Describe& describe, std::string_view token) {
+  try {
+    return Planner(std::move(graph), describe, token).plan();
+  } catch (const Json::exception& error) {
+    return Error{Code::Usage,
+                 std::string("--describe prints no description of a module: ") + error.what()};
+  }
+}
+
+}  // namespace hc

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// From a graph to the commands that run it: every name is checked against what the modules say of
+// themselves (--describe), and every link gets its two ends. Pure.
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hc/graph/graph_file.h>
+
+namespace hc {
+
+/// A process that is to run.
+struct PlannedModule {
+  std::string name;
+  std::vector<std::string> command;  ///< program and arguments
+  std::string manage_uri;            ///< where the runner listens for its counters
+  std::size_t inputs = 0;            ///< links into it; the counters begin with these
+};
+
+/// A link, and where its counters are found.
+struct PlannedLink {
+  GraphPort from, to;
+  std::size_t module = 0;  ///< the one that sends: index in Plan::modules
+  std::size_t row = 0;     ///< of that module's counters
+};
+
+struct Plan {
+  std::vector<PlannedModule> modules;
+  std::vector<PlannedLink> links;
+};
+
+/// Gives what `program --describe` prints.
+using Describe = std::function<Result<std::string>(const std::string& program)>;
+
+/// Checks a graph and plans it.
+///
+/// @param token  a word that no other running graph has; the links' names begin with it.
+///
+/// Errors: Usage, with file and line: an unknown module, port or parameter, a value out of range,
+/// an input of another type than the output it is linked to, an address or a link given twice.
+Result<Plan> make_plan(Graph graph, const Describe& describe, std::string_view token);
+
+}  // namespace hc

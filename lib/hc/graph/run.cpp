@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <optional>
+
+#include <hc/graph/process.h>
+
+namespace hc {
+namespace {
+
+using internal::Process;
+using std::chrono::milliseconds;
+using MonotonicClock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kGraceToEnd{5};  // between SIGTERM and SIGKILL
+constexpr std::chrono::seconds kDescribeTime{10};
+constexpr std::size_t kMaxDescription = std::size_t{1} << 20;
+constexpr std::size_t kMaxLine = 4096;
+
+/// A module that runs, or has.
+struct Running {
+  const PlannedModule* module;
+  std::unique_ptr<Source> manage;
+  std::optional<Process> process;
+  std::optional<int> status;
+  bool says_more = true;          // its standard error is open
+  std::string line;               // what it has begun to say
+  std::vector<Traffic> counters;  // of its links, as it reported them last
+};
+
+class Runner {
+ public:
+  Runner(const Plan& plan, const RunOptions& options) : plan_(plan), options_(options) {}
+
+  Result<RunReport> run() {
+    for (const auto& module : plan_.modules) {
+      auto started = start(module);
+      if (!started) return started.error();
+    }
+    Status outcome;
+    RunReport report;
+    std::optional<MonotonicClock::time_point> kill_at;
+    auto end_all = [&] {
+      if (kill_at) return;
+      kill_at = MonotonicClock::now() + kGraceToEnd;
+      for (auto& module : running_)
+        if (!module.status) module.process->signal(SIGTERM);
+    };
+    while (!all_ended()) {
+      auto timeout = kill_at ? std::chrono::ceil<milliseconds>(*kill_at - MonotonicClock::now())
+                             : milliseconds(-1);
+      if (kill_at && timeout <= milliseconds(0)) {
+        for (auto& module : running_)
+          if (!module.status) module.process->signal(SIGKILL);
+        timeout = milliseconds(100);
+      }
+      auto waited = wait_readable(descriptors(), report.stopped ? -1 : options_.stop, timeout);
+      if (!waited && waited.error().code == Code::Closed) {
+        report.stopped = true;
+        say("graph: stopping");
+        end_all();
+      }
+      for (auto& module : running_) {
+        read_lines(module);
+        read_counters(module);
+        bool failed = note_end(module);
+        if (failed && !kill_at) {
+          outcome = Error{Code::Closed, "module " + module.module->name + " failed with status " +
+                                            std::to_string(*module.status)};
+          end_all();
+        }
+      }
+    }
+    if (!outcome) return outcome.error();
+    for (const auto& link : plan_.links) {
+      const auto& counters = running_[link.module].counters;
+      report.links.push_back(link.row < counters.size() ? counters[link.row] : Traffic{});
+    }
+    return report;
+  }
+
+ private:
+  void say(const std::string& line) const {
+    if (options_.event) options_.event(line);
+  }
+
+  Status start(const PlannedModule& module) {
+    Running running;
+    running.module = &module;
+    auto uri = parse_uri(module.manage_uri);
+    if (!uri) return uri.error();
+    auto manage = open_source(*uri);
+    if (!manage) return manage.error();
+    running.manage = std::move(*manage);
+    auto process = Process::start(module.command, Process::Capture::Errors);
+    if (!process) return Error{process.error().code, module.name + ": " + process.error().detail};
+    running.process.emplace(std::move(*process));
+    running_.push_back(std::move(running));
+    say(module.name + ": started");
+    return {};
+  }
+
+  [[nodiscard]] bool all_ended() const {
+    return std::all_of(running_.begin(), running_.end(), [](const Running& module) {
+      return module.status.has_value() && !module.says_more;
+    });
+  }
+
+  [[nodiscard]] std::vector<int> descriptors() const {
+    std::vector<int> all;
+    for (const auto& module : running_) {
+      if (module.says_more) all.push_back(module.process->output());
+      if (!module.status) all.push_back(module.process->ended());
+      if (!module.status) all.push_back(module.manage->descriptor());
+    }
+    return all;
+  }
+
+  /// Hands on the lines that a module has said, each with its name before it.
+  void read_lines(Running& module) {
+    char piece[4096];
+    ssize_t size = 0;
+    while (module.says_more &&
+           (size = ::read(module.process->output(), piece, sizeof piece)) != 0) {
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0) break;
+      for (char c : std::string_view(piece, static_cast<std::size_t>(size))) {
+        if (c != '\n') module.line += c;
+        if (c == '\n' || module.line.size() >= kMaxLine) finish_line(module);
+      }
+    }
+    // What it has started may hold its standard error open; that is no reason to wait for it.
+    bool nothing_more = size == 0 || module.status.has_value();
+    if (!module.says_more || !nothing_more) return;
+    finish_line(module);
+    module.says_more = false;
+  }
+
+  void finish_line(Running& module) const {
+    if (module.line.empty()) return;
+    std::string prefix = module.module->name + ": ";
+    say(module.line.starts_with(prefix) ? module.line : prefix + module.line);
+    module.line.clear();
+  }
+
+  static void read_counters(Running& module) {
+    Message message;
+    while (true) {
+      auto got = module.manage->take(message);
+      if (!got || *got != Got::Message) return;
+      auto rows = message.view<std::int64_t>();
+      if (!rows || rows->components() != 2) continue;
+      module.counters.clear();
+      for (std::size_t row = 0; row < rows->height() && rows->width() == 1; ++row)
+        module.counters.push_back({static_cast<std::uint64_t>(rows->at(row, 0, 0)),
+                                   static_cast<std::uint64_t>(rows->at(row, 0, 1))});
+    }
+  }
+
+  /// Whether a module has just ended, and not well.
+  bool note_end(Running& module) {
+    if (module.status) return false;
+    module.status = module.process->poll_status();
+    if (!module.status) return false;
+    read_counters(module);
+    module.process->signal(SIGKILL);  // what it has started and left behind
+    int status = *module.status;
+    bool good = status == 0;
+    say(module.module->name + (good           ? ": ended"
+                               : status > 128 ? ": killed by signal " + std::to_string(status - 128)
+                                              : ": failed with status " + std::to_string(status)));
+    return !good;
+  }
+
+  const Plan& plan_;
+  const RunOptions& options_;
+  std::vector<Running> running_;
+};
+
+}  // namespace
+
+Result<RunReport> run_graph(const Plan& plan, const RunOptions& options) {
+  return Runner(plan, options).run();
+}
+
+Result<std::string> describe_program(const std::string& program) {
+  auto process = Process::start({program, "--describe"}, Process::Capture::Output);
+  if (!process) return process.error();
+  std::string text;
+  auto give_up = MonotonicClock::now() + kDescribeTime;
+  while (text.size() <= kMaxDescription) {
+    auto left = std::chrono::ceil<milliseconds>(give_up - MonotonicClock::now());
+    if (left <= milliseconds(0)) return Error{Code::System, program + " --describe does not end"};
+    std::array<int, 1> output = {process->output()};
+    if (auto ready = wait_readable(output, -1, left); !ready) return ready.error();
+    char piece[4096];
+    ssize_t size = ::read(process->output(), piece, sizeof piece);
+    if (size > 0) text.append(piece, static_cast<std::size_t>(size));
+    if (size == 0) return text;
+  }
+  return Error{Code::System, program + " --describe prints more than a MiB"};
+}
+
+std::string graph_token() {
+  // Two graphs of one process may run side by side, and process numbers come back.
+  return "hc-" + std::to_string(::getpid()) + "-" +
+         std::to_string(MonotonicClock::now().time_since_epoch().count());
+}
+
+}  // namespace hc

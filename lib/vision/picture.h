@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Pictures: sizes and colours. No messages; plain cv::Mat in and out.
+
+#include <opencv2/core.hpp>
+
+namespace hc::vision {
+
+/// Scales a picture so that it covers width × height and cuts what stands over, equally on both
+/// sides. Where one of them is 0, it follows from the other; where both are, nothing changes.
+///
+/// @param smooth  average over the pixels (area) when shrinking; false takes the nearest pixel,
+///     for pictures whose values must not be mixed, as disparities.
+cv::Mat fit(const cv::Mat& picture, int width, int height, bool smooth = true);
+
+/// By how much fit() scales. [1]
+double fit_scale(const cv::Size& size, int width, int height);
+
+/// A picture of one channel of any depth in colours, from blue (far or small) over green to red
+/// (near or large).
+///
+/// @param values  (H, W) of any scalar; 0, nan and inf are unknown and become black.
+/// @param least, most  the values that are bluest and reddest; both 0: the 2nd and 98th percentile
+///     of the known values.
+/// @returns  (H, W, 3) u8, red, green, blue.
+cv::Mat colour_coded(const cv::Mat& values, double least = 0, double most = 0);
+
+}  // namespace hc::vision

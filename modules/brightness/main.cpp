@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The smallest useful module: a picture comes in, a number goes out. brightness.awk beside it does
+// the same on text.
+#include <numeric>
+
+#include <hc/node/module.h>
+
+int main(int argc, char** argv) {
+  hc::Module module{"brightness", "Measures how bright pictures are."};
+  auto image = module.input(
+      "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
+      "camera picture");
+  auto mean = module.output("mean", hc::table<double>(), "mean of all its numbers, 0 … 255");
+
+  module.on(image, [&](const hc::Message& picture) {
+    auto numbers = hc::value_or_end(picture.view<std::uint8_t>()).numbers();
+    auto sum = std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
+    mean.send(hc::table({static_cast<double>(sum) / static_cast<double>(numbers.size())}));
+  });
+  return module.run(argc, argv);
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// One camera, or the two of a stereo pair.
+#include "camera.h"
+
+#include <hc/adapter/opencv.h>
+#include <hc/node/module.h>
+#include <vision/picture.h>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kLeftRectified = 9, kRightRectified = 10;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // it says so in results
+  hc::Module module{"camera", "Gives the pictures of a camera, a video or picture files."};
+  auto left = module.output("left", hc::rgb_image<std::uint8_t>(), "picture of the left eye");
+  auto right = module.output("right", hc::rgb_image<std::uint8_t>(), "picture of the right eye");
+  auto left_name = module.parameter(
+      "source", "0", "", "device, video, pipeline, folder or picture of the left or only eye",
+      {.positional = true});
+  auto right_name =
+      module.parameter("right_source", "", "", "the same of the right eye", {.positional = true});
+  auto side_by_side = module.parameter("side_by_side", false, "",
+                                       "each picture holds both eyes', the left one on the left");
+  auto width = module.parameter("width", 0, "px", "width to scale and cut to, 0: as it comes",
+                                {.least = 0, .most = 65535});
+  auto height = module.parameter("height", 0, "px", "height to scale and cut to, 0: as it comes",
+                                 {.least = 0, .most = 65535});
+  auto smooth =
+      module.parameter("smooth", true, "", "mix pixels when scaling; false takes the nearest");
+  auto rectified = module.parameter("rectified", false, "", "the pictures are rectified already");
+  auto stamped = module.parameter("stamped", true, "", "give the pictures a time");
+  auto rate = module.parameter("rate", 0.0, "Hz", "pictures a second, 0: as they come",
+                               {.least = 0, .most = 1e4});
+  auto count = module.parameter("count", 0, "", "pictures to give, 0: all", {.least = 0});
+  auto loop = module.parameter("loop", false, "", "begin again at the end");
+
+  std::unique_ptr<PictureSource> left_source, right_source;
+  module.on_start([&] {
+    left_source = open_picture_source(*left_name);
+    if (!right_name->empty()) right_source = open_picture_source(*right_name);
+    if (right_source != nullptr && *side_by_side)
+      throw hc::ModuleError("side_by_side and right_source do not go together");
+  });
+
+  auto next = [&](PictureSource& source) {
+    cv::Mat picture = source.next();
+    if (picture.empty() && *loop && source.rewind()) picture = source.next();
+    return picture;
+  };
+  auto send = [&](auto& output, const cv::Mat& picture, std::int64_t time, std::int32_t coord) {
+    cv::Mat fitted =
+        hc::vision::fit(picture, static_cast<int>(*width), static_cast<int>(*height), *smooth);
+    auto draft = output.loan(fitted.cols, fitted.rows);
+    draft.header.time = time;
+    draft.header.coord = coord;
+    cv::Mat rgb = hc::value_or_end(hc::as_mat(draft));
+    cv::cvtColor(fitted, rgb, cv::COLOR_BGR2RGB);
+    output.send(std::move(draft));
+  };
+
+  std::int64_t given = 0;
+  module.generate([&] {
+    if (*count > 0 && given == *count) return false;
+    if (*rate > 0) module.keep_rate(*rate);
+    cv::Mat left_picture = next(*left_source), right_picture;
+    std::int64_t time = *stamped ? module.now() : 0;
+    if (right_source != nullptr) right_picture = next(*right_source);
+    if (left_picture.empty() || (right_source != nullptr && right_picture.empty())) return false;
+    if (*side_by_side) {
+      int half = left_picture.cols / 2;
+      right_picture = left_picture.colRange(half, 2 * half);
+      left_picture = left_picture.colRange(0, half);
+    }
+    send(left, left_picture, time, *rectified ? kLeftRectified : kLeftImage);
+    if (!right_picture.empty())
+      send(right, right_picture, time, *rectified ? kRightRectified : kRightImage);
+    ++given;
+    return true;
+  });
+  return module.run(argc, argv);
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Depth from a rectified stereo pair.
+#include <hc/adapter/opencv.h>
+#include <hc/node/module.h>
+#include <vision/stereo.h>
+
+namespace {
+
+constexpr std::int32_t kLeftRectified = 9, kRightRectified = 10, kDepth = 11, kDisparity = 12;
+
+hc::AnyKind picture(std::int32_t coord) {
+  return hc::any_of(hc::rgb_image<std::uint8_t>().in(coord),
+                    hc::intensity_image<std::uint8_t>().in(coord));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair."};
+  auto left = module.input("left", picture(kLeftRectified), "rectified picture of the left eye");
+  auto right =
+      module.input("right", picture(kRightRectified), "rectified picture of the right eye");
+  auto disparity = module.output("disparity", hc::intensity_image<float>().in(kDisparity),
+                                 "disparity of the left picture's pixels [px], 0 unknown");
+  auto depth = module.output("depth", hc::intensity_image<float>().in(kDepth),
+                             "depth along the optical axis [m], 0 unknown");
+  auto disparities =
+      module.parameter("disparities", 128, "px", "disparities searched, a multiple of 16",
+                       {.least = 16, .most = 1024});
+  auto block_size = module.parameter("block_size", 5, "px", "side of the window compared, odd",
+                                     {.least = 1, .most = 21});
+  auto focal = module.parameter("focal", 800.0, "px", "focal length", {.least = 1e-3});
+  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes", {.least = 1e-6});
+  auto offset = module.parameter("offset", 0.0, "px",
+                                 "added to a disparity before depth is computed from it");
+
+  std::optional<hc::vision::StereoMatcher> matcher;
+  module.on_start([&] {
+    if (*disparities % 16 != 0) throw hc::ModuleError("disparities is not a multiple of 16");
+    if (*block_size % 2 == 0) throw hc::ModuleError("block_size is not odd");
+    matcher.emplace(
+        hc::vision::StereoOptions{static_cast<int>(*disparities), static_cast<int>(*block_size)});
+  });
+  module.on_both(
+      left, right, [&](const hc::Message& left_picture, const hc::Message& right_picture) {
+        const auto& size = left_picture.header;
+        if (size.width != right_picture.header.width || size.height != right_picture.header.height)
+          throw hc::ModuleError("the left picture is " + std::to_string(size.width) + " x " +
+                                std::to_string(size.height) + ", the right one " +
+                                std::to_string(right_picture.header.width) + " x " +
+                                std::to_string(right_picture.header.height));
+        auto found = disparity.loan(size.width, size.height);
+        found.header.time = std::max(size.time, right_picture.header.time);
+        cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
+        matcher->match(hc::value_or_end(hc::as_mat(left_picture)),
+                       hc::value_or_end(hc::as_mat(right_picture)), found_mat);
+        if (depth.linked()) {
+          auto metres = depth.loan(size.width, size.height);
+          metres.header.time = found.header.time;
+          cv::Mat metres_mat = hc::value_or_end(hc::as_mat(metres));
+          hc::vision::depth_of(found_mat, {*focal, *baseline, *offset}, metres_mat);
+          disparity.send(std::move(found));
+          depth.send(std::move(metres));
+        } else {
+          disparity.send(std::move(found));
+        }
+      });
+  return module.run(argc, argv);
+}

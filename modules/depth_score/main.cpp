@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// How good a disparity map is, against ground truth.
+#include <cstdio>
+
+#include <hc/adapter/opencv.h>
+#include <hc/node/module.h>
+#include <vision/stereo.h>
+#include <opencv2/imgproc.hpp>
+
+int main(int argc, char** argv) {
+  hc::Module module{"depth_score", "Compares disparities with the true ones."};
+  auto disparity =
+      module.input("disparity", hc::intensity_image<float>(), "as found [px], 0 unknown");
+  auto truth = module.input(
+      "truth", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
+      "true disparity in grey levels, 0 unknown");
+  auto result = module.output(
+      "score", hc::table<double>(),
+      "share of bad pixels among the valid, of holes, of bad or hole; pixels with known truth");
+  auto truth_scale =
+      module.parameter("truth_scale", 1.0, "px", "disparity of one grey level", {.least = 1e-6});
+  auto threshold =
+      module.parameter("threshold", 2.0, "px", "an error above this is bad", {.least = 0});
+
+  module.on_both(disparity, truth, [&](const hc::Message& found, const hc::Message& known) {
+    cv::Mat levels = hc::value_or_end(hc::as_mat(known));
+    if (levels.channels() > 1) cv::extractChannel(levels.clone(), levels, 0);
+    cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
+    if (found_mat.size() != levels.size())
+      throw hc::ModuleError("the disparities and the truth have different sizes");
+    auto score = hc::vision::score(found_mat, levels, *truth_scale, *threshold);
+    result.send(hc::table({score.bad_share(), score.hole_share(), score.wrong_share(),
+                           static_cast<double>(score.truth)}));
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "bad pixels %.2f %% of valid ones (error over %g px), holes %.2f %%, "
+                  "bad or hole %.2f %%, of %lld pixels with known truth",
+                  100 * score.bad_share(), *threshold, 100 * score.hole_share(),
+                  100 * score.wrong_share(), static_cast<long long>(score.truth));
+    module.log(line);
+  });
+  return module.run(argc, argv);
+}

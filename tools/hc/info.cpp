@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc info: what a file or a stream holds.
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "common.h"
+#include "readable.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+/// What is known of the messages of one src.
+struct Sender {
+  std::uint64_t messages = 0, bytes = 0;
+  std::uint64_t lost = 0, repeated = 0, restarts = 0;
+  std::int64_t last_seq = -1, first_time = 0, last_time = 0;
+  std::set<std::string> types;
+
+  void add(const hc::Message& message) {
+    const hc::Header& header = message.header;
+    constexpr std::size_t kMostTypes = 8;
+    if (types.size() < kMostTypes)
+      types.insert(fmt::format("{}x{} {}", header.width, header.height, text(header.info)));
+    if (last_seq >= 0) {  // R41
+      if (header.seq > last_seq + 1) lost += static_cast<std::uint64_t>(header.seq - last_seq - 1);
+      if (header.seq == last_seq) ++repeated;
+      if (header.seq < last_seq) ++restarts;
+    }
+    last_seq = header.seq;
+    if (header.time != 0 && first_time == 0) first_time = header.time;
+    if (header.time != 0) last_time = header.time;
+    ++messages;
+    bytes += message.elements.size();
+  }
+
+  [[nodiscard]] double seconds() const {
+    return static_cast<double>(last_time - first_time) * 1e-9;
+  }
+};
+
+struct Options {
+  std::string uri = "-";
+  std::uint64_t limit = kDefaultLimit;
+  bool skip = false;
+};
+
+void print_senders(const std::map<std::int32_t, Sender>& senders) {
+  std::string text =
+      fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>6}  {}\n", "src", "messages", "elements",
+                  "duration", "rate", "lost", "twice", "matrices");
+  for (const auto& [src, sender] : senders) {
+    bool timed = sender.seconds() > 0;
+    std::string types;
+    for (const auto& type : sender.types) types += (types.empty() ? "" : "; ") + type;
+    text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>6}  {}\n", src, sender.messages,
+                        bytes_in_words(static_cast<double>(sender.bytes)),
+                        timed ? fmt::format("{:.3f} s", sender.seconds()) : "-",
+                        timed ? fmt::format("{:.3g} Hz", static_cast<double>(sender.messages - 1) /
+                                                             sender.seconds())
+                              : "-",
+                        sender.lost, sender.repeated, types);
+    if (sender.restarts > 0)
+      text += fmt::format("{:>6} its seq went back {} times\n", "", sender.restarts);
+  }
+  print(text);
+}
+
+void run(const Options& options) {
+  auto source = open_source(options.uri, options.limit);
+  std::map<std::int32_t, Sender> senders;
+  hc::Message message;
+  Progress progress("hc info");
+  std::optional<Failure> fault;
+  while (true) {
+    try {
+      if (!receive(*source, message, options.uri)) break;
+    } catch (const Failure& failure) {
+      fault = failure;
+      if (!options.skip) break;
+      say(fmt::format("hc info: {}", failure.what()));
+      fault.reset();
+      if (auto resumed = source->resume(); !resumed) throw Failure(options.uri, resumed.error());
+      continue;
+    }
+    senders[message.header.src].add(message);
+    auto traffic = source->traffic();
+    progress.show(-1, fmt::format("{} messages, {}", traffic.messages,
+                                  bytes_in_words(static_cast<double>(traffic.bytes))));
+  }
+  // What was whole is told even where the end is damaged.
+  print_senders(senders);
+  auto traffic = source->traffic();
+  print(fmt::format("{} messages, {}\n", traffic.messages,
+                    bytes_in_words(static_cast<double>(traffic.bytes))));
+  if (fault) throw Failure(*fault);
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  auto* verb = app.add_subcommand("info", "Tell what a file or a stream holds");
+  verb->add_option("link", options->uri, "where messages come from")->capture_default_str();
+  verb->add_flag("--skip", options->skip, "go on behind what is damaged (files)");
+  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]");
+  verb->callback([options] { run(*options); });
+}
+
+}  // namespace tool

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc play: sends what stands in a file, in its own time.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <limits>
+
+#include "common.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+using MonotonicClock = std::chrono::steady_clock;
+
+struct Options {
+  std::string file, out = "-", speed = "1";
+  bool loop = false;
+  double from = 0, to = std::numeric_limits<double>::infinity();
+  std::uint64_t limit = kDefaultLimit;
+};
+
+/// Waits for the moment at which each message is due.
+class Pace {
+ public:
+  /// @param speed  1: as recorded; infinity: without waiting.
+  explicit Pace(double speed) : speed_(speed) {}
+
+  /// Waits until `seconds` of the recording have passed since the first call; false when we are
+  /// told to stop.
+  bool wait_for(double seconds) {
+    if (speed_ == std::numeric_limits<double>::infinity()) return true;
+    if (!begun_) begin_ = MonotonicClock::now() - to_clock(seconds);
+    begun_ = true;
+    auto due = begin_ + to_clock(seconds);
+    while (true) {
+      auto left = due - MonotonicClock::now();
+      if (left <= left.zero()) return true;
+      auto pause = std::chrono::ceil<std::chrono::milliseconds>(left);
+      if (!hc::wait_readable({}, stop_descriptor(), pause)) return false;
+    }
+  }
+
+ private:
+  [[nodiscard]] MonotonicClock::duration to_clock(double seconds) const {
+    return std::chrono::duration_cast<MonotonicClock::duration>(Seconds(seconds / speed_));
+  }
+
+  double speed_;
+  bool begun_ = false;
+  MonotonicClock::time_point begin_;
+};
+
+double parse_speed(const std::string& text) {
+  if (text == "max") return std::numeric_limits<double>::infinity();
+  double speed = 0;
+  const char* end = text.data() + text.size();
+  auto [stop, status] = std::from_chars(text.data(), end, speed);
+  if (status != std::errc() || stop != end || !(speed > 0) || speed > 1e6)
+    throw Failure(hc::Error{hc::Code::Usage, "--speed is a number above 0, or max"});
+  return speed;
+}
+
+/// Plays the file once; false when there is nobody to play to any more.
+bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& progress) {
+  auto source = open_source("file:" + options.file, options.limit);
+  std::error_code unknown;
+  auto size = static_cast<double>(std::filesystem::file_size(options.file, unknown));
+  Pace pace(speed);
+  std::int64_t begin = 0;
+  hc::Message message;
+  while (receive(*source, message, options.file)) {
+    std::int64_t time = message.header.time;
+    if (begin == 0) begin = time;
+    // A message without a time goes with the one before it.
+    if (time != 0) {
+      double seconds = static_cast<double>(time - begin) * 1e-9;
+      if (seconds < options.from) continue;
+      if (seconds > options.to) break;
+      if (!pace.wait_for(seconds)) return false;
+    }
+    if (!send(sink, message)) return false;
+    auto traffic = source->traffic();
+    double share = size > 0 && !unknown ? static_cast<double>(traffic.bytes) / size : -1;
+    progress.show(share, fmt::format("{} messages", traffic.messages));
+  }
+  return true;
+}
+
+void run(const Options& options) {
+  double speed = parse_speed(options.speed);
+  auto sink = open_sink(options.out);
+  Progress progress("hc play " + options.file);
+  while (play_once(options, speed, *sink, progress) && options.loop) {
+  }
+  auto closed = sink->close();
+  if (!closed && closed.error().code != hc::Code::Closed)
+    throw Failure(options.out, closed.error());
+}
+
+}  // namespace
+
+void add_play(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  auto* verb = app.add_subcommand("play", "Send what stands in a file, in its own time");
+  verb->add_option("file", options->file, "a recording")->required();
+  verb->add_option("--out", options->out, "where messages go")->capture_default_str();
+  verb->add_option("--speed", options->speed, "times faster than recorded, or max")
+      ->capture_default_str();
+  verb->add_flag("--loop", options->loop, "begin again at the end");
+  verb->add_option("--from", options->from,
+                   "leave out what comes before [s from the first message]");
+  verb->add_option("--to", options->to, "leave out what comes after [s from the first message]");
+  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]");
+  verb->callback([options] { run(*options); });
+}
+
+}  // namespace tool

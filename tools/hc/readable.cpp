@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "readable.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+#include <hc/wire/text.h>
+
+namespace tool {
+namespace {
+
+constexpr std::size_t kMostNumbers = 96;  // of a matrix that is shown whole
+constexpr std::size_t kCornerRows = 3, kCornerNumbers = 9;
+
+template <typename T>
+std::string rows_of(const hc::MatrixView<const T>& matrix) {
+  bool whole = matrix.numbers().size() <= kMostNumbers;
+  std::size_t rows = whole ? matrix.height() : std::min(kCornerRows, matrix.height());
+  std::string text;
+  for (std::size_t y = 0; y < rows; ++y) {
+    auto row = matrix.row(y);
+    std::size_t count = whole ? row.size() : std::min(kCornerNumbers, row.size());
+    text += " ";
+    for (std::size_t i = 0; i < count; ++i) {
+      text += ' ';
+      hc::append_number(row[i], text);
+    }
+    text += count < row.size() ? " …\n" : "\n";
+  }
+  if (whole) return text;
+  if (rows < matrix.height()) text += "  …\n";
+  double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0;
+  std::size_t known = 0;
+  for (T number : matrix.numbers()) {
+    auto value = static_cast<double>(number);
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+    sum += value;
+    ++known;
+  }
+  if (known > 0)
+    text +=
+        fmt::format("  {:g} … {:g}, mean {:g}\n", least, most, sum / static_cast<double>(known));
+  return text;
+}
+
+/// Text with what would disturb a terminal made visible.
+std::string harmless(std::string_view text) {
+  std::string result;
+  for (char c : text) {
+    bool control = (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f;
+    if (control)
+      result += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    else
+      result += c;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string coord_name(std::int32_t coord) {
+  struct Name {
+    std::int32_t coord;
+    const char* name;
+  };
+  // The registry of spec/mtp-1.md, R44.
+  constexpr Name kNames[] = {{1, "world"},          {2, "robot"},
+                             {3, "head"},           {4, "left_eye"},
+                             {5, "right_eye"},      {6, "cyclopean_eye"},
+                             {7, "left_image"},     {8, "right_image"},
+                             {9, "left_rectified"}, {10, "right_rectified"},
+                             {11, "depth"},         {12, "disparity"},
+                             {13, "gaze"},          {14, "supervisor"},
+                             {20, "sound_8k"},      {21, "sound_16k"},
+                             {22, "sound_22k"},     {23, "sound_44k"},
+                             {24, "sound_48k"},     {30, "text"},
+                             {40, "order"}};
+  if (coord >= 1000 && coord < 1'000'000)
+    return coord_name(coord / 1000) + " from " + coord_name(coord % 1000);
+  for (const Name& each : kNames)
+    if (each.coord == coord) return each.name;
+  return std::to_string(coord);
+}
+
+std::string time_in_words(std::int64_t time) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  std::time_t seconds = time / kSecond;
+  std::tm parts{};
+  ::gmtime_r(&seconds, &parts);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:09}", parts.tm_year + 1900,
+                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
+                     time % kSecond);
+}
+
+std::string to_readable(const hc::Message& message) {
+  const hc::Header& header = message.header;
+  std::string text = fmt::format("{} {} x {} of {} {}, src {} seq {}", name(header.info.type),
+                                 header.width, header.height, header.info.components,
+                                 name(header.info.scalar), header.src, header.seq);
+  if (header.dst != 0) text += fmt::format(" dst {}", header.dst);
+  if (header.mode != 0) text += fmt::format(" mode {}", header.mode);
+  if (header.coord != 0) text += " in " + coord_name(header.coord);
+  if (header.time != 0) text += " at " + time_in_words(header.time);
+  text += "\n";
+  if (!message.plain())
+    return text +
+           fmt::format("  {} bytes of {}\n", message.elements.size(), name(header.info.encoding));
+  if (header.empty()) return text;
+  if (header.info.type == hc::MatrixType::String)
+    return text + "  " + harmless(message.characters()) + "\n";
+  hc::visit_scalar(header.info.scalar,
+                   [&](auto zero) { text += rows_of(*message.view<decltype(zero)>()); });
+  return text;
+}
+
+}  // namespace tool

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A message for a person's eyes.
+
+#include <string>
+#include <string_view>
+
+#include <hc/wire/message.h>
+
+namespace tool {
+
+/// A line that says what the message is, and its elements below it: all of a small one, the corner
+/// and the range of a large one.
+std::string to_readable(const hc::Message& message);
+
+/// "left_rectified" for 9, "head from left_eye" for 3004, the number where it has no name.
+std::string coord_name(std::int32_t coord);
+
+/// "2025-11-21 04:20:00.123456789", in UTC.
+std::string time_in_words(std::int64_t time);
+
+}  // namespace tool

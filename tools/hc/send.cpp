@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc send: makes one message, from the command line or from a file.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+
+#include <hc/compress/compress.h>
+#include <hc/wire/text.h>
+
+#include "common.h"
+#include "npy.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+struct Options {
+  std::string out = "-";
+  std::string type = "table", scalar = "f64", encoding, text, picture, npy;
+  int components = 0;  // 0: the least that the type has
+  std::int32_t width = 0;
+  hc::Header header;
+  int ttl = 8;
+  std::int64_t time = -1;  // -1: now
+  std::vector<std::string> numbers;
+};
+
+template <typename E>
+E named(std::optional<E> value, const std::string& kind, const std::string& name) {
+  if (!value) throw Failure(hc::Error{hc::Code::Usage, "no " + kind + " \"" + name + "\""});
+  return *value;
+}
+
+hc::Message message_of_text(const Options& options) {
+  hc::Header header;
+  header.info = {hc::MatrixType::String, 1, hc::Scalar::U8, hc::Encoding::Text};
+  header.width = static_cast<std::int32_t>(options.text.size());
+  header.height = 1;
+  hc::Draft draft = hc::Draft::make(header);
+  std::copy(options.text.begin(), options.text.end(),
+            reinterpret_cast<char*>(draft.elements().data()));
+  return std::move(draft).finish();
+}
+
+hc::Message message_of_numbers(const Options& options) {
+  hc::Header header;
+  header.info.type = named(hc::matrix_type_of(options.type), "matrix type", options.type);
+  header.info.scalar = named(hc::scalar_of(options.scalar), "scalar", options.scalar);
+  for (int components = std::max(options.components, 1); components <= 99; ++components) {
+    header.info.components = static_cast<std::uint8_t>(components);
+    auto error = hc::find_error(header.info);
+    if (!error) break;
+    if (options.components != 0 || error->rule != 18)
+      throw Failure(hc::Error{hc::Code::Usage, fmt::format("R{}: {}", error->rule, error->what)});
+  }
+  std::size_t elements = options.numbers.size() / header.info.components;
+  std::size_t width = options.width > 0 ? static_cast<std::size_t>(options.width)
+                      : header.info.type == hc::MatrixType::SparseGraph ? 1
+                                                                        : elements;
+  std::size_t height = width == 0 ? 0 : elements / width;
+  if (width * height * header.info.components != options.numbers.size())
+    throw Failure(hc::Error{hc::Code::Usage,
+                            fmt::format("{} numbers do not fill rows of {} elements of {}",
+                                        options.numbers.size(), width, header.info.components)});
+  header.width = static_cast<std::int32_t>(width);
+  header.height = static_cast<std::int32_t>(height);
+  if (auto valid = hc::check(header); !valid) throw Failure(valid.error());
+  hc::Draft draft = hc::Draft::make(header);
+  hc::visit_scalar(header.info.scalar, [&](auto zero) {
+    using T = decltype(zero);
+    auto numbers = draft.view<T>().numbers();
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      numbers[i] = value_or_fail(hc::parse_number<T>(options.numbers[i]), "elements");
+  });
+  return std::move(draft).finish();
+}
+
+hc::Message message_of_npy(const Options& options) {
+  std::ifstream file(options.npy, std::ios::binary);
+  if (!file) throw Failure(hc::Error{hc::Code::NotFound, options.npy + ": cannot be read"});
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return value_or_fail(read_npy(std::as_bytes(std::span(bytes))), options.npy);
+}
+
+/// The camera module reads pictures, with libraries that hc need not carry; so it sends this one.
+[[noreturn]] void send_picture(const Options& options) {
+  std::string program = find_program("camera");
+  std::vector<std::string> words = {program,
+                                    "--count=1",
+                                    "--source=" + options.picture,
+                                    "--out=left=" + options.out,
+                                    "--name=hc send",
+                                    "--address=left=" + std::to_string(options.header.src)};
+  if (!options.encoding.empty()) words.push_back("--encoding=" + options.encoding);
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(program.c_str(), arguments.data());
+  throw Failure(hc::Error{hc::Code::NotFound, "module camera, which reads pictures"});
+}
+
+void run(const Options& options) {
+  if (!options.picture.empty()) send_picture(options);
+  hc::Message message = !options.npy.empty()    ? message_of_npy(options)
+                        : !options.text.empty() ? message_of_text(options)
+                                                : message_of_numbers(options);
+  auto encoding = message.header.info.encoding;
+  if (!options.encoding.empty())
+    encoding = named(hc::encoding_of(options.encoding), "encoding", options.encoding);
+  hc::Header header = options.header;
+  header.info = message.header.info;
+  header.width = message.header.width;
+  header.height = message.header.height;
+  header.ttl = static_cast<std::uint8_t>(options.ttl);
+  header.time = options.time >= 0 ? options.time
+                                  : std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        std::chrono::system_clock::now().time_since_epoch())
+                                        .count();
+  message.header = header;
+  message.header.info.encoding = hc::Encoding::Binary;
+  message = value_or_fail(hc::compress(message, encoding), "encoding");
+  auto sink = open_sink(options.out);
+  send(*sink, message);
+  if (auto closed = sink->close(); !closed) throw Failure(options.out, closed.error());
+}
+
+}  // namespace
+
+void add_send(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  auto* verb =
+      app.add_subcommand("send", "Send one message: numbers, text, a picture, a .npy file");
+  verb->positionals_at_end();
+  verb->add_option("--out", options->out, "where it goes")->capture_default_str();
+  verb->add_option("--text", options->text, "send this as a string");
+  verb->add_option("--picture", options->picture, "send a picture file");
+  verb->add_option("--npy", options->npy, "send a NumPy array");
+  verb->add_option("--type", options->type, "matrix type of the numbers")->capture_default_str();
+  verb->add_option("--scalar", options->scalar, "scalar of the numbers")->capture_default_str();
+  verb->add_option("--components", options->components, "numbers in an element")
+      ->check(CLI::Range(1, 99));
+  verb->add_option("--width", options->width, "elements in a row (default: all)");
+  verb->add_option("--encoding", options->encoding, "text, binary, zstd or jpeg");
+  verb->add_option("--src", options->header.src, "address of the sender")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--dst", options->header.dst, "address of the receiver");
+  verb->add_option("--seq", options->header.seq, "sequence number")->check(CLI::NonNegativeNumber);
+  verb->add_option("--ttl", options->ttl, "routers left to pass")->check(CLI::Range(0, 255));
+  verb->add_option("--time", options->time, "ns since the Unix epoch (default: now)")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--mode", options->header.mode, "system mode")->check(CLI::NonNegativeNumber);
+  verb->add_option("--coord", options->header.coord, "coordinate system")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("numbers", options->numbers, "the elements, row by row");
+  verb->callback([options] { run(*options); });
+}
+
+}  // namespace tool
