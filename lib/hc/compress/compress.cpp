@@ -11,30 +11,37 @@
 namespace hc {
 namespace {
 
-Error damaged(int rule, std::string_view what) {
-  return {Code::Malformed, "R" + std::to_string(rule) + " elements: " + std::string(what)};
+Error damaged(int rule, std::string_view what, const Message& message) {
+  return {Code::Malformed, "R" + std::to_string(rule) + " elements: " + std::string(what) +
+                               ", at byte " + std::to_string(message.byte)};
 }
 
 Result<Message> plain_message(const Message& message, SharedBytes bytes) {
-  Message result{message.header, {bytes.get(), message.header.element_bytes()}, bytes};
+  Message result{
+      message.header, {bytes.get(), message.header.element_bytes()}, bytes, message.byte};
   result.header.info.encoding = Encoding::Binary;
   return result;
 }
 
 Result<Message> expand_zstd(const Message& message) {
   std::uint64_t promised = message.header.element_bytes();
-  if (message.elements.empty()) return damaged(36, "no zstd frame");
+  if (message.elements.empty()) return damaged(36, "no zstd frame", message);
   // All in one call: it writes into our bytes alone, needs no window, and stops at their end.
   SharedBytes bytes = allocate_bytes(promised);
   std::size_t size =
       ZSTD_decompress(bytes.get(), promised, message.elements.data(), message.elements.size());
   if (ZSTD_getErrorCode(size) == ZSTD_error_dstSize_tooSmall)
-    return damaged(36, "the zstd frames hold more than the " + std::to_string(promised) +
-                           " bytes that the header promises");
-  if (ZSTD_isError(size) != 0) return damaged(36, std::string("zstd: ") + ZSTD_getErrorName(size));
+    return damaged(36,
+                   "the zstd frames hold more than the " + std::to_string(promised) +
+                       " bytes that the header promises",
+                   message);
+  if (ZSTD_isError(size) != 0)
+    return damaged(36, std::string("zstd: ") + ZSTD_getErrorName(size), message);
   if (size != promised)
-    return damaged(36, "the zstd frames hold " + std::to_string(size) +
-                           " bytes, the header promises " + std::to_string(promised));
+    return damaged(36,
+                   "the zstd frames hold " + std::to_string(size) + " bytes, the header promises " +
+                       std::to_string(promised),
+                   message);
   return plain_message(message, std::move(bytes));
 }
 
@@ -44,7 +51,7 @@ Result<Message> compress_zstd(const Message& message, int level) {
   std::size_t size =
       ZSTD_compress(bytes.get(), bound, message.elements.data(), message.elements.size(), level);
   HC_CHECK(ZSTD_isError(size) == 0, ZSTD_getErrorName(size));
-  return Message{message.header, {bytes.get(), size}, bytes};
+  return Message{message.header, {bytes.get(), size}, bytes, 0};
 }
 
 }  // namespace
@@ -61,7 +68,7 @@ Result<Message> expand(const Message& message) {
   }
   SharedBytes pixels = allocate_bytes(message.header.element_bytes());
   if (auto fault = internal::read_jpeg(message.elements, message.header, pixels.get()))
-    return damaged(37, *fault);
+    return damaged(37, *fault, message);
   return plain_message(message, std::move(pixels));
 }
 

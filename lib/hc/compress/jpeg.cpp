@@ -124,7 +124,7 @@ Message write_jpeg(const Message& message, int quality) {
   jpeg_finish_compress(&picture);
   jpeg_destroy_compress(&picture);
   std::shared_ptr<unsigned char> owner(buffer, std::free);
-  return {header, {reinterpret_cast<const std::byte*>(buffer), size}, owner};
+  return {header, {reinterpret_cast<const std::byte*>(buffer), size}, owner, 0};
 }
 
 }  // namespace hc::internal

@@ -53,11 +53,12 @@ Result<std::size_t> decode(std::span<const std::byte> bytes, Message& message, c
   }
   if (rest.size() - at < length) return std::size_t{0};
   auto elements = rest.substr(at, length);
+  std::uint64_t elements_byte = byte + at;
   at += length;
   auto end = internal::read_closing(header, rest.substr(at), byte + at);
   if (!end) return end.error();
   if (*end == 0) return std::size_t{0};
-  message = {header, bytes_of(elements), nullptr};
+  message = {header, bytes_of(elements), nullptr, elements_byte};
   if (message.plain() && !is_aligned(elements.data(), header.info.scalar)) message = message.keep();
   return at + *end;
 }

@@ -15,7 +15,7 @@ Message Message::keep() const {
   if (owner != nullptr) return *this;
   SharedBytes bytes = allocate_bytes(elements.size());
   if (!elements.empty()) std::memcpy(bytes.get(), elements.data(), elements.size());
-  return {header, {bytes.get(), elements.size()}, bytes};
+  return {header, {bytes.get(), elements.size()}, bytes, byte};
 }
 
 Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
@@ -37,7 +37,7 @@ Draft Draft::make(const Header& header) {
 }
 
 Message Draft::finish() && {
-  Message message{header, {bytes_.get(), size_}, std::move(bytes_)};
+  Message message{header, {bytes_.get(), size_}, std::move(bytes_), 0};
   size_ = 0;
   return message;
 }

@@ -66,6 +66,8 @@ struct Message {
   std::span<const std::byte> elements;
   /// Keeps `elements` alive; null when they are somebody else's (see keep()).
   std::shared_ptr<const void> owner;
+  /// Where the elements began in their stream, for error lines. [byte]
+  std::uint64_t byte = 0;
 
   /// Elements that are not compressed.
   [[nodiscard]] bool plain() const {

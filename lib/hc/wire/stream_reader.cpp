@@ -100,6 +100,7 @@ Result<bool> StreamReader::read_head(Message& message) {
   }
   if (length > kMaxInBlock) {
     consume(head);
+    elements_begin_ = byte_;
     prepare_body(length);
     state_ = State::Body;
     return false;
@@ -118,6 +119,7 @@ Result<bool> StreamReader::read_head(Message& message) {
     std::memmove(elements - excess, elements, length);
     elements -= excess;
   }
+  elements_begin_ = byte_ + head;
   consume(head + length + *closing);
   return deliver(message, {elements, length}, block_);
 }
@@ -156,6 +158,7 @@ bool StreamReader::deliver(Message& message, std::span<const std::byte> elements
   message.header = header_;
   message.elements = elements;
   message.owner = owner;
+  message.byte = elements_begin_;
   trusted_size_ = std::max<std::uint64_t>(trusted_size_, elements.size());
   state_ = State::Head;
   ++messages_;
