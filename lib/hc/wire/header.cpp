@@ -177,14 +177,15 @@ bool parse_canonical(std::string_view line, Fields& values) {
       auto value = static_cast<std::int64_t>(internal::value_of_digits(word));
       values[field] = negative ? -value : value;
     } else {
-      std::int64_t value = 0;
+      std::uint64_t value = 0;  // other bytes than digits may make it anything
       bad |= static_cast<std::uint64_t>(text[begin] == '0');
       for (std::size_t i = begin; i < end; ++i) {
         auto digit = static_cast<unsigned>(text[i] - '0');
         bad |= static_cast<std::uint64_t>(digit > 9);
         value = value * 10 + digit;
       }
-      values[field] = negative ? -value : value;
+      auto exact = static_cast<std::int64_t>(value);
+      values[field] = negative ? -exact : exact;
     }
     begin = end + 1;
   }
