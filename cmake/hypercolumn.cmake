@@ -3,7 +3,8 @@
 
 include(GNUInstallDirs)
 
-option(HC_DEVELOPER_MODE "Build tests and benchmarks; a warning is an error" OFF)
+option(HC_DEVELOPER_MODE "Build tests and benchmarks" OFF)
+option(HC_WERROR "A warning is an error" OFF)
 option(HC_COVERAGE "Count the lines that tests run" OFF)
 set(HC_SANITIZE "" CACHE STRING "Sanitizers, such as address,undefined")
 option(HC_LIBFUZZER "Link the fuzz targets with libFuzzer (clang)" OFF)
@@ -51,8 +52,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   # False for every "text" + std::string: https://gcc.gnu.org/bugzilla/show_bug.cgi?id=105651
   target_compile_options(hc_flags INTERFACE -Wno-restrict)
 endif()
-if(HC_DEVELOPER_MODE)
+if(HC_WERROR)
   target_compile_options(hc_flags INTERFACE -Werror)
+endif()
+add_custom_target(programs) # hc and the modules, without tests
+if(HC_DEVELOPER_MODE)
+  add_custom_target(fuzz_targets)
   enable_testing()
   find_package(GTest REQUIRED)
   find_package(benchmark REQUIRED)
@@ -72,7 +77,6 @@ endif()
 
 set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
 set(HC_TEST_SECONDS 120) # a test that takes longer hangs
-set_property(GLOBAL PROPERTY HC_LAYERS "")
 
 # hc_layer(wire DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
 # One layer of the core: target hc::wire, its headers installed, its tests built with it.
@@ -95,7 +99,6 @@ function(hc_layer name)
                                     FILES ${arg_HEADERS})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
   install(TARGETS ${target} EXPORT hypercolumn FILE_SET HEADERS)
-  set_property(GLOBAL APPEND PROPERTY HC_LAYERS ${target})
   if(arg_TESTS)
     hc_test(${name}_test SOURCES ${arg_TESTS} LIBS hc::${name})
   endif()
@@ -128,7 +131,7 @@ function(hc_module name)
     OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/libexec/hypercolumn)
   target_link_libraries(module_${name} PRIVATE hc_flags hc::node ${arg_LIBS})
   install(TARGETS module_${name} DESTINATION ${HC_LIBEXEC})
-  set_property(GLOBAL APPEND PROPERTY HC_MODULES module_${name})
+  add_dependencies(programs module_${name})
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
     set(test_sources ${name}_test.cpp)
     if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp)
@@ -160,6 +163,7 @@ function(hc_fuzz name)
   cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
   add_executable(fuzz_${name} ${name}.cpp)
   target_link_libraries(fuzz_${name} PRIVATE hc_flags ${arg_LIBS})
+  add_dependencies(fuzz_targets fuzz_${name})
   set_target_properties(fuzz_${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz OUTPUT_NAME ${name})
   if(HC_LIBFUZZER)

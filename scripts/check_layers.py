@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Checks the direction of every #include: check_layers.py [ROOT]. Prints FILE:LINE: what is wrong."""
+
+import pathlib
+import re
+import sys
+
+# A layer, and those that it may include beside itself.
+ALLOWED = {
+    "base": set(),
+    "wire": {"base"},
+    "compress": {"base", "wire"},
+    "link": {"base", "wire"},
+    "node": {"base", "wire", "compress", "link"},
+    "graph": {"base", "wire", "link"},
+    "adapter": {"base", "wire"},
+    "vision": {"base"},
+    "graphics": {"base"},
+    "sound": {"base"},
+    "modules": {"base", "wire", "node", "adapter", "vision", "graphics", "sound", "drivers"},
+    "tools": {"base", "wire", "compress", "link", "graph"},
+}
+CORE = {"base", "wire", "compress", "link", "node", "graph"}
+# The wire layer is pure: no input or output, no threads, no clock.
+IMPURE = re.compile(
+    r"<(sys/.*|unistd\.h|fcntl\.h|poll\.h|net.*|thread|mutex|atomic|condition_variable|future"
+    r"|chrono|fstream|iostream|cstdio|filesystem)>"
+)
+# What a public header of the core may include beside ours: the standard library and POSIX.
+STANDARD = re.compile(r"<([a-z_]+|sys/[a-z]+\.h|unistd\.h|poll\.h|fcntl\.h)>")
+INCLUDE = re.compile(r'^\s*#\s*include\s+([<"][^>"]+[>"])')
+PRINTS = re.compile(r"std::c(out|err|log)\b|\b(printf|puts|fprintf)\s*\(")
+
+
+def layer_of(path):
+    """The layer that a file of the tree belongs to, by its folder."""
+    parts = path.parts
+    if parts[0] == "lib":
+        return parts[2] if parts[1] == "hc" else parts[1]
+    return parts[0]
+
+
+def layer_of_include(name):
+    inner = name[1:-1]
+    match = re.match(r"hc/([a-z]+)/", inner) or re.match(r"(vision|graphics|sound|drivers)/", inner)
+    return match[1] if match else None
+
+
+def problems(root):
+    for path in sorted(root.glob("*/**/*")):
+        if path.suffix not in (".h", ".cpp"):
+            continue
+        local = path.relative_to(root)
+        if local.parts[0] not in ("lib", "modules", "tools"):
+            continue
+        layer = layer_of(local)
+        is_test = path.stem.endswith(("_test", "_conformance"))
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            where = "%s:%d: " % (local, number)
+            if layer in CORE | {"modules", "vision", "adapter"} and not is_test:
+                if PRINTS.search(line.split("//")[0]):
+                    yield where + "prints; standard output belongs to the links"
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            name, target = match[1], layer_of_include(match[1])
+            if layer not in ALLOWED:
+                yield where + "there is no layer " + layer
+            elif target and target != layer and target not in ALLOWED[layer] and not is_test:
+                yield where + "%s may not include %s (%s)" % (layer, target, name)
+            if layer == "modules" and ("modules/" in name or "../" in name):
+                yield where + "a module includes no other module"
+            if layer == "wire" and not is_test and IMPURE.match(name):
+                yield where + "the wire layer is pure, so no " + name
+            if layer in CORE and path.suffix == ".h" and not is_test and not target:
+                if not STANDARD.match(name):
+                    yield where + "a header of the core shows no other library (%s)" % name
+
+
+if __name__ == "__main__":
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[1])
+    found = list(problems(root))
+    print("\n".join(found) if found else "layers: every include points the right way")
+    sys.exit(1 if found else 0)
