@@ -79,7 +79,7 @@ set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
 set(HC_TEST_SECONDS 120) # a test that takes longer hangs
 
 # hc_layer(wire DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
-# One layer of the core: target hc::wire, its headers installed, its tests built with it.
+# One layer of the core: target hc::wire, its headers installed, each of its tests a program.
 function(hc_layer name)
   cmake_parse_arguments(arg "" "" "DEPENDS;HEADERS;SOURCES;TESTS;LIBS;PUBLIC_LIBS" ${ARGN})
   set(target hc_${name})
@@ -99,9 +99,10 @@ function(hc_layer name)
                                     FILES ${arg_HEADERS})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
   install(TARGETS ${target} EXPORT hypercolumn FILE_SET HEADERS)
-  if(arg_TESTS)
-    hc_test(${name}_test SOURCES ${arg_TESTS} LIBS hc::${name})
-  endif()
+  foreach(test ${arg_TESTS})
+    cmake_path(GET test STEM stem)
+    hc_test(${name}_${stem} SOURCES ${test} LIBS hc::${name})
+  endforeach()
 endfunction()
 
 # hc_test(wire_test SOURCES a_test.cpp LIBS hc::wire)

@@ -5,8 +5,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   hc::Message message;
-  auto used = hc::decode(std::as_bytes(std::span(data, size)), message,
-                         hc::Limits{std::uint64_t{1} << 20});
+  auto used =
+      hc::decode(std::as_bytes(std::span(data, size)), message, hc::Limits{std::uint64_t{1} << 20});
   if (!used || *used == 0) return 0;
   auto plain = hc::expand(message);
   if (!plain) return 0;
@@ -15,9 +15,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   HC_CHECK(packed.has_value());
   auto again = hc::expand(*packed);
   HC_CHECK(again && hc::encode(*again).size() == hc::encode([&] {
-             auto binary = *plain;
-             binary.header.info.encoding = hc::Encoding::Binary;
-             return binary;
-           }()).size());
+                                                   auto binary = *plain;
+                                                   binary.header.info.encoding =
+                                                       hc::Encoding::Binary;
+                                                   return binary;
+                                                 }())
+                                                     .size());
   return 0;
 }

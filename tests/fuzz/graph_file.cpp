@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text: a graph, or one line that says what is wrong with it; and any graph: a plan, or one line.
+// Any text: a graph, or one line that says what is wrong with it; and any graph: a plan, or one
+// line.
 #include <hc/graph/plan.h>
 
 namespace {
@@ -19,7 +20,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     HC_CHECK(graph.error().detail.starts_with("fuzz.toml:"), graph.error().detail);
     return 0;
   }
-  auto describe = [](const std::string&) -> hc::Result<std::string> { return std::string(kDescription); };
+  auto describe = [](const std::string&) -> hc::Result<std::string> {
+    return std::string(kDescription);
+  };
   auto plan = hc::make_plan(*graph, describe, "fuzz");
   if (plan) HC_CHECK(plan->links.size() == graph->links.size());
   return 0;

@@ -236,6 +236,7 @@ Status ListeningSink::close() {
   if (wait_at_end_ && !begun_) awaited = await(static_cast<std::size_t>(readers_));
   for (auto& peer : peers_) static_cast<void>(peer->close());
   peers_.clear();
+  socket_ = {};  // who has connected and was not accepted yet finds the end too
   return awaited;
 }
 

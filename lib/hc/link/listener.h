@@ -20,7 +20,12 @@ struct ListeningSocket {
 
   ListeningSocket() = default;
   ListeningSocket(ListeningSocket&&) = default;
-  ListeningSocket& operator=(ListeningSocket&&) = default;
+  ListeningSocket& operator=(ListeningSocket&& other) noexcept {
+    std::swap(descriptor, other.descriptor);
+    admit.swap(other.admit);
+    unlink_path.swap(other.unlink_path);
+    return *this;
+  }
   ~ListeningSocket();
 };
 

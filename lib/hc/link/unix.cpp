@@ -2,6 +2,7 @@
 // `unix:PATH` and `unix-listen:PATH`: between processes of one host. `@NAME` is in the abstract
 // namespace: it leaves no file, and only processes of the same user are let in.
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 
 #include <algorithm>
@@ -72,7 +73,9 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
     auto listener =
         connect_to(&address->address, address->size, uri.rest, std::chrono::seconds(0), -1);
     if (listener) return Error{Code::System, "bind(" + uri.rest + "): somebody listens there"};
-    if (listener.error().code == Code::Closed) ::unlink(uri.rest.c_str());
+    struct stat status {};
+    bool is_socket = ::stat(uri.rest.c_str(), &status) == 0 && S_ISSOCK(status.st_mode);
+    if (listener.error().code == Code::Closed && is_socket) ::unlink(uri.rest.c_str());
   }
   auto descriptor = listen_on(&address->address, address->size, uri.rest);
   if (!descriptor) return descriptor.error();

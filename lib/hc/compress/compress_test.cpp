@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/compress/compress.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hc {
+namespace {
+
+Message gradient(std::uint8_t components) {
+  Info info{components == 1 ? MatrixType::IntensityImage : MatrixType::RgbImage, components,
+            Scalar::U8, Encoding::Binary};
+  Draft draft = Draft::make(info, 64, 48);
+  auto pixels = draft.view<std::uint8_t>();
+  for (std::size_t y = 0; y < 48; ++y)
+    for (std::size_t x = 0; x < 64; ++x)
+      for (std::size_t k = 0; k < components; ++k)
+        pixels.at(y, x, k) = static_cast<std::uint8_t>(2 * x + y + 20 * k);
+  return std::move(draft).finish();
+}
+
+TEST(Compress, ZstdKeepsEveryBit) {
+  Message picture = gradient(3);
+  auto packed = compress(picture, Encoding::Zstd);
+  ASSERT_TRUE(packed);
+  EXPECT_LT(packed->elements.size(), picture.elements.size());
+  auto again = expand(*packed);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->characters(), picture.characters());
+  EXPECT_EQ(again->header, picture.header);
+}
+
+TEST(Compress, JpegKeepsThePicture) {
+  for (int components : {1, 3}) {
+    Message picture = gradient(static_cast<std::uint8_t>(components));
+    auto packed = compress(picture, Encoding::Jpeg);
+    ASSERT_TRUE(packed);
+    EXPECT_LT(packed->elements.size(), picture.elements.size() / 2);
+    auto again = expand(*packed);
+    ASSERT_TRUE(again);
+    auto numbers = again->view<std::uint8_t>()->numbers(),
+         wanted = picture.view<std::uint8_t>()->numbers();
+    double squares = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      squares += std::pow(numbers[i] - wanted[i], 2) / static_cast<double>(numbers.size());
+    EXPECT_LT(std::sqrt(squares), 3) << "grey levels, root mean square, at quality 90";
+  }
+}
+
+TEST(Compress, BetweenAllEncodings) {
+  Message picture = gradient(1);
+  auto jpeg = compress(picture, Encoding::Jpeg);
+  auto zstd = compress(*jpeg, Encoding::Zstd);
+  ASSERT_TRUE(zstd);
+  EXPECT_EQ(expand(*zstd)->characters(), expand(*jpeg)->characters());
+  auto text = compress(*zstd, Encoding::Text);
+  EXPECT_EQ(text->header.info.encoding, Encoding::Text);
+  EXPECT_EQ(compress(*jpeg, Encoding::Jpeg)->elements.data(), jpeg->elements.data());
+}
+
+TEST(Compress, R21_JpegIsForPictures) {
+  Message table = std::move(Draft::make(Info(), 1, 1)).finish();
+  auto refused = compress(table, Encoding::Jpeg);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Code::Unsupported);
+  EXPECT_TRUE(refused.error().detail.starts_with("R21"));
+}
+
+TEST(Compress, EmptyMatrices) {
+  Message empty =
+      std::move(Draft::make({MatrixType::Table, 1, Scalar::F64, Encoding::Binary}, 0, 3)).finish();
+  auto packed = compress(empty, Encoding::Zstd);
+  ASSERT_TRUE(packed);
+  EXPECT_TRUE(expand(*packed)->elements.empty());
+}
+
+TEST(Expand, R36_R37_EveryCutIsRefused) {
+  for (Encoding encoding : {Encoding::Zstd, Encoding::Jpeg}) {
+    auto packed = compress(gradient(1), encoding);
+    for (std::size_t size = 0; size < packed->elements.size(); size += 7) {
+      Message cut = *packed;
+      cut.elements = cut.elements.first(size);
+      EXPECT_FALSE(expand(cut)) << size;
+    }
+  }
+}
+
+TEST(Expand, R36_R37_AnotherSizeIsRefused) {
+  for (Encoding encoding : {Encoding::Zstd, Encoding::Jpeg}) {
+    for (std::int32_t by : {-1, 1}) {
+      auto packed = compress(gradient(1), encoding);
+      packed->header.width += by;
+      auto refused = expand(*packed);
+      ASSERT_FALSE(refused);
+      EXPECT_EQ(refused.error().code, Code::Malformed);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/graph_file.h>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace hc {
+namespace {
+
+const char* environment(const char* name) {
+  return std::strcmp(name, "HOME") == 0 ? "/home/eve" : nullptr;
+}
+
+Result<Graph> parse(std::string_view text) {
+  return parse_graph(text, "g.toml", environment);
+}
+
+TEST(GraphFile, HasModulesInTheirOrderAndLinks) {
+  auto graph = parse(R"(
+[modules.eyes]
+program = "camera"
+parameters = { source = "${HOME}/a.jpg", right_source = "${PICTURE:-b.jpg}", rate = 2.5, count = 3, loop = true }
+addresses = { left = 11 }
+encodings = { left = "jpeg" }
+
+[modules.depth]
+
+[[links]]
+from = "eyes.left"
+to = "depth.left"
+)");
+  ASSERT_TRUE(graph) << graph.error().detail;
+  ASSERT_EQ(graph->modules.size(), 2U);
+  const auto& eyes = graph->modules[0];
+  EXPECT_EQ(eyes.name, "eyes");
+  EXPECT_EQ(eyes.program, "camera");
+  EXPECT_EQ(eyes.parameters.at("source"), "/home/eve/a.jpg");
+  EXPECT_EQ(eyes.parameters.at("right_source"), "b.jpg");
+  EXPECT_EQ(eyes.parameters.at("rate"), "2.5");
+  EXPECT_EQ(eyes.parameters.at("count"), "3");
+  EXPECT_EQ(eyes.parameters.at("loop"), "true");
+  EXPECT_EQ(eyes.addresses.at("left"), 11);
+  EXPECT_EQ(eyes.encodings.at("left"), "jpeg");
+  EXPECT_EQ(graph->modules[1].program, "depth");
+  ASSERT_EQ(graph->links.size(), 1U);
+  EXPECT_EQ(graph->links[0].from.text(), "eyes.left");
+  EXPECT_EQ(graph->links[0].line, 10);
+}
+
+TEST(GraphFile, LettersOutsideAsciiAndTildesComeThrough) {
+  auto graph = parse("# größe → ~\n[modules.a]\nparameters.p = \"grün ~/x~y ~7\"\n");
+  ASSERT_TRUE(graph) << graph.error().detail;
+  EXPECT_EQ(graph->modules[0].parameters.at("p"), "grün ~/x~y ~7");
+}
+
+TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "g.toml:1: a graph has a table [modules.NAME] for each module"},
+      {"[modules.a]\nprogam = \"x\"",
+       "g.toml:2: no key \"progam\" in module a, did you mean \"program\"?"},
+      {"[modules.A]\n", "g.toml:1: a module's name is snake_case, not \"A\""},
+      {"[modules]\na = 1", "g.toml:2: a module is a table [modules.a]"},
+      {"[modules.a]\nprogram = 3", "g.toml:2: \"program\" is a string"},
+      {"[modules.a]\nparameters = 3", "g.toml:2: \"parameters\" is a table"},
+      {"[modules.a]\nparameters.p = [1]",
+       "g.toml:2: a parameter is a string, a number, true or false"},
+      {"[modules.a]\nparameters.p = \"${NO}\"",
+       "g.toml:2: the environment has no variable NO; ${NO:-VALUE} gives a default"},
+      {"[modules.a]\nparameters.p = \"${NO\"", "g.toml:2: no } after ${"},
+      {"[modules.a]\naddresses.o = -1",
+       "g.toml:2: an address is a whole number from 0 to 2147483647"},
+      {"[modules.a]\nencodings.o = 1",
+       "g.toml:2: an encoding is \"text\", \"binary\", \"zstd\" or \"jpeg\""},
+      {"links = 1\n[modules.a]", "g.toml:1: links are written as [[links]]"},
+      {"[modules.a]\n[[links]]\nfrom = \"a\"", "g.toml:3: \"a\" is not MODULE.PORT"},
+      {"[modules.a]\n[[links]]\nfrom = \"a.b\"", "g.toml:2: \"to\" is missing"},
+      {"[modules.a]\n[[links]]\nfrom = \"a.b\"\nvia = \"x\"", "g.toml:4: no key \"via\" in a link"},
+      {"[module.a]\n",
+       "g.toml:1: no key \"module\" at the top of a graph, did you mean \"modules\"?"},
+      {"[modules.a\n", "g.toml:1: "},
+      {"\n\nx = \"ü", "g.toml:3: "},
+  };
+  for (const auto& [text, wanted] : cases) {
+    auto graph = parse(text);
+    ASSERT_FALSE(graph) << text;
+    EXPECT_EQ(graph.error().code, Code::Usage);
+    EXPECT_TRUE(graph.error().detail.starts_with(wanted)) << graph.error().detail;
+  }
+  EXPECT_FALSE(parse(std::string(kMaxGraphBytes + 1, '\n')));
+}
+
+TEST(GraphFile, ParametersAreSetFromOutside) {
+  auto graph = parse("[modules.camera]\nparameters.rate = 1\n");
+  EXPECT_TRUE(set_parameter(*graph, "camera.rate=5=6"));
+  EXPECT_EQ(graph->modules[0].parameters.at("rate"), "5=6");
+  EXPECT_EQ(set_parameter(*graph, "camra.rate=5").error().detail,
+            "no module \"camra\" in g.toml, did you mean \"camera\"?");
+  EXPECT_FALSE(set_parameter(*graph, "rate=5"));
+  EXPECT_FALSE(set_parameter(*graph, "camera.rate"));
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/plan.h>
+
+#include <gtest/gtest.h>
+
+namespace hc {
+namespace {
+
+/// What three programs say of themselves.
+Result<std::string> describe(const std::string& program) {
+  auto port = [](const std::string& name, const std::string& type, int coord) {
+    return R"({"name":")" + name + R"(","types":[{"type":")" + type +
+           R"(","components":1,"scalar":"f32","width":0,"height":0,"coord":)" +
+           std::to_string(coord) + "}]}";
+  };
+  auto module = [](const std::string& inputs, const std::string& outputs) {
+    return R"({"name":"x","inputs":[)" + inputs + R"(],"outputs":[)" + outputs +
+           R"(],"parameters":[{"name":"rate"}]})";
+  };
+  if (program == "source")
+    return module("", port("left", "map", 7) + "," + port("right", "map", 8));
+  if (program == "filter") return module(port("in", "map", 0), port("out", "map", 0));
+  if (program == "sink") return module(port("in", "map", 8) + "," + port("text", "string", 0), "");
+  if (program == "any") return module(R"({"name":"in","types":[]})", "");
+  if (program == "dumb") return std::string("hello");
+  if (program == "odd") return std::string(R"({"inputs":[{}],"outputs":3,"parameters":[{"x":1}]})");
+  return Error{Code::NotFound, "no such program"};
+}
+
+Result<Plan> plan(const std::string& text) {
+  auto graph = parse_graph(text, "g.toml", [](const char*) -> const char* { return nullptr; });
+  EXPECT_TRUE(graph) << graph.error().detail;
+  return make_plan(*graph, describe, "t");
+}
+
+TEST(Plan, GivesEveryLinkTwoEnds) {
+  auto planned = plan(R"([modules.source]
+parameters.rate = 3
+addresses = { left = 11 }
+encodings = { left = "zstd" }
+[modules.a]
+program = "filter"
+[modules.sink]
+[[links]]
+from = "source.left"
+to = "a.in"
+[[links]]
+from = "source.right"
+to = "sink.in"
+[[links]]
+from = "a.out"
+to = "sink.in"
+)");
+  ASSERT_TRUE(planned) << planned.error().detail;
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(
+      planned->modules[0].command,
+      (Words{"source", "--name", "source", "--rate=3", "--address", "left=11", "--encoding",
+             "left=zstd", "--manage", "unix:@t-source", "--out", "left=unix-listen:@t-0?readers=1",
+             "--out", "right=unix-listen:@t-1?readers=1"}));
+  EXPECT_EQ(planned->modules[1].command,
+            (Words{"filter", "--name", "a", "--manage", "unix:@t-a", "--in", "in=unix:@t-0?wait=60",
+                   "--out", "out=unix-listen:@t-2?readers=1"}));
+  EXPECT_EQ(planned->modules[1].manage_uri, "unix-listen:@t-a");
+  // Where the counters of each link are: a's output comes behind its one input.
+  EXPECT_EQ(planned->links[1].row, 1U);
+  EXPECT_EQ(planned->links[2].module, 1U);
+  EXPECT_EQ(planned->links[2].row, 1U);
+}
+
+TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
+  auto link = [](const std::string& from, const std::string& to) {
+    return "[modules.source]\n[modules.sink]\n[modules.filter]\n[[links]]\nfrom = \"" + from +
+           "\"\nto = \"" + to + "\"\n";
+  };
+  const std::pair<std::string, std::string> cases[] = {
+      {"[modules.x]\n", "g.toml:1: module x: no such program"},
+      {"[modules.dumb]\n",
+       "g.toml:1: module dumb: dumb --describe prints no description of a module"},
+      {"[modules.odd]\nparameters.rate=1", "--describe prints no description of a module: "},
+      {"[modules.source]\nparameters.rat = 3",
+       "g.toml:1: module source has no parameter \"rat\", did you mean \"rate\"?"},
+      {"[modules.source]\naddresses.lft = 3",
+       "g.toml:1: module source has no output \"lft\", did you mean \"left\"?"},
+      {"[modules.source]\nencodings.x = \"text\"", "g.toml:1: module source has no output \"x\""},
+      {"[modules.source]\naddresses = { left = 3, right = 3 }",
+       "g.toml:1: address 3 is given twice"},
+      {link("sorce.left", "filter.in"), "g.toml:4: no module \"sorce\", did you mean \"source\"?"},
+      {link("source.up", "filter.in"), "g.toml:4: module source has no output \"up\""},
+      {link("source.left", "filter.into"),
+       "g.toml:4: module filter has no input \"into\", did you mean \"in\"?"},
+      {link("source.left", "sink.in"),
+       "g.toml:4: source.left gives map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 "
+       "in "
+       "coordinate system 8"},
+      {link("source.left", "sink.text"), "g.toml:4: source.left gives map"},
+      {link("source.left", "filter.in") + "[[links]]\nfrom = \"source.left\"\nto = \"filter.in\"\n",
+       "g.toml:7: the link from source.left to filter.in is there twice"},
+  };
+  for (const auto& [text, wanted] : cases) {
+    auto planned = plan(text);
+    ASSERT_FALSE(planned) << text;
+    EXPECT_TRUE(planned.error().detail.starts_with(wanted)) << planned.error().detail;
+  }
+}
+
+TEST(Plan, AnInputThatTakesAnythingFits) {
+  EXPECT_TRUE(
+      plan("[modules.source]\n[modules.any]\n[[links]]\nfrom=\"source.left\"\nto=\"any.in\"\n"));
+}
+
+TEST(Suggestion, IsNearOrNothing) {
+  EXPECT_EQ(suggestion("camra", {"depth", "camera"}), ", did you mean \"camera\"?");
+  EXPECT_EQ(suggestion("wheel", {"depth", "camera"}), "");
+}
+
+}  // namespace
+}  // namespace hc

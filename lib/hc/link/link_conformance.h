@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What every transport must do, written once; each transport's test says how its ends are opened.
+// No sleeps: everything waits for the other side, and the test runner's time-out is the watchdog.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <hc/link/link.h>
+
+namespace hc::testing {
+
+/// A transport under test.
+struct Transport {
+  std::string name;
+  /// URIs of a fresh link: where messages come out, and where they go in.
+  std::function<std::pair<std::string, std::string>()> make;
+  bool sink_first = false;     ///< which end must be opened first
+  bool ends = true;            ///< the source ends when the sink closes (one that listens does not)
+  bool notices_reader = true;  ///< send() fails once the reader has gone
+  bool one_each = false;       ///< a name has one source and one sink
+};
+
+inline void PrintTo(const Transport& transport, std::ostream* out) {
+  *out << transport.name;
+}
+
+inline std::unique_ptr<Source> source_of(const std::string& uri, LinkOptions options = {}) {
+  auto source = open_source(*parse_uri(uri), options);
+  EXPECT_TRUE(source) << uri << ": " << source.error().text();
+  return std::move(*source);
+}
+inline std::unique_ptr<Sink> sink_of(const std::string& uri, LinkOptions options = {}) {
+  auto sink = open_sink(*parse_uri(uri), options);
+  EXPECT_TRUE(sink) << uri << ": " << sink.error().text();
+  return std::move(*sink);
+}
+
+/// A message with `size` bytes of elements that its seq tells.
+inline Message numbered(std::int64_t seq, std::int32_t size) {
+  Header header;
+  header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};
+  header.width = size;
+  header.height = 1;
+  header.seq = seq;
+  Draft draft = Draft::make(header);
+  for (auto& byte : draft.elements()) byte = static_cast<std::byte>(seq * 7 + size);
+  return std::move(draft).finish();
+}
+
+class LinkConformance : public ::testing::TestWithParam<Transport> {
+ protected:
+  void open() {
+    auto [from, to] = GetParam().make();
+    if (GetParam().sink_first) sink_ = sink_of(to);
+    source_ = source_of(from);
+    if (!GetParam().sink_first) sink_ = sink_of(to);
+  }
+
+  /// Sends from another thread, takes here, compares.
+  void transfer(int count, std::int32_t size) {
+    std::thread sender([&] {
+      for (int i = 0; i < count; ++i) ASSERT_TRUE(sink_->send(numbered(i, size)));
+      ASSERT_TRUE(sink_->close());
+    });
+    Message message;
+    for (int i = 0; i < count; ++i) {
+      auto got = receive(*source_, message);
+      ASSERT_TRUE(got && *got) << i;
+      Message wanted = numbered(i, size);
+      ASSERT_EQ(message.header, wanted.header);
+      ASSERT_EQ(message.characters(), wanted.characters());
+    }
+    sender.join();
+    EXPECT_EQ(source_->traffic().messages, static_cast<std::uint64_t>(count));
+    EXPECT_EQ(sink_->traffic().messages, static_cast<std::uint64_t>(count));
+    if (!GetParam().ends) return;
+    auto end = receive(*source_, message);
+    ASSERT_TRUE(end) << end.error().text();
+    EXPECT_FALSE(*end);
+  }
+
+  std::unique_ptr<Source> source_;
+  std::unique_ptr<Sink> sink_;
+};
+
+TEST_P(LinkConformance, CarriesOneMessageAndEnds) {
+  open();
+  transfer(1, 3);
+}
+TEST_P(LinkConformance, CarriesManySmallOnes) {
+  open();
+  transfer(20000, 24);
+}
+TEST_P(LinkConformance, CarriesHugeOnes) {
+  open();
+  transfer(3, 40'000'000);
+}
+TEST_P(LinkConformance, CarriesEmptyOnes) {
+  open();
+  transfer(10, 0);
+}
+
+TEST_P(LinkConformance, EndsWithoutAMessage) {
+  if (!GetParam().ends) GTEST_SKIP() << "a listening source has no end";
+  open();
+  std::thread sender([&] { ASSERT_TRUE(sink_->close()); });
+  Message message;
+  while (*receive(*source_, message)) {
+  }
+  sender.join();
+  EXPECT_EQ(*source_->take(message), Got::End);
+}
+
+TEST_P(LinkConformance, NothingIsNoEnd) {
+  open();
+  Message message;
+  EXPECT_EQ(*source_->take(message), Got::Nothing);
+  transfer(1, 1);
+}
+
+TEST_P(LinkConformance, ASlowReaderLosesNothing) {
+  open();
+  std::thread sender([&] {
+    for (int i = 0; i < 500; ++i) ASSERT_TRUE(sink_->send(numbered(i, 100'000)));
+    ASSERT_TRUE(sink_->close());
+  });
+  Message message;
+  for (int i = 0; i < 500; ++i) {
+    // One look at the descriptor between any two messages, so that the sender runs ahead.
+    auto got = receive(*source_, message);
+    ASSERT_TRUE(got && *got);
+    ASSERT_EQ(message.header.seq, i);
+    std::this_thread::yield();
+  }
+  sender.join();
+}
+
+TEST_P(LinkConformance, AMessageMayBeHeldForAsLongAsOneLikes) {
+  open();
+  std::thread sender([&] {
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink_->send(numbered(i, 1 + i * 500)));
+    ASSERT_TRUE(sink_->close());
+  });
+  std::vector<Message> held(100);
+  for (auto& message : held) ASSERT_TRUE(*receive(*source_, message));
+  sender.join();
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(),
+              numbered(i, 1 + i * 500).characters());
+}
+
+TEST_P(LinkConformance, AReaderThatLeavesIsNoticed) {
+  if (!GetParam().notices_reader) GTEST_SKIP() << "nobody need read it";
+  open();
+  std::thread reader([&] {
+    Message message;
+    ASSERT_TRUE(*receive(*source_, message));
+    source_.reset();
+  });
+  Status sent;
+  for (int i = 0; sent; ++i) sent = sink_->send(numbered(i, 100'000));
+  reader.join();
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST_P(LinkConformance, OptionsOfAnotherTransportAreRefused) {
+  auto [from, to] = GetParam().make();
+  auto source = open_source(
+      *parse_uri(from + (from.find('?') == std::string::npos ? "?" : "&") + "flavour=sweet"));
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::Unsupported);
+}
+
+}  // namespace hc::testing

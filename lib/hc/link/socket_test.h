@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What tcp and unix links do beyond the conformance of all: they listen, refuse, and meet again.
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <string>
+#include <vector>
+
+#include <hc/link/descriptor.h>
+#include <hc/link/link_conformance.h>
+#include <hc/wire/codec.h>
+
+namespace hc::testing {
+
+/// A scheme whose links are sockets.
+struct SocketScheme {
+  std::string name;
+  std::function<std::string()> place;  ///< one that nobody listens on: "localhost:7000", "/tmp/x"
+  std::string dial, listen;            ///< schemes
+  /// A stream socket that is connected to a place, for what no link would send.
+  std::function<internal::Descriptor(const std::string& place)> connect;
+};
+
+inline void PrintTo(const SocketScheme& scheme, std::ostream* out) {
+  *out << scheme.name;
+}
+
+/// The two ways round as transports of the conformance suite.
+inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
+  auto source_listens = [scheme] {
+    std::string place = scheme.place();
+    return std::pair{scheme.listen + place, scheme.dial + place};
+  };
+  auto sink_listens = [scheme] {
+    std::string place = scheme.place();
+    return std::pair{scheme.dial + place, scheme.listen + place};
+  };
+  return {{scheme.name + "_source_listens", source_listens, false, false, true},
+          {scheme.name + "_sink_listens", sink_listens, true, true, false}};
+}
+
+class SocketLink : public ::testing::TestWithParam<SocketScheme> {
+ protected:
+  void SetUp() override { place_ = GetParam().place(); }
+  [[nodiscard]] std::string dial() const { return GetParam().dial + place_; }
+  [[nodiscard]] std::string listen() const { return GetParam().listen + place_; }
+  std::string place_;
+};
+
+TEST_P(SocketLink, IsRefusedWhereNobodyListens) {
+  auto source = open_source(*parse_uri(dial()));
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::Closed);
+  EXPECT_FALSE(open_sink(*parse_uri(dial())));
+}
+
+TEST_P(SocketLink, ANameInUseIsRefused) {
+  auto first = source_of(listen());
+  auto second = open_source(*parse_uri(listen()));
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, Code::System);
+}
+
+TEST_P(SocketLink, WaitsForAListener) {
+  std::thread late([&] {
+    auto sink = sink_of(listen() + "?readers=1");
+    ASSERT_TRUE(sink->close());
+  });
+  auto source = source_of(dial() + "?wait=60");
+  Message message;
+  EXPECT_FALSE(*receive(*source, message));
+  late.join();
+}
+
+TEST_P(SocketLink, WaitingEndsWhenToldToStop) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  internal::Descriptor read_end(ends[0]), write_end(ends[1]);
+  ASSERT_EQ(::write(ends[1], "x", 1), 1);
+  LinkOptions options;
+  options.stop = ends[0];
+  EXPECT_EQ(open_source(*parse_uri(dial() + "?wait=60"), options).error().code, Code::Closed);
+  auto sink = sink_of(listen(), options);
+  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Closed);
+}
+
+TEST_P(SocketLink, WritersComeAndGo) {
+  auto source = source_of(listen());
+  Message message;
+  for (int i = 0; i < 5; ++i) {
+    auto sink = sink_of(dial());
+    ASSERT_TRUE(sink->send(numbered(i, 10)));
+    ASSERT_TRUE(sink->close());
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  EXPECT_EQ(source->traffic().messages, 5U);
+}
+
+TEST_P(SocketLink, ReadersComeAndGo) {
+  auto sink = sink_of(listen());
+  for (int i = 0; i < 5; ++i) {
+    auto source = source_of(dial());
+    // The last reader's end is noticed by a failing send, which then goes to the next one.
+    std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
+    Message message;
+    sender.join();
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+}
+
+TEST_P(SocketLink, ManyReadersGetEachMessage) {
+  auto sink = sink_of(listen() + "?readers=4");
+  std::vector<std::unique_ptr<Source>> sources;
+  for (int i = 0; i < 4; ++i) sources.push_back(source_of(dial()));
+  std::thread sender([&] {
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(numbered(i, 1000)));
+    ASSERT_TRUE(sink->close());
+  });
+  for (int i = 0; i < 20; ++i) {
+    for (auto& source : sources) {
+      Message message;
+      ASSERT_TRUE(*receive(*source, message));
+      EXPECT_EQ(message.header.seq, i);
+    }
+  }
+  sender.join();
+  EXPECT_EQ(sink->traffic().messages, 20U);
+}
+
+TEST_P(SocketLink, AHostilePeerDisturbsNobody) {
+  std::vector<std::string> warnings;
+  LinkOptions options;
+  options.log = [&](Severity, std::string_view line) { warnings.emplace_back(line); };
+  auto source = source_of(listen(), options);
+  auto hostile = GetParam().connect(place_);
+  auto sink = sink_of(dial());
+  ASSERT_EQ(::write(hostile.get(), "GET / HTTP/1.1\r\n", 16), 16);
+  Message message;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, 10)));
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0], "Malformed: R5 version: \"GET\" is not an integer, at byte 0");
+}
+
+TEST_P(SocketLink, AMessageThatIsCutIsTold) {
+  std::vector<std::string> warnings;
+  LinkOptions options;
+  options.log = [&](Severity, std::string_view line) { warnings.emplace_back(line); };
+  auto source = source_of(listen(), options);
+  std::string bytes = encode(numbered(1, 100)) + encode(numbered(2, 100)).substr(0, 60);
+  {
+    auto peer = GetParam().connect(place_);
+    for (char c : bytes) ASSERT_EQ(::write(peer.get(), &c, 1), 1);  // one byte at a time
+  }
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.characters(), numbered(1, 100).characters());
+  auto sink = sink_of(dial());
+  ASSERT_TRUE(sink->send(numbered(3, 1)));
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 3);
+  while (warnings.empty()) ASSERT_EQ(*source->take(message), Got::Nothing);
+  EXPECT_TRUE(warnings[0].starts_with("Truncated: R2 stream: truncated after 1 messages"));
+}
+
+TEST_P(SocketLink, MorePeersThanThereIsRoomForWait) {
+  auto source = source_of(listen());
+  std::vector<std::unique_ptr<Sink>> sinks;
+  Message message;
+  constexpr int kPeers = 300;  // room is for 256
+  for (int i = 0; i < kPeers; ++i) {
+    sinks.push_back(sink_of(dial() + "?wait=60"));
+    ASSERT_TRUE(sinks.back()->send(numbered(i, 1)));
+    if (i >= 256) continue;
+    ASSERT_TRUE(*receive(*source, message));
+  }
+  sinks.erase(sinks.begin(), sinks.begin() + 100);
+  for (int i = 256; i < kPeers; ++i) ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(source->traffic().messages, static_cast<std::uint64_t>(kPeers));
+}
+
+}  // namespace hc::testing

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <hc/link/descriptor.h>
+#include <hc/link/link_conformance.h>
+
+namespace hc::testing {
+namespace {
+
+/// Puts a pipe in the place of standard input and output, as a shell does, until the test ends.
+class Stdio : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    int ends[2];
+    ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+    for (int i : {0, 1}) {
+      saved_[i] = internal::Descriptor(::fcntl(i, F_DUPFD_CLOEXEC, 3));
+      ::dup2(ends[i], i);
+      ::close(ends[i]);
+    }
+  }
+  void TearDown() override {
+    for (int i : {0, 1}) ::dup2(saved_[i].get(), i);
+  }
+  /// Lets go of our copy of an end, so that the other one notices.
+  void release(int i) const { ::dup2(saved_[i].get(), i); }
+
+  internal::Descriptor saved_[2];
+};
+
+TEST_F(Stdio, CarriesMessages) {
+  auto source = source_of("-");
+  auto sink = sink_of("-");
+  release(1);
+  std::thread sender([&] {
+    for (int i = 0; i < 50; ++i) ASSERT_TRUE(sink->send(numbered(i, 100'000)));
+    ASSERT_TRUE(sink->close());
+  });
+  Message message;
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.characters(), numbered(i, 100'000).characters());
+  }
+  EXPECT_FALSE(*receive(*source, message));
+  sender.join();
+}
+
+TEST_F(Stdio, TheFlagsOfTheShellsDescriptorsStay) {
+  auto source = source_of("-");
+  auto sink = sink_of("-");
+  EXPECT_EQ(::fcntl(0, F_GETFL) & O_NONBLOCK, 0);
+  EXPECT_EQ(::fcntl(1, F_GETFL) & O_NONBLOCK, 0);
+  Message message;
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+}
+
+TEST_F(Stdio, AReaderThatHasGoneIsAnEnd) {
+  ::signal(SIGPIPE, SIG_IGN);
+  auto sink = sink_of("-");
+  release(0);
+  EXPECT_EQ(sink->send(numbered(0, 10)).error().code, Code::Closed);
+}
+
+TEST_F(Stdio, WaitingEndsWhenToldToStop) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  LinkOptions options;
+  options.stop = ends[0];
+  auto sink = sink_of("-", options);
+  std::thread stopper([&] { EXPECT_EQ(::write(ends[1], "x", 1), 1); });
+  EXPECT_EQ(sink->send(numbered(0, 50'000'000)).error().detail, "stopped");
+  stopper.join();
+  Message message;
+  auto source = source_of("-");
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST_F(Stdio, CannotBeReadOnAfterAnError) {
+  auto source = source_of("-");
+  ASSERT_EQ(::write(1, "rubbish\n", 8), 8);
+  Message message;
+  EXPECT_FALSE(receive(*source, message));
+  EXPECT_EQ(source->resume().error().code, Code::Unsupported);
+}
+
+}  // namespace
+}  // namespace hc::testing

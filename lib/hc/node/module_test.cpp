@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/node/module.h>
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include <hc/compress/compress.h>
+#include <hc/node/arguments.h>
+
+namespace hc {
+namespace {
+
+/// Runs a module on this thread with links inside the process.
+int run(Module& module, std::vector<std::string> words) {
+  words.insert(words.begin(), "module");
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  return module.run(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::unique_ptr<Source> source_of(const std::string& uri) {
+  return std::move(*open_source(*parse_uri(uri)));
+}
+std::unique_ptr<Sink> sink_of(const std::string& uri) {
+  return std::move(*open_sink(*parse_uri(uri)));
+}
+
+Message stamped(Message message, std::int64_t time, std::int32_t mode = 0) {
+  message.header.time = time;
+  message.header.mode = mode;
+  return message;
+}
+
+TEST(Module, AnswersEachMessageAndKeepsItsTime) {
+  Module module{"double", "Doubles positions."};
+  auto in = module.input("in", position<double>(), "");
+  auto out = module.output("out", position<double>().in(3), "");
+  auto factor = module.parameter("factor", 2.0, "", "");
+  module.on(in, [&](const auto& message) {
+    out.send(position(message.matrix().at(0, 0, 0) * *factor, 0.0, 0.0));
+  });
+  auto sink = sink_of("inproc:m1-in");
+  auto source = source_of("inproc:m1-out");
+  for (int i = 1; i <= 3; ++i)
+    ASSERT_TRUE(sink->send(stamped(position(i * 1.0, 0.0, 0.0), 1000 + i, 5)));
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(run(module, {"--in", "in=inproc:m1-in", "--out", "out=inproc:m1-out", "--factor", "10",
+                         "--address", "out=77"}),
+            0);
+  for (int i = 1; i <= 3; ++i) {
+    Message message;
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.view<double>()->at(0, 0, 0), 10.0 * i);
+    EXPECT_EQ(message.header.time, 1000 + i);
+    EXPECT_EQ(message.header.seq, i - 1);
+    EXPECT_EQ(message.header.src, 77);
+    EXPECT_EQ(message.header.mode, 5);
+    EXPECT_EQ(message.header.coord, 3);
+    EXPECT_EQ(message.header.ttl, 8);
+  }
+}
+
+TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
+  Module module{"copy", "Copies pictures."};
+  auto in = module.input("in", intensity_image<std::uint8_t>(), "");
+  auto out = module.output("out", intensity_image<std::uint8_t>(), "");
+  module.on(in, [&](const auto& message) {
+    auto draft = out.loan(message.header.width, message.header.height);
+    std::ranges::copy(message.matrix().numbers(), draft.matrix().numbers().begin());
+    out.send(std::move(draft));
+  });
+  Draft draft = Draft::make(intensity_image<std::uint8_t>().type.info, 32, 8);
+  for (auto& byte : draft.elements()) byte = std::byte{99};
+  auto sink = sink_of("inproc:m2-in");
+  auto source = source_of("inproc:m2-out");
+  ASSERT_TRUE(sink->send(*compress(std::move(draft).finish(), Encoding::Zstd)));
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(run(module, {"--in=inproc:m2-in", "--out=inproc:m2-out", "--encoding=jpeg"}), 0);
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.info.encoding, Encoding::Jpeg);
+  EXPECT_EQ(expand(message)->view<std::uint8_t>()->at(3, 3), 99);
+}
+
+TEST(Module, TakesTwoInputsTogetherByTime) {
+  Module module{"pair", "Pairs."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on_both(left, right, [&](const auto& a, const auto& b) {
+    EXPECT_EQ(a.header.time, b.header.time);
+    out.send(table({a.matrix().at(0, 0), b.matrix().at(0, 0)}));
+  });
+  auto left_sink = sink_of("inproc:m3-left"), right_sink = sink_of("inproc:m3-right");
+  auto source = source_of("inproc:m3-out");
+  for (int time : {1, 2, 3, 5}) ASSERT_TRUE(left_sink->send(stamped(table({time * 1.0}), time)));
+  for (int time : {2, 4, 5}) ASSERT_TRUE(right_sink->send(stamped(table({time * 10.0}), time)));
+  ASSERT_TRUE(left_sink->close());
+  ASSERT_TRUE(right_sink->close());
+  EXPECT_EQ(run(module, {"--in", "left=inproc:m3-left", "--in", "right=inproc:m3-right", "--out",
+                         "inproc:m3-out"}),
+            0);
+  std::vector<double> pairs;
+  Message message;
+  while (*receive(*source, message)) pairs.push_back(message.view<double>()->at(0, 1));
+  EXPECT_EQ(pairs, (std::vector<double>{20, 50}));
+}
+
+TEST(Module, AMessageThatDoesNotFitIsOneCleanLine) {
+  Module module{"strict", "Takes positions."};
+  auto in = module.input("in", position<double>(), "");
+  module.on(in, [](const auto&) { FAIL(); });
+  auto sink = sink_of("inproc:m4");
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "inproc:m4", "--name", "north"}), 1);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "north: Malformed: in: R17 info: table does not fit, the port takes position\n");
+}
+
+TEST(Module, EndsWhenNobodyReadsItAnyMore) {
+  Module module{"source", "Makes numbers."};
+  auto out = module.output("out", table<double>(), "");
+  module.generate([&] {
+    out.send(table({1.0}));
+    return true;
+  });
+  auto source = source_of("inproc:m5");
+  std::thread reader([&] {
+    Message message;
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(*receive(*source, message));
+    source.reset();
+  });
+  EXPECT_EQ(run(module, {"--out", "inproc:m5"}), 0);
+  reader.join();
+}
+
+TEST(Module, ReportsItsCounters) {
+  Module module{"counted", "Counts."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const auto&) { out.send(table({1.0, 2.0})); });
+  auto sink = sink_of("inproc:m6-in");
+  auto source = source_of("inproc:m6-out"), manage = source_of("inproc:m6-manage");
+  for (int i = 0; i < 7; ++i) ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(run(module, {"--in=inproc:m6-in", "--out=inproc:m6-out", "--manage=inproc:m6-manage"}),
+            0);
+  Message message, last;
+  while (*manage->take(message) == Got::Message) last = message;
+  auto rows = *last.view<std::int64_t>();
+  ASSERT_EQ(rows.height(), 2U);
+  EXPECT_EQ(rows.at(0, 0, 0), 7);
+  EXPECT_EQ(rows.at(0, 0, 1), 7 * 8);
+  EXPECT_EQ(rows.at(1, 0, 0), 7);
+  EXPECT_EQ(rows.at(1, 0, 1), 7 * 16);
+}
+
+TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"--colour", "3"}, "no option \"--colour\"; parameters are: hue, on; see --help"},
+      {{"--hue", "2"}, "parameter hue: \"2\" is not from 0 to 1"},
+      {{"--hue"}, "--hue wants a value"},
+      {{"--on=maybe"}, "parameter on: \"maybe\" is not true or false"},
+      {{"--in", "up=-"}, "no input \"up\"; there are: in"},
+      {{"--in", "in="}, "a URI cannot be empty: \"\""},
+      {{"--address", "out=-1"}, "--address wants PORT=NUMBER, 0 to 2147483647, not \"out=-1\""},
+      {{"--encoding", "png"}, "--encoding is text, binary, zstd or jpeg, not \"png\""},
+      {{"--limit", "much"}, "--limit wants a number of bytes"},
+      {{"0.5", "extra"}, "one argument too many: \"extra\"; see --help"},
+  };
+  for (const auto& [words, line] : cases) {
+    Module module{"blob", "Finds blobs."};
+    auto in = module.input("in", position<double>(), "");
+    auto out = module.output("out", position<double>(), "");
+    auto hue =
+        module.parameter("hue", 0.3, "turn", "", {.least = 0, .most = 1, .positional = true});
+    auto on = module.parameter("on", false, "", "");
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(run(module, words), 2);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "blob: Usage: " + std::string(line) + "\n");
+  }
+}
+
+TEST(Module, DescribesItself) {
+  Module module{"blob", "Finds the \"largest\" blob."};
+  auto in = module.input("image", any_of(rgb_image<std::uint8_t>().in(7)), "picture");
+  auto out = module.output("target", position<double>(), "centre");
+  auto hue = module.parameter("hue", 0.5, "turn", "colour", {.least = 0, .most = 1});
+  auto how = module.parameter("how", "fast", "", "way", {.choices = {"fast", "good"}});
+  EXPECT_EQ(
+      internal::describe(module),
+      R"({"name":"blob","summary":"Finds the \"largest\" blob.","inputs":[{"name":"image","types":)"
+      R"([{"type":"rgb_image","components":3,"scalar":"u8","width":0,"height":0,"coord":7}],)"
+      R"("doc":"picture"}],"outputs":[{"name":"target","types":[{"type":"position","components":3,)"
+      R"("scalar":"f64","width":0,"height":0,"coord":0}],"encoding":"text","doc":"centre"}],)"
+      R"("parameters":[{"name":"hue","type":"number","unit":"turn","default":0.5,"least":0,"most":1,)"
+      R"("doc":"colour"},{"name":"how","type":"string","unit":"","default":"fast","choices":)"
+      R"(["fast","good"],"doc":"way"}]})"
+      "\n");
+  std::string help = internal::help(module);
+  for (const char* part : {"Usage: hc blob", "picture (rgb_image 3 x u8, coordinate system 7)",
+                           "colour [turn] (default 0.5)", "way: fast, good (default fast)"})
+    EXPECT_NE(help.find(part), std::string::npos) << help;
+}
+
+TEST(Module, HandlersFailWithOneLine) {
+  Module module{"broken", "Fails."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) { throw ModuleError("no camera"); });
+  auto sink = sink_of("inproc:m7");
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "inproc:m7"}), 1);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "broken: no camera\n");
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/node/parameter.h>
+
+#include <gtest/gtest.h>
+
+namespace hc {
+namespace {
+
+ParameterState state(ParameterValue value, ParameterOptions options = {}) {
+  return {"p", "", "", std::move(options), value, value};
+}
+
+TEST(Parameter, ReadsItsOwnType) {
+  auto flag = state(false);
+  EXPECT_TRUE(flag.set("true"));
+  EXPECT_TRUE(std::get<bool>(flag.value));
+  EXPECT_FALSE(flag.set("yes"));
+  auto integer = state(std::int64_t{1});
+  EXPECT_TRUE(integer.set("-12"));
+  EXPECT_EQ(text(integer.value), "-12");
+  EXPECT_FALSE(integer.set("1.5"));
+  EXPECT_FALSE(integer.set(""));
+  auto number = state(0.5);
+  EXPECT_TRUE(number.set("1e-3"));
+  EXPECT_EQ(text(number.value), "0.001");
+  EXPECT_FALSE(number.set("nan"));
+  EXPECT_FALSE(number.set("3 m"));
+  auto string = state(std::string("a"));
+  EXPECT_TRUE(string.set(""));
+  EXPECT_EQ(text(string.value), "");
+}
+
+TEST(Parameter, KeepsItsRange) {
+  auto share = state(0.5, {.least = 0, .most = 1});
+  EXPECT_TRUE(share.set("1"));
+  EXPECT_EQ(share.set("1.01").error().detail, "parameter p: \"1.01\" is not from 0 to 1");
+  EXPECT_EQ(text(share.value), "1");
+  auto choice = state(std::string("auto"), {.choices = {"auto", "yes"}});
+  EXPECT_TRUE(choice.set("yes"));
+  EXPECT_EQ(choice.set("no").error().detail, "parameter p: \"no\" is not one of auto yes");
+}
+
+}  // namespace
+}  // namespace hc

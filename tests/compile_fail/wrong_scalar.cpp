@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// f64 does not go out of a port of f32.
+#include <hc/node/module.h>
+
+void send(hc::Output<hc::PositionKind<float>>& output) {
+#ifdef HC_WRONG
+  output.send(hc::position(1.0, 2.0, 3.0));
+#else
+  output.send(hc::position(1.0F, 2.0F, 3.0F));
+#endif
+}

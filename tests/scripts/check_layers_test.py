@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The layer check finds what it is there for."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CHECK = pathlib.Path(__file__).parents[2] / "scripts/check_layers.py"
+
+
+def check(files):
+    with tempfile.TemporaryDirectory() as root:
+        for name, text in files.items():
+            path = pathlib.Path(root, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text + "\n")
+        done = subprocess.run([sys.executable, str(CHECK), root], stdout=-1)
+        return done.returncode, done.stdout.decode()
+
+
+class Layers(unittest.TestCase):
+    def test_a_good_tree_passes(self):
+        files = {"lib/hc/link/tcp.cpp": "#include <hc/wire/codec.h>\n#include <sys/socket.h>"}
+        self.assertEqual(check(files)[0], 0)
+
+    def test_each_wrong_arrow_is_named(self):
+        for name, text in {
+            "lib/hc/base/a.cpp": "#include <hc/wire/codec.h>",
+            "lib/hc/wire/a.cpp": "#include <hc/link/link.h>",
+            "lib/hc/wire/b.cpp": "#include <sys/socket.h>",
+            "lib/hc/node/a.cpp": "#include <hc/graph/plan.h>",
+            "lib/hc/graph/a.cpp": "#include <hc/node/module.h>",
+            "lib/hc/link/a.h": "#include <fmt/format.h>",
+            "lib/vision/a.cpp": "#include <hc/wire/codec.h>",
+            "modules/a/main.cpp": '#include "../b/b.h"',
+            "modules/b/main.cpp": "#include <hc/graph/plan.h>",
+            "modules/c/main.cpp": 'std::cout << "hello";',
+            "lib/hc/node/b.cpp": 'printf("hello");',
+            "lib/hc/new/a.cpp": "#include <vector>",
+        }.items():
+            with self.subTest(name):
+                status, out = check({name: text})
+                self.assertEqual(status, 1)
+                self.assertTrue(out.startswith(name + ":1: "), out)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "json.h"
+
+#include <gtest/gtest.h>
+
+namespace tool {
+namespace {
+
+// The vectors of spec/vectors hold the rest; tests/conformance reads them through hc cat --json.
+
+TEST(Json, IsOneLineOfNamedFields) {
+  hc::Draft draft = hc::Draft::make(hc::Info(), 1, 1);
+  auto numbers = draft.view<double>().numbers();
+  numbers[0] = 0.5;
+  numbers[1] = -0.0;
+  numbers[2] = 1e300 * 1e10;
+  EXPECT_EQ(
+      to_json(std::move(draft).finish()),
+      "{\"version\":1,\"src\":0,\"dst\":0,\"seq\":0,\"ttl\":8,\"time\":0,\"info\":10390,"
+      "\"mode\":0,\"coord\":0,\"width\":1,\"height\":1,\"type\":\"position\",\"components\":3,"
+      "\"scalar\":\"f64\",\"encoding\":\"text\",\"elements\":[[[0.5,-0,\"inf\"]]]}");
+}
+
+TEST(Json, CompressedIsNull) {
+  hc::Message message = std::move(hc::Draft::make(hc::Info(), 1, 1)).finish();
+  message.header.info.encoding = hc::Encoding::Zstd;
+  EXPECT_TRUE(to_json(message).ends_with("\"elements\":null}"));
+}
+
+}  // namespace
+}  // namespace tool
