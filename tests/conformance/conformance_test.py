@@ -127,7 +127,9 @@ class RandomMessages(unittest.TestCase):
             data[at] = rng.choice((rng.randrange(256), 32, 10, 45, 48, 57))
             with self.subTest(i):
                 shown = hc("cat", "--json", data=bytes(data))
-                found = re.search(r": (R\d+) (\w+): .*, at byte (\d+)$", shown.stderr.decode().strip())
+                found = re.search(
+                    r": (R\d+) (\w+): .*, at byte (\d+)$", shown.stderr.decode().strip()
+                )
                 told = {}
                 if shown.returncode != 0:
                     told = {"rule": found[1], "field": found[2], "byte": int(found[3])}

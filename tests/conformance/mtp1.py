@@ -43,9 +43,7 @@ SCALARS = "u8 i8 u16 i16 u32 i32 u64 i64 f32 f64".split()
 PACK = "BbHhIiQqfd"
 ENCODINGS = "text binary zstd jpeg".split()
 INTEGER = re.compile(rb"(0|-?[1-9][0-9]*)\Z")
-FLOAT = re.compile(
-    rb"-?(([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|(?i:nan|inf|infinity))\Z"
-)
+FLOAT = re.compile(rb"-?(([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|(?i:nan|inf|infinity))\Z")
 
 
 class Refused(Exception):
@@ -127,7 +125,12 @@ def read(stream, limit=LIMIT):
 def read_message(source, limit):
     header = read_header(source, limit)
     info, width, height = header[6], header[9], header[10]
-    kind, components, scalar, encoding = info // 10000, info // 100 % 100, info // 10 % 10, info % 10
+    kind, components, scalar, encoding = (
+        info // 10000,
+        info // 100 % 100,
+        info // 10 % 10,
+        info % 10,
+    )
     size = width * height * components * struct.calcsize(PACK[scalar])
     if encoding >= 2:
         elements = source.take(read_length(source, limit))
@@ -209,7 +212,12 @@ def check_field(field, header, byte):
     if field not in ("info", "width", "height"):
         return
     info, value = header[6], header[-1]
-    kind, components, scalar, encoding = info // 10000, info // 100 % 100, info // 10 % 10, info % 10
+    kind, components, scalar, encoding = (
+        info // 10000,
+        info // 100 % 100,
+        info // 10 % 10,
+        info % 10,
+    )
     if field == "info":
         if kind not in TYPES:
             raise Refused(17, field, byte, "no matrix type")
@@ -374,7 +382,11 @@ def write(message):
         return line + elements + b"\n"
     if message.encoding == 1:
         code = "<" + PACK[message.scalar]
-        return line + b"".join(getattr(n, "data", None) or struct.pack(code, n) for n in elements) + b"\n"
+        return (
+            line
+            + b"".join(getattr(n, "data", None) or struct.pack(code, n) for n in elements)
+            + b"\n"
+        )
     count = message.width * message.components
     if not elements:
         return line + b"\n"
@@ -436,12 +448,16 @@ def random_message(rng):
     height = width if kind == 8 else height
     header = [1]
     for low, high in RANGES[1:6]:
-        header.append(rng.choice((low, high, 0, rng.randint(low, high), rng.randint(0, min(high, 99)))))
+        header.append(
+            rng.choice((low, high, 0, rng.randint(low, high), rng.randint(0, min(high, 99))))
+        )
     header.append(kind * 10000 + components * 100 + scalar * 10 + encoding)
     header += [rng.choice((0, 3, 100, MAX31)), rng.choice((0, 9, 1003, MAX31)), width, height]
     count = width * height * components
     if kind == 6:
-        return Message(header, bytes(rng.choice((rng.randrange(256), 10, 65, 32)) for _ in range(count)))
+        return Message(
+            header, bytes(rng.choice((rng.randrange(256), 10, 65, 32)) for _ in range(count))
+        )
     return Message(header, [random_number(rng, scalar, encoding) for _ in range(count)])
 
 
@@ -454,7 +470,9 @@ def random_number(rng, scalar, encoding):
     data = rng.choice(
         (
             rng.getrandbits(8 * size).to_bytes(size, "little"),
-            struct.pack("<" + PACK[scalar], rng.choice((0.0, -0.0, math.inf, -math.inf, 1e5, 100.0))),
+            struct.pack(
+                "<" + PACK[scalar], rng.choice((0.0, -0.0, math.inf, -math.inf, 1e5, 100.0))
+            ),
             struct.pack("<" + PACK[scalar], rng.randint(-9999, 9999) / 10 ** rng.randint(0, 6)),
             struct.pack("<" + PACK[scalar], float(2 ** rng.randint(0, 100))),
             rng.getrandbits(12).to_bytes(size, "little"),

@@ -20,6 +20,7 @@ import unittest
 ROOT = pathlib.Path(__file__).parents[2]
 DATA = os.environ.get("HC_DATA", "/usr/share/doc/opencv-doc/examples/data")
 BUILD = None  # set from the command line
+PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
 WATCHDOG = 100  # seconds after which a program hangs
 
 
@@ -84,9 +85,7 @@ class Programs(Pipes):
         port = free_port()
         cat = self.start("hc cat --count 1 tcp-listen:%d" % port)
         wait_until(lambda: listens(port))
-        self.shell(
-            "nc -N localhost %d" % port, data=b"1 7 0 1 8 0 10390 1 3 1 1\n0.1 0.2 0.3\n"
-        )
+        self.shell("nc -N localhost %d" % port, data=b"1 7 0 1 8 0 10390 1 3 1 1\n0.1 0.2 0.3\n")
         out, _ = cat.communicate(timeout=WATCHDOG)
         self.assertEqual(
             out.decode(), "position 1 x 1 of 3 f64, src 7 seq 1 mode 1 in head\n  0.1 0.2 0.3\n"
@@ -102,18 +101,14 @@ class Programs(Pipes):
 
     def test_a_line_of_awk_is_a_module(self):
         awk = "awk 'NR % 2 { print; next } { print $1 * 10, $2, $3 }'"
-        out = self.shell(
-            "hc send --type position --src 7 0.1 0.2 0.3 | %s | hc cat --json" % awk
-        )
+        out = self.shell("hc send --type position --src 7 0.1 0.2 0.3 | %s | hc cat --json" % awk)
         self.assertEqual(json.loads(out)["elements"], [[[1, 0.2, 0.3]]])
 
     def test_brightness_in_awk_is_brightness_in_cpp(self):
         camera = "hc camera %s/aloeL.jpg --width 80 --height 60" % DATA
         awk = "awk -f %s/modules/brightness/brightness.awk" % ROOT
         ours = json.loads(self.shell(camera + " | hc brightness | hc cat --json"))
-        theirs = json.loads(
-            self.shell("%s --encoding text | %s | hc cat --json" % (camera, awk))
-        )
+        theirs = json.loads(self.shell("%s --encoding text | %s | hc cat --json" % (camera, awk)))
         self.assertEqual(ours["elements"], theirs["elements"])
         self.assertGreater(ours["elements"][0][0], 50)
         self.assertNotEqual(ours["time"], 0)
@@ -124,14 +119,16 @@ class Programs(Pipes):
     def test_numpy_reads_text_elements(self):
         self.send_table()
         out = self.shell(
-            "python3 -c 'import numpy; m = numpy.loadtxt(\"table.mtp\", skiprows=1);"
+            PYTHON + ' -c \'import numpy; m = numpy.loadtxt("table.mtp", skiprows=1);'
             "print(m.shape, m[0, 1], m[1, 0], m[1, 1])'"
         )
         self.assertEqual(out, "(2, 3) 2.5 4e-07 nan\n")
 
     def test_octave_reads_text_elements(self):
         self.send_table()
-        octave = "m = dlmread('table.mtp', ' ', 1, 0); printf('%d %d %g %g\\n', size(m), m(1,2), m(2,3))"
+        octave = (
+            "m = dlmread('table.mtp', ' ', 1, 0); printf('%d %d %g %g\\n', size(m), m(1,2), m(2,3))"
+        )
         out = self.shell('octave-cli --no-init-file --quiet --eval "%s"' % octave)
         self.assertEqual(out, "2 3 2.5 6\n")
 
@@ -140,7 +137,7 @@ class Programs(Pipes):
         out = self.shell(
             "gnuplot -e \"stats 'path.mtp' skip 1 using 2 nooutput; print STATS_max, STATS_records\" 2>&1"
         )
-        self.assertEqual(out.split(), ["20.0", "3.0"])
+        self.assertEqual(out.split(), ["20.0", "3"])
 
     def test_a_file_a_pipe_and_tee_are_peers(self):
         out = self.shell("hc send --text hello | tee copy.mtp | hc cat; cat copy.mtp | hc cat")
@@ -156,7 +153,11 @@ class Tool(Pipes):
             ("hc play", 2, "hc play: file is required"),
             ("hc run missing.toml", 1, "hc run: NotFound: missing.toml: cannot be read"),
             ("hc camera nothing.jpg", 1, "camera: nothing.jpg: cannot be opened"),
-            ("echo rubbish | hc cat", 1, 'hc cat: Malformed: -: R5 version: "rubbish" is not an integer'),
+            (
+                "echo rubbish | hc cat",
+                1,
+                'hc cat: Malformed: -: R5 version: "rubbish" is not an integer',
+            ),
             ("hc send --type position 1 2", 2, "hc send: Usage: 2 numbers do not fill rows"),
             ("hc send --type position 1 2 x", 1, 'hc send: Malformed: elements: R27: "x" is not'),
         ]:
@@ -180,7 +181,8 @@ class Tool(Pipes):
 
     def test_send_takes_pictures_and_arrays(self):
         self.shell(
-            "python3 -c 'import numpy; numpy.save(\"a.npy\", numpy.arange(6, dtype=\"<f4\").reshape(2, 3))'"
+            PYTHON
+            + ' -c \'import numpy; numpy.save("a.npy", numpy.arange(6, dtype="<f4").reshape(2, 3))\''
         )
         out = json.loads(self.shell("hc send --npy a.npy | hc cat --json"))
         self.assertEqual((out["type"], out["elements"]), ("table", [[0, 1, 2], [3, 4, 5]]))
@@ -191,9 +193,13 @@ class Tool(Pipes):
         """Ten positions, 20 ms apart, of two senders; one lost."""
         lines = []
         for i in range(10):
-            lines.append("1 7 0 %d 8 %d 10390 0 3 1 1\n%d 0 0\n" % (i, 10**18 + i * 20_000_000, i))
+            lines.append(
+                "1 7 0 %d 8 %d 10390 0 3 1 1\n%d 0 0\n" % (i, 10**18 + i * 20_000_000, i)
+            )
             if i != 4:
-                lines.append("1 8 0 %d 8 %d 120190 0 0 1 1\n%d\n" % (i, 10**18 + i * 20_000_000, i))
+                lines.append(
+                    "1 8 0 %d 8 %d 120190 0 0 1 1\n%d\n" % (i, 10**18 + i * 20_000_000, i)
+                )
         pathlib.Path(self.path("r.mtp")).write_text("".join(lines))
 
     def test_info_tells_rates_gaps_and_sizes(self):
@@ -208,9 +214,7 @@ class Tool(Pipes):
         self.shell("hc play --speed max r.mtp | hc record copy.mtp")
         self.shell("cmp r.mtp copy.mtp")
         out = self.shell("hc play --speed max --from 0.05 --to 0.1 r.mtp | hc cat --json")
-        self.assertEqual(
-            [json.loads(line)["seq"] for line in out.splitlines()], [3, 3, 4, 5, 5]
-        )
+        self.assertEqual([json.loads(line)["seq"] for line in out.splitlines()], [3, 3, 4, 5, 5])
         out = self.shell("hc play --speed max --loop r.mtp | hc cat --json --count 50")
         self.assertEqual(out.count("\n"), 50)
 
@@ -229,17 +233,19 @@ class Tool(Pipes):
         pathlib.Path(self.path("cut.mtp")).write_bytes(whole[:-3])
         out = self.shell("hc cat --json cut.mtp", 1)
         self.assertEqual(out.count("\n"), 18)
-        self.assertIn("R2 stream: truncated after 18 messages, at byte %d" % (len(whole) - 3), self.err)
+        self.assertIn(
+            "R2 stream: truncated after 18 messages, at byte %d" % (len(whole) - 3), self.err
+        )
 
     def test_skip_goes_on_behind_damage(self):
         self.record()
         whole = pathlib.Path(self.path("r.mtp")).read_text().splitlines(True)
-        whole[6] = whole[6].replace("10390", "99999")
+        whole[4] = whole[4].replace("10390", "99999")
         pathlib.Path(self.path("bad.mtp")).write_text("".join(whole))
         out = self.shell("hc cat --json --skip bad.mtp")
         self.assertEqual(out.count("\n"), 18)
-        self.assertIn("R17 info", self.err)
-        self.assertEqual(self.shell("hc cat --json bad.mtp", 1).count("\n"), 3)
+        self.assertIn("R20 info", self.err)
+        self.assertEqual(self.shell("hc cat --json bad.mtp", 1).count("\n"), 2)
 
     def test_describe_is_json(self):
         for module in ("camera", "depth", "view", "brightness", "depth_score"):
@@ -351,16 +357,17 @@ to = "brightness.image"
         self.write("bad.toml", '[modules.store]\nprogram = "/bin/true"\n')
         self.shell("hc run bad.toml", 2)
         self.assertIn("bad.toml:1: module store: /bin/true --describe prints no", self.err)
-        self.write("bad.toml", '[modules.camra]\n')
+        self.write("bad.toml", "[modules.camra]\n")
         self.shell("hc run bad.toml", 2)
         self.assertIn('bad.toml:1: no program "camra", did you mean "camera"?', self.err)
 
     def test_a_window_shows_the_picture(self):
         """On a virtual display, whose memory is looked at."""
-        command = "hc camera %s/aloeL.jpg --count 0 --loop --rate 20 --width 320 --height 240" % DATA
-        self.environment["DISPLAY"] = ":97"
-        display = self.start("exec Xvfb :97 -screen 0 640x480x24 -fbdir . -nolisten tcp")
-        wait_until(lambda: os.path.exists("/tmp/.X11-unix/X97"))
+        command = (
+            "hc camera %s/aloeL.jpg --count 0 --loop --rate 20 --width 320 --height 240" % DATA
+        )
+        display = self.start("exec Xvfb -displayfd 1 -screen 0 640x480x24 -fbdir . -nolisten tcp")
+        self.environment["DISPLAY"] = ":" + display.stdout.readline().decode().strip()
         view = self.start("%s | hc view --window yes" % command)
         screen = pathlib.Path(self.path("Xvfb_screen0"))
 

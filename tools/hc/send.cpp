@@ -133,7 +133,6 @@ void add_send(CLI::App& app) {
   auto options = std::make_shared<Options>();
   auto* verb =
       app.add_subcommand("send", "Send one message: numbers, text, a picture, a .npy file");
-  verb->positionals_at_end();
   verb->add_option("--out", options->out, "where it goes")->capture_default_str();
   verb->add_option("--text", options->text, "send this as a string");
   verb->add_option("--picture", options->picture, "send a picture file");

@@ -6,8 +6,8 @@
 #include <optional>
 #include <sstream>
 
-// toml++ before 3.4 asserts, or assumes, what hostile text can break (a line end in a table's name),
-// and reports the error right behind it; so it is to go on.
+// toml++ before 3.4 asserts, or assumes, what hostile text can break (a line end in a table's
+// name), and reports the error right behind it; so it is to go on.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #define TOML_ASSERT(condition) static_cast<void>(0)
@@ -41,8 +41,8 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// toml++ up to 3.4 runs into undefined behaviour at letters outside ASCII in odd places, so it gets
-/// none to see: each of their bytes stands as ~ and two digits, and original() brings it back.
+/// toml++ up to 3.4 runs into undefined behaviour at letters outside ASCII in odd places, so it
+/// gets none to see: each of their bytes stands as ~ and two digits, and original() brings it back.
 std::string ascii_only(std::string_view text) {
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string result;
@@ -111,8 +111,8 @@ class Reader {
                     const std::string& where) const {
     for (const auto& [key, node] : table)
       if (std::find(known.begin(), known.end(), key.str()) == known.end())
-        return error(node, "no key \"" + original(key.str()) + "\" " + where +
-                               suggestion(key.str(), known));
+        return error(
+            node, "no key \"" + original(key.str()) + "\" " + where + suggestion(key.str(), known));
     return {};
   }
 

@@ -63,6 +63,11 @@ inline char* write_digits(char* at, std::uint64_t value) {
     *at = static_cast<char>('0' + value);
     return at + 1;
   }
+  if (value < 100) {
+    at[0] = static_cast<char>('0' + value / 10);
+    at[1] = static_cast<char>('0' + value % 10);
+    return at + 2;
+  }
   if (value < kTenTo8) {
     first(value);
   } else if (value < kTenTo8 * kTenTo8) {

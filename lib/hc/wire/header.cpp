@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/wire/header.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -82,11 +83,12 @@ std::optional<Finding> find_shape_error(int field, const Fields& values, const I
 }
 
 std::optional<Finding> find_size_error(const Header& header, const Limits& limits) {
-  // Both sides are below 2³¹ and an element has at most 792 bytes, so only the last product can
-  // pass 2⁶⁴.
+  // Both sides are below 2³¹ and an element has at most 792 bytes: the product of the sides fits,
+  // and so does that of all three when the first is below 2⁵⁴.
   std::uint64_t elements =
       static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height);
-  if (elements <= limits.element_bytes / header.info.element_bytes()) return std::nullopt;
+  bool fits = elements >> 54 == 0;
+  if (fits && elements * header.info.element_bytes() <= limits.element_bytes) return std::nullopt;
   return Finding{Code::TooLarge, 24, Width,
                  std::to_string(header.width) + " x " + std::to_string(header.height) + " x " +
                      std::to_string(header.info.element_bytes()) + " bytes are over the limit of " +
@@ -113,83 +115,92 @@ Info info_of(std::int64_t code) {
           static_cast<Scalar>(code / 10 % 10), static_cast<Encoding>(code % 10)};
 }
 
-constexpr std::size_t kFastBytes = 128;  // two machine words of marks
+constexpr std::size_t kFastBytes = 127;  // and a mark for the end: two machine words of marks
 
-/// One bit for each of 64 bytes: set where the byte is a space.
-std::uint64_t spaces_in(const char* bytes) {
-  std::uint64_t bits = 0;
-  for (unsigned i = 0; i < 8; ++i) {
-    std::uint64_t word = internal::load8(bytes + std::size_t{8} * i) ^ 0x2020202020202020;
-    std::uint64_t low = (word & 0x7f7f7f7f7f7f7f7f) + 0x7f7f7f7f7f7f7f7f;
-    std::uint64_t marks = ~(low | word) & 0x8080808080808080;        // 0x80 where it was a space
-    bits |= (((marks >> 7) * 0x0102040810204080) >> 56) << (8 * i);  // gathered, first byte lowest
-  }
-  return bits;
+/// One bit for each byte of a word, the first the lowest: set where it is a space.
+std::uint64_t spaces_in(std::uint64_t word) {
+  word ^= 0x2020202020202020;
+  std::uint64_t low = (word & 0x7f7f7f7f7f7f7f7f) + 0x7f7f7f7f7f7f7f7f;
+  std::uint64_t marks = ~(low | word) & 0x8080808080808080;  // 0x80 where it was a space
+  return ((marks >> 7) * 0x0102040810204080) >> 56;
 }
 
-/// Reads the spelling that every writer writes, in at most kFastBytes; gives false, and leaves the
-/// judgement to the slow way, for everything else. The marks of all spaces are found first, so that
-/// the fields do not wait for one another.
-bool parse_canonical(std::string_view line, Fields& values) {
-  if (line.size() >= kFastBytes || line.size() < 2 * kFields - 1) return false;
-  constexpr std::size_t kBefore = 8;
-  char copy[kBefore + kFastBytes + 8];
-  std::memset(copy, '0', kBefore);
-  std::memset(copy + kBefore + (line.size() & ~std::size_t{63}), 'x', 64);
-  std::memcpy(copy + kBefore, line.data(), line.size());
-  const char* text = copy + kBefore;
-  copy[kBefore + line.size()] = ' ';
-  std::uint64_t spaces = spaces_in(text);
-  std::uint64_t more = line.size() >= 64 ? spaces_in(text + 64) : 0;
-  if (std::popcount(spaces) + std::popcount(more) != kFields) return false;
+/// Where the fields of a line end: at its spaces and at its end.
+class FieldEnds {
+ public:
+  explicit FieldEnds(std::string_view line) {
+    std::size_t size = line.size(), whole = size & ~std::size_t{7};
+    for (std::size_t i = 0; i < whole; i += 8)
+      marks_[i / 64] |= spaces_in(internal::load8(line.data() + i)) << (i % 64);
+    if (whole < size) {  // the last word overlaps the one before
+      std::uint64_t word = internal::load8(line.data() + size - 8) >> (8 * (8 - size % 8));
+      marks_[whole / 64] |= spaces_in(word) << (whole % 64);
+    }
+    marks_[size / 64] |= std::uint64_t{1} << (size % 64);
+  }
 
+  /// The next end; kNone behind the last.
+  static constexpr std::size_t kNone = 128;
+  std::size_t next() {
+    if (marks_[0] != 0) return take(marks_[0]);
+    return marks_[1] != 0 ? 64 + take(marks_[1]) : kNone;
+  }
+
+ private:
+  static std::size_t take(std::uint64_t& marks) {
+    auto first = static_cast<std::size_t>(std::countr_zero(marks));
+    marks &= marks - 1;
+    return first;
+  }
+
+  std::uint64_t marks_[2] = {0, 0};
+};
+
+/// The value of 1 to 8 digits that end at `end`; sets bits of `bad` when one is no digit. The word
+/// that is read stays within the line, which has 8 bytes on one side at least.
+std::uint64_t short_value(const char* line, std::size_t begin, std::size_t end,
+                          std::uint64_t& bad) {
+  auto shift = static_cast<unsigned>(8 - (end - begin)) * 8;
+  std::uint64_t word = end >= 8 ? internal::load8(line + end - 8) >> shift << shift
+                                : internal::load8(line + begin) << shift;
+  word |= 0x3030303030303030 & ~(~std::uint64_t{0} << shift);  // zeros before the digits
+  bad |= internal::non_digits(word);
+  return internal::value_of_digits(word);
+}
+
+/// Reads the spelling that every writer writes; gives false, and leaves the judgement to the slow
+/// way, for everything else. All ends are found first, so that no field waits for the one before.
+bool parse_canonical(std::string_view line, Fields& values) {
+  if (line.size() > kFastBytes || line.size() < 2 * kFields - 1) return false;
+  constexpr std::uint64_t kTenTo8 = 100'000'000;
+  const char* text = line.data();
+  FieldEnds ends(line);
   std::uint64_t bad = 0;
   std::size_t begin = 0;
   for (int field = 0; field < kFields; ++field) {
-    std::size_t end;
-    if (spaces != 0) {
-      end = static_cast<std::size_t>(std::countr_zero(spaces));
-      spaces &= spaces - 1;
-    } else {
-      end = 64 + static_cast<std::size_t>(std::countr_zero(more));
-      more &= more - 1;
-    }
+    std::size_t end = ends.next();
+    if (end == FieldEnds::kNone) return false;
     bool negative = field == Dst && text[begin] == '-';
     begin += negative ? 1 : 0;
     std::size_t length = end - begin;
-    if (length - 1 > 18 - 1) {
-      // 19 digits are a time; longer ones and empty ones are rare enough for the slow way.
-      if (length != 19 || text[begin] == '0') return false;
-      std::uint64_t high = internal::load8(text + begin), low = internal::load8(text + begin + 8);
-      std::uint64_t last = internal::load8(text + begin + 11);  // its last three digits
-      bad |= internal::non_digits(high) | internal::non_digits(low) | internal::non_digits(last);
-      std::uint64_t value =
-          (internal::value_of_digits(high) * 100'000'000 + internal::value_of_digits(low)) * 1000 +
-          internal::value_of_digits((last >> 40 << 40) | 0x3030303030);
-      if (value > static_cast<std::uint64_t>(kMax63)) return false;
-      values[field] = static_cast<std::int64_t>(value);
-    } else if (length <= 8) {
-      std::uint64_t word = internal::load8(text + end - 8);
-      auto shift = static_cast<unsigned>(8 - length) * 8;  // bytes before the field become zeros
-      word = (word >> shift << shift) | (0x3030303030303030 & ~(~std::uint64_t{0} << shift));
-      bad |= internal::non_digits(word);
-      bad |= static_cast<std::uint64_t>(text[begin] == '0' && (length > 1 || negative));
-      auto value = static_cast<std::int64_t>(internal::value_of_digits(word));
-      values[field] = negative ? -value : value;
+    std::uint64_t value = 0;
+    if (length == 1) {
+      value = static_cast<std::uint64_t>(text[begin]) - '0';
+      bad |= static_cast<std::uint64_t>(value > 9 || (negative && value == 0));
     } else {
-      std::uint64_t value = 0;  // other bytes than digits may make it anything
-      bad |= static_cast<std::uint64_t>(text[begin] == '0');
-      for (std::size_t i = begin; i < end; ++i) {
-        auto digit = static_cast<unsigned>(text[i] - '0');
-        bad |= static_cast<std::uint64_t>(digit > 9);
-        value = value * 10 + digit;
+      if (length - 2 > 17 || text[begin] == '0') return false;  // 2 to 19 digits
+      value = short_value(text, std::max(begin + 8, end) - 8, end, bad);
+      if (length > 8) {
+        std::size_t middle = end - 8;
+        value += kTenTo8 * short_value(text, std::max(begin + 8, middle) - 8, middle, bad);
+        if (length > 16) value += kTenTo8 * kTenTo8 * short_value(text, begin, middle - 8, bad);
       }
-      auto exact = static_cast<std::int64_t>(value);
-      values[field] = negative ? -exact : exact;
+      if (value > static_cast<std::uint64_t>(kMax63)) return false;
     }
+    values[field] = negative ? -static_cast<std::int64_t>(value) : static_cast<std::int64_t>(value);
     begin = end + 1;
   }
-  return bad == 0;
+  return bad == 0 && ends.next() == FieldEnds::kNone;
 }
 
 /// Integers as R5 spells them, or nothing. One that does not fit into 64 bits becomes the largest
