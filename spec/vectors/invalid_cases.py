@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams that a reader refuses: bad(name, rule, field, what stands before, the rest, messages)."""
 
-import struct
-
 from cases import ONE, P, T, bad
 from parts import *
 
@@ -128,8 +126,9 @@ bad("R22_width_0", "R22", "width", T + "90280 1 40 ", "0 5\n")
 bad("R23_not_square", "R23", "height", T + "80180 1 40 3 ", "4\n")
 bad("R23_0x1", "R23", "height", T + "80180 1 40 0 ", "1\n")
 bad("R24_product", "R24", "width", T + "30301 1 7 ", "2147483647 2147483647\n")
-bad("R24_wraps_to_0", "R24", "width", T + "120191 1 40 ", "1073741824 2147483647\n")
-bad("R24_wraps_to_small", "R24", "width", T + "123290 1 40 ", "268435456 268435456\n")
+# 2 × 8 × 2³⁰ × 2³⁰ = 2⁶⁴, and 5 × 8 × 429509837 × 2147418113 = 2 × 2⁶⁴ + 8: in 64 bits 0 and 8.
+bad("R24_wraps_to_0", "R24", "width", T + "120291 1 40 ", "1073741824 1073741824\n\n")
+bad("R24_wraps_to_small", "R24", "width", T + "120591 1 40 ", "429509837 2147418113\n12345678\n")
 bad("R24_one_over", "R24", "width", T + "40101 1 7 ", "268435457 1\n")
 bad("R24_components", "R24", "width", T + "59991 1 7 ", "342393 1\n")
 bad("R24_compressed", "R24", "width", T + "40102 1 7 ", "268435457 1\n5\nabcde\n")
@@ -237,11 +236,10 @@ zstd("bomb_1000", ZSTD_ZEROS)
 zstd("cut", ZSTD_7[:-1])
 zstd("garbage_behind", ZSTD_7 + ZSTD_8 + b"x")
 zstd("checksum", ZSTD_ZEROS[:-1] + b"\x00", 1000)
-# A frame without a size whose blocks each repeat one byte 128 KiB long: 100 MiB out of 3 KiB.
-BLOCK = (131072 << 3) | (1 << 1)
-frame = bytes.fromhex("28b52ffd") + bytes([0x00, 0x38])
-frame += (struct.pack("<I", BLOCK)[:3] + b"\0") * 799 + struct.pack("<I", BLOCK | 1)[:3] + b"\0"
-zstd("bomb_100_MiB", frame, 1)
+zstd("bomb_100_MiB", ZSTD_BOMB, 1)
+zstd("size_lie", ZSTD_SIZE_LIE, 1)
+zstd("size_huge", ZSTD_SIZE_HUGE, 1)
+zstd("reserved_block", ZSTD_RESERVED, 1)
 
 
 def jpeg(name, data, info=40103, width=3, height=2):
@@ -258,4 +256,7 @@ jpeg("colour_for_grey", JPEG_COLOUR, width=2)
 jpeg("cut_in_header", JPEG_GREY[:60])
 jpeg("cut_before_scan", JPEG_GREY[:-14])
 jpeg("bytes_behind", JPEG_GREY + b"xyz")
+jpeg("cut_in_scan", JPEG_NOISE, width=16, height=16)
+jpeg("four_components", JPEG_CMYK, info=30303)
+jpeg("12_bits", JPEG_12_BITS)
 bad("R7_third_message", "R7", "src", ONE + ONE + "1 ", "-1 0 0 8 0 10390 1 3 1 1\n", 2)

@@ -5,8 +5,6 @@ Every picture is flat and of such a colour that each correct decoder gives the s
 tool makes (wrong on purpose, or of a rare kind) is put together by hand, field by field.
 """
 
-import struct
-
 EMPTY_ZSTD = bytes.fromhex("28b52ffd240001000099e9d851")
 ZSTD_POSITION = bytes.fromhex(
     "28b52ffd0468c10000b81e85eb51b8be3f9a9999999999a9bf000000000000f43f500d6106"
