@@ -382,7 +382,7 @@ to = "brightness.image"
 
 
 class Documents(Pipes):
-    """Every command of the README and the tutorial, as it stands there."""
+    """Every command of the README and the documents, as it stands there."""
 
     def commands(self, name):
         text = (ROOT / name).read_text()
@@ -412,6 +412,9 @@ class Documents(Pipes):
 
     def test_tutorial(self):
         self.run_document("doc/tutorial.md")
+
+    def test_modules(self):
+        self.run_document("doc/modules.md")
 
 
 if __name__ == "__main__":
