@@ -6,6 +6,7 @@
 """
 
 import json
+import os
 import pathlib
 import shutil
 import shlex
@@ -103,4 +104,5 @@ class NewModule(unittest.TestCase):
 
 if __name__ == "__main__":
     BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+    os.environ.pop("HC_ACCEPT", None)  # ./dev test --accept is for the cases of the modules
     unittest.main()
