@@ -15,24 +15,25 @@ constexpr std::uint16_t kU8U16Floats = 0x305;
 /// One row of the specification's registry of matrix types.
 struct TypeRule {
   std::string_view name;
-  std::uint16_t scalars;           ///< bit S: the type has scalar S
-  std::uint8_t least, most, step;  ///< components
+  std::uint16_t scalars;     ///< bit S: the type has scalar S
+  std::uint8_t least, most;  ///< components
+  bool by_threes;            ///< only every third number of components
   std::string_view components_in_words;
 };
 
 constexpr std::array<TypeRule, 12> kTypes = {{
-    {"position", kFloats, 3, 9, 3, "3, 6 or 9"},
-    {"rotation", kFloats, 3, 9, 3, "3, 6 or 9"},
-    {"rgb_image", kU8U16Floats, 3, 4, 1, "3 or 4"},
-    {"intensity_image", kAllScalars, 1, 1, 1, "1"},
-    {"vector_field", kAllScalars, 1, 99, 1, "1 to 99"},
-    {"string", kU8, 1, 1, 1, "1"},
-    {"transformation", kFloats, 1, 1, 1, "1"},
-    {"dense_graph", kAllScalars, 1, 99, 1, "1 to 99"},
-    {"sparse_graph", kAllScalars, 2, 99, 1, "2 to 99"},
-    {"sound", kAllScalars, 1, 99, 1, "1 to 99"},
-    {"map", kAllScalars, 1, 99, 1, "1 to 99"},
-    {"table", kAllScalars, 1, 99, 1, "1 to 99"},
+    {"position", kFloats, 3, 9, true, "3, 6 or 9"},
+    {"rotation", kFloats, 3, 9, true, "3, 6 or 9"},
+    {"rgb_image", kU8U16Floats, 3, 4, false, "3 or 4"},
+    {"intensity_image", kAllScalars, 1, 1, false, "1"},
+    {"vector_field", kAllScalars, 1, 99, false, "1 to 99"},
+    {"string", kU8, 1, 1, false, "1"},
+    {"transformation", kFloats, 1, 1, false, "1"},
+    {"dense_graph", kAllScalars, 1, 99, false, "1 to 99"},
+    {"sparse_graph", kAllScalars, 2, 99, false, "2 to 99"},
+    {"sound", kAllScalars, 1, 99, false, "1 to 99"},
+    {"map", kAllScalars, 1, 99, false, "1 to 99"},
+    {"table", kAllScalars, 1, 99, false, "1 to 99"},
 }};
 constexpr std::array<std::string_view, 10> kScalarNames = {"u8",  "i8",  "u16", "i16", "u32",
                                                            "i32", "u64", "i64", "f32", "f64"};
@@ -78,31 +79,43 @@ std::string text(const Info& info) {
          std::string(name(info.scalar)) + ", " + std::string(name(info.encoding));
 }
 
-std::optional<InfoError> find_error(const Info& info) {
+int broken_rule(const Info& info) {
   auto type = static_cast<std::size_t>(info.type);
-  if (type < 1 || type > kTypes.size())
-    return InfoError{17, std::to_string(type) + " is no matrix type (1 to 12)"};
+  if (type < 1 || type > kTypes.size()) return 17;
   const TypeRule& rule = rule_of(info.type);
-  const std::string type_name{rule.name};
-
   if (info.components < rule.least || info.components > rule.most ||
-      (info.components - rule.least) % rule.step != 0)
-    return InfoError{18, type_name + " has " + std::string(rule.components_in_words) +
-                             " components, not " + std::to_string(info.components)};
-  if ((rule.scalars >> static_cast<unsigned>(info.scalar) & 1U) == 0)
-    return InfoError{19, type_name + " has no scalar " + std::string(name(info.scalar))};
-  auto encoding = static_cast<std::size_t>(info.encoding);
-  if (encoding >= kEncodingNames.size())
-    return InfoError{20, "encoding " + std::to_string(encoding) +
-                             " is reserved (0 text, 1 binary, 2 zstd, 3 jpeg)"};
-
+      (rule.by_threes && info.components % 3 != 0))
+    return 18;
+  if ((rule.scalars >> static_cast<unsigned>(info.scalar) & 1U) == 0) return 19;
+  if (info.encoding > Encoding::Jpeg) return 20;
+  if (info.encoding < Encoding::Jpeg) return 0;
   bool is_picture = (info.type == MatrixType::RgbImage && info.components == 3) ||
                     info.type == MatrixType::IntensityImage;
-  if (info.encoding == Encoding::Jpeg && !(is_picture && info.scalar == Scalar::U8))
-    return InfoError{21, "jpeg is for images of 1 or 3 components of u8, not " + type_name + " " +
-                             std::to_string(info.components) + " x " +
-                             std::string(name(info.scalar))};
-  return std::nullopt;
+  return is_picture && info.scalar == Scalar::U8 ? 0 : 21;
+}
+
+std::optional<InfoError> find_error(const Info& info) {
+  int rule = broken_rule(info);
+  if (rule == 0) return std::nullopt;
+  if (rule == 17)
+    return InfoError{17,
+                     std::to_string(static_cast<int>(info.type)) + " is no matrix type (1 to 12)"};
+
+  std::string type{name(info.type)};
+  std::string components = std::to_string(info.components);
+  switch (rule) {
+    case 18:
+      return InfoError{18, type + " has " + std::string(rule_of(info.type).components_in_words) +
+                               " components, not " + components};
+    case 19:
+      return InfoError{19, type + " has no scalar " + std::string(name(info.scalar))};
+    case 20:
+      return InfoError{20, "encoding " + std::to_string(static_cast<int>(info.encoding)) +
+                               " is reserved (0 text, 1 binary, 2 zstd, 3 jpeg)"};
+    default:
+      return InfoError{rule, "jpeg is for images of 1 or 3 components of u8, not " + type + " " +
+                                 components + " x " + std::string(name(info.scalar))};
+  }
 }
 
 Result<Info> parse_info(std::int64_t code) {

@@ -121,13 +121,17 @@ struct Info {
 /// "position 3 x f64, text"
 std::string text(const Info& info);
 
+/// The rule of the specification that type, components, scalar and encoding break together
+/// (R17 … R21, judged in this order); 0 when they go together.
+int broken_rule(const Info& info);
+
 /// Why an info is refused: the rule of the specification that it breaks, and how.
 struct InfoError {
   int rule = 0;  ///< 17 … 21
   std::string what;
 };
 
-/// Whether type, components, scalar and encoding go together (R17 … R21); nothing when they do.
+/// The rule that broken_rule() finds, in words; nothing when it finds none.
 std::optional<InfoError> find_error(const Info& info);
 
 /// Reads the header's info field, `code` ≥ 0.

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/wire/header.h>
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
-#include <cstring>
 #include <limits>
 #include <optional>
 
@@ -27,6 +24,7 @@ struct FieldRule {
 
 constexpr std::int64_t kMax31 = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t kMax63 = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kMaxTtl = 255;
 constexpr int kFirstRule = 6;  // field i is ruled by R(6 + i)
 constexpr std::int64_t kMaxJpegSide = 65500;
 
@@ -35,7 +33,7 @@ constexpr std::array<FieldRule, kFields> kRules = {{
     {"src", 0, kMax31},
     {"dst", std::numeric_limits<std::int32_t>::min(), kMax31},
     {"seq", 0, kMax63},
-    {"ttl", 0, 255},
+    {"ttl", 0, kMaxTtl},
     {"time", 0, kMax63},
     {"info", 0, kMax31},
     {"mode", 0, kMax31},
@@ -67,28 +65,32 @@ std::optional<Finding> find_range_error(int field, std::int64_t value) {
 }
 
 /// The rules that a width or height breaks with its info (R21 … R23).
-std::optional<Finding> find_shape_error(int field, const Fields& values, const Info& info) {
-  std::int64_t side = values[field];
+std::optional<Finding> find_shape_error(int field, std::int64_t width, std::int64_t height,
+                                        const Info& info) {
+  std::int64_t side = field == Width ? width : height;
   if (info.encoding == Encoding::Jpeg && (side < 1 || side > kMaxJpegSide))
     return Finding{Code::Malformed, 21, field,
                    "a jpeg picture's side is 1 to 65500, not " + std::to_string(side)};
   if (field == Width && info.type == MatrixType::SparseGraph && side != 1)
     return Finding{Code::Malformed, 22, field,
                    "a sparse graph has width 1, not " + std::to_string(side)};
-  if (field == Height && info.type == MatrixType::DenseGraph && side != values[Width])
-    return Finding{Code::Malformed, 23, field,
-                   "a dense graph is square, not " + std::to_string(values[Width]) + " x " +
-                       std::to_string(side)};
+  if (field == Height && info.type == MatrixType::DenseGraph && side != width)
+    return Finding{
+        Code::Malformed, 23, field,
+        "a dense graph is square, not " + std::to_string(width) + " x " + std::to_string(height)};
   return std::nullopt;
 }
 
-std::optional<Finding> find_size_error(const Header& header, const Limits& limits) {
-  // Both sides are below 2³¹ and an element has at most 792 bytes: the product of the sides fits,
-  // and so does that of all three when the first is below 2⁵⁴.
+bool has_good_size(const Header& header, const Limits& limits) {
+  // Both sides are below 2³¹ and an element has at most 792 bytes: the product of the sides fits
+  // into 64 bits, and so does that of all three when the first is below 2⁵⁴.
   std::uint64_t elements =
       static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height);
-  bool fits = elements >> 54 == 0;
-  if (fits && elements * header.info.element_bytes() <= limits.element_bytes) return std::nullopt;
+  return elements >> 54 == 0 && elements * header.info.element_bytes() <= limits.element_bytes;
+}
+
+std::optional<Finding> find_size_error(const Header& header, const Limits& limits) {
+  if (has_good_size(header, limits)) return std::nullopt;
   return Finding{Code::TooLarge, 24, Width,
                  std::to_string(header.width) + " x " + std::to_string(header.height) + " x " +
                      std::to_string(header.info.element_bytes()) + " bytes are over the limit of " +
@@ -110,97 +112,105 @@ Header header_of(const Fields& values, const Info& info) {
   return header;
 }
 
-Info info_of(std::int64_t code) {
-  return {static_cast<MatrixType>(code / 10000), static_cast<std::uint8_t>(code / 100 % 100),
-          static_cast<Scalar>(code / 10 % 10), static_cast<Encoding>(code % 10)};
-}
-
-constexpr std::size_t kFastBytes = 127;  // and a mark for the end: two machine words of marks
-
-/// One bit for each byte of a word, the first the lowest: set where it is a space.
-std::uint64_t spaces_in(std::uint64_t word) {
-  word ^= 0x2020202020202020;
-  std::uint64_t low = (word & 0x7f7f7f7f7f7f7f7f) + 0x7f7f7f7f7f7f7f7f;
-  std::uint64_t marks = ~(low | word) & 0x8080808080808080;  // 0x80 where it was a space
-  return ((marks >> 7) * 0x0102040810204080) >> 56;
-}
-
-/// Where the fields of a line end: at its spaces and at its end.
-class FieldEnds {
+/// Takes the fields off a line in the spelling that every writer writes, and gives up on any other.
+/// It goes byte by byte: a branch that is foretold right costs less than arithmetic that the next
+/// field would wait for. No digit is asked whether the line ends: the last space is found first,
+/// and every field but the last stops there at the latest.
+class CanonicalFields {
  public:
-  explicit FieldEnds(std::string_view line) {
-    std::size_t size = line.size(), whole = size & ~std::size_t{7};
-    for (std::size_t i = 0; i < whole; i += 8)
-      marks_[i / 64] |= spaces_in(internal::load8(line.data() + i)) << (i % 64);
-    if (whole < size) {  // the last word overlaps the one before
-      std::uint64_t word = internal::load8(line.data() + size - 8) >> (8 * (8 - size % 8));
-      marks_[whole / 64] |= spaces_in(word) << (whole % 64);
+  explicit CanonicalFields(std::string_view line)
+      : at_(line.data()), last_(at_ + line.rfind(' ') + 1), end_(at_ + line.size()) {}
+
+  /// Takes the next field, not the last one, 0 … `most`; gives false for anything else.
+  template <class Integer>
+  bool take(Integer& field, std::uint64_t most = kMax31) {
+    if (at_ >= last_) return false;
+    if (auto digit = digit_at(at_); digit <= 9 && at_[1] == ' ') {  // the commonest fields
+      field = static_cast<Integer>(digit);
+      at_ += 2;
+      return true;
     }
-    marks_[size / 64] |= std::uint64_t{1} << (size % 64);
+    const char* begin = at_;
+    std::uint64_t value = 0;
+    if (most > kMax31 && last_ - at_ > 16) take_words(value);
+    for (; digit_at(at_) <= 9; ++at_) value = value * 10 + digit_at(at_);
+    field = static_cast<Integer>(value);
+    return is_canonical(begin, value, most) && *at_++ == ' ';
   }
 
-  /// The next end; kNone behind the last.
-  static constexpr std::size_t kNone = 128;
-  std::size_t next() {
-    if (marks_[0] != 0) return take(marks_[0]);
-    return marks_[1] != 0 ? 64 + take(marks_[1]) : kNone;
+  /// Takes the next field, which may have a sign.
+  bool take_signed(std::int32_t& field) {
+    if (at_ >= last_ || *at_ != '-') return take(field);
+    ++at_;
+    std::int64_t value;
+    if (!take(value, kMax31 + 1) || value == 0) return false;
+    field = static_cast<std::int32_t>(-value);
+    return true;
+  }
+
+  /// Takes the info field.
+  bool take_info(Info& info) {
+    if (last_ - at_ < 7) return false;
+    unsigned type = digit_at(at_);
+    bool has_two_digits = at_[5] != ' ';
+    if (has_two_digits ? type != 1 : type > 9) return false;
+    if (has_two_digits) type = 10 + digit_at(++at_);
+    unsigned tens = digit_at(at_ + 1), ones = digit_at(at_ + 2);
+    unsigned scalar = digit_at(at_ + 3), encoding = digit_at(at_ + 4);
+    if (type > 12 || tens > 9 || ones > 9 || scalar > 9 || encoding > 9 || at_[5] != ' ')
+      return false;
+    info = {static_cast<MatrixType>(type), static_cast<std::uint8_t>(10 * tens + ones),
+            static_cast<Scalar>(scalar), static_cast<Encoding>(encoding)};
+    at_ += 6;
+    return broken_rule(info) == 0;
+  }
+
+  /// Takes the last field; gives false, too, when others are left.
+  bool take_last(std::int32_t& field) {
+    if (at_ != last_) return false;
+    const char* begin = at_;
+    std::uint64_t value = 0;
+    for (; at_ < end_ && digit_at(at_) <= 9; ++at_) value = value * 10 + digit_at(at_);
+    field = static_cast<std::int32_t>(value);
+    return is_canonical(begin, value, kMax31) && at_ == end_;
   }
 
  private:
-  static std::size_t take(std::uint64_t& marks) {
-    auto first = static_cast<std::size_t>(std::countr_zero(marks));
-    marks &= marks - 1;
-    return first;
+  static unsigned digit_at(const char* at) { return static_cast<unsigned>(*at - '0'); }
+
+  /// Whether the digits that end here are a number as R5 wants it; 19 digits fit into 64 bits.
+  bool is_canonical(const char* begin, std::uint64_t value, std::uint64_t most) const {
+    auto length = at_ - begin;
+    return value <= most && (length == 1 || (length > 1 && length <= 19 && *begin != '0'));
   }
 
-  std::uint64_t marks_[2] = {0, 0};
+  /// As many as 16 digits, if so many are next.
+  void take_words(std::uint64_t& value) {
+    for (int i = 0; i < 2; ++i) {
+      std::uint64_t word = internal::load8(at_);
+      if (internal::non_digits(word) != 0) return;
+      value = value * 100'000'000 + internal::value_of_digits(word);
+      at_ += 8;
+    }
+  }
+
+  const char* at_;
+  const char* last_;  // where the last field begins
+  const char* end_;
 };
 
-/// The value of 1 to 8 digits that end at `end`; sets bits of `bad` when one is no digit. The word
-/// that is read stays within the line, which has 8 bytes on one side at least.
-std::uint64_t short_value(const char* line, std::size_t begin, std::size_t end,
-                          std::uint64_t& bad) {
-  auto shift = static_cast<unsigned>(8 - (end - begin)) * 8;
-  std::uint64_t word = end >= 8 ? internal::load8(line + end - 8) >> shift << shift
-                                : internal::load8(line + begin) << shift;
-  word |= 0x3030303030303030 & ~(~std::uint64_t{0} << shift);  // zeros before the digits
-  bad |= internal::non_digits(word);
-  return internal::value_of_digits(word);
-}
-
-/// Reads the spelling that every writer writes; gives false, and leaves the judgement to the slow
-/// way, for everything else. All ends are found first, so that no field waits for the one before.
-bool parse_canonical(std::string_view line, Fields& values) {
-  if (line.size() > kFastBytes || line.size() < 2 * kFields - 1) return false;
-  constexpr std::uint64_t kTenTo8 = 100'000'000;
-  const char* text = line.data();
-  FieldEnds ends(line);
-  std::uint64_t bad = 0;
-  std::size_t begin = 0;
-  for (int field = 0; field < kFields; ++field) {
-    std::size_t end = ends.next();
-    if (end == FieldEnds::kNone) return false;
-    bool negative = field == Dst && text[begin] == '-';
-    begin += negative ? 1 : 0;
-    std::size_t length = end - begin;
-    std::uint64_t value = 0;
-    if (length == 1) {
-      value = static_cast<std::uint64_t>(text[begin]) - '0';
-      bad |= static_cast<std::uint64_t>(value > 9 || (negative && value == 0));
-    } else {
-      if (length - 2 > 17 || text[begin] == '0') return false;  // 2 to 19 digits
-      value = short_value(text, std::max(begin + 8, end) - 8, end, bad);
-      if (length > 8) {
-        std::size_t middle = end - 8;
-        value += kTenTo8 * short_value(text, std::max(begin + 8, middle) - 8, middle, bad);
-        if (length > 16) value += kTenTo8 * kTenTo8 * short_value(text, begin, middle - 8, bad);
-      }
-      if (value > static_cast<std::uint64_t>(kMax63)) return false;
-    }
-    values[field] = negative ? -static_cast<std::int64_t>(value) : static_cast<std::int64_t>(value);
-    begin = end + 1;
-  }
-  return bad == 0 && ends.next() == FieldEnds::kNone;
+/// Reads a header in canonical form; gives false, and leaves the judgement to the slow way, for
+/// every other one and for those whose sides have rules of their own (R21 … R23).
+bool parse_canonical(std::string_view line, const Limits& limits, Header& header) {
+  CanonicalFields fields(line);
+  int version;
+  return fields.take(version) && version == kVersion && fields.take(header.src) &&
+         fields.take_signed(header.dst) && fields.take(header.seq, kMax63) &&
+         fields.take(header.ttl, kMaxTtl) && fields.take(header.time, kMax63) &&
+         fields.take_info(header.info) && fields.take(header.mode) && fields.take(header.coord) &&
+         fields.take(header.width) && fields.take_last(header.height) &&
+         header.info.encoding != Encoding::Jpeg && header.info.type != MatrixType::DenseGraph &&
+         header.info.type != MatrixType::SparseGraph && has_good_size(header, limits);
 }
 
 /// Integers as R5 spells them, or nothing. One that does not fit into 64 bits becomes the largest
@@ -256,7 +266,8 @@ Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint6
       info = *parsed;
     }
     if (field == Width || field == Height)
-      if (auto error = find_shape_error(field, values, info)) return refuse(*error);
+      if (auto error = find_shape_error(field, values[Width], values[Height], info))
+        return refuse(*error);
   }
   skip_spaces();
   if (at < line.size())
@@ -270,19 +281,8 @@ Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint6
 }  // namespace
 
 Result<Header> parse_header(std::string_view line, const Limits& limits, std::uint64_t byte) {
-  Fields values;
-  if (parse_canonical(line, values)) {
-    bool good = values[Version] == kVersion && values[Ttl] <= 255 && values[Src] <= kMax31 &&
-                values[Dst] <= kMax31 && values[Dst] >= -kMax31 - 1 && values[Mode] <= kMax31 &&
-                values[Coord] <= kMax31 && values[Width] <= kMax31 && values[Height] <= kMax31 &&
-                values[InfoCode] >= 10000 && values[InfoCode] <= 129999;
-    if (good) {
-      Header header = header_of(values, info_of(values[InfoCode]));
-      if (!find_error(header.info) && !find_shape_error(Width, values, header.info) &&
-          !find_shape_error(Height, values, header.info) && !find_size_error(header, limits))
-        return header;
-    }
-  }
+  Result<Header> header = Header{};
+  if (parse_canonical(line, limits, *header)) return header;
   return parse_any(line, limits, byte);
 }
 
@@ -298,32 +298,31 @@ Status check(const Header& header, const Limits& limits) {
   for (int field = 0; field < kFields; ++field) {
     if (auto error = find_range_error(field, values[field])) return as_error(*error);
     if (field == Width || field == Height)
-      if (auto error = find_shape_error(field, values, header.info)) return as_error(*error);
+      if (auto error = find_shape_error(field, header.width, header.height, header.info))
+        return as_error(*error);
   }
   if (auto error = find_size_error(header, limits)) return as_error(*error);
   return {};
 }
 
 std::size_t format_header(const Header& header, std::span<char, kMaxHeaderBytes> line) {
-  using internal::write_digits;
-  using internal::write_integer;
-  char* at = line.data();
-  auto put = [&](std::int64_t value, char after) {
-    at = write_integer(at, value);
-    *at++ = after;
+  auto put = [](char* at, std::int64_t value, char after) {
+    at = internal::write_integer(at, value);
+    *at = after;
+    return at + 1;
   };
-  *at++ = '0' + kVersion;
-  *at++ = ' ';
-  put(header.src, ' ');
-  put(header.dst, ' ');
-  put(header.seq, ' ');
-  put(header.ttl, ' ');
-  put(header.time, ' ');
-  put(header.info.code(), ' ');
-  put(header.mode, ' ');
-  put(header.coord, ' ');
-  put(header.width, ' ');
-  put(header.height, '\n');
+  char* at = line.data();
+  at = put(at, kVersion, ' ');
+  at = put(at, header.src, ' ');
+  at = put(at, header.dst, ' ');
+  at = put(at, header.seq, ' ');
+  at = put(at, header.ttl, ' ');
+  at = put(at, header.time, ' ');
+  at = put(at, header.info.code(), ' ');
+  at = put(at, header.mode, ' ');
+  at = put(at, header.coord, ' ');
+  at = put(at, header.width, ' ');
+  at = put(at, header.height, '\n');
   return static_cast<std::size_t>(at - line.data());
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -119,6 +120,58 @@ TEST(AppendText, WritesRows) {
   TextRows rows(header);
   EXPECT_EQ(*rows.read(text, 0, reinterpret_cast<std::byte*>(again.data())), text.size());
   EXPECT_EQ(again, numbers);
+}
+
+/// Reads one text number as TextRows does.
+template <typename T>
+T read_one(const std::string& number) {
+  Header header;
+  header.info = {MatrixType::Table, 1, scalar_for<T>(), Encoding::Text};
+  header.width = header.height = 1;
+  T value{};
+  EXPECT_TRUE(TextRows(header).read(number + "\n", 0, reinterpret_cast<std::byte*>(&value)));
+  return value;
+}
+
+template <typename T>
+void expect_correct_rounding(const std::string& number) {
+  T expected{};
+  std::from_chars(number.data(), number.data() + number.size(), expected);
+  EXPECT_EQ(std::signbit(read_one<T>(number)), std::signbit(expected)) << number;
+  EXPECT_EQ(read_one<T>(number), expected) << number;
+}
+
+TEST(Text, R27_FloatsAreRoundedToTheNearest) {
+  for (const char* middle :
+       {"9007199254740993", "9007199254740993.0", "9007199254740993.1", "9007199254740992.9",
+        "-9007199254740995", "16777217", "16777217.01", "0.5", "-0", "-0.000", "0.1",
+        "99999999999999999.9", "999999999999999999", "1000000000000000000", "0.000000000000000001",
+        "4503599627370497.5", "2251799813685249.25", "1125899906842624.125", "8388609.5"}) {
+    expect_correct_rounding<double>(middle);
+    expect_correct_rounding<float>(middle);
+  }
+  std::mt19937_64 random(9);
+  for (int i = 0; i < 300'000; ++i) {
+    std::string number = std::to_string(random() >> (random() % 64));
+    number.insert(random() % (number.size() + 1), 1, '.');
+    if (number == ".") continue;
+    if (random() % 2 == 0) number.insert(0, 1, '-');
+    expect_correct_rounding<double>(number);
+    expect_correct_rounding<float>(number);
+  }
+}
+
+TEST(Text, R27_TheMiddleOfTwoFloatsIsToldFromItsNeighbours) {
+  std::mt19937_64 random(10);
+  for (int i = 0; i < 100'000; ++i) {
+    // An odd number of 54 bits is the middle of two f64, and of 25 bits that of two f32.
+    std::uint64_t middle = (random() >> 11) | (std::uint64_t{1} << 53) | 1;
+    expect_correct_rounding<double>(std::to_string(middle));
+    expect_correct_rounding<double>(std::to_string(middle) + ".1");
+    std::uint64_t small = (random() >> 40) | (std::uint64_t{1} << 24) | 1;
+    expect_correct_rounding<float>(std::to_string(small));
+    expect_correct_rounding<float>(std::to_string(small - 1) + ".9999999");
+  }
 }
 
 }  // namespace
