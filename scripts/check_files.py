@@ -39,8 +39,10 @@ def problems():
                     yield "%s:%d: TODO(now)" % (name, number)
                 suppressions += "NOLINT" in line and local != HERE
         elif path.suffix == ".md":
+            is_code = False
             for number, line in enumerate(path.read_text().splitlines(), 1):
-                for match in LINK.finditer(line):
+                is_code ^= line.startswith("```")
+                for match in () if is_code else LINK.finditer(line):
                     if not (path.parent / match[1]).exists():
                         yield "%s:%d: there is no %s" % (name, number, match[1])
     if suppressions > budget["tidy_suppressions"]:
