@@ -15,7 +15,20 @@ namespace {
 using internal::quoted;
 using internal::refusal;
 
-enum Field { Version, Src, Dst, Seq, Ttl, Time, InfoCode, Mode, Coord, Width, Height, kFields };
+enum Field : std::size_t {
+  Version,
+  Src,
+  Dst,
+  Seq,
+  Ttl,
+  Time,
+  InfoCode,
+  Mode,
+  Coord,
+  Width,
+  Height,
+  kFields
+};
 
 struct FieldRule {
   std::string_view name;
@@ -48,24 +61,24 @@ using Fields = std::array<std::int64_t, kFields>;
 struct Finding {
   Code code = Code::Malformed;
   int rule = 0;
-  int field = 0;
+  std::size_t field = 0;
   std::string what;
 };
 
-std::optional<Finding> find_range_error(int field, std::int64_t value) {
+std::optional<Finding> find_range_error(std::size_t field, std::int64_t value) {
   const FieldRule& rule = kRules[field];
   if (value >= rule.least && value <= rule.most) return std::nullopt;
   if (field == Version)
     return Finding{Code::Unsupported, kFirstRule, field,
                    "this reader knows version 1, not " + std::to_string(value)};
   bool below = value < rule.least;
-  return Finding{Code::Malformed, kFirstRule + field, field,
+  return Finding{Code::Malformed, kFirstRule + static_cast<int>(field), field,
                  std::to_string(value) + (below ? " is below " : " is above ") +
                      std::to_string(below ? rule.least : rule.most)};
 }
 
 /// The rules that a width or height breaks with its info (R21 … R23).
-std::optional<Finding> find_shape_error(int field, std::int64_t width, std::int64_t height,
+std::optional<Finding> find_shape_error(std::size_t field, std::int64_t width, std::int64_t height,
                                         const Info& info) {
   std::int64_t side = field == Width ? width : height;
   if (info.encoding == Encoding::Jpeg && (side < 1 || side > kMaxJpegSide))
@@ -240,7 +253,7 @@ Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint6
     return refusal(finding.code, finding.rule, kRules[finding.field].name, finding.what,
                    byte + begins[finding.field]);
   };
-  for (int field = 0; field < kFields; ++field) {
+  for (std::size_t field = 0; field < kFields; ++field) {
     skip_spaces();
     begins[field] = at;
     if (at == line.size())
@@ -252,8 +265,9 @@ Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint6
     auto value = parse_integer(token, fits);
     if (!value) return refuse({Code::Malformed, 5, field, quoted(token) + " is not an integer"});
     if (!fits)
-      return refuse({field == Version ? Code::Unsupported : Code::Malformed, kFirstRule + field,
-                     field, quoted(token) + " is out of range"});
+      return refuse({field == Version ? Code::Unsupported : Code::Malformed,
+                     kFirstRule + static_cast<int>(field), field,
+                     quoted(token) + " is out of range"});
     values[field] = *value;
     if (auto error = find_range_error(field, *value)) return refuse(*error);
     if (field == InfoCode) {
@@ -295,7 +309,7 @@ Status check(const Header& header, const Limits& limits) {
   };
   if (auto error = find_error(header.info))
     return as_error({Code::Malformed, error->rule, InfoCode, error->what});
-  for (int field = 0; field < kFields; ++field) {
+  for (std::size_t field = 0; field < kFields; ++field) {
     if (auto error = find_range_error(field, values[field])) return as_error(*error);
     if (field == Width || field == Height)
       if (auto error = find_shape_error(field, header.width, header.height, header.info))
