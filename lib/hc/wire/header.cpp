@@ -132,7 +132,7 @@ Header header_of(const Fields& values, const Info& info) {
 class CanonicalFields {
  public:
   explicit CanonicalFields(std::string_view line)
-      : at_(line.data()), last_(at_ + line.rfind(' ') + 1), end_(at_ + line.size()) {}
+      : at_(line.data()), last_(at_ + (line.rfind(' ') + 1)), end_(at_ + line.size()) {}
 
   /// Takes the next field, not the last one, 0 … `most`; gives false for anything else.
   template <class Integer>
