@@ -361,6 +361,62 @@ to = "brightness.image"
         self.shell("hc run bad.toml", 2)
         self.assertIn('bad.toml:1: no program "camra", did you mean "camera"?', self.err)
 
+    def test_a_reader_that_has_enough_ends_the_graph(self):
+        self.write(
+            "once",
+            """#!/bin/sh
+[ "$1" = --describe ] && exec echo '{"inputs":[{"name":"in","types":[]}],"outputs":[],"parameters":[]}'
+for word; do case $word in in=*) exec hc cat --count 1 "${word#in=}" >once.txt ;; esac; done
+""",
+        )
+        os.chmod(self.path("once"), 0o755)
+        self.write(
+            "once.toml",
+            """[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true }
+[modules.once]
+program = "./once"
+[[links]]
+from = "camera.left"
+to = "once.in"
+"""
+            % DATA,
+        )
+        self.shell("hc run once.toml")
+        self.assertIn("rgb_image", pathlib.Path(self.path("once.txt")).read_text())
+
+    def test_a_module_without_a_description_is_named(self):
+        self.write("false.toml", '[modules.store]\nprogram = "/bin/false"\n')
+        self.shell("hc run false.toml", 2)
+        self.assertIn("false.toml:1: module store: /bin/false --describe failed with", self.err)
+        self.environment["PATH"] = "%s:%s" % (self.folder.name, self.environment["PATH"])
+        os.mkdir(self.path("gadget"))
+        self.shell("hc gadget", 2)
+        self.assertIn('no verb and no module "gadget"', self.err)
+
+    def test_values_are_checked_before_anything_starts(self):
+        graph = "%s/graphs/depth.toml" % ROOT
+        self.shell("hc run %s --set camera.width=-1" % graph, 2)
+        self.assertIn('--set: module camera: parameter width: "-1" is not from 0', self.err)
+        self.assertNotIn("started", self.err)
+
+    def test_a_module_that_waits_for_a_link_can_be_told_to_stop(self):
+        for command in (
+            "hc brightness --in 'tcp:localhost:1?wait=60'",
+            "hc cat 'tcp:localhost:1?wait=60'",
+        ):
+            process = self.start("exec " + command)
+
+            def catches():
+                text = pathlib.Path("/proc/%d/status" % process.pid).read_text()
+                caught = int(re.search(r"SigCgt:\t([0-9a-f]+)", text)[1], 16)
+                return caught >> (signal.SIGTERM - 1) & 1
+
+            wait_until(catches)
+            os.kill(process.pid, signal.SIGTERM)
+            _, err = process.communicate(timeout=WATCHDOG)
+            self.assertEqual((process.returncode, err), (0, b""))
+
     def test_a_window_shows_the_picture(self):
         """On a virtual display, whose memory is looked at."""
         command = (

@@ -29,6 +29,11 @@ hc::LinkOptions link_options() {
   return options;
 }
 
+bool is_program(const fs::path& path) {
+  std::error_code missing;
+  return fs::is_regular_file(path, missing) && ::access(path.c_str(), X_OK) == 0;
+}
+
 hc::Uri parse(const std::string& uri) {
   return value_or_fail(hc::parse_uri(uri), uri);
 }
@@ -59,14 +64,15 @@ std::unique_ptr<hc::Sink> open_sink(const std::string& uri) {
 
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri) {
   auto got = hc::receive(source, message, stop_event);
-  if (!got && got.error().code == hc::Code::Closed) return false;
+  if (!got && got.error().code == hc::Code::Stopped) return false;
   return value_or_fail(std::move(got), uri);
 }
 
 bool send(hc::Sink& sink, const hc::Message& message) {
   auto sent = sink.send(message);
-  if (!sent && sent.error().code != hc::Code::Closed) throw Failure(sent.error());
-  return sent.has_value();
+  if (sent) return true;
+  if (sent.error().code != hc::Code::Closed) throw Failure(sent.error());
+  return false;
 }
 
 bool print(std::string_view text) {
@@ -90,15 +96,15 @@ fs::path module_folder() {
 }
 
 std::string find_program(const std::string& name) {
-  if (name.find('/') != std::string::npos) return ::access(name.c_str(), X_OK) == 0 ? name : "";
+  if (name.find('/') != std::string::npos) return is_program(name) ? name : "";
   fs::path own = module_folder() / name;
-  if (::access(own.c_str(), X_OK) == 0) return own.string();
+  if (is_program(own)) return own.string();
   const char* variable = std::getenv("PATH");
   std::string_view path = variable == nullptr ? "" : variable;
   while (!path.empty()) {
     auto colon = std::min(path.find(':'), path.size());
     fs::path candidate = fs::path(path.substr(0, colon)) / name;
-    if (::access(candidate.c_str(), X_OK) == 0) return candidate.string();
+    if (is_program(candidate)) return candidate.string();
     path.remove_prefix(std::min(colon + 1, path.size()));
   }
   return "";

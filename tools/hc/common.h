@@ -14,13 +14,19 @@
 
 namespace tool {
 
-/// Ends a verb with one line on standard error and an exit status.
+/// Ends a verb with one line on standard error and an exit status; quietly with 0 when it was told
+/// to stop.
 struct Failure : std::runtime_error {
   explicit Failure(const hc::Error& error)
-      : std::runtime_error(error.text()), status(error.code == hc::Code::Usage ? 2 : 1) {}
+      : std::runtime_error(error.text()), status(status_of(error.code)) {}
   Failure(std::string_view who, const hc::Error& error)
       : Failure(hc::Error{error.code, std::string(who) + ": " + error.detail}) {}
   int status;
+
+ private:
+  static int status_of(hc::Code code) {
+    return code == hc::Code::Stopped ? 0 : code == hc::Code::Usage ? 2 : 1;
+  }
 };
 
 template <typename T>

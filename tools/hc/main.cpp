@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     tool::say(fmt::format("hc{}: {}", is_verb ? " " + first : "", error.what()));
     return kUsage;
   } catch (const tool::Failure& failure) {
-    tool::say(fmt::format("hc {}: {}", first, failure.what()));
+    if (failure.status != 0) tool::say(fmt::format("hc {}: {}", first, failure.what()));
     return failure.status;
   } catch (const std::exception& error) {
     tool::say(fmt::format("hc {}: {}", first, error.what()));

@@ -15,6 +15,8 @@ std::string_view name(Code code) {
       return "Truncated";
     case Code::Closed:
       return "Closed";
+    case Code::Stopped:
+      return "Stopped";
     case Code::NotFound:
       return "NotFound";
     case Code::Usage:

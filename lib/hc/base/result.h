@@ -19,7 +19,8 @@ enum class Code {
   Unsupported,  ///< a version, encoding, transport or device that this build does not have
   TooLarge,     ///< more than a limit allows
   Truncated,    ///< a stream that ended inside a message
-  Closed,       ///< the other side has gone, or we were asked to stop
+  Closed,       ///< the other side has gone
+  Stopped,      ///< this side was asked to stop while it waited
   NotFound,     ///< a name that nothing has
   Usage,        ///< arguments, parameters or a graph file that make no sense
   System,       ///< a system call or a library failed; the detail says which and why

@@ -57,6 +57,19 @@ std::string ascii_only(std::string_view text) {
   return result;
 }
 
+/// Where ~ stands as an escape, \u007e, which original() would take for one of ours; npos: nowhere.
+std::size_t find_escaped_tilde(std::string_view text) {
+  for (std::size_t at = text.find("\\"); at != std::string_view::npos;
+       at = text.find("\\", at + 1)) {
+    std::string_view escape = text.substr(at + 1, 9);
+    if (escape.starts_with('\\')) ++at;  // an escaped backslash
+    bool is_tilde = escape.starts_with("u007") ? escape.size() > 4 && (escape[4] | 0x20) == 'e'
+                                               : escape == "U0000007e" || escape == "U0000007E";
+    if (is_tilde) return at;
+  }
+  return std::string_view::npos;
+}
+
 std::string original(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -144,7 +157,7 @@ class Reader {
         read_values(table, "parameters", [&](const std::string& key, const toml::node& value) {
           auto text = parameter_text(value);
           if (!text) return Status(text.error());
-          module.parameters[key] = *text;
+          module.parameters[key] = {*text, line_of(value)};
           return Status();
         });
     if (!read) return read;
@@ -152,14 +165,15 @@ class Reader {
       auto address = value.value_exact<std::int64_t>().value_or(-1);
       if (address < 0 || address > 2147483647)
         return Status(error(value, "an address is a whole number from 0 to 2147483647"));
-      module.addresses[key] = address;
+      module.addresses[key] = {address, line_of(value)};
       return Status();
     });
     if (!read) return read;
     read = read_values(table, "encodings", [&](const std::string& key, const toml::node& value) {
-      if (!value.is_string())
+      auto encoding = encoding_of(value.value<std::string>().value_or(""));
+      if (!encoding)
         return Status(error(value, "an encoding is \"text\", \"binary\", \"zstd\" or \"jpeg\""));
-      module.encodings[key] = original(value.value<std::string>().value_or(""));
+      module.encodings[key] = {*encoding, line_of(value)};
       return Status();
     });
     if (!read) return read;
@@ -267,6 +281,13 @@ Result<Graph> parse_graph(std::string_view text, std::string_view file,
                           const Environment& environment) {
   if (text.size() > kMaxGraphBytes)
     return Error{Code::Usage, std::string(file) + ": a graph file has at most 1048576 bytes"};
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (auto escape = find_escaped_tilde(text); escape != std::string_view::npos)
+    return Error{Code::Usage,
+                 std::string(file) + ":" +
+                     std::to_string(1 + std::count(text.begin(), text.begin() + escape, '\n')) +
+                     ": write ~ itself, not its \\u escape"};
   try {
     toml::table root = toml::parse(ascii_only(text), file);
     return Reader(file, environment).read(root);
@@ -288,8 +309,8 @@ Status set_parameter(Graph& graph, std::string_view assignment) {
     return Error{Code::Usage,
                  "no module \"" + name + "\" in " + graph.file + suggestion(name, known)};
   }
-  module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] =
-      assignment.substr(equals + 1);
+  module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] = {
+      std::string(assignment.substr(equals + 1)), 0};
   return {};
 }
 

@@ -11,17 +11,25 @@
 #include <vector>
 
 #include <hc/base/result.h>
+#include <hc/wire/element.h>
 
 namespace hc {
 
+/// A value of a graph file, and the line where it stands; 0: it came from elsewhere.
+template <typename T>
+struct Lined {
+  T value;
+  int line = 0;
+};
+
 /// A module of a graph.
 struct GraphModule {
-  std::string name;                               ///< snake_case
-  std::string program;                            ///< a module's name, or a path
-  std::map<std::string, std::string> parameters;  ///< as text, as on a command line
-  std::map<std::string, std::int64_t> addresses;  ///< of output ports
-  std::map<std::string, std::string> encodings;   ///< of output ports
-  int line = 0;                                   ///< of the file
+  std::string name;                                      ///< snake_case
+  std::string program;                                   ///< a module's name, or a path
+  std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
+  std::map<std::string, Lined<std::int64_t>> addresses;  ///< of output ports
+  std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports
+  int line = 0;                                          ///< of the file
 };
 
 /// A port of a module of a graph.

@@ -35,13 +35,13 @@ to = "depth.left"
   const auto& eyes = graph->modules[0];
   EXPECT_EQ(eyes.name, "eyes");
   EXPECT_EQ(eyes.program, "camera");
-  EXPECT_EQ(eyes.parameters.at("source"), "/home/eve/a.jpg");
-  EXPECT_EQ(eyes.parameters.at("right_source"), "b.jpg");
-  EXPECT_EQ(eyes.parameters.at("rate"), "2.5");
-  EXPECT_EQ(eyes.parameters.at("count"), "3");
-  EXPECT_EQ(eyes.parameters.at("loop"), "true");
-  EXPECT_EQ(eyes.addresses.at("left"), 11);
-  EXPECT_EQ(eyes.encodings.at("left"), "jpeg");
+  EXPECT_EQ(eyes.parameters.at("source").value, "/home/eve/a.jpg");
+  EXPECT_EQ(eyes.parameters.at("right_source").value, "b.jpg");
+  EXPECT_EQ(eyes.parameters.at("rate").value, "2.5");
+  EXPECT_EQ(eyes.parameters.at("count").value, "3");
+  EXPECT_EQ(eyes.parameters.at("loop").value, "true");
+  EXPECT_EQ(eyes.addresses.at("left").value, 11);
+  EXPECT_EQ(eyes.encodings.at("left").value, Encoding::Jpeg);
   EXPECT_EQ(graph->modules[1].program, "depth");
   ASSERT_EQ(graph->links.size(), 1U);
   EXPECT_EQ(graph->links[0].from.text(), "eyes.left");
@@ -51,7 +51,21 @@ to = "depth.left"
 TEST(GraphFile, LettersOutsideAsciiAndTildesComeThrough) {
   auto graph = parse("# größe → ~\n[modules.a]\nparameters.p = \"grün ~/x~y ~7\"\n");
   ASSERT_TRUE(graph) << graph.error().detail;
-  EXPECT_EQ(graph->modules[0].parameters.at("p"), "grün ~/x~y ~7");
+  EXPECT_EQ(graph->modules[0].parameters.at("p").value, "grün ~/x~y ~7");
+}
+
+TEST(GraphFile, AByteOrderMarkIsOverlooked) {
+  EXPECT_TRUE(parse("\xef\xbb\xbf[modules.a]\n"));
+}
+
+TEST(GraphFile, TildesAreNoEscapes) {
+  auto refused = parse("[modules.a]\nparameters.p = \"\\u007e41\"\n");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().detail, "g.toml:2: write ~ itself, not its \\u escape");
+  EXPECT_FALSE(parse("[modules.a]\nparameters.p = \"\\U0000007E41\"\n"));
+  auto graph = parse("[modules.a]\nparameters.p = \"\\\\u007e41 \\u0041\"\n");
+  ASSERT_TRUE(graph) << graph.error().detail;
+  EXPECT_EQ(graph->modules[0].parameters.at("p").value, "\\u007e41 A");
 }
 
 TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
@@ -93,7 +107,7 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
 TEST(GraphFile, ParametersAreSetFromOutside) {
   auto graph = parse("[modules.camera]\nparameters.rate = 1\n");
   EXPECT_TRUE(set_parameter(*graph, "camera.rate=5=6"));
-  EXPECT_EQ(graph->modules[0].parameters.at("rate"), "5=6");
+  EXPECT_EQ(graph->modules[0].parameters.at("rate").value, "5=6");
   EXPECT_EQ(set_parameter(*graph, "camra.rate=5").error().detail,
             "no module \"camra\" in g.toml, did you mean \"camera\"?");
   EXPECT_FALSE(set_parameter(*graph, "rate=5"));

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <hc/base/parameter.h>
+
 namespace hc {
 namespace {
 
@@ -39,6 +41,21 @@ bool type_fits(const Json& given, const Json& taken) {
   return true;
 }
 
+/// A parameter as its module declared it, to try values on.
+ParameterState parameter_from(const Json& json) {
+  ParameterState parameter;
+  parameter.name = json.at("name");
+  std::string type = json.at("type");
+  if (type == "bool") parameter.value = false;
+  if (type == "integer") parameter.value = std::int64_t{0};
+  if (type == "number") parameter.value = 0.0;
+  if (type == "string") parameter.value = std::string();
+  parameter.options.least = json.value("least", parameter.options.least);
+  parameter.options.most = json.value("most", parameter.options.most);
+  parameter.options.choices = json.value("choices", parameter.options.choices);
+  return parameter;
+}
+
 std::string in_words(const Json& types) {
   std::string text;
   for (const auto& type : types) {
@@ -56,6 +73,11 @@ class Planner {
       : graph_(std::move(graph)), describe_(describe), token_(token) {}
 
   Result<Plan> plan() {
+    for (const auto& module : graph_.modules)
+      for (const auto& [port, address] : module.addresses)
+        if (address.value != 0 && !addresses_.insert(address.value).second)
+          return error(address.line,
+                       "address " + std::to_string(address.value) + " is given twice");
     for (const auto& module : graph_.modules) {
       auto planned = plan_module(module);
       if (!planned) return planned.error();
@@ -73,7 +95,8 @@ class Planner {
 
  private:
   Error error(int line, const std::string& what) const {
-    return {Code::Usage, graph_.file + ":" + std::to_string(line) + ": " + what};
+    return {Code::Usage,
+            line == 0 ? "--set: " + what : graph_.file + ":" + std::to_string(line) + ": " + what};
   }
 
   Status plan_module(const GraphModule& module) {
@@ -94,21 +117,26 @@ class Planner {
     for (const auto& [name, value] : module.parameters) {
       const Json* parameter = find_named(description["parameters"], name);
       if (parameter == nullptr)
-        return error(module.line, "module " + module.name + " has no parameter \"" + name + "\"" +
-                                      suggestion(name, names_of(description["parameters"])));
-      planned.command.push_back("--" + name + "=" + value);
+        return error(value.line, "module " + module.name + " has no parameter \"" + name + "\"" +
+                                     suggestion(name, names_of(description["parameters"])));
+      auto set = parameter_from(*parameter).set(value.value);
+      if (!set) return error(value.line, "module " + module.name + ": " + set.error().detail);
+      planned.command.push_back("--" + name + "=" + value.value);
     }
-    for (const auto& [port, address] : module.addresses) {
-      if (find_named(description["outputs"], port) == nullptr)
-        return no_port(module, module.line, "output", port, description["outputs"]);
-      if (address != 0 && !addresses_.insert(address).second)
-        return error(module.line, "address " + std::to_string(address) + " is given twice");
-      add("--address", port + "=" + std::to_string(address));
+    const Json& outputs = description["outputs"];
+    for (const auto& [port, address] : module.addresses)
+      if (find_named(outputs, port) == nullptr)
+        return no_port(module, address.line, "output", port, outputs);
+    for (const auto& port : names_of(outputs)) {
+      auto given = module.addresses.find(port);
+      add("--address", port + "=" +
+                           std::to_string(given != module.addresses.end() ? given->second.value
+                                                                          : free_address()));
     }
     for (const auto& [port, encoding] : module.encodings) {
-      if (find_named(description["outputs"], port) == nullptr)
-        return no_port(module, module.line, "output", port, description["outputs"]);
-      add("--encoding", port + "=" + encoding);
+      if (find_named(outputs, port) == nullptr)
+        return no_port(module, encoding.line, "output", port, outputs);
+      add("--encoding", port + "=" + std::string(name(encoding.value)));
     }
     planned.manage_uri = "unix-listen:@" + token_ + "-" + module.name;
     add("--manage", "unix:@" + token_ + "-" + module.name);
@@ -116,6 +144,12 @@ class Planner {
     plan_.modules.push_back(std::move(planned));
     described_[module.name] = {&module, std::move(description)};
     return {};
+  }
+
+  /// The least address that nobody has, taken.
+  std::int64_t free_address() {
+    while (!addresses_.insert(next_address_).second) ++next_address_;
+    return next_address_;
   }
 
   Error no_port(const GraphModule& module, int line, const std::string& kind,
@@ -178,6 +212,7 @@ class Planner {
   std::map<std::string, Described> described_;
   std::map<std::string, std::size_t> index_;
   std::set<std::int64_t> addresses_;
+  std::int64_t next_address_ = 1;
   std::set<std::string> linked_;
 };
 

@@ -15,7 +15,8 @@ Result<std::string> describe(const std::string& program) {
   };
   auto module = [](const std::string& inputs, const std::string& outputs) {
     return R"({"name":"x","inputs":[)" + inputs + R"(],"outputs":[)" + outputs +
-           R"(],"parameters":[{"name":"rate"}]})";
+           R"(],"parameters":[{"name":"rate","type":"number","least":0,"most":9},)"
+           R"({"name":"mode","type":"string","choices":["fast","good"]}]})";
   };
   if (program == "source")
     return module("", port("left", "map", 7) + "," + port("right", "map", 8));
@@ -55,12 +56,12 @@ to = "sink.in"
   using Words = std::vector<std::string>;
   EXPECT_EQ(
       planned->modules[0].command,
-      (Words{"source", "--name", "source", "--rate=3", "--address", "left=11", "--encoding",
-             "left=zstd", "--manage", "unix:@t-source", "--out", "left=unix-listen:@t-0?readers=1",
-             "--out", "right=unix-listen:@t-1?readers=1"}));
+      (Words{"source", "--name", "source", "--rate=3", "--address", "left=11", "--address",
+             "right=1", "--encoding", "left=zstd", "--manage", "unix:@t-source", "--out",
+             "left=unix-listen:@t-0?readers=1", "--out", "right=unix-listen:@t-1?readers=1"}));
   EXPECT_EQ(planned->modules[1].command,
-            (Words{"filter", "--name", "a", "--manage", "unix:@t-a", "--in", "in=unix:@t-0?wait=60",
-                   "--out", "out=unix-listen:@t-2?readers=1"}));
+            (Words{"filter", "--name", "a", "--address", "out=2", "--manage", "unix:@t-a", "--in",
+                   "in=unix:@t-0?wait=60", "--out", "out=unix-listen:@t-2?readers=1"}));
   EXPECT_EQ(planned->modules[1].manage_uri, "unix-listen:@t-a");
   // Where the counters of each link are: a's output comes behind its one input.
   EXPECT_EQ(planned->links[1].row, 1U);
@@ -79,12 +80,16 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
        "g.toml:1: module dumb: dumb --describe prints no description of a module"},
       {"[modules.odd]\nparameters.rate=1", "--describe prints no description of a module: "},
       {"[modules.source]\nparameters.rat = 3",
-       "g.toml:1: module source has no parameter \"rat\", did you mean \"rate\"?"},
+       "g.toml:2: module source has no parameter \"rat\", did you mean \"rate\"?"},
       {"[modules.source]\naddresses.lft = 3",
-       "g.toml:1: module source has no output \"lft\", did you mean \"left\"?"},
-      {"[modules.source]\nencodings.x = \"text\"", "g.toml:1: module source has no output \"x\""},
+       "g.toml:2: module source has no output \"lft\", did you mean \"left\"?"},
+      {"[modules.source]\nencodings.x = \"text\"", "g.toml:2: module source has no output \"x\""},
       {"[modules.source]\naddresses = { left = 3, right = 3 }",
-       "g.toml:1: address 3 is given twice"},
+       "g.toml:2: address 3 is given twice"},
+      {"[modules.source]\nparameters.rate = 10",
+       "g.toml:2: module source: parameter rate: \"10\" is not from 0 to 9"},
+      {"[modules.source]\n\nparameters.mode = \"slow\"",
+       "g.toml:3: module source: parameter mode: \"slow\" is not one of fast good"},
       {link("sorce.left", "filter.in"), "g.toml:4: no module \"sorce\", did you mean \"source\"?"},
       {link("source.up", "filter.in"), "g.toml:4: module source has no output \"up\""},
       {link("source.left", "filter.into"),

@@ -60,7 +60,7 @@ class Runner {
         timeout = milliseconds(100);
       }
       auto waited = wait_readable(descriptors(), report.stopped ? -1 : options_.stop, timeout);
-      if (!waited && waited.error().code == Code::Closed) {
+      if (!waited && waited.error().code == Code::Stopped) {
         report.stopped = true;
         say("graph: stopping");
         end_all();
@@ -193,15 +193,25 @@ Result<std::string> describe_program(const std::string& program) {
   if (!process) return process.error();
   std::string text;
   auto give_up = MonotonicClock::now() + kDescribeTime;
-  while (text.size() <= kMaxDescription) {
+  auto wait = [&](int descriptor) -> Status {
     auto left = std::chrono::ceil<milliseconds>(give_up - MonotonicClock::now());
-    if (left <= milliseconds(0)) return Error{Code::System, program + " --describe does not end"};
-    std::array<int, 1> output = {process->output()};
-    if (auto ready = wait_readable(output, -1, left); !ready) return ready.error();
+    std::array<int, 1> descriptors = {descriptor};
+    auto ready = wait_readable(descriptors, -1, std::max(left, milliseconds(0)));
+    if (!ready) return ready.error();
+    if (*ready == 1) return Error{Code::System, program + " --describe does not end"};
+    return {};
+  };
+  while (text.size() <= kMaxDescription) {
+    if (auto ready = wait(process->output()); !ready) return ready.error();
     char piece[4096];
     ssize_t size = ::read(process->output(), piece, sizeof piece);
     if (size > 0) text.append(piece, static_cast<std::size_t>(size));
-    if (size == 0) return text;
+    if (size != 0) continue;
+    if (auto ended = wait(process->ended()); !ended) return ended.error();
+    int status = process->poll_status().value_or(0);
+    if (status == 0) return text;
+    return Error{Code::System,
+                 program + " --describe failed with status " + std::to_string(status)};
   }
   return Error{Code::System, program + " --describe prints more than a MiB"};
 }

@@ -18,29 +18,29 @@ using internal::Transport;
 /// Every transport there is. `?` options that a scheme has are named here, so that one misspelt is
 /// refused and not overlooked.
 constexpr std::array<Transport, 7> kTransports = {{
-    {"-", "", internal::open_stdin, internal::open_stdout},
-    {"file", "", internal::open_file_source, internal::open_file_sink},
-    {"tcp", "wait", internal::open_tcp_source, internal::open_tcp_sink},
-    {"tcp-listen", "readers", internal::listen_tcp_source, internal::listen_tcp_sink},
-    {"unix", "wait", internal::open_unix_source, internal::open_unix_sink},
-    {"unix-listen", "readers", internal::listen_unix_source, internal::listen_unix_sink},
-    {"inproc", "", internal::open_inproc_source, internal::open_inproc_sink},
+    {"-", "", "", internal::open_stdin, internal::open_stdout},
+    {"file", "", "", internal::open_file_source, internal::open_file_sink},
+    {"tcp", "wait", "wait", internal::open_tcp_source, internal::open_tcp_sink},
+    {"tcp-listen", "", "readers", internal::listen_tcp_source, internal::listen_tcp_sink},
+    {"unix", "wait", "wait", internal::open_unix_source, internal::open_unix_sink},
+    {"unix-listen", "", "readers", internal::listen_unix_source, internal::listen_unix_sink},
+    {"inproc", "", "", internal::open_inproc_source, internal::open_inproc_sink},
 }};
 
-Result<const Transport*> find_transport(const Uri& uri) {
+/// @param option  which of a transport's options the end that is opened may have.
+Result<const Transport*> find_transport(const Uri& uri, std::string_view Transport::*option) {
   std::string known;
   for (const Transport& transport : kTransports) {
     if (transport.scheme != uri.scheme) {
       known.append(known.empty() ? "" : ", ").append(transport.scheme);
       continue;
     }
-    for (const auto& option : uri.options)
-      if (option.first != transport.option)
-        return Error{
-            Code::Unsupported,
-            uri.scheme + " has no option \"" + option.first + "\"" +
-                (transport.option.empty() ? ""
-                                          : ", only \"" + std::string(transport.option) + "\"")};
+    std::string_view allowed = transport.*option;
+    for (const auto& [key, value] : uri.options)
+      if (key != allowed)
+        return Error{Code::Unsupported,
+                     uri.scheme + " has no option \"" + key + "\" here" +
+                         (allowed.empty() ? "" : ", only \"" + std::string(allowed) + "\"")};
     return &transport;
   }
   return Error{Code::Unsupported, "no transport \"" + uri.scheme + "\"; there are " + known};
@@ -53,13 +53,13 @@ Status Source::resume() {
 }
 
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
-  auto transport = find_transport(uri);
+  auto transport = find_transport(uri, &Transport::source_option);
   if (!transport) return transport.error();
   return (*transport)->open_source(uri, options);
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
-  auto transport = find_transport(uri);
+  auto transport = find_transport(uri, &Transport::sink_option);
   if (!transport) return transport.error();
   return (*transport)->open_sink(uri, options);
 }
@@ -73,7 +73,7 @@ Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,
     return ::poll(polled.data(), polled.size(), static_cast<int>(timeout.count()));
   });
   if (!ready) return ready.error();
-  if (polled.back().revents != 0) return Error{Code::Closed, "stopped"};
+  if (polled.back().revents != 0) return Error{Code::Stopped, "asked to stop"};
   auto first = std::find_if(polled.begin(), polled.end() - 1,
                             [](const pollfd& entry) { return entry.revents != 0; });
   return static_cast<std::size_t>(first - polled.begin());

@@ -59,7 +59,7 @@ class Sink {
 
   /// Puts a message in, whole; waits as long as the link is full or has no reader yet.
   ///
-  /// Errors: Closed (the reader has gone, or LinkOptions::stop became readable), System.
+  /// Errors: Closed (the reader has gone), Stopped (LinkOptions::stop became readable), System.
   virtual Status send(const Message& message) = 0;
 
   /// Ends the link: the reader finds End behind the last message. Errors as send().
@@ -87,20 +87,20 @@ struct LinkOptions {
 ///   before the end; default 1 before the first message, and none before the end.
 ///
 /// Errors: Unsupported (no such scheme; an option that it does not have), Usage, NotFound (no such
-/// file or host), Closed (nobody listens; stopped), System (name in use, …).
+/// file or host), Closed (nobody listens), Stopped, System (name in use, …).
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
 
 /// Waits until one of `descriptors` is readable; gives its index.
 ///
-/// Gives `descriptors.size()` when `timeout` has passed. Errors: Closed (`stop` is readable).
+/// Gives `descriptors.size()` when `timeout` has passed. Errors: Stopped (`stop` is readable).
 Result<std::size_t> wait_readable(
     std::span<const int> descriptors, int stop = -1,
     std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
 
 /// Takes the next message, waiting for it; false at the end.
 ///
-/// Errors: as Source::take, and Closed when `stop` becomes readable.
+/// Errors: as Source::take, and Stopped when `stop` becomes readable.
 Result<bool> receive(Source& source, Message& message, int stop = -1);
 
 }  // namespace hc

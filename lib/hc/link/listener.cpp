@@ -185,8 +185,7 @@ Result<std::unique_ptr<Sink>> make_listening_sink(ListeningSocket socket, const 
                                                   const LinkOptions& options) {
   auto readers = number_option(uri, "readers", 0);
   if (!readers) return readers.error();
-  return std::unique_ptr<Sink>(new ListeningSink(
-      std::move(socket), std::max<std::int64_t>(*readers, 1), *readers > 0, options));
+  return std::unique_ptr<Sink>(new ListeningSink(std::move(socket), *readers, options));
 }
 
 Status ListeningSink::accept_ready() {
@@ -210,7 +209,9 @@ Status ListeningSink::await(std::size_t readers) {
 Status ListeningSink::send(const Message& message) {
   auto pieces = encoder_.encode(message);
   while (true) {
-    auto awaited = await(begun_ ? 1 : static_cast<std::size_t>(readers_));
+    if (begun_ && readers_ > 0 && peers_.empty())
+      return Error{Code::Closed, "all readers have gone"};
+    auto awaited = await(begun_ || readers_ == 0 ? 1 : static_cast<std::size_t>(readers_));
     if (!awaited) return awaited;
     begun_ = true;
     bool taken = false;
@@ -221,7 +222,7 @@ Status ListeningSink::send(const Message& message) {
         ++i;
         continue;
       }
-      if (sent.error().detail == "stopped") return sent;
+      if (sent.error().code == Code::Stopped) return sent;
       peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(i));  // it has left
     }
     if (!taken) continue;
@@ -233,7 +234,7 @@ Status ListeningSink::send(const Message& message) {
 
 Status ListeningSink::close() {
   Status awaited;
-  if (wait_at_end_ && !begun_) awaited = await(static_cast<std::size_t>(readers_));
+  if (readers_ > 0 && !begun_) awaited = await(static_cast<std::size_t>(readers_));
   for (auto& peer : peers_) static_cast<void>(peer->close());
   peers_.clear();
   socket_ = {};  // who has connected and was not accepted yet finds the end too

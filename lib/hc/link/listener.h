@@ -59,17 +59,14 @@ class ListeningSource final : public Source {
 };
 
 /// Puts each message to every peer that is connected. Waits for the first ones to come; peers that
-/// leave are forgotten, and those that come later hear what is sent from then on.
+/// leave are forgotten, and those that come later hear what is sent from then on. When all have
+/// left, it waits for another, unless the readers were counted: then the link is closed.
 class ListeningSink final : public Sink {
  public:
-  /// @param readers  how many peers to wait for before the first message, at least 1, and, where
-  ///     the URI gave a number, before the end.
-  ListeningSink(ListeningSocket socket, std::int64_t readers, bool wait_at_end,
-                const LinkOptions& options)
-      : socket_(std::move(socket)),
-        readers_(readers),
-        wait_at_end_(wait_at_end),
-        options_(options) {}
+  /// @param readers  how many peers to wait for before the first message and before the end; 0: one
+  ///     before the first message, none before the end.
+  ListeningSink(ListeningSocket socket, std::int64_t readers, const LinkOptions& options)
+      : socket_(std::move(socket)), readers_(readers), options_(options) {}
 
   Status send(const Message& message) override;
   Status close() override;
@@ -81,7 +78,6 @@ class ListeningSink final : public Sink {
 
   ListeningSocket socket_;
   std::int64_t readers_;
-  bool wait_at_end_;
   bool begun_ = false;  // the readers that were to be waited for have come
   LinkOptions options_;
   Encoder encoder_;
@@ -96,7 +92,7 @@ Result<std::unique_ptr<Sink>> make_listening_sink(ListeningSocket socket, const 
 /// Connects to an address; tries again, with growing pauses, while nobody listens there and `wait`
 /// has not passed.
 ///
-/// Errors: Closed (refused to the end; stopped), System.
+/// Errors: Closed (refused to the end), Stopped, System.
 Result<Descriptor> connect_to(const void* address, unsigned size, const std::string& name,
                               std::chrono::seconds wait, int stop);
 

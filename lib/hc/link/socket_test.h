@@ -81,9 +81,9 @@ TEST_P(SocketLink, WaitingEndsWhenToldToStop) {
   ASSERT_EQ(::write(ends[1], "x", 1), 1);
   LinkOptions options;
   options.stop = ends[0];
-  EXPECT_EQ(open_source(*parse_uri(dial() + "?wait=60"), options).error().code, Code::Closed);
+  EXPECT_EQ(open_source(*parse_uri(dial() + "?wait=60"), options).error().code, Code::Stopped);
   auto sink = sink_of(listen(), options);
-  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Closed);
+  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
 }
 
 TEST_P(SocketLink, WritersComeAndGo) {

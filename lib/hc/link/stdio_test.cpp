@@ -69,7 +69,7 @@ TEST_F(Stdio, WaitingEndsWhenToldToStop) {
   options.stop = ends[0];
   auto sink = sink_of("-", options);
   std::thread stopper([&] { EXPECT_EQ(::write(ends[1], "x", 1), 1); });
-  EXPECT_EQ(sink->send(numbered(0, 50'000'000)).error().detail, "stopped");
+  EXPECT_EQ(sink->send(numbered(0, 50'000'000)).error().code, Code::Stopped);
   stopper.join();
   Message message;
   auto source = source_of("-");

@@ -127,7 +127,8 @@ Status wait_for(int descriptor, short events, int stop) {
   std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};
   auto ready = system_call("poll", "", [&] { return ::poll(polled.data(), polled.size(), -1); });
   if (!ready) return ready.error();
-  if (polled[0].revents == 0 && polled[1].revents != 0) return Error{Code::Closed, "stopped"};
+  if (polled[0].revents == 0 && polled[1].revents != 0)
+    return Error{Code::Stopped, "asked to stop"};
   return {};
 }
 

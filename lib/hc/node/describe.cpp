@@ -73,25 +73,10 @@ std::string describe_parameter(const ParameterState& parameter) {
   return object.add_text("doc", parameter.doc).text();
 }
 
-std::string in_words(const PortType& type) {
-  std::string text(name(type.info.type));
-  text += " " + std::to_string(type.info.components) + " x " + std::string(name(type.info.scalar));
-  if (type.width != 0) text += ", width " + std::to_string(type.width);
-  if (type.height != 0) text += ", height " + std::to_string(type.height);
-  if (type.coord != 0) text += ", coordinate system " + std::to_string(type.coord);
-  return text;
-}
-
 std::string line(const std::string& left, const std::string& right) {
   constexpr std::size_t kColumn = 28;
   std::string pad(left.size() + 3 < kColumn ? kColumn - left.size() - 2 : 1, ' ');
   return "  " + left + pad + right + "\n";
-}
-
-std::string in_words(const std::vector<PortType>& types) {
-  std::string text = types.empty() ? "anything" : "";
-  for (const auto& type : types) text.append(text.empty() ? "" : " or ").append(in_words(type));
-  return text;
 }
 
 std::string parameter_line(const ParameterState& parameter) {
@@ -154,6 +139,7 @@ std::string help(const Module& module) {
   }
   text += line("--limit BYTES", "largest elements that are taken (default 268435456)");
   text += line("--name NAME", "what the module is called in its lines");
+  text += line("--manage URI", "where counters of its links go, once a second");
   text += line("--describe", "print ports and parameters as JSON");
   return text + line("--help", "print this");
 }

@@ -31,4 +31,19 @@ Status fits(const Header& header, const PortType& type) {
   return {};
 }
 
+std::string in_words(const PortType& type) {
+  std::string text(name(type.info.type));
+  text += " " + std::to_string(type.info.components) + " x " + std::string(name(type.info.scalar));
+  if (type.width != 0) text += ", width " + std::to_string(type.width);
+  if (type.height != 0) text += ", height " + std::to_string(type.height);
+  if (type.coord != 0) text += ", coordinate system " + std::to_string(type.coord);
+  return text;
+}
+
+std::string in_words(const std::vector<PortType>& types) {
+  std::string text = types.empty() ? "anything" : "";
+  for (const auto& type : types) text.append(text.empty() ? "" : " or ").append(in_words(type));
+  return text;
+}
+
 }  // namespace hc

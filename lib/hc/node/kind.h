@@ -25,6 +25,10 @@ struct PortType {
 /// Errors: Malformed; the detail begins with the rule of the field that does not fit, "R19: …".
 Status fits(const Header& header, const PortType& type);
 
+/// "rgb_image 3 x u8, coordinate system 9"; several with "or" between them, none: "anything".
+std::string in_words(const PortType& type);
+std::string in_words(const std::vector<PortType>& types);
+
 /// A kind of message: matrix type and scalar are fixed at compile time, the rest when it is made.
 template <MatrixType kMatrix, ScalarType T>
 struct Kind {

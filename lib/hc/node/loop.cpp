@@ -16,7 +16,7 @@ constexpr std::chrono::seconds kReportPeriod{1};
 
 /// What ends a module: cleanly when it was told to stop, else with the name of who failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
-  if (error.detail == "stopped") throw Stopped();
+  if (error.code == Code::Stopped) throw Stopped();
   throw ModuleError(Error{error.code, who + ": " + error.detail});
 }
 
@@ -102,12 +102,16 @@ bool Module::Loop::take_one(LinkedSource& link) {
 }
 
 void Module::Loop::deliver(LinkedSource& link, const Message& message) {
-  Status fit;
+  std::string takers;
   for (auto* input : link.inputs) {
-    fit = input->types.empty() ? Status() : Error{Code::Malformed, ""};
-    for (const auto& type : input->types)
-      if (fit = fits(message.header, type); fit) break;
-    if (!fit) continue;
+    auto fits_message = [&](const PortType& type) {
+      return fits(message.header, type).has_value();
+    };
+    if (!input->types.empty() &&
+        std::none_of(input->types.begin(), input->types.end(), fits_message)) {
+      takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
+      continue;
+    }
     if (!input->handler) return;
     module_.handled_time_ = message.header.time;
     module_.handled_mode_ = message.header.mode;
@@ -117,7 +121,11 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
     module_.handled_time_ = 0;
     return;
   }
-  fail(link.inputs.back()->name, fit.error());
+  const auto& only = *link.inputs.back();
+  if (link.inputs.size() == 1 && only.types.size() == 1)
+    fail(only.name, fits(message.header, only.types[0]).error());
+  fail(link.uri, Error{Code::Malformed,
+                       "R17 info: " + text(message.header.info) + " fits no input: " + takers});
 }
 
 void Module::Loop::wait() {

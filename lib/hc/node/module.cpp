@@ -142,20 +142,27 @@ void internal::send(OutputState& output, Message message) {
     header.info.encoding = wanted;  // the same in memory
   else
     message = value_or_end(compress(message, wanted));
-  bool any = output.links.empty();
+  bool any_left = false;
   for (auto& link : output.links) {
     if (link->sink == nullptr) continue;
     auto sent = link->sink->send(message);
-    if (sent) {
-      any = true;
-    } else if (sent.error().code == Code::Closed) {
+    if (!sent && sent.error().code == Code::Stopped) throw Stopped();
+    if (!sent && sent.error().code != Code::Closed)
+      throw ModuleError(Error{sent.error().code, output.name + ": " + sent.error().detail});
+    if (!sent) {
       link->traffic = link->sink->traffic();
       link->sink.reset();
-    } else {
-      throw ModuleError(Error{sent.error().code, output.name + ": " + sent.error().detail});
+      any_left = true;
     }
   }
-  if (!any) throw Stopped();
+  if (any_left && !module.is_read()) throw Stopped();
+}
+
+bool Module::is_read() const {
+  for (const auto& output : outputs_)
+    for (const auto& link : output->links)
+      if (link->sink != nullptr) return true;
+  return false;
 }
 
 int Module::run(int argc, char** argv) {
@@ -180,11 +187,13 @@ int Module::run(int argc, char** argv) {
       // Its readers have gone, or it was told to stop: a clean end.
     }
     loop.close();
-    return kDone;
+  } catch (const internal::Stopped&) {
+    // Told to stop while its links opened or closed.
   } catch (const std::exception& error) {
     log(error.what());
     return kFailure;
   }
+  return kDone;
 }
 
 }  // namespace hc

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include <hc/node/parameter.h>
+#include <hc/base/parameter.h>
 #include <hc/node/port.h>
 
 namespace hc {
@@ -118,8 +118,8 @@ class Module {
   /// Wall clock, for messages that begin here. [ns since the Unix epoch]
   [[nodiscard]] std::int64_t now() const { return clock_.wall(); }
 
-  /// Runs the module as the command line says, until its inputs end, its readers have gone, or it
-  /// is told to stop (SIGINT, SIGTERM).
+  /// Runs the module as the command line says, until its inputs end, all its readers have gone, or
+  /// it is told to stop (SIGINT, SIGTERM).
   /// @returns  what main() is to return: 0 done, 1 failure, 2 bad arguments.
   int run(int argc, char** argv);
 
@@ -132,6 +132,9 @@ class Module {
  private:
   friend void internal::send(internal::OutputState&, Message);
   struct Loop;
+
+  /// Whether any output has a reader left.
+  [[nodiscard]] bool is_read() const;
 
   std::shared_ptr<internal::InputState> add_input(std::string name, std::vector<PortType> types,
                                                   std::string doc);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/node/parameter.h>
+#include <hc/base/parameter.h>
 
 #include <algorithm>
 #include <array>
