@@ -372,6 +372,11 @@ good(
     message(H % (60102, 30, len(words), 1), part(ZSTD_WORDS), '["' + words + '"]'),
 )
 good("jpeg_grey", message(H % (40103, 7, 3, 2), part(JPEG_GREY), "[[128,128,128],[128,128,128]]"))
+SEQUENTIAL = JPEG_GREY.replace(b"\xff\xc0", b"\xff\xc1")
+good(
+    "jpeg_extended_sequential",
+    message(H % (40103, 7, 3, 2), part(SEQUENTIAL), "[[128,128,128],[128,128,128]]"),
+)
 good(
     "jpeg_progressive",
     message(

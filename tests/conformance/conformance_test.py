@@ -47,7 +47,7 @@ LET_PASS = re.compile(
     "|a component is missing"
     "|a difference of too many bits"
     "|a scan has bytes to spare"
-    "|neither baseline nor progressive"
+    "|neither sequential nor progressive Huffman"
     "|no such Huffman table"
 )
 # What they forbid, and R37 does not.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Decodes a JPEG picture, written from ITU-T T.81: baseline or progressive, 8 bits, Huffman codes.
+"""Decodes a JPEG picture, written from ITU-T T.81: sequential or progressive, 8 bits, Huffman codes.
 
     decode(data, width, height, components) -> bytes, row by row, components next to one another
 
@@ -14,7 +14,7 @@ from itertools import islice
 from mtp1_pixels import ZIGZAG, interleave, plane, to_rgb, upsample
 
 # Markers of segments: frames, tables, scans, applications' own, comments. Table B.1
-SEGMENTS = {0xC0, 0xC2, 0xC4, 0xDA, 0xDB, 0xDD, *range(0xE0, 0xF0), 0xFE}
+SEGMENTS = {0xC0, 0xC1, 0xC2, 0xC4, 0xDA, 0xDB, 0xDD, *range(0xE0, 0xF0), 0xFE}
 MARKER = re.compile(rb"\xff+([\x01-\xfe])")
 STUFFED = re.compile(rb"\xff+\x00")
 
@@ -88,7 +88,9 @@ class Picture:
             if marker == 0xD9:
                 break
             if marker not in SEGMENTS:
-                raise JpegError(f"marker {marker:#04x} is neither baseline nor progressive")
+                raise JpegError(
+                    f"marker {marker:#04x} is neither sequential nor progressive Huffman"
+                )
             self.read_segment(marker, self.segment())
         if self.at != len(self.data):
             raise JpegError("bytes behind the picture")
@@ -97,7 +99,7 @@ class Picture:
 
     def read_segment(self, marker, fields):
         """Reads the segment of one marker. Table B.1"""
-        if marker in (0xC0, 0xC2):
+        if marker in (0xC0, 0xC1, 0xC2):
             self.is_progressive = marker == 0xC2
             self.read_frame(fields)
         elif marker == 0xC4:

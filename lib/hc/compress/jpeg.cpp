@@ -59,6 +59,7 @@ const char* find_mismatch(const jpeg_decompress_struct& picture, const Header& h
   if (picture.num_components != header.info.components)
     return "the JPEG picture has another number of components than the header says";
   if (picture.data_precision != 8) return "the JPEG picture does not have 8 bits";
+  if (picture.arith_code != FALSE) return "the JPEG picture is arithmetic-coded";
   return nullptr;
 }
 
@@ -84,6 +85,7 @@ std::optional<std::string> read_jpeg(std::span<const std::byte> bytes, const Hea
     return mismatch;
   }
   picture.out_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  picture.do_block_smoothing = FALSE;  // what was sent, not a guess at what was not
   jpeg_start_decompress(&picture);
   std::size_t row_bytes = header.row_numbers();
   while (picture.output_scanline < picture.output_height) {
