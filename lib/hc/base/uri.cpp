@@ -31,7 +31,7 @@ Status parse_options(std::string_view text, Uri& uri) {
     std::string key{pair.substr(0, equals)};
     for (const auto& option : uri.options)
       if (option.first == key) return usage("option of a URI given twice", key);
-    uri.options.push_back({std::move(key), std::string(pair.substr(equals + 1))});
+    uri.options.emplace_back(std::move(key), pair.substr(equals + 1));
     if (end == text.size()) return {};
     text.remove_prefix(end + 1);
   }

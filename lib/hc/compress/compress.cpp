@@ -16,7 +16,7 @@ Error damaged(int rule, std::string_view what, const Message& message) {
                                ", at byte " + std::to_string(message.byte)};
 }
 
-Result<Message> plain_message(const Message& message, SharedBytes bytes) {
+Result<Message> plain_message(const Message& message, const SharedBytes& bytes) {
   Message result{
       message.header, {bytes.get(), message.header.element_bytes()}, bytes, message.byte};
   result.header.info.encoding = Encoding::Binary;
@@ -42,7 +42,7 @@ Result<Message> expand_zstd(const Message& message) {
                    "the zstd frames hold " + std::to_string(size) + " bytes, the header promises " +
                        std::to_string(promised),
                    message);
-  return plain_message(message, std::move(bytes));
+  return plain_message(message, bytes);
 }
 
 Result<Message> compress_zstd(const Message& message, int level) {
@@ -69,7 +69,7 @@ Result<Message> expand(const Message& message) {
   SharedBytes pixels = allocate_bytes(message.header.element_bytes());
   if (auto fault = internal::read_jpeg(message.elements, message.header, pixels.get()))
     return damaged(37, *fault, message);
-  return plain_message(message, std::move(pixels));
+  return plain_message(message, pixels);
 }
 
 Result<Message> compress(const Message& message, Encoding encoding,
