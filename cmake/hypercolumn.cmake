@@ -77,6 +77,7 @@ endif()
 
 set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
 set(HC_TEST_SECONDS 120) # a test that takes longer hangs
+set(HC_TEST_ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.txt:print_suppressions=0")
 
 # hc_layer(wire DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
 # One layer of the core: target hc::wire, its headers installed, each of its tests a program.
@@ -154,7 +155,8 @@ function(hc_cases name)
     cmake_path(GET folder FILENAME case)
     add_test(NAME case.${name}.${case}
              COMMAND ${PROJECT_SOURCE_DIR}/scripts/run_case ${PROJECT_BINARY_DIR} ${folder})
-    set_tests_properties(case.${name}.${case} PROPERTIES TIMEOUT ${HC_TEST_SECONDS})
+    set_tests_properties(case.${name}.${case} PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
+                         ENVIRONMENT ${HC_TEST_ENVIRONMENT})
   endforeach()
 endfunction()
 

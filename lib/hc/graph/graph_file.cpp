@@ -59,8 +59,8 @@ std::string ascii_only(std::string_view text) {
 
 /// Where ~ stands as an escape, \u007e, which original() would take for one of ours; npos: nowhere.
 std::size_t find_escaped_tilde(std::string_view text) {
-  for (std::size_t at = text.find("\\"); at != std::string_view::npos;
-       at = text.find("\\", at + 1)) {
+  for (std::size_t at = text.find('\\'); at != std::string_view::npos;
+       at = text.find('\\', at + 1)) {
     std::string_view escape = text.substr(at + 1, 9);
     if (escape.starts_with('\\')) ++at;  // an escaped backslash
     bool is_tilde = escape.starts_with("u007") ? escape.size() > 4 && (escape[4] | 0x20) == 'e'
@@ -172,7 +172,7 @@ class Reader {
     read = read_values(table, "encodings", [&](const std::string& key, const toml::node& value) {
       auto encoding = encoding_of(value.value<std::string>().value_or(""));
       if (!encoding)
-        return Status(error(value, "an encoding is \"text\", \"binary\", \"zstd\" or \"jpeg\""));
+        return Status(error(value, R"(an encoding is "text", "binary", "zstd" or "jpeg")"));
       module.encodings[key] = {*encoding, line_of(value)};
       return Status();
     });

@@ -14,12 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A module of the graph with what its program says of itself.
-struct Described {
-  const GraphModule* module;
-  Json description;
-};
-
 std::vector<std::string> names_of(const Json& list) {
   std::vector<std::string> names;
   for (const auto& each : list) names.push_back(each.at("name"));
@@ -126,7 +120,7 @@ class Planner {
     const Json& outputs = description["outputs"];
     for (const auto& [port, address] : module.addresses)
       if (find_named(outputs, port) == nullptr)
-        return no_port(module, address.line, "output", port, outputs);
+        return no_port(module.name, address.line, "output", port, outputs);
     for (const auto& port : names_of(outputs)) {
       auto given = module.addresses.find(port);
       add("--address", port + "=" +
@@ -135,14 +129,14 @@ class Planner {
     }
     for (const auto& [port, encoding] : module.encodings) {
       if (find_named(outputs, port) == nullptr)
-        return no_port(module, encoding.line, "output", port, outputs);
+        return no_port(module.name, encoding.line, "output", port, outputs);
       add("--encoding", port + "=" + std::string(name(encoding.value)));
     }
     planned.manage_uri = "unix-listen:@" + token_ + "-" + module.name;
     add("--manage", "unix:@" + token_ + "-" + module.name);
     index_[module.name] = plan_.modules.size();
     plan_.modules.push_back(std::move(planned));
-    described_[module.name] = {&module, std::move(description)};
+    described_[module.name] = std::move(description);
     return {};
   }
 
@@ -152,9 +146,9 @@ class Planner {
     return next_address_;
   }
 
-  Error no_port(const GraphModule& module, int line, const std::string& kind,
+  Error no_port(const std::string& module, int line, const std::string& kind,
                 const std::string& port, const Json& ports) const {
-    return error(line, "module " + module.name + " has no " + kind + " \"" + port + "\"" +
+    return error(line, "module " + module + " has no " + kind + " \"" + port + "\"" +
                            suggestion(port, names_of(ports)));
   }
 
@@ -166,9 +160,9 @@ class Planner {
       for (const auto& module : graph_.modules) known.push_back(module.name);
       return error(line, "no module \"" + port.module + "\"" + suggestion(port.module, known));
     }
-    const Json& ports = found->second.description.at(list);
+    const Json& ports = found->second.at(list);
     const Json* json = find_named(ports, port.port);
-    if (json == nullptr) return no_port(*found->second.module, line, kind, port.port, ports);
+    if (json == nullptr) return no_port(port.module, line, kind, port.port, ports);
     return json;
   }
 
@@ -209,7 +203,7 @@ class Planner {
   const Describe& describe_;
   std::string token_;
   Plan plan_;
-  std::map<std::string, Described> described_;
+  std::map<std::string, Json> described_;  // what the programs of modules say of themselves
   std::map<std::string, std::size_t> index_;
   std::set<std::int64_t> addresses_;
   std::int64_t next_address_ = 1;

@@ -44,6 +44,7 @@ Result<std::array<Descriptor, 2>> make_pipe() {
 
 Result<Process> Process::start(const std::vector<std::string>& command, Capture capture) {
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   auto output = make_pipe();
