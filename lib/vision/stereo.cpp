@@ -29,6 +29,7 @@ StereoMatcher::StereoMatcher(const StereoOptions& options) {
 }
 
 void StereoMatcher::match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) {
+  CV_Assert(takes(left.size()) && left.size() == right.size());
   matcher_->compute(grey(left, left_grey_), grey(right, right_grey_), sixteenths_);
   constexpr int kScale = cv::StereoMatcher::DISP_SCALE;
   sixteenths_.convertTo(disparity, CV_32F, 1.0 / kScale);

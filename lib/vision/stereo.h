@@ -24,11 +24,17 @@ class StereoMatcher {
 
   /// Disparities of the left picture's pixels.
   ///
-  /// @param left, right  (H, W) or (H, W, 3) u8, of the same size.
+  /// @param left, right  (H, W) or (H, W, 3) u8, of the same size, wider than the disparities
+  ///     searched (OpenCV 4.6 writes where it should not otherwise), H > 0.
   /// @param[out] disparity  (H, W) f32 [px], 0 where unknown; written in place when it has that
   ///     size and type already.
   /// Cost: 100 ms at 800×600 and 128 disparities on one core.
   void match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity);
+
+  /// Whether pictures of this size can be matched.
+  [[nodiscard]] bool takes(cv::Size size) const {
+    return size.height > 0 && size.width > matcher_->getNumDisparities();
+  }
 
  private:
   cv::Ptr<cv::StereoSGBM> matcher_;

@@ -49,14 +49,16 @@ int main(int argc, char** argv) {
                                 std::to_string(size.height) + ", the right one " +
                                 std::to_string(right_picture.header.width) + " x " +
                                 std::to_string(right_picture.header.height));
+        if (!matcher->takes({size.width, size.height}))
+          throw hc::ModuleError("pictures of " + std::to_string(size.width) + " x " +
+                                std::to_string(size.height) + " are not wider than " +
+                                std::to_string(*disparities) + " disparities");
         auto found = disparity.loan(size.width, size.height);
-        found.header.time = std::max(size.time, right_picture.header.time);
         cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
         matcher->match(hc::value_or_end(hc::as_mat(left_picture)),
                        hc::value_or_end(hc::as_mat(right_picture)), found_mat);
         if (depth.linked()) {
           auto metres = depth.loan(size.width, size.height);
-          metres.header.time = found.header.time;
           cv::Mat metres_mat = hc::value_or_end(hc::as_mat(metres));
           hc::vision::depth_of(found_mat, {*focal, *baseline, *offset}, metres_mat);
           disparity.send(std::move(found));

@@ -247,6 +247,88 @@ class Tool(Pipes):
         self.assertIn("R20 info", self.err)
         self.assertEqual(self.shell("hc cat --json bad.mtp", 1).count("\n"), 2)
 
+    def test_output_that_fails_is_told(self):
+        self.record()
+        for command in (
+            "hc cat r.mtp >/dev/full",
+            "hc cat --raw --skip r.mtp >/dev/full",
+            "hc info r.mtp >/dev/full",
+            "hc camera --help >/dev/full",
+            "hc describe brightness >/dev/full",
+        ):
+            with self.subTest(command):
+                self.shell(command, 1)
+                self.assertIn("No space left on device", self.err)
+
+    def test_busy_verbs_can_be_told_to_stop(self):
+        self.record()
+        for command in (
+            "hc play r.mtp --loop --speed max >/dev/null",
+            "hc play r.mtp --loop --speed max --out tcp-listen:%d" % free_port(),
+            "hc cat /dev/zero --skip --limit 10",
+        ):
+            with self.subTest(command):
+                process = self.start("exec " + command)
+                wait_until(lambda: self.catches_term(process.pid))
+                os.kill(process.pid, signal.SIGTERM)
+                process.communicate(timeout=WATCHDOG)
+                self.assertIn(process.returncode, (0, 1))
+
+    @staticmethod
+    def catches_term(pid):
+        text = pathlib.Path("/proc/%d/status" % pid).read_text()
+        return int(re.search(r"SigCgt:\t([0-9a-f]+)", text)[1], 16) >> (signal.SIGTERM - 1) & 1
+
+    def test_a_loop_over_nothing_ends(self):
+        self.shell(": >empty.mtp; hc play empty.mtp --loop")
+        self.record()
+        self.shell("hc play r.mtp --loop --from 100")
+
+    def test_record_does_not_empty_what_it_reads(self):
+        self.record()
+        before = pathlib.Path(self.path("r.mtp")).read_bytes()
+        for command in ("hc record r.mtp --in r.mtp", "hc record ./r.mtp < r.mtp"):
+            self.shell(command, 2)
+            self.assertIn("is the file that is written", self.err)
+        self.assertEqual(pathlib.Path(self.path("r.mtp")).read_bytes(), before)
+        self.shell(
+            "hc record 'odd?name&=.mtp' --in r.mtp --in r.mtp && hc play --speed max 'odd?name&=.mtp' | hc info"
+        )
+
+    def test_record_names_the_link_that_is_wrong(self):
+        self.record()
+        pathlib.Path(self.path("bad.mtp")).write_text("rubbish\n")
+        self.shell(": >empty.mtp; hc record x.mtp --in empty.mtp --in bad.mtp --in r.mtp", 1)
+        self.assertIn("bad.mtp: R5", self.err)
+
+    def test_a_picture_gets_the_header_that_was_asked_for(self):
+        out = self.shell(
+            "hc send --picture %s/aloeL.jpg --src 3 --dst 5 --seq 9 --ttl 2 --time 5 --mode 4 --coord 8"
+            " | hc cat --raw | head -n 1" % DATA
+        )
+        self.assertEqual(out, "1 3 5 9 2 5 30301 4 8 1282 1110\n")
+        self.shell("hc send --picture none.jpg", 1)
+        self.assertEqual(self.err.count("\n"), 1)
+
+    def test_hostile_messages_end_with_one_line(self):
+        head = "1 7 0 0 8 0 "
+        for line, told in [
+            (head + "30301 1 7 9223372036854775808 1", "R15 width"),
+            (head + "30301 1 7 -1 1", "R15 width"),
+            (head + "30301 1 7 2147483647 2147483647", "R24 width"),
+            (head + "30301 1 7 1", "R4 height"),
+            (head + "30301 1 7 1 1 1", "R4 header"),
+            (head + "9" * 10000, "R3 header"),
+            (head + "0x7 1 7 1 1", "R5 info"),
+            (head + "30301 1 7 1\0 1", "R5 width"),
+            (head + "40102 1 7 16000 16000\n22\n" + "x" * 22, "R36 elements"),
+        ]:
+            with self.subTest(told):
+                self.shell("hc cat", 1, line.encode() + b"\n")
+                self.assertRegex(self.err, r"^hc cat: [A-Za-z]+: -: %s: .*, at byte \d+\n$" % told)
+        self.shell("head -c 1000000000 /dev/zero | tr '\\0' 1 | hc cat; exit ${PIPESTATUS[2]}", 1)
+        self.assertIn("R3 header", self.err)
+
     def test_describe_is_json(self):
         for module in ("camera", "depth", "view", "brightness", "depth_score"):
             told = json.loads(self.shell("hc describe " + module))
@@ -407,12 +489,7 @@ to = "once.in"
         ):
             process = self.start("exec " + command)
 
-            def catches():
-                text = pathlib.Path("/proc/%d/status" % process.pid).read_text()
-                caught = int(re.search(r"SigCgt:\t([0-9a-f]+)", text)[1], 16)
-                return caught >> (signal.SIGTERM - 1) & 1
-
-            wait_until(catches)
+            wait_until(lambda: Tool.catches_term(process.pid))
             os.kill(process.pid, signal.SIGTERM)
             _, err = process.communicate(timeout=WATCHDOG)
             self.assertEqual((process.returncode, err), (0, b""))

@@ -19,31 +19,34 @@ struct Options {
   std::uint64_t limit = kDefaultLimit;
 };
 
-/// Shows one message; false when nobody looks any more.
-bool show(const Options& options, const hc::Message& message, hc::Sink* raw) {
-  if (raw != nullptr) return send(*raw, message);
-  auto plain = hc::expand(message);
-  if (!plain) throw Failure(options.uri, plain.error());
-  if (!options.json) return print(to_readable(*plain));
-  // The header as it came, the elements expanded.
-  return print(to_json_as(*plain, message.header) + "\n");
+/// Takes the next message, its elements expanded unless they go out as they came; false at the end.
+bool take(const Options& options, hc::Source& source, hc::Message& message, hc::Message& expanded) {
+  if (!receive(source, message, options.uri)) return false;
+  if (!options.raw) expanded = value_or_fail(hc::expand(message), options.uri);
+  return true;
 }
 
 void run(const Options& options) {
   auto source = open_source(options.uri, options.limit);
   std::unique_ptr<hc::Sink> raw;
   if (options.raw) raw = open_sink("-");
-  hc::Message message;
+  Skipper skipper("hc cat");
+  hc::Message message, expanded;
   for (std::uint64_t shown = 0; options.count == 0 || shown < options.count;) {
     try {
-      if (!receive(*source, message, options.uri)) break;
-      if (!show(options, message, raw.get())) return;
-      ++shown;
+      if (!take(options, *source, message, expanded)) break;
     } catch (const Failure& failure) {
       if (!options.skip) throw;
-      say(fmt::format("hc cat: {}", failure.what()));
-      if (auto resumed = source->resume(); !resumed) throw Failure(options.uri, resumed.error());
+      skipper.skip(*source, failure, options.uri);
+      continue;
     }
+    // In JSON the header stands as it came.
+    bool is_read = options.raw    ? send(*raw, message)
+                   : options.json ? print(to_json_as(expanded, message.header) + "\n")
+                                  : print(to_readable(expanded));
+    if (!is_read) return;
+    skipper.whole_message();
+    ++shown;
   }
   if (raw != nullptr) static_cast<void>(raw->close());
 }

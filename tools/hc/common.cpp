@@ -2,29 +2,23 @@
 #include "common.h"
 
 #include <fmt/format.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
+
+#include <hc/base/program.h>
 
 namespace tool {
 namespace {
 
 namespace fs = std::filesystem;
 
-int stop_event = -1;
-
-extern "C" void ask_to_stop(int) {
-  std::uint64_t one = 1;
-  [[maybe_unused]] auto written = ::write(stop_event, &one, sizeof one);
-}
-
-hc::LinkOptions link_options() {
+hc::LinkOptions link_options(std::uint64_t limit = kDefaultLimit) {
   hc::LinkOptions options;
-  options.stop = stop_descriptor();
+  options.limits.element_bytes = limit;
+  options.stop = hc::stop_descriptor();
   options.log = [](hc::Severity, std::string_view line) { say(line); };
   return options;
 }
@@ -40,32 +34,38 @@ hc::Uri parse(const std::string& uri) {
 
 }  // namespace
 
-int stop_descriptor() {
-  if (stop_event >= 0) return stop_event;
-  stop_event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  struct sigaction action {};
-  action.sa_handler = ask_to_stop;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  return stop_event;
-}
-
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit) {
-  auto options = link_options();
-  options.limits.element_bytes = limit;
-  return value_or_fail(hc::open_source(parse(uri), options), uri);
+  return value_or_fail(hc::open_source(parse(uri), link_options(limit)), uri);
 }
 
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri) {
   return value_or_fail(hc::open_sink(parse(uri), link_options()), uri);
 }
 
+std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit) {
+  return value_or_fail(hc::open_source({"file", path, {}}, link_options(limit)), path);
+}
+
+std::unique_ptr<hc::Sink> open_file_sink(const std::string& path) {
+  return value_or_fail(hc::open_sink({"file", path, {}}, link_options()), path);
+}
+
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri) {
-  auto got = hc::receive(source, message, stop_event);
+  if (hc::stop_requested()) return false;
+  auto got = hc::receive(source, message, hc::stop_descriptor());
   if (!got && got.error().code == hc::Code::Stopped) return false;
   return value_or_fail(std::move(got), uri);
+}
+
+void Skipper::skip(hc::Source& source, const Failure& failure, const std::string& uri) {
+  // Each place may cost as much reading as its header promises, so there is an end to it.
+  constexpr int kMostInARow = 1000;
+  using hc::Code;
+  bool is_damage = failure.code == Code::Malformed || failure.code == Code::TooLarge ||
+                   failure.code == Code::Unsupported || failure.code == Code::Truncated;
+  if (!is_damage || ++in_a_row_ > kMostInARow) throw Failure(failure);
+  say(fmt::format("{}: {}", verb_, failure.what()));
+  if (auto resumed = source.resume(); !resumed) throw Failure(uri, resumed.error());
 }
 
 bool send(hc::Sink& sink, const hc::Message& message) {
@@ -76,13 +76,10 @@ bool send(hc::Sink& sink, const hc::Message& message) {
 }
 
 bool print(std::string_view text) {
-  while (!text.empty()) {
-    ssize_t size = ::write(STDOUT_FILENO, text.data(), text.size());
-    if (size < 0 && errno == EINTR) continue;
-    if (size < 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(size));
-  }
-  return true;
+  auto written = hc::write_all(STDOUT_FILENO, text);
+  if (written) return true;
+  if (written.error().code != hc::Code::Closed) throw Failure("standard output", written.error());
+  return false;
 }
 
 void say(std::string_view line) {

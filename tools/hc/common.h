@@ -14,13 +14,19 @@
 
 namespace tool {
 
+inline constexpr std::uint64_t kDefaultLimit = std::uint64_t{256} << 20;  ///< of elements [byte]
+
 /// Ends a verb with one line on standard error and an exit status; quietly with 0 when it was told
 /// to stop.
 struct Failure : std::runtime_error {
   explicit Failure(const hc::Error& error)
-      : std::runtime_error(error.text()), status(status_of(error.code)) {}
+      : std::runtime_error(error.text()), code(error.code), status(status_of(error.code)) {}
   Failure(std::string_view who, const hc::Error& error)
       : Failure(hc::Error{error.code, std::string(who) + ": " + error.detail}) {}
+  /// Without a line: somebody else has said what is wrong.
+  explicit Failure(int exit_status) : std::runtime_error(""), status(exit_status) {}
+
+  hc::Code code = hc::Code::System;
   int status;
 
  private:
@@ -35,20 +41,34 @@ T value_or_fail(hc::Result<T> result, std::string_view who) {
   return std::move(*result);
 }
 
-/// A descriptor that becomes readable with SIGINT or SIGTERM; the second one kills.
-int stop_descriptor();
-
 /// Links as the command line names them. `limit` bounds the elements that are taken. [byte]
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri);
 
+/// Files by their name, which may have any letters, unlike a URI.
+std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit);
+std::unique_ptr<hc::Sink> open_file_sink(const std::string& path);
+
 /// Takes the next message; false at the end, or when we are told to stop.
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri);
+
+/// For --skip: goes on behind damaged bytes, which `failure` tells of, and says so. Everything else
+/// is thrown again, and so is the damage when it does not end.
+class Skipper {
+ public:
+  explicit Skipper(std::string verb) : verb_(std::move(verb)) {}
+  void skip(hc::Source& source, const Failure& failure, const std::string& uri);
+  void whole_message() { in_a_row_ = 0; }
+
+ private:
+  std::string verb_;
+  int in_a_row_ = 0;
+};
 
 /// Sends a message; false when nobody reads any more.
 bool send(hc::Sink& sink, const hc::Message& message);
 
-/// Writes to standard output; false when nobody reads any more.
+/// Writes to standard output; false when nobody reads any more. Any other error is a Failure.
 bool print(std::string_view text);
 
 /// One line to the person, on standard error.

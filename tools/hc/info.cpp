@@ -73,18 +73,20 @@ void run(const Options& options) {
   std::map<std::int32_t, Sender> senders;
   hc::Message message;
   Progress progress("hc info");
+  Skipper skipper("hc info");
   std::optional<Failure> fault;
   while (true) {
     try {
       if (!receive(*source, message, options.uri)) break;
     } catch (const Failure& failure) {
+      if (options.skip) {
+        skipper.skip(*source, failure, options.uri);
+        continue;
+      }
       fault = failure;
-      if (!options.skip) break;
-      say(fmt::format("hc info: {}", failure.what()));
-      fault.reset();
-      if (auto resumed = source->resume(); !resumed) throw Failure(options.uri, resumed.error());
-      continue;
+      break;
     }
+    skipper.whole_message();
     senders[message.header.src].add(message);
     auto traffic = source->traffic();
     progress.show(-1, fmt::format("{} messages, {}", traffic.messages,

@@ -61,7 +61,8 @@ int main(int argc, char** argv) {
     tool::say(fmt::format("hc{}: {}", is_verb ? " " + first : "", error.what()));
     return kUsage;
   } catch (const tool::Failure& failure) {
-    if (failure.status != 0) tool::say(fmt::format("hc {}: {}", first, failure.what()));
+    bool is_told = failure.status == 0 || *failure.what() == '\0';
+    if (!is_told) tool::say(fmt::format("hc {}: {}", first, failure.what()));
     return failure.status;
   } catch (const std::exception& error) {
     tool::say(fmt::format("hc {}: {}", first, error.what()));

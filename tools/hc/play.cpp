@@ -6,6 +6,8 @@
 #include <chrono>
 #include <limits>
 
+#include <hc/base/program.h>
+
 #include "common.h"
 #include "verbs.h"
 
@@ -39,7 +41,7 @@ class Pace {
       auto left = due - MonotonicClock::now();
       if (left <= left.zero()) return true;
       auto pause = std::chrono::ceil<std::chrono::milliseconds>(left);
-      if (!hc::wait_readable({}, stop_descriptor(), pause)) return false;
+      if (!hc::wait_readable({}, hc::stop_descriptor(), pause)) return false;
     }
   }
 
@@ -63,13 +65,15 @@ double parse_speed(const std::string& text) {
   return speed;
 }
 
-/// Plays the file once; false when there is nobody to play to any more.
+/// Plays the file once; false when there is no use in doing it again: nobody to play to, nothing to
+/// play, or told to stop.
 bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& progress) {
-  auto source = open_source("file:" + options.file, options.limit);
+  auto source = open_file_source(options.file, options.limit);
   std::error_code unknown;
   auto size = static_cast<double>(std::filesystem::file_size(options.file, unknown));
   Pace pace(speed);
   std::int64_t begin = 0;
+  bool any = false;
   hc::Message message;
   while (receive(*source, message, options.file)) {
     std::int64_t time = message.header.time;
@@ -82,11 +86,12 @@ bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& p
       if (!pace.wait_for(seconds)) return false;
     }
     if (!send(sink, message)) return false;
+    any = true;
     auto traffic = source->traffic();
     double share = size > 0 && !unknown ? static_cast<double>(traffic.bytes) / size : -1;
     progress.show(share, fmt::format("{} messages", traffic.messages));
   }
-  return true;
+  return any && !hc::stop_requested();
 }
 
 void run(const Options& options) {

@@ -2,6 +2,10 @@
 // hc record: keeps what comes over links in a file.
 #include <fmt/format.h>
 
+#include <filesystem>
+
+#include <hc/base/program.h>
+
 #include "common.h"
 #include "verbs.h"
 
@@ -15,21 +19,41 @@ struct Options {
   std::uint64_t limit = kDefaultLimit;
 };
 
+/// Whether a link is the file that is to be written anew.
+bool is_file(const std::string& link, const std::string& file) {
+  std::error_code missing;
+  auto uri = hc::parse_uri(link);
+  if (!uri || (uri->scheme != "file" && uri->scheme != "-")) return false;
+  std::string path = uri->scheme == "-" ? "/proc/self/fd/0" : uri->rest;
+  return std::filesystem::is_regular_file(path, missing) &&
+         std::filesystem::equivalent(path, file, missing);
+}
+
+struct Link {
+  std::string uri;
+  std::unique_ptr<hc::Source> source;  // null once it has ended
+};
+
 void run(const Options& options) {
-  std::vector<std::unique_ptr<hc::Source>> sources;
-  for (const auto& link : options.links) sources.push_back(open_source(link, options.limit));
-  auto sink = open_sink("file:" + options.file);
+  std::vector<Link> links;
+  for (const auto& uri : options.links) {
+    if (is_file(uri, options.file))
+      throw Failure(hc::Error{hc::Code::Usage, uri + " is the file that is written"});
+    links.push_back({uri, open_source(uri, options.limit)});
+  }
+  auto sink = open_file_sink(options.file);
   Progress progress("hc record " + options.file);
   hc::Message message;
-  while (!sources.empty()) {
+  while (!hc::stop_requested()) {  // what has come is kept
     bool any = false;
-    for (std::size_t i = 0; i < sources.size();) {
-      auto got = value_or_fail(sources[i]->take(message), options.links[i]);
-      if (got == hc::Got::End) {
-        sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(i));
-        continue;
-      }
-      ++i;
+    std::vector<int> descriptors;
+    for (auto& [uri, source] : links) {
+      if (source == nullptr) continue;
+      auto got = value_or_fail(source->take(message), uri);
+      if (got == hc::Got::End)
+        source.reset();
+      else
+        descriptors.push_back(source->descriptor());
       if (got != hc::Got::Message) continue;
       any = true;
       if (auto sent = sink->send(message); !sent) throw Failure(options.file, sent.error());
@@ -38,11 +62,8 @@ void run(const Options& options) {
                                     bytes_in_words(static_cast<double>(traffic.bytes))));
       if (traffic.messages == options.count) return;
     }
-    if (any || sources.empty()) continue;
-    std::vector<int> descriptors;
-    for (const auto& source : sources) descriptors.push_back(source->descriptor());
-    auto ready = hc::wait_readable(descriptors, stop_descriptor());
-    if (!ready) return;  // told to stop: what has come is kept
+    if (descriptors.empty()) return;
+    if (!any) static_cast<void>(hc::wait_readable(descriptors, hc::stop_descriptor()));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include <hc/base/program.h>
 #include <hc/graph/run.h>
 
 #include "common.h"
@@ -64,13 +65,12 @@ void print_links(const hc::Plan& plan, const hc::RunReport& report) {
 }
 
 void run(const Options& options) {
-  int stop = stop_descriptor();
   hc::Graph graph = read_graph(options);
   resolve_programs(graph);
   auto plan = hc::make_plan(std::move(graph), hc::describe_program, hc::graph_token());
   if (!plan) throw Failure(plan.error());
   hc::RunOptions run_options;
-  run_options.stop = stop;
+  run_options.stop = hc::stop_descriptor();
   run_options.event = [&](std::string_view line) {
     bool is_event = line.ends_with(": started") || line.ends_with(": ended");
     if (!(options.quiet && is_event)) say(line);

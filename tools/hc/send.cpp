@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc send: makes one message, from the command line or from a file.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include <hc/compress/compress.h>
 #include <hc/wire/text.h>
@@ -85,28 +89,47 @@ hc::Message message_of_npy(const Options& options) {
   return value_or_fail(read_npy(std::as_bytes(std::span(bytes))), options.npy);
 }
 
-/// The camera module reads pictures, with libraries that hc need not carry; so it sends this one.
-[[noreturn]] void send_picture(const Options& options) {
+/// The camera module reads pictures, with libraries that hc need not carry: its one message, over a
+/// pipe that takes the place of our standard input.
+hc::Message message_of_picture(const Options& options) {
   std::string program = find_program("camera");
-  std::vector<std::string> words = {program,
-                                    "--count=1",
-                                    "--source=" + options.picture,
-                                    "--out=left=" + options.out,
-                                    "--name=hc send",
-                                    "--address=left=" + std::to_string(options.header.src)};
-  if (!options.encoding.empty()) words.push_back("--encoding=" + options.encoding);
+  std::vector<std::string> words = {program, "--count=1", "--source=" + options.picture,
+                                    "--name=hc send"};
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  ::execv(program.c_str(), arguments.data());
-  throw Failure(hc::Error{hc::Code::NotFound, "module camera, which reads pictures"});
+
+  int ends[2];
+  pid_t child = -1;
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  int failed = ::pipe2(ends, O_CLOEXEC) == 0 ? 0 : errno;
+  if (failed == 0) {
+    ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+    failed = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+    ::close(ends[1]);
+    ::dup2(ends[0], STDIN_FILENO);
+    ::close(ends[0]);
+  }
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0)
+    throw Failure(hc::Error{hc::Code::NotFound, "module camera, which reads pictures: " +
+                                                    std::generic_category().message(failed)});
+  auto source = open_source("-", kDefaultLimit);
+  hc::Message message;
+  bool came = receive(*source, message, options.picture);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (!came) throw Failure(1);  // camera has said why
+  return message.keep();
 }
 
 void run(const Options& options) {
-  if (!options.picture.empty()) send_picture(options);
-  hc::Message message = !options.npy.empty()    ? message_of_npy(options)
-                        : !options.text.empty() ? message_of_text(options)
-                                                : message_of_numbers(options);
+  hc::Message message = !options.picture.empty() ? message_of_picture(options)
+                        : !options.npy.empty()   ? message_of_npy(options)
+                        : !options.text.empty()  ? message_of_text(options)
+                                                 : message_of_numbers(options);
   auto encoding = message.header.info.encoding;
   if (!options.encoding.empty())
     encoding = named(hc::encoding_of(options.encoding), "encoding", options.encoding);
@@ -119,6 +142,7 @@ void run(const Options& options) {
                                   : std::chrono::duration_cast<std::chrono::nanoseconds>(
                                         std::chrono::system_clock::now().time_since_epoch())
                                         .count();
+  if (header.coord == 0) header.coord = message.header.coord;
   message.header = header;
   message.header.info.encoding = hc::Encoding::Binary;
   message = value_or_fail(hc::compress(message, encoding), "encoding");

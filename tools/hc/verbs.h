@@ -7,9 +7,6 @@
 #include <CLI/Formatter.hpp>
 
 namespace tool {
-
-inline constexpr std::uint64_t kDefaultLimit = std::uint64_t{256} << 20;
-
 void add_cat(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_info(CLI::App& app);

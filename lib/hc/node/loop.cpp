@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <hc/base/program.h>
 #include <hc/compress/compress.h>
 
 namespace hc {
@@ -70,7 +71,7 @@ void Module::Loop::run() {
   if (module_.start_) module_.start_();
   auto has_ended = [](const LinkedSource& link) { return link.source == nullptr; };
   while (true) {
-    if (internal::stop_requested()) throw Stopped();
+    if (stop_requested()) throw Stopped();
     bool any = false;
     for (auto& link : sources_) any = take_one(link) || any;
     report();

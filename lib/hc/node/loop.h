@@ -16,9 +16,6 @@ namespace internal {
 /// Thrown to end a module cleanly: nobody reads it any more, or it was told to stop.
 struct Stopped {};
 
-/// SIGINT or SIGTERM has come.
-bool stop_requested();
-
 /// A link from which inputs are fed: one port, or all of them from standard input.
 struct LinkedSource {
   std::string uri;

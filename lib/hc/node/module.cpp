@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/node/module.h>
 
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
+#include <numeric>
 
+#include <hc/base/program.h>
 #include <hc/compress/compress.h>
 #include <hc/node/loop.h>
 
@@ -14,37 +14,6 @@ namespace hc {
 namespace {
 
 constexpr int kDone = 0, kFailure = 1, kUsage = 2;
-
-int stop_event = -1;  // written by the signal handler
-volatile std::sig_atomic_t stop_asked = 0;
-
-extern "C" void ask_to_stop(int) {
-  stop_asked = 1;
-  std::uint64_t one = 1;
-  [[maybe_unused]] auto written = ::write(stop_event, &one, sizeof one);
-}
-
-/// A descriptor that becomes readable with SIGINT or SIGTERM. The second signal kills.
-int catch_signals() {
-  stop_event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  struct sigaction action {};
-  action.sa_handler = ask_to_stop;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  return stop_event;
-}
-
-/// To a terminal or a pipe of the person who asked; links do not pass here.
-void print(int descriptor, std::string_view text) {
-  while (!text.empty()) {
-    ssize_t size = ::write(descriptor, text.data(), text.size());
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) return;  // nobody reads what we have to say
-    text.remove_prefix(static_cast<std::size_t>(size));
-  }
-}
 
 }  // namespace
 
@@ -76,7 +45,8 @@ std::shared_ptr<internal::OutputState> Module::add_output(std::string name, Port
   return state;
 }
 
-std::shared_ptr<ParameterState> Module::add_parameter(std::string name, ParameterValue otherwise,
+std::shared_ptr<ParameterState> Module::add_parameter(std::string name,
+                                                      const ParameterValue& otherwise,
                                                       std::string unit, std::string doc,
                                                       ParameterOptions options) {
   auto state = std::make_shared<ParameterState>();
@@ -86,30 +56,47 @@ std::shared_ptr<ParameterState> Module::add_parameter(std::string name, Paramete
   return state;
 }
 
-void Module::add_pair(std::shared_ptr<internal::InputState> first,
-                      std::shared_ptr<internal::InputState> second,
+void Module::add_pair(const std::shared_ptr<internal::InputState>& first,
+                      const std::shared_ptr<internal::InputState>& second,
                       std::function<void(const Message&, const Message&)> handler) {
-  constexpr std::size_t kMostWaiting = 64;
-  auto match = [a = first.get(), b = second.get(), handler = std::move(handler)] {
+  auto leave_alone = [this](internal::InputState& input) {
+    input.waiting.pop_front();
+    if (input.alone++ == 0)
+      log(input.name + ": a message has no partner of its time and is left out, as will others be");
+  };
+  auto match = [this, a = first.get(), b = second.get(), leave_alone,
+                handler = std::move(handler)] {
     while (!a->waiting.empty() && !b->waiting.empty()) {
-      std::int64_t a_time = a->waiting.front().header.time, b_time = b->waiting.front().header.time;
-      bool together = a_time == b_time || a_time == 0 || b_time == 0;
-      if (together) handler(a->waiting.front(), b->waiting.front());
-      if (together || a_time < b_time) a->waiting.pop_front();
-      if (together || b_time < a_time) b->waiting.pop_front();
+      const Header &left = a->waiting.front().header, &right = b->waiting.front().header;
+      if (left.time == right.time || left.time == 0 || right.time == 0) {
+        handled_time_ = std::max(left.time, right.time);
+        handler(a->waiting.front(), b->waiting.front());
+        a->waiting.pop_front();
+        b->waiting.pop_front();
+      } else {
+        leave_alone(left.time < right.time ? *a : *b);
+      }
     }
   };
   for (auto* input : {first.get(), second.get()}) {
-    input->handler = [input, match](const Message& message) {
+    input->handler = [input, match, leave_alone](const Message& message) {
       input->waiting.push_back(message.keep());
-      if (input->waiting.size() > kMostWaiting) input->waiting.pop_front();
+      auto bytes = [&] {
+        return std::accumulate(
+            input->waiting.begin(), input->waiting.end(), std::uint64_t{0},
+            [](std::uint64_t sum, const Message& held) { return sum + held.elements.size(); });
+      };
+      while (input->waiting.size() > kMostWaiting ||
+             (input->waiting.size() > 1 && bytes() > kMostWaitingBytes))
+        leave_alone(*input);
       match();
     };
   }
 }
 
 void Module::log(std::string_view line) const {
-  print(STDERR_FILENO, instance_ + ": " + std::string(line) + "\n");
+  // Who cannot be told anything is not told so either.
+  static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + std::string(line) + "\n"));
 }
 
 void Module::keep_rate(double rate) {
@@ -118,15 +105,12 @@ void Module::keep_rate(double rate) {
   while (true) {
     MonotonicTime left = due - clock_.monotonic();
     if (left <= MonotonicTime(0)) break;
-    auto waited = wait_readable({}, stop_event, std::chrono::ceil<std::chrono::milliseconds>(left));
+    auto waited =
+        wait_readable({}, stop_descriptor(), std::chrono::ceil<std::chrono::milliseconds>(left));
     if (!waited) throw internal::Stopped();
   }
   // Periods that were missed are not made up for.
   next_period_ = std::max(due, clock_.monotonic() - period) + period;
-}
-
-bool internal::stop_requested() {
-  return stop_asked != 0;
 }
 
 void internal::send(OutputState& output, Message message) {
@@ -173,14 +157,16 @@ int Module::run(int argc, char** argv) {
   }
   using Task = internal::Arguments::Task;
   if (arguments->task != Task::Run) {
-    print(STDOUT_FILENO,
-          arguments->task == Task::Help ? internal::help(*this) : internal::describe(*this));
-    return kDone;
+    auto printed =
+        write_all(STDOUT_FILENO, arguments->task == Task::Help ? internal::help(*this)
+                                                               : internal::describe(*this));
+    if (printed || printed.error().code == Code::Closed) return kDone;
+    log(printed.error().text());
+    return kFailure;
   }
   if (!arguments->instance.empty()) instance_ = arguments->instance;
-  int stop = catch_signals();
   try {
-    Loop loop(*this, *arguments, stop);
+    Loop loop(*this, *arguments, stop_descriptor());
     try {
       loop.run();
     } catch (const internal::Stopped&) {

@@ -51,18 +51,18 @@ class Module {
 
   /// Declares an input. The first one is standard input unless the command line links any.
   template <typename K>
-  Input<K> input(std::string name, const K& kind, std::string doc) {
+  Input<K> input(const std::string& name, const K& kind, const std::string& doc) {
     if constexpr (std::is_same_v<K, AnyKind>)
-      return {add_input(std::move(name), kind.types, std::move(doc))};
+      return {add_input(name, kind.types, doc)};
     else
-      return {add_input(std::move(name), {kind.type}, std::move(doc))};
+      return {add_input(name, {kind.type}, doc)};
   }
 
   /// Declares an output. All outputs go to standard output unless the command line links any; their
   /// addresses (src), 1, 2, … in the order of declaration, tell them apart.
   template <typename K>
-  Output<K> output(std::string name, const K& kind, std::string doc) {
-    return Output<K>(add_output(std::move(name), kind.type, std::move(doc)));
+  Output<K> output(const std::string& name, const K& kind, const std::string& doc) {
+    return Output<K>(add_output(name, kind.type, doc));
   }
 
   /// Declares a parameter.
@@ -88,9 +88,14 @@ class Module {
     };
   }
 
-  /// Takes the messages of two inputs together, those of the same time; one that has no partner is
-  /// dropped when a later one comes. Messages without a time are taken in the order in which they
-  /// come.
+  /// At most so many messages of an input, and bytes of elements, wait for their partners.
+  static constexpr std::size_t kMostWaiting = 64;
+  static constexpr std::uint64_t kMostWaitingBytes = std::uint64_t{256} << 20;
+
+  /// Takes the messages of two inputs together, those of the same time; what the handler sends has
+  /// the later of their times. One that has no partner is left out, which the log says once, when a
+  /// later one comes to the other input or more than kMostWaiting wait. Messages without a time are
+  /// taken in the order in which they come.
   template <typename A, typename B, typename Handler>
   void on_both(const Input<A>& first, const Input<B>& second, Handler handler) {
     add_pair(first.state, second.state,
@@ -140,11 +145,11 @@ class Module {
                                                   std::string doc);
   std::shared_ptr<internal::OutputState> add_output(std::string name, PortType type,
                                                     std::string doc);
-  std::shared_ptr<ParameterState> add_parameter(std::string name, ParameterValue otherwise,
+  std::shared_ptr<ParameterState> add_parameter(std::string name, const ParameterValue& otherwise,
                                                 std::string unit, std::string doc,
                                                 ParameterOptions options);
-  void add_pair(std::shared_ptr<internal::InputState> first,
-                std::shared_ptr<internal::InputState> second,
+  void add_pair(const std::shared_ptr<internal::InputState>& first,
+                const std::shared_ptr<internal::InputState>& second,
                 std::function<void(const Message&, const Message&)> handler);
 
   std::string name_, summary_;

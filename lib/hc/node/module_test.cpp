@@ -98,13 +98,43 @@ TEST(Module, TakesTwoInputsTogetherByTime) {
   for (int time : {2, 4, 5}) ASSERT_TRUE(right_sink->send(stamped(table({time * 10.0}), time)));
   ASSERT_TRUE(left_sink->close());
   ASSERT_TRUE(right_sink->close());
+  testing::internal::CaptureStderr();
   EXPECT_EQ(run(module, {"--in", "left=inproc:m3-left", "--in", "right=inproc:m3-right", "--out",
                          "inproc:m3-out"}),
             0);
   std::vector<double> pairs;
+  std::vector<std::int64_t> times;
   Message message;
-  while (*receive(*source, message)) pairs.push_back(message.view<double>()->at(0, 1));
+  while (*receive(*source, message)) {
+    pairs.push_back(message.view<double>()->at(0, 1));
+    times.push_back(message.header.time);
+  }
   EXPECT_EQ(pairs, (std::vector<double>{20, 50}));
+  EXPECT_EQ(times, (std::vector<std::int64_t>{2, 5}));
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("pair: left: a message has no partner"),
+            std::string::npos);
+}
+
+TEST(Module, R43_WhatIsMadeOfTwoHasTheLaterTime) {
+  for (bool left_first : {true, false}) {
+    Module module{"pair", "Pairs."};
+    auto left = module.input("left", table<double>(), "");
+    auto right = module.input("right", table<double>(), "");
+    auto out = module.output("out", table<double>(), "");
+    module.on_both(left, right, [&](const auto&, const auto&) { out.send(table({1.0})); });
+    auto left_sink = sink_of("inproc:m6-left"), right_sink = sink_of("inproc:m6-right");
+    auto source = source_of("inproc:m6-out");
+    ASSERT_TRUE(left_sink->send(stamped(table({1.0}), left_first ? 500 : 0)));
+    ASSERT_TRUE(right_sink->send(stamped(table({1.0}), left_first ? 0 : 500)));
+    ASSERT_TRUE(left_sink->close());
+    ASSERT_TRUE(right_sink->close());
+    EXPECT_EQ(run(module, {"--in", "left=inproc:m6-left", "--in", "right=inproc:m6-right", "--out",
+                           "inproc:m6-out"}),
+              0);
+    Message message;
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.time, 500);
+  }
 }
 
 TEST(Module, AMessageThatDoesNotFitIsOneCleanLine) {

@@ -32,6 +32,7 @@ struct InputState {
   std::vector<PortType> types;  ///< what it takes; empty: anything
   std::function<void(const Message&)> handler;
   std::deque<Message> waiting;  ///< for their partners, at inputs that are taken together
+  std::uint64_t alone = 0;      ///< messages that found none
 };
 
 struct OutputState {
@@ -73,7 +74,10 @@ class Output {
   }
 
   /// Whether anybody takes what is sent; a module may save itself the work otherwise.
-  [[nodiscard]] bool linked() const { return !state_->links.empty(); }
+  [[nodiscard]] bool linked() const {
+    return std::any_of(state_->links.begin(), state_->links.end(),
+                       [](const auto& link) { return link->sink != nullptr; });
+  }
 
  private:
   std::shared_ptr<internal::OutputState> state_;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/base/program.h>
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <system_error>
+
+namespace hc {
+namespace {
+
+int stop_event = -1;  // written by the signal handler
+volatile std::sig_atomic_t stop_asked = 0;
+
+extern "C" void ask_to_stop(int) {
+  int saved = errno;
+  stop_asked = 1;
+  std::uint64_t one = 1;
+  [[maybe_unused]] auto written = ::write(stop_event, &one, sizeof one);
+  errno = saved;
+}
+
+}  // namespace
+
+int stop_descriptor() {
+  if (stop_event >= 0) return stop_event;
+  stop_event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return stop_event;
+}
+
+bool stop_requested() {
+  return stop_asked != 0;
+}
+
+Status write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    ssize_t size = ::write(descriptor, text.data(), text.size());
+    if (size >= 0) {
+      text.remove_prefix(static_cast<std::size_t>(size));
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      pollfd writable{descriptor, POLLOUT, 0};
+      ::poll(&writable, 1, -1);
+    } else if (errno == EPIPE) {
+      return Error{Code::Closed, "nobody reads"};
+    } else if (errno != EINTR) {
+      return Error{Code::System, "write: " + std::generic_category().message(errno)};
+    }
+  }
+  return {};
+}
+
+}  // namespace hc

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What every program of ours needs from the system: the signals that end it, and text that a person
+// asked for. The library itself never writes anything on its own account.
+
+#include <string_view>
+
+#include <hc/base/result.h>
+
+namespace hc {
+
+/// A descriptor that is readable once SIGINT or SIGTERM has come, caught from the first call on; a
+/// second signal of the kind kills, as usual. SIGPIPE is ignored from then on. Every call gives the
+/// same descriptor. For the main thread.
+int stop_descriptor();
+
+/// Whether SIGINT or SIGTERM has come since. For loops that may never wait.
+bool stop_requested();
+
+/// Writes all of a text, waiting where the descriptor would block.
+///
+/// Errors: Closed (nobody reads it any more), System.
+Status write_all(int descriptor, std::string_view text);
+
+}  // namespace hc

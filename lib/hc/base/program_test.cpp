@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/base/program.h>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+#include <thread>
+
+namespace hc {
+namespace {
+
+TEST(Program, ASignalIsNoticedByThoseWhoWaitAndThoseWhoAsk) {
+  EXPECT_FALSE(stop_requested());
+  int stop = stop_descriptor();
+  EXPECT_EQ(stop_descriptor(), stop);
+  pollfd waiting{stop, POLLIN, 0};
+  EXPECT_EQ(::poll(&waiting, 1, 0), 0);
+  std::raise(SIGTERM);
+  EXPECT_TRUE(stop_requested());
+  EXPECT_EQ(::poll(&waiting, 1, 0), 1);
+}
+
+TEST(WriteAll, WaitsForASlowReader) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_NONBLOCK), 0);
+  std::string text(1'000'000, 'x'), got;
+  std::thread reader([&] {
+    char piece[4096];
+    while (got.size() < text.size()) {
+      pollfd readable{ends[0], POLLIN, 0};
+      ::poll(&readable, 1, -1);
+      ssize_t size = ::read(ends[0], piece, sizeof piece);
+      if (size > 0) got.append(piece, static_cast<std::size_t>(size));
+    }
+  });
+  EXPECT_TRUE(write_all(ends[1], text));
+  reader.join();
+  EXPECT_EQ(got, text);
+  ::close(ends[0]);
+  static_cast<void>(stop_descriptor());  // SIGPIPE is ignored from here on
+  EXPECT_EQ(write_all(ends[1], text).error().code, Code::Closed);
+  ::close(ends[1]);
+}
+
+TEST(WriteAll, OtherErrorsAreTold) {
+  int full = ::open("/dev/full", O_WRONLY);
+  ASSERT_GE(full, 0);
+  EXPECT_EQ(write_all(full, "x").error().text(), "System: write: No space left on device");
+  ::close(full);
+}
+
+}  // namespace
+}  // namespace hc
