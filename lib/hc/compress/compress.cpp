@@ -23,9 +23,24 @@ Result<Message> plain_message(const Message& message, const SharedBytes& bytes) 
   return result;
 }
 
+/// Most bytes that one compressed byte can stand for, so that no memory is set aside for a promise
+/// that what came cannot keep. A block of zstd takes 4 bytes at least, 3 of them its head, and
+/// holds 128 KiB at most (RFC 8878, 3.1.1.2). One component of a JPEG picture has all pixels, in
+/// blocks of 64 that take a bit each at least (ITU-T T.81, A.1.1 and F.1.2).
+constexpr std::uint64_t kMostForZstd = (std::uint64_t{128} << 10) / 4;
+constexpr std::uint64_t kMostForJpeg = 64 * 8;
+
+Error too_few(int rule, std::uint64_t promised, const Message& message) {
+  return damaged(rule,
+                 std::to_string(message.elements.size()) + " compressed bytes cannot hold the " +
+                     std::to_string(promised) + " bytes that the header promises",
+                 message);
+}
+
 Result<Message> expand_zstd(const Message& message) {
   std::uint64_t promised = message.header.element_bytes();
   if (message.elements.empty()) return damaged(36, "no zstd frame", message);
+  if (promised / kMostForZstd > message.elements.size()) return too_few(36, promised, message);
   // All in one call: it writes into our bytes alone, needs no window, and stops at their end.
   SharedBytes bytes = allocate_bytes(promised);
   std::size_t size =
@@ -66,7 +81,10 @@ Result<Message> expand(const Message& message) {
     case Encoding::Jpeg:
       break;
   }
-  SharedBytes pixels = allocate_bytes(message.header.element_bytes());
+  std::uint64_t promised = message.header.element_bytes();
+  if (promised / message.header.info.components / kMostForJpeg > message.elements.size())
+    return too_few(37, promised, message);
+  SharedBytes pixels = allocate_bytes(promised);
   if (auto fault = internal::read_jpeg(message.elements, message.header, pixels.get()))
     return damaged(37, *fault, message);
   return plain_message(message, pixels);

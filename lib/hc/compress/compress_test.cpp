@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hc {
@@ -83,6 +85,35 @@ TEST(Expand, R36_R37_EveryCutIsRefused) {
       cut.elements = cut.elements.first(size);
       EXPECT_FALSE(expand(cut)) << size;
     }
+  }
+}
+
+TEST(Expand, R36_R37_NoMemoryIsSetAsideForWhatCannotCome) {
+  for (Encoding encoding : {Encoding::Zstd, Encoding::Jpeg}) {
+    Message message;
+    message.header.info = {MatrixType::IntensityImage, 1, Scalar::U8, encoding};
+    message.header.width = message.header.height = 16000;
+    std::array<std::byte, 200> bytes{};
+    message.elements = bytes;
+    auto expanded = expand(message);
+    ASSERT_FALSE(expanded);
+    EXPECT_NE(expanded.error().detail.find("200 compressed bytes cannot hold the 256000000"),
+              std::string::npos)
+        << expanded.error().detail;
+  }
+}
+
+TEST(Expand, R36_R37_TheFlattestPicturesComeBack) {
+  Draft draft =
+      Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 8000, 8000);
+  std::fill(draft.elements().begin(), draft.elements().end(), std::byte{128});
+  Message flat = std::move(draft).finish();
+  for (Encoding encoding : {Encoding::Zstd, Encoding::Jpeg}) {
+    auto small = compress(flat, encoding);
+    ASSERT_TRUE(small);
+    auto again = expand(*small);
+    ASSERT_TRUE(again) << again.error().detail;
+    EXPECT_TRUE(std::equal(again->elements.begin(), again->elements.end(), flat.elements.begin()));
   }
 }
 
