@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows pictures in a window and keeps them as PNG files.
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <filesystem>
-#include <map>
+#include <set>
 
 #include <hc/adapter/opencv.h>
+#include <hc/base/program.h>
 #include <hc/node/module.h>
 #include <vision/picture.h>
 #include <opencv2/highgui.hpp>
@@ -14,8 +21,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether a window can be opened. OpenCV's window library aborts the program where a display is
+/// named but does not answer, so a child tries first.
 bool has_display() {
-  return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return false;
+  pid_t child = ::fork();
+  if (child == 0) {
+    rlimit no_core{0, 0};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::dup2(::open("/dev/null", O_WRONLY | O_CLOEXEC), STDERR_FILENO);
+    try {
+      cv::namedWindow("hypercolumn");
+    } catch (const cv::Exception&) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  int status = 1;
+  return child > 0 && ::waitpid(child, &status, 0) == child && status == 0;
 }
 
 /// Writes a picture so that whoever looks finds a whole one, the last or this.
@@ -42,13 +65,18 @@ int main(int argc, char** argv) {
                                {.positional = true});
   auto window =
       module.parameter("window", "auto", "", "show a window", {.choices = {"auto", "yes", "no"}});
+  auto stay = module.parameter("stay", true, "",
+                               "keep windows after the last picture, until a key is pressed");
   auto least = module.parameter("least", 0.0, "", "value that is bluest; both 0: from the picture");
   auto most = module.parameter("most", 0.0, "", "value that is reddest; both 0: from the picture");
 
   bool shows = false;
+  std::set<std::string> windows;
   module.on_start([&] {
-    shows = *window == "yes" || (*window == "auto" && has_display() && save->empty());
-    if (shows && !has_display()) throw hc::ModuleError("window: there is no display");
+    if (*least > *most) throw hc::ModuleError("least is above most");
+    bool wants_window = *window == "yes" || (*window == "auto" && save->empty());
+    shows = wants_window && has_display();
+    if (*window == "yes" && !shows) throw hc::ModuleError("window: there is no display");
     if (!shows && save->empty())
       throw hc::ModuleError("no display for a window and no file to save to: give --save");
   });
@@ -69,9 +97,19 @@ int main(int argc, char** argv) {
       write_whole(all ? fs::path(*save) / file : fs::path(*save), bgr);
     }
     if (shows) {
-      cv::imshow("hypercolumn " + std::to_string(header.src), bgr);
+      std::string title = "hypercolumn " + std::to_string(header.src);
+      cv::imshow(title, bgr);
       cv::pollKey();
+      windows.insert(title);
     }
+  });
+  module.on_end([&] {
+    auto is_open = [](const std::string& title) {
+      return cv::getWindowProperty(title, cv::WND_PROP_VISIBLE) >= 1;
+    };
+    constexpr int kPause = 50;  // [ms] between looks for a signal
+    while (*stay && !hc::stop_requested() && std::any_of(windows.begin(), windows.end(), is_open))
+      if (cv::waitKey(kPause) >= 0) break;
   });
   return module.run(argc, argv);
 }

@@ -158,7 +158,24 @@ class Tool(Pipes):
                 1,
                 'hc cat: Malformed: -: R5 version: "rubbish" is not an integer',
             ),
-            ("hc send --type position 1 2", 2, "hc send: Usage: 2 numbers do not fill rows"),
+            (
+                "hc send --type position 1 2",
+                2,
+                "hc send: Usage: 2 numbers do not make elements of 3",
+            ),
+            ("hc camra", 2, 'hc: no verb and no module "camra", did you mean "camera"?'),
+            ("hc describe camra", 1, 'hc describe: NotFound: no module "camra", did you mean'),
+            ("hc send", 2, "hc send: Usage: nothing to send"),
+            ("hc send --text a 1", 2, "hc send: Usage: --text and numbers do not go together"),
+            ("hc send --text a --width 1", 2, "hc send: Usage: --scalar, --components and --width"),
+            ("hc send --coord head 1", 2, 'hc send: --coord: "head" is not a whole number'),
+            ("hc cat --count -1", 2, 'hc cat: --count: "-1" is not a whole number'),
+            ("hc cat inproc:x", 2, "hc cat: Usage: inproc:x: inproc links threads"),
+            (
+                "DISPLAY=:9797 hc view --window yes",
+                1,
+                "view: window: there is no display",
+            ),
             ("hc send --type position 1 2 x", 1, 'hc send: Malformed: elements: R27: "x" is not'),
         ]:
             with self.subTest(command):
@@ -184,6 +201,8 @@ class Tool(Pipes):
             PYTHON
             + ' -c \'import numpy; numpy.save("a.npy", numpy.arange(6, dtype="<f4").reshape(2, 3))\''
         )
+        out = json.loads(self.shell("hc send --npy a.npy --type intensity_image | hc cat --json"))
+        self.assertEqual(out["type"], "intensity_image")
         out = json.loads(self.shell("hc send --npy a.npy | hc cat --json"))
         self.assertEqual((out["type"], out["elements"]), ("table", [[0, 1, 2], [3, 4, 5]]))
         out = self.shell("hc send --picture %s/aloeL.jpg --src 4 --encoding jpeg | hc info" % DATA)

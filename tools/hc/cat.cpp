@@ -60,8 +60,10 @@ void add_cat(CLI::App& app) {
   auto* json = verb->add_flag("--json", options->json, "one JSON object a line");
   verb->add_flag("--raw", options->raw, "the messages themselves")->excludes(json);
   verb->add_flag("--skip", options->skip, "go on behind what is damaged (files)");
-  verb->add_option("--count", options->count, "end after so many messages");
-  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]");
+  verb->add_option("--count", options->count, "end after so many messages, 0: never")
+      ->check(whole_number());
+  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]")
+      ->check(whole_number());
   verb->callback([options] { run(*options); });
 }
 

@@ -29,7 +29,10 @@ bool is_program(const fs::path& path) {
 }
 
 hc::Uri parse(const std::string& uri) {
-  return value_or_fail(hc::parse_uri(uri), uri);
+  auto parsed = value_or_fail(hc::parse_uri(uri), uri);
+  if (parsed.scheme == "inproc")
+    throw Failure(uri, hc::Error{hc::Code::Usage, "inproc links threads of one program"});
+  return parsed;
 }
 
 }  // namespace

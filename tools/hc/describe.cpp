@@ -16,7 +16,8 @@ void add_describe(CLI::App& app) {
   verb->callback([name] {
     std::string program = find_program(*name);
     if (program.empty())
-      throw Failure(hc::Error{hc::Code::NotFound, "no module \"" + *name + "\""});
+      throw Failure(hc::Error{hc::Code::NotFound, "no module \"" + *name + "\"" +
+                                                      hc::suggestion(*name, module_names())});
     auto text = value_or_fail(hc::describe_program(program), *name);
     auto json = nlohmann::ordered_json::parse(text, nullptr, false);
     if (json.is_discarded())

@@ -95,7 +95,7 @@ void run(const Options& options) {
   // What was whole is told even where the end is damaged.
   print_senders(senders);
   auto traffic = source->traffic();
-  print(fmt::format("{} messages, {}\n", traffic.messages,
+  print(fmt::format("{} message{}, {}\n", traffic.messages, traffic.messages == 1 ? "" : "s",
                     bytes_in_words(static_cast<double>(traffic.bytes))));
   if (fault) throw Failure(*fault);
 }
@@ -107,7 +107,8 @@ void add_info(CLI::App& app) {
   auto* verb = app.add_subcommand("info", "Tell what a file or a stream holds");
   verb->add_option("link", options->uri, "where messages come from")->capture_default_str();
   verb->add_flag("--skip", options->skip, "go on behind what is damaged (files)");
-  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]");
+  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]")
+      ->check(whole_number());
   verb->callback([options] { run(*options); });
 }
 

@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include <hc/graph/graph_file.h>
+
 #include "common.h"
 #include "verbs.h"
 
@@ -49,7 +51,11 @@ int main(int argc, char** argv) {
   bool is_verb = !verbs.empty();
   if (!first.empty() && first[0] != '-' && !is_verb) {
     become_module(first, argv + 1);
-    tool::say(fmt::format("hc: no verb and no module \"{}\"; see hc --help", first));
+    std::vector<std::string> known = tool::module_names();
+    for (const auto* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(verb->get_name());
+    tool::say(fmt::format("hc: no verb and no module \"{}\"{}; see hc --help", first,
+                          hc::suggestion(first, known)));
     return kUsage;
   }
   try {

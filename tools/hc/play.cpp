@@ -60,15 +60,16 @@ double parse_speed(const std::string& text) {
   double speed = 0;
   const char* end = text.data() + text.size();
   auto [stop, status] = std::from_chars(text.data(), end, speed);
-  if (status != std::errc() || stop != end || !(speed > 0) || speed > 1e6)
-    throw Failure(hc::Error{hc::Code::Usage, "--speed is a number above 0, or max"});
+  if (status != std::errc() || stop != end || !(speed >= 1e-6 && speed <= 1e6))
+    throw Failure(hc::Error{hc::Code::Usage, "--speed is a number from 1e-6 to 1e6, or max"});
   return speed;
 }
 
 /// Plays the file once; false when there is no use in doing it again: nobody to play to, nothing to
 /// play, or told to stop.
 bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& progress) {
-  auto source = open_file_source(options.file, options.limit);
+  auto source = options.file == "-" ? open_source("-", options.limit)
+                                    : open_file_source(options.file, options.limit);
   std::error_code unknown;
   auto size = static_cast<double>(std::filesystem::file_size(options.file, unknown));
   Pace pace(speed);
@@ -110,7 +111,7 @@ void run(const Options& options) {
 void add_play(CLI::App& app) {
   auto options = std::make_shared<Options>();
   auto* verb = app.add_subcommand("play", "Send what stands in a file, in its own time");
-  verb->add_option("file", options->file, "a recording")->required();
+  verb->add_option("file", options->file, "a recording, or -")->required();
   verb->add_option("--out", options->out, "where messages go")->capture_default_str();
   verb->add_option("--speed", options->speed, "times faster than recorded, or max")
       ->capture_default_str();
@@ -118,7 +119,8 @@ void add_play(CLI::App& app) {
   verb->add_option("--from", options->from,
                    "leave out what comes before [s from the first message]");
   verb->add_option("--to", options->to, "leave out what comes after [s from the first message]");
-  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]");
+  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]")
+      ->check(whole_number());
   verb->callback([options] { run(*options); });
 }
 

@@ -41,6 +41,9 @@ void resolve_programs(hc::Graph& graph) {
     if (name.find('/') != std::string::npos && !name.starts_with('/'))
       name = (std::filesystem::path(graph.file).parent_path() / name).string();
     std::string program = find_program(name);
+    if (program.empty() && std::filesystem::is_regular_file(name))
+      throw Failure(hc::Error{hc::Code::Usage, fmt::format("{}:{}: {} may not be executed",
+                                                           graph.file, module.line, name)});
     if (program.empty())
       throw Failure(
           hc::Error{hc::Code::Usage,

@@ -30,11 +30,14 @@ struct Options {
   int ttl = 8;
   std::int64_t time = -1;  // -1: now
   std::vector<std::string> numbers;
+  bool has_text = false, has_type = false, has_shape = false;  // given on the command line
 };
 
 template <typename E>
 E named(std::optional<E> value, const std::string& kind, const std::string& name) {
-  if (!value) throw Failure(hc::Error{hc::Code::Usage, "no " + kind + " \"" + name + "\""});
+  if (!value)
+    throw Failure(hc::Error{hc::Code::Usage,
+                            fmt::format("no {} \"{}\"; see spec/mtp-1.md, section 3", kind, name)});
   return *value;
 }
 
@@ -66,9 +69,11 @@ hc::Message message_of_numbers(const Options& options) {
                                                                         : elements;
   std::size_t height = width == 0 ? 0 : elements / width;
   if (width * height * header.info.components != options.numbers.size())
-    throw Failure(hc::Error{hc::Code::Usage,
-                            fmt::format("{} numbers do not fill rows of {} elements of {}",
-                                        options.numbers.size(), width, header.info.components)});
+    throw Failure(hc::Error{
+        hc::Code::Usage,
+        fmt::format("{} numbers do not make {} of {} components each", options.numbers.size(),
+                    options.width > 0 ? fmt::format("rows of {} elements", width) : "elements",
+                    header.info.components)});
   header.width = static_cast<std::int32_t>(width);
   header.height = static_cast<std::int32_t>(height);
   if (auto valid = hc::check(header); !valid) throw Failure(valid.error());
@@ -86,7 +91,11 @@ hc::Message message_of_npy(const Options& options) {
   std::ifstream file(options.npy, std::ios::binary);
   if (!file) throw Failure(hc::Error{hc::Code::NotFound, options.npy + ": cannot be read"});
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  return value_or_fail(read_npy(std::as_bytes(std::span(bytes))), options.npy);
+  auto message = value_or_fail(read_npy(std::as_bytes(std::span(bytes))), options.npy);
+  if (options.has_type)
+    message.header.info.type = named(hc::matrix_type_of(options.type), "matrix type", options.type);
+  if (auto valid = hc::check(message.header); !valid) throw Failure(options.npy, valid.error());
+  return message;
 }
 
 /// The camera module reads pictures, with libraries that hc need not carry: its one message, over a
@@ -125,10 +134,28 @@ hc::Message message_of_picture(const Options& options) {
   return message.keep();
 }
 
+/// What does not go together, said before anything is done with half of it.
+void check(const Options& options) {
+  std::vector<std::string> given;
+  if (options.has_text) given.emplace_back("--text");
+  if (!options.picture.empty()) given.emplace_back("--picture");
+  if (!options.npy.empty()) given.emplace_back("--npy");
+  if (!options.numbers.empty()) given.emplace_back("numbers");
+  auto refuse = [](const std::string& what) { throw Failure(hc::Error{hc::Code::Usage, what}); };
+  if (given.empty() && !options.has_type)
+    refuse("nothing to send: give numbers, --text, --picture or --npy");
+  if (given.size() > 1) refuse(given[0] + " and " + given[1] + " do not go together");
+  if (given.size() == 1 && given[0] != "numbers" && options.has_shape)
+    refuse("--scalar, --components and --width are for numbers, not for " + given[0]);
+  if (given.size() == 1 && given[0] != "numbers" && given[0] != "--npy" && options.has_type)
+    refuse("--type is for numbers and --npy, not for " + given[0]);
+}
+
 void run(const Options& options) {
+  check(options);
   hc::Message message = !options.picture.empty() ? message_of_picture(options)
                         : !options.npy.empty()   ? message_of_npy(options)
-                        : !options.text.empty()  ? message_of_text(options)
+                        : options.has_text       ? message_of_text(options)
                                                  : message_of_numbers(options);
   auto encoding = message.header.info.encoding;
   if (!options.encoding.empty())
@@ -161,24 +188,29 @@ void add_send(CLI::App& app) {
   verb->add_option("--text", options->text, "send this as a string");
   verb->add_option("--picture", options->picture, "send a picture file");
   verb->add_option("--npy", options->npy, "send a NumPy array");
-  verb->add_option("--type", options->type, "matrix type of the numbers")->capture_default_str();
+  verb->add_option("--type", options->type, "matrix type of the numbers or the array")
+      ->capture_default_str();
   verb->add_option("--scalar", options->scalar, "scalar of the numbers")->capture_default_str();
   verb->add_option("--components", options->components, "numbers in an element")
       ->check(CLI::Range(1, 99));
   verb->add_option("--width", options->width, "elements in a row (default: all)");
   verb->add_option("--encoding", options->encoding, "text, binary, zstd or jpeg");
-  verb->add_option("--src", options->header.src, "address of the sender")
-      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--src", options->header.src, "address of the sender")->check(whole_number());
   verb->add_option("--dst", options->header.dst, "address of the receiver");
-  verb->add_option("--seq", options->header.seq, "sequence number")->check(CLI::NonNegativeNumber);
+  verb->add_option("--seq", options->header.seq, "sequence number")->check(whole_number());
   verb->add_option("--ttl", options->ttl, "routers left to pass")->check(CLI::Range(0, 255));
   verb->add_option("--time", options->time, "ns since the Unix epoch (default: now)")
-      ->check(CLI::NonNegativeNumber);
-  verb->add_option("--mode", options->header.mode, "system mode")->check(CLI::NonNegativeNumber);
-  verb->add_option("--coord", options->header.coord, "coordinate system")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number());
+  verb->add_option("--mode", options->header.mode, "system mode")->check(whole_number());
+  verb->add_option("--coord", options->header.coord, "coordinate system")->check(whole_number());
   verb->add_option("numbers", options->numbers, "the elements, row by row");
-  verb->callback([options] { run(*options); });
+  verb->callback([options, verb] {
+    options->has_text = verb->count("--text") > 0;
+    options->has_type = verb->count("--type") > 0;
+    for (const char* option : {"--scalar", "--components", "--width"})
+      options->has_shape = options->has_shape || verb->count(option) > 0;
+    run(*options);
+  });
 }
 
 }  // namespace tool

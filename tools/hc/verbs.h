@@ -5,8 +5,20 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
 
 namespace tool {
+
+/// For options that are whole numbers: CLI11 takes -1 for the largest, and names ranges of 300
+/// digits.
+inline CLI::Validator whole_number() {
+  return {[](const std::string& text) {
+            return text.find_first_not_of("0123456789") == std::string::npos
+                       ? std::string()
+                       : "\"" + text + "\" is not a whole number from 0 on";
+          },
+          "", "whole_number"};
+}
 void add_cat(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_info(CLI::App& app);

@@ -85,6 +85,9 @@ void Module::Loop::run() {
     }
   }
   module_.handled_time_ = 0;
+  for (const auto& input : module_.inputs_)
+    if (auto left = input->waiting.size() + input->alone; left > 0)
+      module_.log(input->name + ": left without a partner: " + std::to_string(left));
   if (module_.end_) module_.end_();
 }
 
@@ -125,8 +128,10 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
   const auto& only = *link.inputs.back();
   if (link.inputs.size() == 1 && only.types.size() == 1)
     fail(only.name, fits(message.header, only.types[0]).error());
-  fail(link.uri, Error{Code::Malformed,
-                       "R17 info: " + text(message.header.info) + " fits no input: " + takers});
+  std::string what = text(message.header.info);
+  if (message.header.coord != 0)
+    what += ", coordinate system " + std::to_string(message.header.coord);
+  fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
 }
 
 void Module::Loop::wait() {
