@@ -134,7 +134,7 @@ class Parser {
       const char* end = text.data() + text.size();
       auto [stop, status] = std::from_chars(text.data(), end, address);
       if (status != std::errc() || stop != end || address < 0)
-        return usage("--address wants PORT=NUMBER, 0 to 2147483647, not \"" + value + "\"");
+        return usage("--address wants [PORT=]NUMBER, 0 to 2147483647, not \"" + value + "\"");
       return {};
     }
     auto encoding = encoding_of(text);

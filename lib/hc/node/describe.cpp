@@ -2,6 +2,7 @@
 // --help and --describe: what a module says of itself.
 #include <cmath>
 
+#include <hc/base/json_string.h>
 #include <hc/node/arguments.h>
 #include <hc/wire/text.h>
 
@@ -9,12 +10,9 @@ namespace hc::internal {
 namespace {
 
 std::string quoted(std::string_view text) {
-  std::string result = "\"";
-  for (char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
+  std::string json;
+  append_json_string(text, json);
+  return json;
 }
 
 /// A JSON object that is being written, one key after the other.
@@ -56,6 +54,8 @@ std::string describe_type(const PortType& type) {
 }
 
 std::string value_as_json(const ParameterValue& value) {
+  const auto* number = std::get_if<double>(&value);
+  if (number != nullptr && !std::isfinite(*number)) return "null";
   return std::holds_alternative<std::string>(value) ? quoted(text(value)) : text(value);
 }
 

@@ -195,7 +195,7 @@ TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
       {{"--on=maybe"}, "parameter on: \"maybe\" is not true or false"},
       {{"--in", "up=-"}, "no input \"up\"; there are: in"},
       {{"--in", "in="}, "a URI cannot be empty: \"\""},
-      {{"--address", "out=-1"}, "--address wants PORT=NUMBER, 0 to 2147483647, not \"out=-1\""},
+      {{"--address", "out=-1"}, "--address wants [PORT=]NUMBER, 0 to 2147483647, not \"out=-1\""},
       {{"--encoding", "png"}, "--encoding is text, binary, zstd or jpeg, not \"png\""},
       {{"--limit", "much"}, "--limit wants a number of bytes"},
       {{"0.5", "extra"}, "one argument too many: \"extra\"; see --help"},
