@@ -120,7 +120,7 @@ class Parser {
     if (!split) return split.error();
     auto uri = parse_uri(split->second);
     if (!uri) return uri.error();
-    (is_input ? arguments_.inputs : arguments_.outputs).push_back({split->first, *uri});
+    (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(split->first, *uri);
     return {};
   }
 

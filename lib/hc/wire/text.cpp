@@ -217,8 +217,7 @@ char* write_number(char* at, T value) {
     return internal::write_integer(at, value);
   } else {
     if (std::isnan(value)) [[unlikely]] {
-      std::memcpy(at, "nan", 3);
-      return at + 3;
+      return std::copy_n("nan", 3, at);
     }
     return std::to_chars(at, at + kMaxWritten, value).ptr;
   }
