@@ -60,10 +60,8 @@ void add_cat(CLI::App& app) {
   auto* json = verb->add_flag("--json", options->json, "one JSON object a line");
   verb->add_flag("--raw", options->raw, "the messages themselves")->excludes(json);
   verb->add_flag("--skip", options->skip, "go on behind what is damaged (files)");
-  verb->add_option("--count", options->count, "end after so many messages, 0: never")
-      ->check(whole_number());
-  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]")
-      ->check(whole_number());
+  add_count(*verb, options->count);
+  add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }
 

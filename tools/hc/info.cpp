@@ -107,8 +107,7 @@ void add_info(CLI::App& app) {
   auto* verb = app.add_subcommand("info", "Tell what a file or a stream holds");
   verb->add_option("link", options->uri, "where messages come from")->capture_default_str();
   verb->add_flag("--skip", options->skip, "go on behind what is damaged (files)");
-  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]")
-      ->check(whole_number());
+  add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }
 

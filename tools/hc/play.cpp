@@ -119,8 +119,7 @@ void add_play(CLI::App& app) {
   verb->add_option("--from", options->from,
                    "leave out what comes before [s from the first message]");
   verb->add_option("--to", options->to, "leave out what comes after [s from the first message]");
-  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]")
-      ->check(whole_number());
+  add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }
 

@@ -74,10 +74,8 @@ void add_record(CLI::App& app) {
   auto* verb = app.add_subcommand("record", "Keep what comes over links in a file");
   verb->add_option("file", options->file, "the file, written anew")->required();
   verb->add_option("--in", options->links, "where messages come from; may be repeated");
-  verb->add_option("--count", options->count, "end after so many messages, 0: never")
-      ->check(whole_number());
-  verb->add_option("--limit", options->limit, "largest elements that are taken [byte]")
-      ->check(whole_number());
+  add_count(*verb, options->count);
+  add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }
 

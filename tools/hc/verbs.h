@@ -2,6 +2,9 @@
 #pragma once
 // The verbs: each adds its subcommand, with what is to be done, to the command line.
 
+#include <cstdint>
+#include <string>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -19,6 +22,15 @@ inline CLI::Validator whole_number() {
           },
           "", "whole_number"};
 }
+/// Options that several verbs have.
+inline void add_limit(CLI::App& verb, std::uint64_t& limit) {
+  verb.add_option("--limit", limit, "largest elements that are taken [byte]")
+      ->check(whole_number());
+}
+inline void add_count(CLI::App& verb, std::uint64_t& count) {
+  verb.add_option("--count", count, "end after so many messages, 0: never")->check(whole_number());
+}
+
 void add_cat(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_info(CLI::App& app);
