@@ -9,7 +9,7 @@
 namespace hc::internal {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string json;
   append_json_string(text, json);
   return json;
@@ -19,10 +19,12 @@ std::string quoted(std::string_view text) {
 class Object {
  public:
   Object& add(std::string_view key, const std::string& json) {
-    text_.append(text_.size() > 1 ? "," : "").append(quoted(key)).append(":").append(json);
+    text_.append(text_.size() > 1 ? "," : "").append(in_quotes(key)).append(":").append(json);
     return *this;
   }
-  Object& add_text(std::string_view key, std::string_view text) { return add(key, quoted(text)); }
+  Object& add_text(std::string_view key, std::string_view text) {
+    return add(key, in_quotes(text));
+  }
   Object& add_number(std::string_view key, double number) {
     if (!std::isfinite(number)) return *this;
     std::string digits;
@@ -56,7 +58,7 @@ std::string describe_type(const PortType& type) {
 std::string value_as_json(const ParameterValue& value) {
   const auto* number = std::get_if<double>(&value);
   if (number != nullptr && !std::isfinite(*number)) return "null";
-  return std::holds_alternative<std::string>(value) ? quoted(text(value)) : text(value);
+  return std::holds_alternative<std::string>(value) ? in_quotes(text(value)) : text(value);
 }
 
 std::string describe_parameter(const ParameterState& parameter) {
@@ -69,7 +71,7 @@ std::string describe_parameter(const ParameterState& parameter) {
       .add_number("most", parameter.options.most);
   if (!parameter.options.choices.empty())
     object.add("choices", array(parameter.options.choices,
-                                [](const std::string& choice) { return quoted(choice); }));
+                                [](const std::string& choice) { return in_quotes(choice); }));
   return object.add_text("doc", parameter.doc).text();
 }
 

@@ -43,7 +43,8 @@ Result<LengthLine> read_length_line(std::string_view text, const Limits& limits,
   bool too_long = end == std::string_view::npos;
   bool spelled = !token.empty() && stop == last && (token.front() != '0' || token.size() == 1);
   if (too_long || !spelled)
-    return refusal(Code::Malformed, 34, "length", quoted(token) + " is no number of bytes", byte);
+    return refusal(Code::Malformed, 34, "length", in_quotes(token) + " is no number of bytes",
+                   byte);
   if (status != std::errc() || result.length > limits.element_bytes)
     return refusal(
         Code::TooLarge, 35, "length",
@@ -61,7 +62,8 @@ Result<std::size_t> read_closing(const Header& header, std::string_view text, st
     if (text[1] == '\n') return std::size_t{2};
   }
   return refusal(Code::Malformed, 26, "elements",
-                 quoted(text.substr(0, 1)) + " stands where a line feed closes the elements", byte);
+                 in_quotes(text.substr(0, 1)) + " stands where a line feed closes the elements",
+                 byte);
 }
 
 Result<std::size_t> check_rows(const Header& header, std::string_view text, std::uint64_t byte) {

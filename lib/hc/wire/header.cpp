@@ -12,7 +12,7 @@
 namespace hc {
 namespace {
 
-using internal::quoted;
+using internal::in_quotes;
 using internal::refusal;
 
 enum Field : std::size_t {
@@ -263,11 +263,11 @@ Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint6
     at += token.size();
     bool fits = true;
     auto value = parse_integer(token, fits);
-    if (!value) return refuse({Code::Malformed, 5, field, quoted(token) + " is not an integer"});
+    if (!value) return refuse({Code::Malformed, 5, field, in_quotes(token) + " is not an integer"});
     if (!fits)
       return refuse({field == Version ? Code::Unsupported : Code::Malformed,
                      kFirstRule + static_cast<int>(field), field,
-                     quoted(token) + " is out of range"});
+                     in_quotes(token) + " is out of range"});
     values[field] = *value;
     if (auto error = find_range_error(field, *value)) return refuse(*error);
     if (field == InfoCode) {
@@ -285,8 +285,8 @@ Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint6
   }
   skip_spaces();
   if (at < line.size())
-    return refusal(Code::Malformed, 4, "header", "more than 11 fields: " + quoted(line.substr(at)),
-                   byte + at);
+    return refusal(Code::Malformed, 4, "header",
+                   "more than 11 fields: " + in_quotes(line.substr(at)), byte + at);
   Header header = header_of(values, info);
   if (auto error = find_size_error(header, limits)) return refuse(*error);
   return header;

@@ -20,8 +20,9 @@ inline Error refusal(Code code, int rule, std::string_view field, std::string_vi
   return {code, std::move(detail)};
 }
 
-/// Bytes from outside as part of an error line: quoted, at most 24 of them, the rest made visible.
-inline std::string quoted(std::string_view bytes) {
+/// Bytes from outside as part of an error line: in_quotes, at most 24 of them, the rest made
+/// visible.
+inline std::string in_quotes(std::string_view bytes) {
   constexpr std::size_t kShown = 24;
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string result = "\"";

@@ -16,7 +16,7 @@
 namespace hc {
 namespace {
 
-using internal::quoted;
+using internal::in_quotes;
 using internal::refusal;
 
 constexpr std::size_t kMaxWritten = 32;  // bytes of a number in canonical form, and room behind it
@@ -227,7 +227,7 @@ std::string describe(Outcome outcome, std::string_view token, Scalar scalar) {
   std::string scalar_name{name(scalar)};
   if (outcome == Outcome::OutOfRange)
     return std::string(token) + " does not fit into " + scalar_name;
-  return quoted(token) + " is not a number of " + scalar_name;
+  return in_quotes(token) + " is not a number of " + scalar_name;
 }
 
 }  // namespace
@@ -301,11 +301,11 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
     if (open && token.size() == kMaxNumberBytes + 1 && token.back() == '\r') break;
     if (token.size() > kMaxNumberBytes)
       return refusal(Code::Malformed, 31, "elements",
-                     "a number is at most 64 bytes long, not as " + quoted(token), where(at));
+                     "a number is at most 64 bytes long, not as " + in_quotes(token), where(at));
     if (column_ == row_numbers_)
       return refusal(
           Code::Malformed, 30, "elements",
-          quoted(token) + " is one number too many for a row of " + std::to_string(row_numbers_),
+          in_quotes(token) + " is one number too many for a row of " + std::to_string(row_numbers_),
           where(at));
     if (outcome != Outcome::OutOfRange || next != token_end) outcome = Outcome::NotANumber;
     return refusal(Code::Malformed, static_cast<int>(outcome), "elements",
