@@ -20,7 +20,7 @@ inline Error refusal(Code code, int rule, std::string_view field, std::string_vi
   return {code, std::move(detail)};
 }
 
-/// Bytes from outside as part of an error line: in_quotes, at most 24 of them, the rest made
+/// Bytes from outside as part of an error line: in quotes, at most 24 of them, the rest made
 /// visible.
 inline std::string in_quotes(std::string_view bytes) {
   constexpr std::size_t kShown = 24;
