@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include <hc/wire/stream_reader.h>
@@ -103,6 +105,28 @@ TEST(CodecDeathTest, ElementsThatAreNotWhatTheHeaderSaysAreABug) {
   Message message = std::move(Draft::make(Info(), 1, 1)).finish();
   message.header.width = 2;
   EXPECT_DEATH(encode(message), "check failed");
+}
+
+// The paper's ratio: a colour SVGA picture is about 15,000 times the size of a position.
+TEST(Codec, APositionTakesAtMost96Bytes) {
+  Header header;
+  header.src = 1234;
+  header.dst = 5678;
+  header.seq = 1'000'000;
+  header.time = 1'763'683'200'123'456'789;
+  header.mode = 12;
+  header.coord = 3;
+  header.width = header.height = 1;
+  auto size = [&](Encoding encoding, Scalar scalar, auto... numbers) {
+    header.info = {MatrixType::Position, 3, scalar, encoding};
+    Draft draft = Draft::make(header);
+    std::array values = {numbers...};
+    std::memcpy(draft.elements().data(), values.data(), sizeof values);
+    return encode(std::move(draft).finish()).size();
+  };
+  EXPECT_LE(size(Encoding::Text, Scalar::F64, -12.3456, 0.0512, 101.25), 96U);  // to 0.1 mm
+  EXPECT_LE(size(Encoding::Text, Scalar::F32, -12.345678F, 0.05123457F, 1.2512346F), 96U);
+  EXPECT_LE(size(Encoding::Binary, Scalar::F64, -12.345678901234567, 0.1 / 3, 1e-300), 96U);
 }
 
 }  // namespace
