@@ -70,6 +70,45 @@ std::size_t find_escaped_tilde(std::string_view text) {
   return std::string_view::npos;
 }
 
+/// Where the string that opens at `at` has ended; the end of `text` where it does not.
+std::size_t skip_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string closing(text.substr(at, 3) == std::string(3, quote) ? 3 : 1, quote);
+  for (at += closing.size(); at < text.size(); ++at) {
+    if (quote == '"' && text[at] == '\\') {
+      ++at;  // what is escaped
+    } else if (text.substr(at).starts_with(closing)) {
+      at += closing.size();
+      // Up to two quotes may stand before the three that close.
+      for (int more = 0; closing.size() == 3 && more < 2 && at < text.size() && text[at] == quote;
+           ++more)
+        ++at;
+      return at;
+    } else if (closing.size() == 1 && text[at] == '\n') {
+      return at;
+    }
+  }
+  return text.size();
+}
+
+/// Where a key has too many parts, or brackets stand in too many others; npos: nowhere. Each such
+/// level is a call within a call of toml++, which so runs out of stack. What is no TOML may be read
+/// wrongly here, but only behind where toml++ stops.
+std::size_t find_too_deep(std::string_view text) {
+  int dots = 0, brackets = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    char c = text[at];
+    if (c == '#') at = std::min(text.find('\n', at), text.size());
+    if (c == '"' || c == '\'') at = skip_string(text, at) - 1;
+    if (c == '[' || c == '{') ++brackets;
+    if (c == ']' || c == '}') --brackets;
+    if (c == '.') ++dots;
+    if (std::string_view("=,#\n[{").find(c) != std::string_view::npos) dots = 0;
+    if (dots > kMaxGraphDepth || brackets > kMaxGraphDepth) return at;
+  }
+  return std::string_view::npos;
+}
+
 std::string original(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -283,11 +322,15 @@ Result<Graph> parse_graph(std::string_view text, std::string_view file,
     return Error{Code::Usage, std::string(file) + ": a graph file has at most 1048576 bytes"};
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  auto error_at = [&](std::size_t at, const std::string& what) {
+    auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    return Error{Code::Usage, std::string(file) + ":" + std::to_string(line) + ": " + what};
+  };
   if (auto escape = find_escaped_tilde(text); escape != std::string_view::npos)
-    return Error{Code::Usage,
-                 std::string(file) + ":" +
-                     std::to_string(1 + std::count(text.begin(), text.begin() + escape, '\n')) +
-                     ": write ~ itself, not its \\u escape"};
+    return error_at(escape, "write ~ itself, not its \\u escape");
+  if (auto deep = find_too_deep(text); deep != std::string_view::npos)
+    return error_at(deep, "a key has at most " + std::to_string(kMaxGraphDepth) +
+                              " dots, and as many brackets may stand in one another");
   try {
     toml::table root = toml::parse(ascii_only(text), file);
     return Reader(file, environment).read(root);

@@ -59,6 +59,10 @@ using Environment = std::function<const char*(const char* name)>;
 /// Largest graph file that is read. [byte]
 inline constexpr std::size_t kMaxGraphBytes = std::size_t{1} << 20;
 
+/// Most dots in a key, and most brackets within brackets, of a graph file; sensible ones have
+/// three.
+inline constexpr int kMaxGraphDepth = 16;
+
 /// Reads a graph file's text. `${NAME:-otherwise}` in a parameter stands for a variable of the
 /// environment.
 ///

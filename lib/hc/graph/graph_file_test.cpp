@@ -104,6 +104,59 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_FALSE(parse(std::string(kMaxGraphBytes + 1, '\n')));
 }
 
+/// `text` so many times.
+std::string repeated(std::string_view text, std::size_t times) {
+  std::string all;
+  while (times-- > 0) all += text;
+  return all;
+}
+
+TEST(GraphFile, DepthIsLimitedAndTheStackHoldsOut) {
+  const std::string deep = repeated("a.", 400'000) + "a";
+  const std::string key = deep + " = 1\n";
+  const std::string quoted = repeated("\"x/\\\"\" . 'y' .\t", 50'000) + "a = 1\n";
+  const std::string texts[] = {"[" + deep + "]\n",
+                               "[[" + deep + "]]\n",
+                               key,
+                               quoted,
+                               "x = '''a'''''\n" + key,
+                               "x = \"\"\"a\\\"\"\"\"\"\n" + key,
+                               "x = ''\n" + key,
+                               "x = [ # [[[\n{ " + key,
+                               "x = " + repeated("[", 400'000),
+                               "x = " + repeated("{a=", 300'000),
+                               "x = \"\n" + key};
+  for (const std::string& text : texts) {
+    auto graph = parse("# \"\n" + text);
+    ASSERT_FALSE(graph);
+    EXPECT_TRUE(graph.error().detail.starts_with("g.toml:")) << graph.error().detail;
+  }
+  EXPECT_EQ(parse("\n" + key).error().detail,
+            "g.toml:2: a key has at most 16 dots, and as many brackets may stand in one another");
+}
+
+TEST(GraphFile, TheDeepestThatIsAllowedIsRead) {
+  std::string key = repeated("a.", kMaxGraphDepth) + "a";
+  std::string text = "[modules." + repeated("a.", kMaxGraphDepth - 1) + "a]\n" + key + " = ";
+  text += repeated("{" + key + " = ", kMaxGraphDepth) + "1" + repeated("}", kMaxGraphDepth);
+  auto graph = parse(text);
+  ASSERT_FALSE(graph);
+  EXPECT_EQ(graph.error().detail, "g.toml:1: no key \"a\" in module a");
+}
+
+TEST(GraphFile, DotsAndBracketsInStringsAndCommentsAreFree) {
+  std::string many = repeated("../[{", 1000) + repeated(".", 1000);
+  auto graph = parse("[modules.a] # " + many + "\nparameters = { b = \"" + many + "\\\"\", c = '" +
+                     many + "', d = \"\"\"" + many + "\n\"\"" + many + "\"\"\"\"\", e = '''" +
+                     many + "''''', f = \"\", g = '' }\n");
+  ASSERT_TRUE(graph) << graph.error().detail;
+  const auto& parameters = graph->modules[0].parameters;
+  EXPECT_EQ(parameters.at("b").value, many + "\"");
+  EXPECT_EQ(parameters.at("c").value, many);
+  EXPECT_EQ(parameters.at("d").value, many + "\n\"\"" + many + "\"\"");
+  EXPECT_EQ(parameters.at("e").value, many + "''");
+}
+
 TEST(GraphFile, ParametersAreSetFromOutside) {
   auto graph = parse("[modules.camera]\nparameters.rate = 1\n");
   EXPECT_TRUE(set_parameter(*graph, "camera.rate=5=6"));
