@@ -21,6 +21,9 @@ constexpr std::chrono::seconds kGraceToEnd{5};  // between SIGTERM and SIGKILL
 constexpr std::chrono::seconds kDescribeTime{10};
 constexpr std::size_t kMaxDescription = std::size_t{1} << 20;
 constexpr std::size_t kMaxLine = 4096;
+constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
+constexpr int kLastPieces = 16;    // a pipe can be made to hold a MiB; source: man 7 pipe
+constexpr int kMaxReports = 1024;  // of counters, in one turn
 
 /// A module that runs, or has.
 struct Running {
@@ -106,37 +109,36 @@ class Runner {
   }
 
   [[nodiscard]] bool all_ended() const {
-    return std::all_of(running_.begin(), running_.end(), [](const Running& module) {
-      return module.status.has_value() && !module.says_more;
-    });
+    return std::all_of(running_.begin(), running_.end(),
+                       [](const Running& module) { return module.status.has_value(); });
   }
 
   [[nodiscard]] std::vector<int> descriptors() const {
     std::vector<int> all;
     for (const auto& module : running_) {
+      if (module.status) continue;
       if (module.says_more) all.push_back(module.process->output());
-      if (!module.status) all.push_back(module.process->ended());
-      if (!module.status) all.push_back(module.manage->descriptor());
+      all.push_back(module.process->ended());
+      all.push_back(module.manage->descriptor());
     }
     return all;
   }
 
-  /// Hands on the lines that a module has said, each with its name before it.
-  void read_lines(Running& module) {
-    char piece[4096];
-    ssize_t size = 0;
-    while (module.says_more &&
-           (size = ::read(module.process->output(), piece, sizeof piece)) != 0) {
-      if (size < 0 && errno == EINTR) continue;
-      if (size < 0) break;
-      for (char c : std::string_view(piece, static_cast<std::size_t>(size))) {
-        if (c != '\n') module.line += c;
-        if (c == '\n' || module.line.size() >= kMaxLine) finish_line(module);
-      }
+  /// Hands on what a module has said, line by line with its name before it; whether it said
+  /// something. Reads one piece only: one who does not stop must not keep us from all else.
+  bool read_lines(Running& module) {
+    if (!module.says_more) return false;
+    ssize_t size = ::read(module.process->output(), piece_.data(), piece_.size());
+    if (size < 0) return false;
+    for (char c : std::string_view(piece_.data(), static_cast<std::size_t>(size))) {
+      if (c != '\n') module.line += c;
+      if (c == '\n' || module.line.size() >= kMaxLine) finish_line(module);
     }
-    // What it has started may hold its standard error open; that is no reason to wait for it.
-    bool nothing_more = size == 0 || module.status.has_value();
-    if (!module.says_more || !nothing_more) return;
+    if (size == 0) end_lines(module);
+    return size > 0;
+  }
+
+  void end_lines(Running& module) const {
     finish_line(module);
     module.says_more = false;
   }
@@ -150,7 +152,7 @@ class Runner {
 
   static void read_counters(Running& module) {
     Message message;
-    while (true) {
+    for (int report = 0; report < kMaxReports; ++report) {
       auto got = module.manage->take(message);
       if (!got || *got != Got::Message) return;
       auto rows = message.view<std::int64_t>();
@@ -169,6 +171,9 @@ class Runner {
     if (!module.status) return false;
     read_counters(module);
     module.process->signal(SIGKILL);  // what it has started and left behind
+    // Its last words stand in the pipe; who else still holds that open may do so for ever.
+    for (int piece = 0; piece < kLastPieces && read_lines(module);) ++piece;
+    end_lines(module);
     int status = *module.status;
     bool good = status == 0;
     say(module.module->name + (good           ? ": ended"
@@ -180,6 +185,7 @@ class Runner {
   const Plan& plan_;
   const RunOptions& options_;
   std::vector<Running> running_;
+  std::vector<char> piece_ = std::vector<char>(kPiece);  // of what a module says
 };
 
 }  // namespace
