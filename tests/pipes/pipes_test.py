@@ -533,6 +533,44 @@ to = "once.in"
         self.end(view)
         self.end(display)
 
+    def test_a_killed_runner_leaves_nothing_that_a_wrapper_started(self):
+        """Beside the module itself: a process in the background, and one in its own session."""
+        mark = "1000.%d" % os.getpid()
+        self.write(
+            "wrapper",
+            """#!/bin/sh
+[ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
+sleep %s & setsid sleep %s & echo ready >&2; sleep %s; echo behind
+"""
+            % (mark, mark, mark),
+        )
+        os.chmod(self.path("wrapper"), 0o755)
+        self.write("wrapper.toml", '[modules.wrapper]\nprogram = "./wrapper"\n')
+
+        def sleepers():
+            found = []
+            for process in pathlib.Path("/proc").glob("[0-9]*"):
+                try:
+                    words = (process / "cmdline").read_bytes().split(b"\0")
+                    if words[:2] == [b"sleep", mark.encode()]:
+                        found.append(int(process.name))
+                except OSError:
+                    pass  # it has ended meanwhile
+            return found
+
+        for number in (signal.SIGKILL, signal.SIGTERM):
+            process = self.start("exec hc run wrapper.toml")
+            for line in (b"wrapper: started\n", b"wrapper: ready\n"):
+                self.assertEqual(process.stderr.readline(), line)
+            wait_until(lambda: len(sleepers()) == 3)
+            children = self.children(process.pid)
+            self.assertEqual(len(children), 1)
+            os.kill(process.pid, number)
+            process.wait(timeout=WATCHDOG)
+            wait_until(lambda: not sleepers())
+            for child in children:
+                wait_until(lambda: not os.path.exists("/proc/%d/exe" % child))
+
 
 class Documents(Pipes):
     """Every command of the README and the documents, as it stands there."""

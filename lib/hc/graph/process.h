@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Child processes: each in a process group of its own, dead when we are. Internal to graph.
+// Child processes, dead with all their descendants when we are. Internal to graph.
+//
+// Between us and a program stands its guard: a fork of us that starts the program, adopts what the
+// program's processes leave behind (PR_SET_CHILD_SUBREAPER), and ends as the program did. It kills
+// all that descends from the program when the program ends, when it is told to, and when we have
+// gone, however that came about: we hold a pipe to it that closes then. It leads a process group
+// that the program begins in, and blocks all signals, so Ctrl-C at a terminal does not end it.
+//
+// Out of reach are processes that somebody else starts for the program (a service manager), that we
+// may not signal (of another user), and, when the guard itself is killed, those that have left its
+// group; the program dies with its guard even so.
 
 #include <sys/types.h>
 
@@ -12,13 +22,13 @@
 
 namespace hc::internal {
 
-/// A child process. Its group is killed when the object goes.
+/// A child process. It is killed, with all that it has started, when the object goes.
 class Process {
  public:
   enum class Capture { Output, Errors };
 
   /// Starts a program; a name without a slash is looked up in PATH. Its standard input is empty;
-  /// one of its standard output and standard error comes to us, the other is dropped or ours.
+  /// one of its standard output and standard error comes to us, the other is dropped.
   ///
   /// Errors: NotFound, System.
   static Result<Process> start(const std::vector<std::string>& command, Capture capture);
@@ -29,21 +39,25 @@ class Process {
 
   /// What is captured; reading gives 0 bytes when all who could write have ended.
   [[nodiscard]] int output() const { return output_.get(); }
-  /// Readable when the process has ended.
+  /// Readable when the process has ended, and all that it had started has been killed.
   [[nodiscard]] int ended() const { return handle_.get(); }
 
   /// The exit status, 128 + the signal where one killed it; nothing while it runs.
   std::optional<int> poll_status();
 
-  /// Sends a signal to the process and all that it has started.
-  void signal(int number) const;
+  /// Asks the process, and all that is still in its group, to end (SIGTERM).
+  void ask_to_end() const;
+
+  /// Kills the process and all that it has started; ended() tells when that is done.
+  void kill() { life_.reset(); }
 
  private:
   Process() = default;
 
-  pid_t number_ = -1;
+  pid_t number_ = -1;  // of the guard, and its group
   Descriptor handle_;  // a pidfd
   Descriptor output_;
+  Descriptor life_;  // closed: the guard is to kill
   std::optional<int> status_;
   struct Owned {  // a moved-from process owns nothing
     bool flag = true;

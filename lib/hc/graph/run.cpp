@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <csignal>
 #include <memory>
 #include <optional>
 
@@ -52,14 +51,14 @@ class Runner {
       if (kill_at) return;
       kill_at = MonotonicClock::now() + kGraceToEnd;
       for (auto& module : running_)
-        if (!module.status) module.process->signal(SIGTERM);
+        if (!module.status) module.process->ask_to_end();
     };
     while (!all_ended()) {
       auto timeout = kill_at ? std::chrono::ceil<milliseconds>(*kill_at - MonotonicClock::now())
                              : milliseconds(-1);
       if (kill_at && timeout <= milliseconds(0)) {
         for (auto& module : running_)
-          if (!module.status) module.process->signal(SIGKILL);
+          if (!module.status) module.process->kill();
         timeout = milliseconds(100);
       }
       auto waited = wait_readable(descriptors(), report.stopped ? -1 : options_.stop, timeout);
@@ -170,7 +169,6 @@ class Runner {
     module.status = module.process->poll_status();
     if (!module.status) return false;
     read_counters(module);
-    module.process->signal(SIGKILL);  // what it has started and left behind
     // Its last words stand in the pipe; who else still holds that open may do so for ever.
     for (int piece = 0; piece < kLastPieces && read_lines(module);) ++piece;
     end_lines(module);
