@@ -35,6 +35,13 @@ bool type_fits(const Json& given, const Json& taken) {
   return true;
 }
 
+/// What an output gives, were it encoded so. A type that is not known here is of no matrix type.
+Info info_from(const Json& type, Encoding encoding) {
+  return {matrix_type_of(type.at("type").get<std::string>()).value_or(MatrixType{}),
+          type.at("components").get<std::uint8_t>(),
+          scalar_of(type.at("scalar").get<std::string>()).value_or(Scalar::F64), encoding};
+}
+
 /// A parameter as its module declared it, to try values on.
 ParameterState parameter_from(const Json& json) {
   ParameterState parameter;
@@ -128,8 +135,11 @@ class Planner {
                                                                           : free_address()));
     }
     for (const auto& [port, encoding] : module.encodings) {
-      if (find_named(outputs, port) == nullptr)
-        return no_port(module.name, encoding.line, "output", port, outputs);
+      const Json* output = find_named(outputs, port);
+      if (output == nullptr) return no_port(module.name, encoding.line, "output", port, outputs);
+      if (auto broken = find_error(info_from(output->at("types").at(0), encoding.value)))
+        return error(encoding.line, "module " + module.name + ": R" + std::to_string(broken->rule) +
+                                        " " + port + ": " + broken->what);
       add("--encoding", port + "=" + std::string(name(encoding.value)));
     }
     planned.manage_uri = "unix-listen:@" + token_ + "-" + module.name;

@@ -43,7 +43,8 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 /// Outputs without an address get the least ones that are free, in the order of the file.
 ///
 /// Errors: Usage, with file and line: an unknown module, port or parameter, a value out of range,
-/// an input of another type than the output it is linked to, an address or a link given twice.
+/// an encoding that the output's type cannot have, an input of another type than the output it is
+/// linked to, an address or a link given twice.
 Result<Plan> make_plan(Graph graph, const Describe& describe, std::string_view token);
 
 }  // namespace hc

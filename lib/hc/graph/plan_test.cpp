@@ -84,6 +84,9 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.source]\naddresses.lft = 3",
        "g.toml:2: module source has no output \"lft\", did you mean \"left\"?"},
       {"[modules.source]\nencodings.x = \"text\"", "g.toml:2: module source has no output \"x\""},
+      {"[modules.source]\n\nencodings.left = \"jpeg\"",
+       "g.toml:3: module source: R21 left: jpeg is for images of 1 or 3 components of u8, not map "
+       "1 x f32"},
       {"[modules.source]\naddresses = { left = 3, right = 3 }",
        "g.toml:2: address 3 is given twice"},
       {"[modules.source]\nparameters.rate = 10",
