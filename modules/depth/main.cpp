@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth from a rectified stereo pair.
+#include <optional>
+
 #include <hc/adapter/opencv.h>
 #include <hc/node/module.h>
 #include <vision/stereo.h>

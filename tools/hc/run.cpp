@@ -2,6 +2,7 @@
 // hc run: runs a graph.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 

@@ -5,7 +5,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <hc/link/descriptor.h>

@@ -3,7 +3,9 @@
 // Kinds: what a port takes or gives, as a C++ type, so that a wrong scalar does not compile; and
 // messages of a kind. Pure.
 
+#include <algorithm>
 #include <concepts>
+#include <cstring>
 #include <initializer_list>
 #include <string_view>
 #include <vector>

@@ -2,6 +2,7 @@
 #pragma once
 // Ports: where a module's messages come in and go out.
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <memory>
