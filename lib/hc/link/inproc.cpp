@@ -121,7 +121,7 @@ class InprocSink final : public Sink {
         }
         lower(channel_->writable);
       }
-      if (auto room = wait_for(channel_->writable.get(), POLLIN, stop_); !room) return room;
+      if (auto room = wait_for(channel_->writable.get(), POLLIN, stop_); !room) return room.error();
     }
   }
 

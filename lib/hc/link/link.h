@@ -59,7 +59,9 @@ class Sink {
 
   /// Puts a message in, whole; waits as long as the link is full or has no reader yet.
   ///
-  /// Errors: Closed (the reader has gone), Stopped (LinkOptions::stop became readable), System.
+  /// Errors: Closed (the reader has gone), Stopped (LinkOptions::stop became readable before the
+  /// first byte went), Truncated (it became so later, and the reader did not take the rest within
+  /// 2 s; the link is of no use afterwards), System.
   virtual Status send(const Message& message) = 0;
 
   /// Ends the link: the reader finds End behind the last message. Errors as send().

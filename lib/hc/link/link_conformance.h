@@ -4,12 +4,14 @@
 // No sleeps: everything waits for the other side, and the test runner's time-out is the watchdog.
 
 #include <gtest/gtest.h>
+#include <sys/eventfd.h>
 
 #include <functional>
 #include <memory>
 #include <string>
 #include <thread>
 
+#include <hc/link/descriptor.h>
 #include <hc/link/link.h>
 
 namespace hc::testing {
@@ -39,6 +41,20 @@ inline std::unique_ptr<Sink> sink_of(const std::string& uri, LinkOptions options
   EXPECT_TRUE(sink) << uri << ": " << sink.error().text();
   return std::move(*sink);
 }
+
+/// Options of a link that was told to stop before it began.
+class Stopped {
+ public:
+  Stopped() { EXPECT_EQ(::eventfd_write(event_.get(), 1), 0); }
+  [[nodiscard]] LinkOptions options() const {
+    LinkOptions options;
+    options.stop = event_.get();
+    return options;
+  }
+
+ private:
+  internal::Descriptor event_{::eventfd(0, EFD_CLOEXEC)};
+};
 
 /// A message with `size` bytes of elements that its seq tells.
 inline Message numbered(std::int64_t seq, std::int32_t size) {

@@ -222,7 +222,7 @@ Status ListeningSink::send(const Message& message) {
         ++i;
         continue;
       }
-      if (sent.error().code == Code::Stopped) return sent;
+      if (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated) return sent;
       peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(i));  // it has left
     }
     if (!taken) continue;

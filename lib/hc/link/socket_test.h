@@ -77,12 +77,8 @@ TEST_P(SocketLink, WaitsForAListener) {
 }
 
 TEST_P(SocketLink, WaitingEndsWhenToldToStop) {
-  int ends[2];
-  ASSERT_EQ(::pipe(ends), 0);
-  internal::Descriptor read_end(ends[0]), write_end(ends[1]);
-  ASSERT_EQ(::write(ends[1], "x", 1), 1);
-  LinkOptions options;
-  options.stop = ends[0];
+  Stopped stopped;
+  auto options = stopped.options();
   EXPECT_EQ(open_source(*parse_uri(dial() + "?wait=60"), options).error().code, Code::Stopped);
   auto sink = sink_of(listen(), options);
   EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);

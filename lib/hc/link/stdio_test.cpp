@@ -65,18 +65,30 @@ TEST_F(Stdio, AReaderThatHasGoneIsAnEnd) {
 }
 
 TEST_F(Stdio, WaitingEndsWhenToldToStop) {
-  int ends[2];
-  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
-  LinkOptions options;
-  options.stop = ends[0];
-  auto sink = sink_of("-", options);
-  std::thread stopper([&] { EXPECT_EQ(::write(ends[1], "x", 1), 1); });
-  EXPECT_EQ(sink->send(numbered(0, 50'000'000)).error().code, Code::Stopped);
-  stopper.join();
-  Message message;
+  Stopped stopped;
+  auto sink = sink_of("-", stopped.options());
+  Status sent;  // a message this small goes whole or not at all
+  for (int i = 0; sent; ++i) sent = sink->send(numbered(i, 1000));
+  EXPECT_EQ(sent.error().code, Code::Stopped);
+}
+
+TEST_F(Stdio, AMessageThatWasBegunIsFinishedBeforeItStops) {
+  Stopped stopped;
+  auto sink = sink_of("-", stopped.options());
   auto source = source_of("-");
-  ::close(ends[0]);
-  ::close(ends[1]);
+  std::thread reader([&] {
+    Message message;
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.characters(), numbered(0, 4'000'000).characters());
+  });
+  EXPECT_TRUE(sink->send(numbered(0, 4'000'000)));
+  reader.join();
+}
+
+TEST_F(Stdio, AMessageThatCannotBeFinishedIsTold) {
+  Stopped stopped;
+  auto sink = sink_of("-", stopped.options());
+  EXPECT_EQ(sink->send(numbered(0, 4'000'000)).error().code, Code::Truncated);
 }
 
 TEST_F(Stdio, CannotBeReadOnAfterAnError) {

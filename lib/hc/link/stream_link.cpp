@@ -57,6 +57,19 @@ Status StreamSink::send(const Message& message) {
   return send_pieces(encoder_.encode(message));
 }
 
+Status StreamSink::wait_for_room(bool begun, std::optional<Deadline>& give_up) {
+  if (!give_up) {
+    auto ready = wait_for(descriptor_.get(), POLLOUT, stop_);
+    if (ready) return {};
+    if (!begun || ready.error().code != Code::Stopped) return ready.error();
+    give_up = std::chrono::steady_clock::now() + kGrace;
+  }
+  auto ready = wait_for(descriptor_.get(), POLLOUT, -1, give_up);
+  if (!ready) return ready.error();
+  if (*ready) return {};
+  return Error{Code::Truncated, "asked to stop, and the reader did not take the rest of a message"};
+}
+
 Status StreamSink::send_pieces(const Pieces& pieces) {
   std::array<iovec, std::tuple_size_v<Pieces>> parts{};
   std::size_t used = 0, left = 0;
@@ -66,7 +79,9 @@ Status StreamSink::send_pieces(const Pieces& pieces) {
     left += piece.size();
   }
   iovec* part = parts.data();
-  traffic_.bytes += left;
+  const std::size_t whole = left;
+  std::optional<Deadline> give_up;  // set when it is to stop inside the message
+  traffic_.bytes += whole;
   while (left > 0) {
     msghdr header{};
     header.msg_iov = part;
@@ -78,7 +93,7 @@ Status StreamSink::send_pieces(const Pieces& pieces) {
       if (errno == ENOTSOCK && is_socket_) {
         is_socket_ = false;
       } else if (would_wait(errno)) {
-        if (auto ready = wait_for(descriptor_.get(), POLLOUT, stop_); !ready) return ready;
+        if (auto room = wait_for_room(left < whole, give_up); !room) return room;
       } else if (errno != EINTR) {
         return system_error("write", "");
       }
@@ -123,13 +138,21 @@ Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
   return Descriptor(*copy);
 }
 
-Status wait_for(int descriptor, short events, int stop) {
+Result<bool> wait_for(int descriptor, short events, int stop, std::optional<Deadline> deadline) {
+  using std::chrono::milliseconds;
   std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};
-  auto ready = system_call("poll", "", [&] { return ::poll(polled.data(), polled.size(), -1); });
+  auto ready = system_call("poll", "", [&] {
+    milliseconds left(-1);
+    if (deadline)
+      left =
+          std::max(milliseconds(0),
+                   std::chrono::ceil<milliseconds>(*deadline - std::chrono::steady_clock::now()));
+    return ::poll(polled.data(), polled.size(), static_cast<int>(left.count()));
+  });
   if (!ready) return ready.error();
   if (polled[0].revents == 0 && polled[1].revents != 0)
     return Error{Code::Stopped, "asked to stop"};
-  return {};
+  return *ready > 0;
 }
 
 }  // namespace hc::internal

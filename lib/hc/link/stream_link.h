@@ -3,8 +3,10 @@
 // Messages over any descriptor that carries a stream of bytes: pipe, file, terminal, socket.
 // Internal: what stdio, file, tcp and unix share.
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include <hc/link/descriptor.h>
 #include <hc/link/link.h>
@@ -12,6 +14,8 @@
 #include <hc/wire/stream_reader.h>
 
 namespace hc::internal {
+
+using Deadline = std::chrono::steady_clock::time_point;
 
 /// Takes messages from a descriptor whose reads do not wait.
 class StreamSource final : public Source {
@@ -30,8 +34,14 @@ class StreamSource final : public Source {
 };
 
 /// Puts messages into a descriptor whose writes do not wait.
+///
+/// A message that was begun is finished, also when it is to stop: the reader could not tell where
+/// the next one begins, and would call the stream damaged.
 class StreamSink final : public Sink {
  public:
+  /// How long a reader may take, after `stop`, for the rest of a message.
+  static constexpr std::chrono::seconds kGrace{2};
+
   StreamSink(Descriptor descriptor, const LinkOptions& options)
       : descriptor_(std::move(descriptor)), stop_(options.stop) {}
 
@@ -44,6 +54,8 @@ class StreamSink final : public Sink {
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
 
  private:
+  Status wait_for_room(bool begun, std::optional<Deadline>& give_up);
+
   Descriptor descriptor_;
   int stop_;
   bool is_socket_ = true;  // until a first write says otherwise
@@ -55,7 +67,10 @@ class StreamSink final : public Sink {
 /// that for the other processes that share it.
 Result<Descriptor> reopen_without_waiting(int number, int access_mode);
 
-/// Waits until `descriptor` has one of the poll events. Errors: Closed when `stop` is readable.
-Status wait_for(int descriptor, short events, int stop);
+/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first.
+///
+/// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
+Result<bool> wait_for(int descriptor, short events, int stop,
+                      std::optional<Deadline> deadline = std::nullopt);
 
 }  // namespace hc::internal
