@@ -42,10 +42,10 @@ inline std::unique_ptr<Sink> sink_of(const std::string& uri, LinkOptions options
   return std::move(*sink);
 }
 
-/// Options of a link that was told to stop before it began.
-class Stopped {
+/// What tells links to stop, once raised and for ever.
+class Stop {
  public:
-  Stopped() { EXPECT_EQ(::eventfd_write(event_.get(), 1), 0); }
+  void raise() const { EXPECT_EQ(::eventfd_write(event_.get(), 1), 0); }
   [[nodiscard]] LinkOptions options() const {
     LinkOptions options;
     options.stop = event_.get();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/listener.h>
 
+#include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -48,6 +50,23 @@ Result<bool> try_to_connect(int socket, const sockaddr* address, unsigned size,
   return system_error("connect", name);
 }
 
+/// Whether a peer has taken what was sent to it, or will.
+///
+/// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
+/// succeeds in either case; what tells is its kernel's answer, an acknowledgement or a reset.
+Result<bool> has_taken(int peer, int stop) {
+  Pauses pauses;
+  while (true) {
+    pollfd polled{peer, POLLRDHUP, 0};
+    ::poll(&polled, 1, 0);
+    if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
+    bool shut = (polled.revents & POLLRDHUP) != 0;
+    int under_way = 0;
+    if (!shut || ::ioctl(peer, SIOCOUTQ, &under_way) != 0 || under_way == 0) return true;
+    if (auto waited = pauses.next(stop); !waited) return waited.error();
+  }
+}
+
 }  // namespace
 
 ListeningSocket::~ListeningSocket() {
@@ -56,10 +75,9 @@ ListeningSocket::~ListeningSocket() {
 
 Result<Descriptor> connect_to(const void* address, unsigned size, const std::string& name,
                               std::chrono::seconds wait, int stop) {
-  using std::chrono::milliseconds;
-  constexpr milliseconds kLongestPause{200};
   auto give_up = std::chrono::steady_clock::now() + wait;
-  for (milliseconds pause{1};; pause = std::min(2 * pause, kLongestPause)) {
+  Pauses pauses;
+  while (true) {
     auto socket = open_socket(address);
     if (!socket) return socket.error();
     auto connected =
@@ -71,7 +89,7 @@ Result<Descriptor> connect_to(const void* address, unsigned size, const std::str
     }
     if (std::chrono::steady_clock::now() >= give_up)
       return Error{Code::Closed, "connect(" + name + "): nobody listens there"};
-    if (auto waited = wait_readable({}, stop, pause); !waited) return waited.error();
+    if (auto waited = pauses.next(stop); !waited) return waited.error();
   }
 }
 
@@ -214,18 +232,23 @@ Status ListeningSink::send(const Message& message) {
     auto awaited = await(begun_ || readers_ == 0 ? 1 : static_cast<std::size_t>(readers_));
     if (!awaited) return awaited;
     begun_ = true;
-    bool taken = false;
     for (std::size_t i = 0; i < peers_.size();) {
       auto sent = peers_[i]->send_pieces(pieces);
-      if (sent) {
-        taken = true;
+      if (!sent && (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated))
+        return sent;
+      if (sent)
         ++i;
-        continue;
-      }
-      if (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated) return sent;
-      peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(i));  // it has left
+      else
+        peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(i));  // it has left
     }
-    if (!taken) continue;
+    // One reader that has it is enough; without any, the message is for the next who comes.
+    while (!peers_.empty()) {
+      auto taken = has_taken(peers_.back()->descriptor(), options_.stop);
+      if (!taken) return taken.error();
+      if (*taken) break;
+      peers_.pop_back();
+    }
+    if (peers_.empty()) continue;
     ++traffic_.messages;
     for (auto piece : pieces) traffic_.bytes += piece.size();
     return {};

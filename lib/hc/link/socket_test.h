@@ -12,6 +12,7 @@
 
 #include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
+#include <hc/link/stream_link.h>
 #include <hc/wire/codec.h>
 
 namespace hc::testing {
@@ -77,8 +78,9 @@ TEST_P(SocketLink, WaitsForAListener) {
 }
 
 TEST_P(SocketLink, WaitingEndsWhenToldToStop) {
-  Stopped stopped;
-  auto options = stopped.options();
+  Stop stop;
+  stop.raise();
+  auto options = stop.options();
   EXPECT_EQ(open_source(*parse_uri(dial() + "?wait=60"), options).error().code, Code::Stopped);
   auto sink = sink_of(listen(), options);
   EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
@@ -108,6 +110,41 @@ TEST_P(SocketLink, ReadersComeAndGo) {
     ASSERT_TRUE(*receive(*source, message));
     EXPECT_EQ(message.header.seq, i);
   }
+}
+
+TEST_P(SocketLink, AReaderThatHasLeftTakesNoMessageAlong) {
+  Stop stop;
+  auto sink = sink_of(listen(), stop.options());
+  Message message;
+  auto source = source_of(dial());
+  ASSERT_TRUE(sink->send(numbered(0, 10)));
+  ASSERT_TRUE(*receive(*source, message));
+  source.reset();
+  stop.raise();  // or it would wait for the next reader for ever
+  EXPECT_EQ(sink->send(numbered(1, 10)).error().code, Code::Stopped);
+  source = source_of(dial());
+  ASSERT_TRUE(sink->send(numbered(2, 10)));
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 2);
+}
+
+// What `nc -N` does when its standard input is at its end.
+TEST_P(SocketLink, AReaderThatHasShutItsOwnSideReadsOn) {
+  auto sink = sink_of(listen());
+  auto peer = GetParam().connect(place_);
+  ASSERT_EQ(::shutdown(peer.get(), SHUT_WR), 0);
+  std::thread sender([&] {
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(numbered(i, 100'000)));
+    ASSERT_TRUE(sink->close());
+  });
+  internal::StreamSource source(std::move(peer), {});
+  Message message;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(*receive(source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  EXPECT_FALSE(*receive(source, message));
+  sender.join();
 }
 
 TEST_P(SocketLink, ManyReadersGetEachMessage) {

@@ -65,16 +65,18 @@ TEST_F(Stdio, AReaderThatHasGoneIsAnEnd) {
 }
 
 TEST_F(Stdio, WaitingEndsWhenToldToStop) {
-  Stopped stopped;
-  auto sink = sink_of("-", stopped.options());
+  Stop stop;
+  stop.raise();
+  auto sink = sink_of("-", stop.options());
   Status sent;  // a message this small goes whole or not at all
   for (int i = 0; sent; ++i) sent = sink->send(numbered(i, 1000));
   EXPECT_EQ(sent.error().code, Code::Stopped);
 }
 
 TEST_F(Stdio, AMessageThatWasBegunIsFinishedBeforeItStops) {
-  Stopped stopped;
-  auto sink = sink_of("-", stopped.options());
+  Stop stop;
+  stop.raise();
+  auto sink = sink_of("-", stop.options());
   auto source = source_of("-");
   std::thread reader([&] {
     Message message;
@@ -86,8 +88,9 @@ TEST_F(Stdio, AMessageThatWasBegunIsFinishedBeforeItStops) {
 }
 
 TEST_F(Stdio, AMessageThatCannotBeFinishedIsTold) {
-  Stopped stopped;
-  auto sink = sink_of("-", stopped.options());
+  Stop stop;
+  stop.raise();
+  auto sink = sink_of("-", stop.options());
   EXPECT_EQ(sink->send(numbered(0, 4'000'000)).error().code, Code::Truncated);
 }
 

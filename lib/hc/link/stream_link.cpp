@@ -138,6 +138,14 @@ Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
   return Descriptor(*copy);
 }
 
+Status Pauses::next(int stop) {
+  constexpr std::chrono::milliseconds kLongest{200};
+  auto waited = wait_readable({}, stop, pause_);
+  if (!waited) return waited.error();
+  pause_ = std::min(2 * pause_, kLongest);
+  return {};
+}
+
 Result<bool> wait_for(int descriptor, short events, int stop, std::optional<Deadline> deadline) {
   using std::chrono::milliseconds;
   std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};

@@ -67,6 +67,16 @@ class StreamSink final : public Sink {
 /// that for the other processes that share it.
 Result<Descriptor> reopen_without_waiting(int number, int access_mode);
 
+/// The pauses between tries at what comes about by itself: 1 ms, and each twice the last to 200 ms.
+class Pauses {
+ public:
+  /// Errors: Stopped when `stop` is readable.
+  Status next(int stop);
+
+ private:
+  std::chrono::milliseconds pause_{1};
+};
+
 /// Waits until `descriptor` has one of the poll events; false when `deadline` passes first.
 ///
 /// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
