@@ -66,6 +66,14 @@ TEST_P(SocketLink, ANameInUseIsRefused) {
   EXPECT_EQ(second.error().code, Code::System);
 }
 
+TEST_P(SocketLink, ASecondListenerTakesNoReadersPlace) {
+  Stop stop;
+  stop.raise();  // or it would wait for its reader for ever
+  auto sink = sink_of(listen() + "?readers=1", stop.options());
+  EXPECT_FALSE(open_sink(*parse_uri(listen())));
+  EXPECT_EQ(sink->send(numbered(0, 10)).error().code, Code::Stopped);
+}
+
 TEST_P(SocketLink, WaitsForAListener) {
   std::thread late([&] {
     auto sink = sink_of(listen() + "?readers=1");

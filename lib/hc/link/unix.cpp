@@ -62,21 +62,26 @@ Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options) {
   return connected;
 }
 
+/// Whether a socket's file was left behind by a process that was killed: nobody has it bound.
+///
+/// Asked with a socket of the other kind, which a listener is never told of; a connection would
+/// take the place of its first reader.
+bool is_left_behind(const UnixAddress& address) {
+  Descriptor probe(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const auto* place = reinterpret_cast<const sockaddr*>(&address.address);
+  if (::connect(probe.get(), place, address.size) == 0 || errno != ECONNREFUSED) return false;
+  struct stat status {};
+  return ::stat(address.address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode);
+}
+
 Result<ListeningSocket> listen_unix(const Uri& uri) {
   auto address = address_of(uri);
   if (!address) return address.error();
   ListeningSocket socket;
-  if (is_abstract(uri)) {
+  if (is_abstract(uri))
     socket.admit = admit_same_user;
-  } else {
-    // A file that nobody listens on was left behind by a process that was killed.
-    auto listener =
-        connect_to(&address->address, address->size, uri.rest, std::chrono::seconds(0), -1);
-    if (listener) return Error{Code::System, "bind(" + uri.rest + "): somebody listens there"};
-    struct stat status {};
-    bool is_socket = ::stat(uri.rest.c_str(), &status) == 0 && S_ISSOCK(status.st_mode);
-    if (listener.error().code == Code::Closed && is_socket) ::unlink(uri.rest.c_str());
-  }
+  else if (is_left_behind(*address))
+    ::unlink(uri.rest.c_str());
   auto descriptor = listen_on(&address->address, address->size, uri.rest);
   if (!descriptor) return descriptor.error();
   socket.descriptor = std::move(*descriptor);
