@@ -7,6 +7,7 @@
 #include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/timerfd.h>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +18,12 @@ namespace hc::internal {
 namespace {
 
 constexpr int kBacklog = 128;
+constexpr long kRetryNanoseconds = 200'000'000;  // until one is let in again who could not be
+
+bool is_readable(int descriptor) {
+  pollfd polled{descriptor, POLLIN, 0};
+  return ::poll(&polled, 1, 0) > 0;
+}
 
 Result<Descriptor> open_socket(const void* address) {
   int family = static_cast<const sockaddr*>(address)->sa_family;
@@ -129,10 +136,15 @@ Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
                                                       const LinkOptions& options) {
   auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
   if (!poll) return poll.error();
+  Descriptor poll_owner(*poll);
+  auto timer = system_call("timerfd_create", "", [] {
+    return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+  });
+  if (!timer) return timer.error();
   std::unique_ptr<ListeningSource> source(
-      new ListeningSource(std::move(socket), Descriptor(*poll), options));
-  if (auto watched = source->watch(source->socket_.descriptor.get()); !watched)
-    return watched.error();
+      new ListeningSource(std::move(socket), std::move(poll_owner), Descriptor(*timer), options));
+  for (int descriptor : {source->socket_.descriptor.get(), source->timer_.get()})
+    if (auto watched = source->watch(descriptor); !watched) return watched.error();
   return std::unique_ptr<Source>(std::move(source));
 }
 
@@ -150,23 +162,57 @@ void ListeningSource::forget(int descriptor) {
   ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, descriptor, nullptr);
 }
 
-Status ListeningSource::accept_all() {
-  while (peers_.size() < kMaxPeers) {
+/// Lets in who waits, as far as there is room.
+void ListeningSource::accept_all() {
+  while (true) {
+    bool full = peers_.size() == kMaxPeers;
+    if (full && !is_readable(socket_.descriptor.get())) return accept_later(false);
+    std::size_t idlest = full ? find_idlest() : peers_.size();
+    if (full && idlest == peers_.size()) return accept_later(true);
     auto peer = accept_peer(socket_, options_);
-    if (!peer) return peer.error();
-    if (!*peer) return {};
-    int number = peer->get();
-    peers_.push_back(std::make_unique<StreamSource>(std::move(*peer), options_));
-    if (auto watched = watch(number); !watched) return watched;
+    if (peer && !*peer) return accept_later(false);
+    auto watched = peer ? watch(peer->get()) : Status(peer.error());
+    if (!watched) {
+      if (!later_ && options_.log) options_.log(Severity::Warning, watched.error().text());
+      return accept_later(true);
+    }
+    if (full) leave(idlest, "closed the peer that was silent longest, to let another in");
+    peers_.push_back({std::make_unique<StreamSource>(std::move(*peer), options_), ++count_});
   }
-  forget(socket_.descriptor.get());  // until one leaves; those who wait do so in the backlog
-  return {};
+}
+
+/// Says whether somebody waits who cannot be let in now: then the listening socket, which stays
+/// readable, is overlooked, and a timer tells when to try again.
+void ListeningSource::accept_later(bool later) {
+  if (!later && !later_) return;
+  itimerspec when{};
+  if (later) when.it_value.tv_nsec = kRetryNanoseconds;
+  ::timerfd_settime(timer_.get(), 0, &when, nullptr);
+  if (later)
+    forget(socket_.descriptor.get());
+  else
+    static_cast<void>(watch(socket_.descriptor.get()));
+  later_ = later;
+}
+
+/// The peer whose last message was longest ago, of those that say nothing now; peers_.size() when
+/// there is none.
+std::size_t ListeningSource::find_idlest() const {
+  std::size_t idlest = peers_.size();
+  for (std::size_t i = 0; i < peers_.size(); ++i) {
+    const auto& [source, heard] = peers_[i];
+    int unread = 0;
+    if (idlest < peers_.size() && heard > peers_[idlest].heard) continue;
+    if (!source->between_messages() || ::ioctl(source->descriptor(), FIONREAD, &unread) != 0)
+      continue;
+    if (unread == 0) idlest = i;
+  }
+  return idlest;
 }
 
 void ListeningSource::leave(std::size_t peer, std::string_view why) {
   if (!why.empty() && options_.log) options_.log(Severity::Warning, why);
-  if (peers_.size() == kMaxPeers) static_cast<void>(watch(socket_.descriptor.get()));
-  Traffic traffic = peers_[peer]->traffic();
+  Traffic traffic = peers_[peer].source->traffic();
   left_.messages += traffic.messages;
   left_.bytes += traffic.bytes;
   peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
@@ -175,21 +221,21 @@ void ListeningSource::leave(std::size_t peer, std::string_view why) {
 Traffic ListeningSource::traffic() const {
   Traffic all = left_;
   for (const auto& peer : peers_) {
-    all.messages += peer->traffic().messages;
-    all.bytes += peer->traffic().bytes;
+    all.messages += peer.source->traffic().messages;
+    all.bytes += peer.source->traffic().bytes;
   }
   return all;
 }
 
 Result<Got> ListeningSource::take(Message& message) {
-  if (auto accepted = accept_all(); !accepted) return accepted.error();
+  accept_all();
   for (std::size_t tried = 0; tried < peers_.size();) {
     turn_ %= peers_.size();
-    auto got = peers_[turn_]->take(message);
+    auto got = peers_[turn_].source->take(message);
     if (!got || *got == Got::End) {
       leave(turn_, got ? "" : got.error().text());
     } else if (*got == Got::Message) {
-      ++turn_;
+      peers_[turn_++].heard = ++count_;
       return Got::Message;
     } else {
       ++turn_;
@@ -206,19 +252,29 @@ Result<std::unique_ptr<Sink>> make_listening_sink(ListeningSocket socket, const 
   return std::unique_ptr<Sink>(new ListeningSink(std::move(socket), *readers, options));
 }
 
-Status ListeningSink::accept_ready() {
-  while (true) {
+/// Lets in who waits, as far as there is room; false when one cannot be let in now who is to be.
+bool ListeningSink::accept_ready() {
+  const std::size_t most = std::max(kMaxPeers, static_cast<std::size_t>(readers_));
+  while (peers_.size() < most) {
     auto peer = accept_peer(socket_, options_);
-    if (!peer) return peer.error();
-    if (!*peer) return {};
+    if (!peer && !later_ && options_.log) options_.log(Severity::Warning, peer.error().text());
+    later_ = !peer;
+    if (later_) return false;
+    if (!*peer) return true;
     peers_.push_back(std::make_unique<StreamSink>(std::move(*peer), options_));
   }
+  return true;
 }
 
 Status ListeningSink::await(std::size_t readers) {
+  Pauses pauses;
   while (true) {
-    if (auto accepted = accept_ready(); !accepted) return accepted;
+    bool all_are_in = accept_ready();
     if (peers_.size() >= readers) return {};
+    if (!all_are_in) {  // the listening socket stays readable, so it cannot be waited for
+      if (auto waited = pauses.next(options_.stop); !waited) return waited;
+      continue;
+    }
     std::array<int, 1> listening = {socket_.descriptor.get()};
     if (auto ready = wait_readable(listening, options_.stop); !ready) return ready.error();
   }

@@ -11,6 +11,9 @@
 
 namespace hc::internal {
 
+/// How many peers a listening end has at once.
+constexpr std::size_t kMaxPeers = 256;
+
 /// A socket that listens, and what is to be cleaned up when it stops.
 struct ListeningSocket {
   Descriptor descriptor;
@@ -31,10 +34,11 @@ struct ListeningSocket {
 
 /// Takes messages from all peers that connect, in the order in which they come. A peer that breaks
 /// a rule is closed and the log told; the others notice nothing. Never ends by itself.
+///
+/// When there are kMaxPeers, the one whose last message was longest ago makes room for who comes,
+/// unless it is inside a message: so peers that say nothing cannot keep others out.
 class ListeningSource final : public Source {
  public:
-  static constexpr std::size_t kMaxPeers = 256;  ///< at once; more wait until one has left
-
   static Result<std::unique_ptr<Source>> make(ListeningSocket socket, const LinkOptions& options);
 
   Result<Got> take(Message& message) override;
@@ -42,20 +46,35 @@ class ListeningSource final : public Source {
   [[nodiscard]] Traffic traffic() const override;
 
  private:
-  ListeningSource(ListeningSocket socket, Descriptor poll, const LinkOptions& options)
-      : socket_(std::move(socket)), poll_(std::move(poll)), options_(options) {}
+  struct Peer {
+    std::unique_ptr<StreamSource> source;
+    std::uint64_t heard = 0;  // when: the number of messages and peers that had come by then
+  };
+
+  ListeningSource(ListeningSocket socket, Descriptor poll, Descriptor timer,
+                  const LinkOptions& options)
+      : socket_(std::move(socket)),
+        poll_(std::move(poll)),
+        timer_(std::move(timer)),
+        options_(options) {}
 
   Status watch(int descriptor);
   void forget(int descriptor);
-  Status accept_all();
+  void accept_all();
+  Status accept_one();
+  void accept_later(bool later);
+  [[nodiscard]] std::size_t find_idlest() const;
   void leave(std::size_t peer, std::string_view why);
 
   ListeningSocket socket_;
-  Descriptor poll_;  // an epoll instance of the listening socket and all peers
+  Descriptor poll_;   // an epoll instance of the listening socket, the timer and all peers
+  Descriptor timer_;  // says when to try again, while later_
   LinkOptions options_;
-  std::vector<std::unique_ptr<StreamSource>> peers_;
-  Traffic left_;          // of the peers that have left
-  std::size_t turn_ = 0;  // whose messages come next, so that a busy peer cannot starve another
+  std::vector<Peer> peers_;
+  std::uint64_t count_ = 0;  // of messages and peers that have come
+  bool later_ = false;       // somebody waits who could not be let in
+  Traffic left_;             // of the peers that have left
+  std::size_t turn_ = 0;     // whose messages come next, so that a busy peer cannot starve another
 };
 
 /// Puts each message to every peer that is connected. Waits for the first ones to come; peers that
@@ -73,12 +92,13 @@ class ListeningSink final : public Sink {
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
 
  private:
-  Status accept_ready();
+  bool accept_ready();
   Status await(std::size_t readers);
 
   ListeningSocket socket_;
   std::int64_t readers_;
   bool begun_ = false;  // the readers that were to be waited for have come
+  bool later_ = false;  // somebody waits who could not be let in
   LinkOptions options_;
   Encoder encoder_;
   Traffic traffic_;
@@ -101,7 +121,8 @@ Result<Descriptor> listen_on(const void* address, unsigned size, const std::stri
 
 /// Takes the next peer that has connected; none (-1) when there is none just now.
 ///
-/// Errors: System, but not for a peer that left before it was accepted.
+/// Errors: System: descriptors or memory have run out, or the network has failed. None is for ever,
+/// and who waits may be let in later.
 Result<Descriptor> accept_peer(const ListeningSocket& socket, const LinkOptions& options);
 
 }  // namespace hc::internal

@@ -2,6 +2,7 @@
 #pragma once
 // What tcp and unix links do beyond the conformance of all: they listen, refuse, and meet again.
 
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 
 #include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
+#include <hc/link/listener.h>
 #include <hc/link/stream_link.h>
 #include <hc/wire/codec.h>
 
@@ -43,6 +45,16 @@ inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
   return {{scheme.name + "_source_listens", source_listens, false, false, true},
           {scheme.name + "_sink_listens", sink_listens, true, true, false}};
 }
+
+/// What a link told its log.
+struct Warnings {
+  std::vector<std::string> lines;
+  LinkOptions options() {
+    LinkOptions options;
+    options.log = [this](Severity, std::string_view line) { lines.emplace_back(line); };
+    return options;
+  }
+};
 
 class SocketLink : public ::testing::TestWithParam<SocketScheme> {
  protected:
@@ -175,10 +187,8 @@ TEST_P(SocketLink, ManyReadersGetEachMessage) {
 }
 
 TEST_P(SocketLink, AHostilePeerDisturbsNobody) {
-  std::vector<std::string> warnings;
-  LinkOptions options;
-  options.log = [&](Severity, std::string_view line) { warnings.emplace_back(line); };
-  auto source = source_of(listen(), options);
+  Warnings warnings;
+  auto source = source_of(listen(), warnings.options());
   auto hostile = GetParam().connect(place_);
   auto sink = sink_of(dial());
   ASSERT_EQ(::write(hostile.get(), "GET / HTTP/1.1\r\n", 16), 16);
@@ -188,15 +198,13 @@ TEST_P(SocketLink, AHostilePeerDisturbsNobody) {
     ASSERT_TRUE(*receive(*source, message));
     EXPECT_EQ(message.header.seq, i);
   }
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0], "Malformed: R5 version: \"GET\" is not an integer, at byte 0");
+  ASSERT_EQ(warnings.lines.size(), 1U);
+  EXPECT_EQ(warnings.lines[0], "Malformed: R5 version: \"GET\" is not an integer, at byte 0");
 }
 
 TEST_P(SocketLink, AMessageThatIsCutIsTold) {
-  std::vector<std::string> warnings;
-  LinkOptions options;
-  options.log = [&](Severity, std::string_view line) { warnings.emplace_back(line); };
-  auto source = source_of(listen(), options);
+  Warnings warnings;
+  auto source = source_of(listen(), warnings.options());
   std::string bytes = encode(numbered(1, 100)) + encode(numbered(2, 100)).substr(0, 60);
   {
     auto peer = GetParam().connect(place_);
@@ -209,24 +217,117 @@ TEST_P(SocketLink, AMessageThatIsCutIsTold) {
   ASSERT_TRUE(sink->send(numbered(3, 1)));
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, 3);
-  while (warnings.empty()) ASSERT_EQ(*source->take(message), Got::Nothing);
-  EXPECT_TRUE(warnings[0].starts_with("Truncated: R2 stream: truncated after 1 messages"));
+  while (warnings.lines.empty()) ASSERT_EQ(*source->take(message), Got::Nothing);
+  EXPECT_TRUE(warnings.lines[0].starts_with("Truncated: R2 stream: truncated after 1 messages"));
 }
 
-TEST_P(SocketLink, MorePeersThanThereIsRoomForWait) {
-  auto source = source_of(listen());
-  std::vector<std::unique_ptr<Sink>> sinks;
-  Message message;
-  constexpr int kPeers = 300;  // room is for 256
-  for (int i = 0; i < kPeers; ++i) {
-    sinks.push_back(sink_of(dial() + "?wait=60"));
-    ASSERT_TRUE(sinks.back()->send(numbered(i, 1)));
-    if (i >= 256) continue;
-    ASSERT_TRUE(*receive(*source, message));
+/// Leaves the process no free descriptor, for as long as it lives.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    ::getrlimit(RLIMIT_NOFILE, &saved_);
+    internal::Descriptor lowest(::eventfd(0, EFD_CLOEXEC));
+    rlimit none = {static_cast<rlim_t>(lowest.get()), saved_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   }
-  sinks.erase(sinks.begin(), sinks.begin() + 100);
-  for (int i = 256; i < kPeers; ++i) ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(source->traffic().messages, static_cast<std::uint64_t>(kPeers));
+  ~NoDescriptors() { ::setrlimit(RLIMIT_NOFILE, &saved_); }
+
+ private:
+  rlimit saved_{};
+};
+
+TEST_P(SocketLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
+  Warnings warnings;
+  auto source = source_of(listen(), warnings.options());
+  auto sink = sink_of(dial());
+  ASSERT_TRUE(sink->send(numbered(1, 1)));
+  Message message;
+  {
+    NoDescriptors none;
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  EXPECT_EQ(warnings.lines, std::vector<std::string>{"System: accept(): Too many open files"});
+  EXPECT_TRUE(*receive(*source, message));
+}
+
+TEST_P(SocketLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
+  Warnings warnings;
+  auto options = warnings.options();
+  Stop stop;
+  stop.raise();
+  options.stop = stop.options().stop;
+  auto sink = sink_of(listen(), options);
+  auto source = source_of(dial());
+  {
+    NoDescriptors none;
+    EXPECT_EQ(sink->send(numbered(1, 1)).error().code, Code::Stopped);
+  }
+  EXPECT_EQ(warnings.lines, std::vector<std::string>{"System: accept(): Too many open files"});
+  ASSERT_TRUE(sink->send(numbered(2, 1)));
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 2);
+}
+
+TEST_P(SocketLink, WhoIsSilentLongestMakesRoom) {
+  Warnings warnings;
+  auto source = source_of(listen(), warnings.options());
+  std::vector<internal::Descriptor> peers;
+  Message message;
+  for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
+    peers.push_back(GetParam().connect(place_));
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  // The first has said something since, and the second is inside a message.
+  std::string bytes = encode(numbered(1, 1));
+  auto size = static_cast<ssize_t>(bytes.size());
+  ASSERT_EQ(::write(peers[0].get(), bytes.data(), bytes.size()), size);
+  ASSERT_EQ(::write(peers[1].get(), bytes.data(), 1), 1);
+  ASSERT_TRUE(*receive(*source, message));
+  auto sink = sink_of(dial() + "?wait=60");
+  ASSERT_TRUE(sink->send(numbered(2, 1)));
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 2);
+  ASSERT_EQ(warnings.lines.size(), 1U);
+  EXPECT_EQ(warnings.lines[0], "closed the peer that was silent longest, to let another in");
+  char byte = 0;
+  EXPECT_EQ(::read(peers[2].get(), &byte, 1), 0);
+}
+
+TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
+  auto source = source_of(listen());
+  std::vector<internal::Descriptor> peers;
+  std::string bytes = encode(numbered(1, 1));
+  Message message;
+  for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
+    peers.push_back(GetParam().connect(place_));
+    ASSERT_EQ(::write(peers[i].get(), bytes.data(), 1), 1);
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  auto sink = sink_of(dial() + "?wait=60");
+  ASSERT_TRUE(sink->send(numbered(2, 1)));
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+  auto rest = static_cast<ssize_t>(bytes.size()) - 1;
+  ASSERT_EQ(::write(peers[7].get(), bytes.data() + 1, bytes.size() - 1), rest);
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
+  ASSERT_TRUE(*receive(*source, message));  // from who came last, in the place of the seventh
+  EXPECT_EQ(message.header.seq, 2);
+}
+
+TEST_P(SocketLink, MoreReadersThanThereIsRoomForWait) {
+  auto sink = sink_of(listen());
+  std::vector<internal::Descriptor> peers;
+  for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
+    peers.push_back(GetParam().connect(place_));
+    ASSERT_TRUE(sink->send(numbered(0, 1)));
+  }
+  auto last = GetParam().connect(place_);
+  char byte = 0;
+  ASSERT_TRUE(sink->send(numbered(1, 1)));
+  EXPECT_EQ(::recv(last.get(), &byte, 1, MSG_DONTWAIT), -1);
+  peers.erase(peers.begin());
+  while (::recv(last.get(), &byte, 1, MSG_DONTWAIT) < 0) ASSERT_TRUE(sink->send(numbered(2, 1)));
 }
 
 }  // namespace hc::testing

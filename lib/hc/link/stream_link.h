@@ -27,6 +27,8 @@ class StreamSource final : public Source {
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
   [[nodiscard]] Traffic traffic() const override { return {reader_.messages(), reader_.bytes()}; }
   Status resume() override;
+  /// Whether nothing has come yet of the next message.
+  [[nodiscard]] bool between_messages() const { return reader_.finish().has_value(); }
 
  private:
   Descriptor descriptor_;
