@@ -41,9 +41,9 @@ class Descriptor {
 
 /// "open(eyes.mtp): No such file or directory", from errno as it stands.
 inline Error system_error(std::string_view call, std::string_view argument, int number = errno) {
-  Code code = number == ENOENT                                                    ? Code::NotFound
-              : number == EPIPE || number == ECONNRESET || number == ECONNREFUSED ? Code::Closed
-                                                                                  : Code::System;
+  bool closed = number == EPIPE || number == ECONNRESET || number == ECONNREFUSED ||
+                number == ETIMEDOUT;  // a peer that vanished
+  Code code = number == ENOENT ? Code::NotFound : closed ? Code::Closed : Code::System;
   std::string detail(call);
   detail.append("(").append(argument).append("): ").append(std::strerror(number));
   return {code, std::move(detail)};

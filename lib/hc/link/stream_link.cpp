@@ -2,6 +2,8 @@
 #include <hc/link/stream_link.h>
 
 #include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
@@ -58,16 +60,24 @@ Status StreamSink::send(const Message& message) {
 }
 
 Status StreamSink::wait_for_room(bool begun, std::optional<Deadline>& give_up) {
-  if (!give_up) {
-    auto ready = wait_for(descriptor_.get(), POLLOUT, stop_);
-    if (ready) return {};
-    if (!begun || ready.error().code != Code::Stopped) return ready.error();
-    give_up = std::chrono::steady_clock::now() + kGrace;
+  while (true) {
+    auto now = std::chrono::steady_clock::now();
+    if (give_up && now >= *give_up)
+      return Error{Code::Truncated,
+                   "asked to stop, and the reader did not take the rest of a message"};
+    auto ready = wait_for(descriptor_.get(), POLLOUT, give_up ? -1 : stop_,
+                          std::min(now + kLookPeriod, give_up.value_or(Deadline::max())));
+    if (ready && *ready) return {};
+    if (!ready && (!begun || ready.error().code != Code::Stopped)) return ready.error();
+    if (!ready) give_up = std::chrono::steady_clock::now() + kGrace;
+    if (auto there = look_after_reader(); !there) return there;
   }
-  auto ready = wait_for(descriptor_.get(), POLLOUT, -1, give_up);
-  if (!ready) return ready.error();
-  if (*ready) return {};
-  return Error{Code::Truncated, "asked to stop, and the reader did not take the rest of a message"};
+}
+
+Status StreamSink::look_after_reader() const {
+  if (is_socket_ && has_vanished(descriptor_.get()))
+    return Error{Code::Closed, "the reader has vanished"};
+  return {};
 }
 
 Status StreamSink::send_pieces(const Pieces& pieces) {
@@ -79,6 +89,7 @@ Status StreamSink::send_pieces(const Pieces& pieces) {
     left += piece.size();
   }
   iovec* part = parts.data();
+  if (auto there = look_after_reader(); !there) return there;
   const std::size_t whole = left;
   std::optional<Deadline> give_up;  // set when it is to stop inside the message
   traffic_.bytes += whole;
@@ -136,6 +147,15 @@ Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
   if (!copy) return copy.error();
   if (S_ISSOCK(status.st_mode)) ::fcntl(*copy, F_SETFL, ::fcntl(*copy, F_GETFL) | O_NONBLOCK);
   return Descriptor(*copy);
+}
+
+bool has_vanished(int socket) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return false;
+  // Without room at the reader's side nothing is sent again, but the reader is asked for room.
+  auto asked = std::max(info.tcpi_retransmits, info.tcpi_probes);
+  return asked >= 2 && std::chrono::milliseconds(info.tcpi_last_ack_recv) >= kVanishTime;
 }
 
 Status Pauses::next(int stop) {

@@ -43,6 +43,8 @@ class StreamSink final : public Sink {
  public:
   /// How long a reader may take, after `stop`, for the rest of a message.
   static constexpr std::chrono::seconds kGrace{2};
+  /// How often a reader that is waited for is looked after, whether it is still there.
+  static constexpr std::chrono::seconds kLookPeriod{1};
 
   StreamSink(Descriptor descriptor, const LinkOptions& options)
       : descriptor_(std::move(descriptor)), stop_(options.stop) {}
@@ -57,6 +59,7 @@ class StreamSink final : public Sink {
 
  private:
   Status wait_for_room(bool begun, std::optional<Deadline>& give_up);
+  [[nodiscard]] Status look_after_reader() const;
 
   Descriptor descriptor_;
   int stop_;
@@ -64,6 +67,16 @@ class StreamSink final : public Sink {
   Encoder encoder_;
   Traffic traffic_;
 };
+
+/// How long a TCP peer may leave what it must answer without an answer.
+constexpr std::chrono::seconds kVanishTime{4};
+
+/// Whether a socket's peer has not answered for kVanishTime, though asked twice; false where the
+/// socket is not TCP.
+///
+/// Not TCP_USER_TIMEOUT, which also ends the link to a reader that is there and answers, but is
+/// slow and has no room for 4 s.
+bool has_vanished(int socket);
 
 /// A descriptor for what `number` is open on, whose reads and writes do not wait, without changing
 /// that for the other processes that share it.

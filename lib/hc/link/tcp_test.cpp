@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <arpa/inet.h>
+#include <linux/filter.h>
 #include <netinet/in.h>
 
 #include <hc/link/socket_test.h>
@@ -52,6 +53,57 @@ TEST(Tcp, ListensOnLoopbackUnlessAskedOtherwise) {
     EXPECT_EQ(ntohl(address.sin_addr.s_addr), INADDR_LOOPBACK);
   }
   EXPECT_EQ(std::to_string(ntohs(address.sin_port)), port);
+}
+
+/// As if the network cable were pulled: what comes to the socket is thrown away unanswered.
+void cut_off(const internal::Descriptor& socket) {
+  sock_filter drop_all = BPF_STMT(BPF_RET | BPF_K, 0);
+  sock_fprog program = {1, &drop_all};
+  ASSERT_EQ(::setsockopt(socket.get(), SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program), 0);
+}
+
+TEST(Tcp, AWriterThatVanishesIsNoticed) {
+  Warnings warnings;
+  std::string place = free_port();
+  auto source = source_of("tcp-listen:" + place, warnings.options());
+  auto peer = connect(place);
+  Message message;
+  ASSERT_EQ(*source->take(message), Got::Nothing);
+  cut_off(peer);
+  while (warnings.lines.empty()) {
+    std::array<int, 1> descriptors = {source->descriptor()};
+    ASSERT_TRUE(wait_readable(descriptors));
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  EXPECT_EQ(warnings.lines[0], "Closed: read(): Connection timed out");
+}
+
+TEST(Tcp, AReaderThatVanishesIsNoticed) {
+  std::string place = free_port();
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1");
+  auto peer = connect(place);
+  ASSERT_TRUE(sink->send(numbered(0, 1)));
+  cut_off(peer);
+  Status sent;
+  for (int i = 0; sent; ++i) sent = sink->send(numbered(i, 100'000));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST(Tcp, AReaderThatVanishesIsNoticedThoughItsBufferHasRoom) {
+  std::string place = free_port();
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1");
+  auto peer = connect(place);
+  ASSERT_TRUE(sink->send(numbered(0, 1)));
+  cut_off(peer);
+  ASSERT_TRUE(sink->send(numbered(1, 1)));
+  // Nothing wakes a sink that waits for nothing; the peer's kernel is silent for all to see.
+  internal::Pauses pauses;
+  Status sent;
+  for (int i = 0; sent; ++i) {
+    ASSERT_TRUE(pauses.next(-1));
+    sent = sink->send(numbered(i, 1));
+  }
+  EXPECT_EQ(sent.error().code, Code::Closed);
 }
 
 TEST(Tcp, AHostWithoutAnAddressIsNotFound) {
