@@ -84,7 +84,8 @@ struct LinkOptions {
 /// listens (`unix:@NAME` in the abstract namespace, which leaves no file), `tcp-listen:[HOST:]PORT`
 /// and `unix-listen:PATH` wait for peers, `inproc:NAME` another thread of this process.
 /// Listening is on loopback unless a host is given. Options in the URI:
-/// - `wait=SECONDS` (tcp, unix): how long to try while nobody listens yet; default 0.
+/// - `wait=SECONDS` (tcp, unix): how long to try while nobody listens yet; default 0, which gives a
+///   host that does not answer 4 s.
 /// - `readers=N` (listening sinks): how many readers to wait for before the first message and
 ///   before the end; default 1 before the first message, and none before the end.
 ///

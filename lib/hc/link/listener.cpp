@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include <hc/link/transports.h>
 
@@ -47,20 +48,26 @@ void set_up(int socket) {
     ::setsockopt(socket, level, name, &value, sizeof value);
 }
 
-/// One try; whether nobody listened there.
-Result<bool> try_to_connect(int socket, const sockaddr* address, unsigned size,
-                            const std::string& name, int stop) {
-  if (::connect(socket, address, size) == 0) return true;
+/// One try; none (-1) when nobody listens there, or answers before `deadline`.
+Result<Descriptor> try_to_connect(const Address& address, const std::string& name,
+                                  Deadline deadline, int stop) {
+  auto socket = open_socket(address.data);
+  if (!socket) return socket;
+  if (::connect(socket->get(), static_cast<const sockaddr*>(address.data), address.size) == 0)
+    return socket;
   if (errno == EINPROGRESS) {
-    if (auto ready = wait_for(socket, POLLOUT, stop); !ready) return ready.error();
+    auto answered = wait_for(socket->get(), POLLOUT, stop, deadline);
+    if (!answered) return answered.error();
+    if (!*answered) return Descriptor();
     int status = 0;
     socklen_t status_size = sizeof status;
-    ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &status, &status_size);
-    if (status == 0) return true;
+    ::getsockopt(socket->get(), SOL_SOCKET, SO_ERROR, &status, &status_size);
+    if (status == 0) return socket;
     errno = status;
   }
   // EAGAIN: the backlog of a Unix socket is full for now.
-  if (errno == ECONNREFUSED || errno == ENOENT || errno == EAGAIN) return false;
+  if (errno == ECONNREFUSED || errno == ENOENT || errno == EAGAIN || errno == ETIMEDOUT)
+    return Descriptor();
   return system_error("connect", name);
 }
 
@@ -87,21 +94,31 @@ ListeningSocket::~ListeningSocket() {
   if (descriptor && !unlink_path.empty()) ::unlink(unlink_path.c_str());
 }
 
-Result<Descriptor> connect_to(const void* address, unsigned size, const std::string& name,
+Result<Descriptor> connect_to(std::span<const Address> addresses, const std::string& name,
                               std::chrono::seconds wait, int stop) {
-  auto give_up = std::chrono::steady_clock::now() + wait;
+  using std::chrono::steady_clock;
+  const auto begin = steady_clock::now();
+  const auto last_answer = begin + (wait > std::chrono::seconds(0) ? wait : kAnswerTime);
   Pauses pauses;
   while (true) {
-    auto socket = open_socket(address);
-    if (!socket) return socket.error();
-    auto connected =
-        try_to_connect(socket->get(), static_cast<const sockaddr*>(address), size, name, stop);
-    if (!connected) return connected.error();
-    if (*connected) {
-      set_up(socket->get());
-      return socket;
+    std::optional<Error> failed;
+    bool may_come = false;  // somebody may listen there later
+    for (std::size_t i = 0; i < addresses.size(); ++i) {
+      auto now = steady_clock::now();
+      auto share = (last_answer - now) / static_cast<std::int64_t>(addresses.size() - i);
+      auto connected = try_to_connect(addresses[i], name, now + share, stop);
+      if (connected && *connected) {
+        set_up(connected->get());
+        return connected;
+      }
+      if (!connected && connected.error().code == Code::Stopped) return connected;
+      if (connected)
+        may_come = true;
+      else
+        failed = connected.error();
     }
-    if (std::chrono::steady_clock::now() >= give_up)
+    if (!may_come && failed) return *failed;
+    if (steady_clock::now() >= begin + wait)
       return Error{Code::Closed, "connect(" + name + "): nobody listens there"};
     if (auto waited = pauses.next(stop); !waited) return waited.error();
   }

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -109,11 +110,21 @@ class ListeningSink final : public Sink {
 Result<std::unique_ptr<Sink>> make_listening_sink(ListeningSocket socket, const Uri& uri,
                                                   const LinkOptions& options);
 
-/// Connects to an address; tries again, with growing pauses, while nobody listens there and `wait`
-/// has not passed.
+/// Where a peer may listen; the memory is somebody else's.
+struct Address {
+  const void* data = nullptr;  ///< a sockaddr of some family
+  unsigned size = 0;           ///< [byte]
+};
+
+/// How long a peer may take to answer when one does not wait for it to begin listening.
+constexpr std::chrono::seconds kAnswerTime{4};
+
+/// Connects to the first of a name's addresses where somebody listens; tries all of them again,
+/// with growing pauses, while nobody does and `wait` has not passed.
 ///
-/// Errors: Closed (refused to the end), Stopped, System.
-Result<Descriptor> connect_to(const void* address, unsigned size, const std::string& name,
+/// Gives up when `wait` has passed, or kAnswerTime if `wait` is 0; addresses that do not answer
+/// share that time. Errors: Closed (refused, or no answer, to the end), Stopped, System.
+Result<Descriptor> connect_to(std::span<const Address> addresses, const std::string& name,
                               std::chrono::seconds wait, int stop);
 
 /// A socket that listens on an address; its name is for error lines.

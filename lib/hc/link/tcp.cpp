@@ -3,6 +3,8 @@
 #include <netdb.h>
 #include <sys/socket.h>
 
+#include <vector>
+
 #include <hc/link/listener.h>
 #include <hc/link/transports.h>
 
@@ -31,17 +33,12 @@ Result<Addresses> resolve(const Uri& uri, int flags) {
 Result<Descriptor> connect_tcp(const Uri& uri, const LinkOptions& options) {
   auto wait = number_option(uri, "wait", 0);
   if (!wait) return wait.error();
-  auto addresses = resolve(uri, 0);
-  if (!addresses) return addresses.error();
-  // A name may have several addresses (localhost has two); the first that answers serves.
-  Result<Descriptor> connected = Error{Code::NotFound, uri.rest};
-  for (const addrinfo* each = addresses->get(); each != nullptr; each = each->ai_next) {
-    bool last = each->ai_next == nullptr;
-    connected = connect_to(each->ai_addr, each->ai_addrlen, uri.rest,
-                           std::chrono::seconds(last ? *wait : 0), options.stop);
-    if (connected) break;
-  }
-  return connected;
+  auto list = resolve(uri, 0);
+  if (!list) return list.error();
+  std::vector<Address> addresses;  // a name may have several; localhost has two
+  for (const addrinfo* each = list->get(); each != nullptr; each = each->ai_next)
+    addresses.push_back({each->ai_addr, each->ai_addrlen});
+  return connect_to(addresses, uri.rest, std::chrono::seconds(*wait), options.stop);
 }
 
 Result<ListeningSocket> listen_tcp(const Uri& uri) {

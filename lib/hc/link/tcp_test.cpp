@@ -3,6 +3,9 @@
 #include <linux/filter.h>
 #include <netinet/in.h>
 
+#include <array>
+
+#include <hc/link/listener.h>
 #include <hc/link/socket_test.h>
 
 namespace hc::testing {
@@ -53,6 +56,60 @@ TEST(Tcp, ListensOnLoopbackUnlessAskedOtherwise) {
     EXPECT_EQ(ntohl(address.sin_addr.s_addr), INADDR_LOOPBACK);
   }
   EXPECT_EQ(std::to_string(ntohs(address.sin_port)), port);
+}
+
+/// A port of 127.0.0.1 that answers nobody: it has no room for another connection.
+class SilentPort {
+ public:
+  SilentPort() {
+    sockaddr_in address = loopback(0);
+    socklen_t size = sizeof address;
+    auto* place = reinterpret_cast<sockaddr*>(&address);
+    EXPECT_EQ(::bind(listening_.get(), place, size), 0);
+    EXPECT_EQ(::getsockname(listening_.get(), place, &size), 0);
+    EXPECT_EQ(::listen(listening_.get(), 0), 0);
+    port_ = ntohs(address.sin_port);
+    for (auto& socket : waiting_) {
+      socket = internal::Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+      ::connect(socket.get(), place, size);
+    }
+  }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+ private:
+  internal::Descriptor listening_{::socket(AF_INET, SOCK_STREAM, 0)};
+  std::array<internal::Descriptor, 4> waiting_;
+  std::uint16_t port_ = 0;
+};
+
+TEST(Tcp, WaitingEndsThoughNobodyAnswers) {
+  SilentPort silent;
+  std::string place = "127.0.0.1:" + std::to_string(silent.port());
+  EXPECT_EQ(open_source(*parse_uri("tcp:" + place + "?wait=1")).error().code, Code::Closed);
+  EXPECT_EQ(open_source(*parse_uri("tcp:" + place)).error().code, Code::Closed);
+  Stop stop;
+  stop.raise();
+  EXPECT_EQ(open_source(*parse_uri("tcp:" + place), stop.options()).error().code, Code::Stopped);
+}
+
+TEST(Tcp, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
+  SilentPort silent;
+  std::string place = free_port();
+  auto source = source_of("tcp-listen:" + place);
+  sockaddr_in first = loopback(silent.port()), second = loopback(parse_host_port(place)->port);
+  std::array<internal::Address, 2> both = {{{&first, sizeof first}, {&second, sizeof second}}};
+  EXPECT_TRUE(internal::connect_to(both, "both", std::chrono::seconds(1), -1));
+}
+
+TEST(Tcp, EveryAddressIsTriedAgain) {
+  std::string place = free_port(), other = free_port();
+  sockaddr_in first = loopback(parse_host_port(place)->port);
+  sockaddr_in second = loopback(parse_host_port(other)->port);
+  std::array<internal::Address, 2> both = {{{&first, sizeof first}, {&second, sizeof second}}};
+  std::unique_ptr<Source> source;
+  std::thread late([&] { source = source_of("tcp-listen:" + place); });
+  EXPECT_TRUE(internal::connect_to(both, "both", std::chrono::seconds(60), -1));
+  late.join();
 }
 
 /// As if the network cable were pulled: what comes to the socket is thrown away unanswered.

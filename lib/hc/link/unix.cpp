@@ -6,6 +6,7 @@
 #include <sys/un.h>
 
 #include <algorithm>
+#include <array>
 
 #include <hc/link/listener.h>
 #include <hc/link/transports.h>
@@ -55,8 +56,8 @@ Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options) {
   if (!wait) return wait.error();
   auto address = address_of(uri);
   if (!address) return address.error();
-  auto connected = connect_to(&address->address, address->size, uri.rest,
-                              std::chrono::seconds(*wait), options.stop);
+  const std::array<Address, 1> addresses = {{{&address->address, address->size}}};
+  auto connected = connect_to(addresses, uri.rest, std::chrono::seconds(*wait), options.stop);
   if (!connected || !is_abstract(uri)) return connected;
   if (auto same = admit_same_user(connected->get()); !same) return same.error();
   return connected;
