@@ -2,6 +2,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <hc/link/descriptor.h>
@@ -55,6 +56,28 @@ TEST_F(Stdio, TheFlagsOfTheShellsDescriptorsStay) {
   EXPECT_EQ(::fcntl(1, F_GETFL) & O_NONBLOCK, 0);
   Message message;
   EXPECT_EQ(*source->take(message), Got::Nothing);
+}
+
+TEST_F(Stdio, TheFlagsOfTheShellsSocketsStay) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  for (int i : {0, 1}) {
+    ::dup2(ends[i], i);
+    ::close(ends[i]);
+  }
+  auto source = source_of("-");
+  Stop stop;
+  stop.raise();
+  auto sink = sink_of("-", stop.options());
+  Message message;
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+  ASSERT_TRUE(sink->send(numbered(0, 10)));
+  EXPECT_TRUE(*receive(*source, message));
+  Status sent;  // a message this small goes whole or not at all
+  for (int i = 0; sent; ++i) sent = sink->send(numbered(i, 1000));
+  EXPECT_EQ(sent.error().code, Code::Stopped);
+  EXPECT_EQ(::fcntl(0, F_GETFL) & O_NONBLOCK, 0);
+  EXPECT_EQ(::fcntl(1, F_GETFL) & O_NONBLOCK, 0);
 }
 
 TEST_F(Stdio, AReaderThatHasGoneIsAnEnd) {

@@ -28,7 +28,12 @@ Result<Got> StreamSource::take(Message& message) {
     if (!got) return got.error();
     if (*got) return Got::Message;
     auto space = reader_.space();
-    ssize_t size = ::read(descriptor_.get(), space.data(), space.size());
+    ssize_t size = is_socket_ ? ::recv(descriptor_.get(), space.data(), space.size(), MSG_DONTWAIT)
+                              : ::read(descriptor_.get(), space.data(), space.size());
+    if (size < 0 && errno == ENOTSOCK && is_socket_) {
+      is_socket_ = false;
+      continue;
+    }
     if (size > 0) {
       reader_.commit(static_cast<std::size_t>(size));
       continue;
@@ -98,7 +103,7 @@ Status StreamSink::send_pieces(const Pieces& pieces) {
     header.msg_iov = part;
     header.msg_iovlen = used - static_cast<std::size_t>(part - parts.data());
     ssize_t size = is_socket_
-                       ? ::sendmsg(descriptor_.get(), &header, MSG_NOSIGNAL)
+                       ? ::sendmsg(descriptor_.get(), &header, MSG_NOSIGNAL | MSG_DONTWAIT)
                        : ::writev(descriptor_.get(), part, static_cast<int>(header.msg_iovlen));
     if (size < 0) {
       if (errno == ENOTSOCK && is_socket_) {
@@ -145,7 +150,6 @@ Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
   }
   auto copy = system_call("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
   if (!copy) return copy.error();
-  if (S_ISSOCK(status.st_mode)) ::fcntl(*copy, F_SETFL, ::fcntl(*copy, F_GETFL) | O_NONBLOCK);
   return Descriptor(*copy);
 }
 

@@ -17,7 +17,7 @@ namespace hc::internal {
 
 using Deadline = std::chrono::steady_clock::time_point;
 
-/// Takes messages from a descriptor whose reads do not wait.
+/// Takes messages from a descriptor whose reads do not wait; those of sockets never do.
 class StreamSource final : public Source {
  public:
   StreamSource(Descriptor descriptor, const LinkOptions& options)
@@ -32,10 +32,11 @@ class StreamSource final : public Source {
 
  private:
   Descriptor descriptor_;
+  bool is_socket_ = true;  // until a first read says otherwise
   StreamReader reader_;
 };
 
-/// Puts messages into a descriptor whose writes do not wait.
+/// Puts messages into a descriptor whose writes do not wait; those of sockets never do.
 ///
 /// A message that was begun is finished, also when it is to stop: the reader could not tell where
 /// the next one begins, and would call the stream damaged.
@@ -78,8 +79,8 @@ constexpr std::chrono::seconds kVanishTime{4};
 /// slow and has no room for 4 s.
 bool has_vanished(int socket);
 
-/// A descriptor for what `number` is open on, whose reads and writes do not wait, without changing
-/// that for the other processes that share it.
+/// A descriptor for what `number` is open on, whose reads and writes do not wait (but those of a
+/// socket are to be asked not to), without changing that for the other processes that share it.
 Result<Descriptor> reopen_without_waiting(int number, int access_mode);
 
 /// The pauses between tries at what comes about by itself: 1 ms, and each twice the last to 200 ms.
