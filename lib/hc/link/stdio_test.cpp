@@ -5,8 +5,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdio>
+
 #include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
+#include <hc/wire/codec.h>
 
 namespace hc::testing {
 namespace {
@@ -115,6 +118,23 @@ TEST_F(Stdio, AMessageThatCannotBeFinishedIsTold) {
   stop.raise();
   auto sink = sink_of("-", stop.options());
   EXPECT_EQ(sink->send(numbered(0, 4'000'000)).error().code, Code::Truncated);
+}
+
+TEST_F(Stdio, R40_IsReadOnBehindDamageInAFileThatWasBegun) {
+  std::string bytes = encode(numbered(0, 300));
+  std::string rest = "1 7 0 0 8 0 40101 0 7 50000 1\nshort\n" + encode(numbered(1, 3));
+  std::FILE* file = std::tmpfile();
+  std::fwrite((bytes + rest).data(), 1, (bytes + rest).size(), file);
+  std::fflush(file);
+  ::lseek(::fileno(file), static_cast<off_t>(bytes.size()), SEEK_SET);
+  ::dup2(::fileno(file), 0);
+  std::fclose(file);
+  auto source = source_of("-");
+  Message message;
+  EXPECT_FALSE(receive(*source, message));
+  ASSERT_TRUE(source->resume());
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
 }
 
 TEST_F(Stdio, CannotBeReadOnAfterAnError) {

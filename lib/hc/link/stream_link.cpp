@@ -50,7 +50,7 @@ Result<Got> StreamSource::take(Message& message) {
 
 Status StreamSource::resume() {
   // The reader begins again where the refused message began, and so must the file.
-  auto begin = static_cast<off_t>(reader_.message_begin());
+  auto begin = begin_ + static_cast<off_t>(reader_.message_begin());
   struct stat status {};
   if (::fstat(descriptor_.get(), &status) != 0 || !S_ISREG(status.st_mode)) return Source::resume();
   auto moved =

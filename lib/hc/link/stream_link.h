@@ -21,7 +21,9 @@ using Deadline = std::chrono::steady_clock::time_point;
 class StreamSource final : public Source {
  public:
   StreamSource(Descriptor descriptor, const LinkOptions& options)
-      : descriptor_(std::move(descriptor)), reader_(options.limits) {}
+      : descriptor_(std::move(descriptor)),
+        begin_(::lseek(descriptor_.get(), 0, SEEK_CUR)),
+        reader_(options.limits) {}
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
@@ -32,6 +34,7 @@ class StreamSource final : public Source {
 
  private:
   Descriptor descriptor_;
+  off_t begin_;            // where in a file the stream begins, -1 in what is none [byte]
   bool is_socket_ = true;  // until a first read says otherwise
   StreamReader reader_;
 };
