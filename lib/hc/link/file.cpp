@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `file:PATH`: a file, a FIFO or a device by name; the same bytes as on a wire.
 #include <fcntl.h>
+#include <sys/stat.h>
 
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
@@ -8,27 +9,40 @@
 namespace hc::internal {
 namespace {
 
-Result<Descriptor> open_path(const Uri& uri, int flags) {
+/// Opens without waiting for the other end of a FIFO, which a signal to stop could not end.
+Result<Descriptor> open_path(const Uri& uri, int flags, int stop) {
   constexpr int kMode = 0666;
-  auto number = system_call("open", uri.rest, [&] {
-    return ::open(uri.rest.c_str(), flags | O_CLOEXEC | O_NOCTTY, kMode);
-  });
-  if (!number) return number.error();
-  Descriptor opened(*number);
-  return reopen_without_waiting(opened.get(), flags & O_ACCMODE);
+  const char* path = uri.rest.c_str();
+  Pauses pauses;
+  while (true) {
+    Descriptor opened(::open(path, flags | O_NONBLOCK | O_CLOEXEC | O_NOCTTY, kMode));
+    if (opened) {
+      widen_pipe(opened.get());
+      return opened;
+    }
+    const int number = errno;
+    if (number == EINTR) continue;
+    struct stat status {};
+    bool is_fifo = ::stat(path, &status) == 0 && S_ISFIFO(status.st_mode);
+    if (number != ENXIO || !is_fifo) return system_error("open", uri.rest, number);
+    // Nobody has opened it for reading yet.
+    if (auto waited = pauses.next(stop); !waited) return waited.error();
+  }
 }
 
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_file_source(const Uri& uri, const LinkOptions& options) {
-  auto descriptor = open_path(uri, O_RDONLY);
+  auto descriptor = open_path(uri, O_RDONLY, options.stop);
   if (!descriptor) return descriptor.error();
   ::posix_fadvise(descriptor->get(), 0, 0, POSIX_FADV_SEQUENTIAL);
-  return std::unique_ptr<Source>(new StreamSource(std::move(*descriptor), options));
+  struct stat status {};
+  bool is_fifo = ::fstat(descriptor->get(), &status) == 0 && S_ISFIFO(status.st_mode);
+  return std::unique_ptr<Source>(new StreamSource(std::move(*descriptor), options, is_fifo));
 }
 
 Result<std::unique_ptr<Sink>> open_file_sink(const Uri& uri, const LinkOptions& options) {
-  auto descriptor = open_path(uri, O_WRONLY | O_CREAT | O_TRUNC);
+  auto descriptor = open_path(uri, O_WRONLY | O_CREAT | O_TRUNC, options.stop);
   if (!descriptor) return descriptor.error();
   return std::unique_ptr<Sink>(new StreamSink(std::move(*descriptor), options));
 }

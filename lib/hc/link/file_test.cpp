@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/stat.h>
+
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -75,6 +78,52 @@ TEST(File, AFullDiskIsTold) {
   auto sent = sink->send(numbered(0, 10));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().detail, "write(): No space left on device");
+}
+
+std::pair<std::string, std::string> make_fifo() {
+  std::signal(SIGPIPE, SIG_IGN);  // as modules do
+  static Folder folder;
+  static int number = 0;
+  std::string path = folder / std::to_string(number++).c_str();
+  EXPECT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  return {"file:" + path, "file:" + path};
+}
+
+INSTANTIATE_TEST_SUITE_P(Fifo, LinkConformance,
+                         ::testing::Values(Transport{"fifo", make_fifo, false, true}));
+
+TEST(Fifo, HasNoEndBeforeAWriterHasCome) {
+  auto [from, to] = make_fifo();
+  auto source = source_of(from);
+  Message message;
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+  Stop stop;
+  stop.raise();
+  EXPECT_EQ(receive(*source, message, stop.options().stop).error().code, Code::Stopped);
+  ASSERT_TRUE(sink_of(to)->close());
+  EXPECT_FALSE(*receive(*source, message));
+}
+
+TEST(Fifo, WaitingForAReaderEndsWhenToldToStop) {
+  Stop stop;
+  stop.raise();
+  auto sink = open_sink(*parse_uri(make_fifo().second), stop.options());
+  ASSERT_FALSE(sink);
+  EXPECT_EQ(sink.error().code, Code::Stopped);
+}
+
+TEST(Fifo, AWriterWaitsForAReader) {
+  auto [from, to] = make_fifo();
+  std::thread writer([uri = to] {
+    auto sink = sink_of(uri);
+    ASSERT_TRUE(sink->send(numbered(1, 10)));
+    ASSERT_TRUE(sink->close());
+  });
+  auto source = source_of(from);
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_FALSE(*receive(*source, message));
+  writer.join();
 }
 
 }  // namespace

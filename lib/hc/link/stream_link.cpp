@@ -42,10 +42,17 @@ Result<Got> StreamSource::take(Message& message) {
     if (size < 0 && would_wait(errno)) return Got::Nothing;
     // A peer that was killed with our bytes unread resets the connection: the end of what it said.
     if (size < 0 && errno != ECONNRESET) return system_error("read", "");
+    if (size == 0 && awaits_writer()) return Got::Nothing;
     auto end = reader_.finish();
     if (!end) return end.error();
     return Got::End;
   }
+}
+
+bool StreamSource::awaits_writer() const {
+  // Reading gives 0 before a writer has come as it does when all have left; only poll tells.
+  pollfd polled{descriptor_.get(), POLLIN, 0};
+  return may_await_writer_ && reader_.bytes() == 0 && ::poll(&polled, 1, 0) == 0;
 }
 
 Status StreamSource::resume() {
@@ -144,13 +151,17 @@ Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
     std::string path = "/proc/self/fd/" + std::to_string(number);
     Descriptor own(::open(path.c_str(), access_mode | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
     if (own) {
-      if (S_ISFIFO(status.st_mode)) ::fcntl(own.get(), F_SETPIPE_SZ, kPipeBytes);
+      widen_pipe(own.get());
       return own;
     }
   }
   auto copy = system_call("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
   if (!copy) return copy.error();
   return Descriptor(*copy);
+}
+
+void widen_pipe(int descriptor) {
+  ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
 }
 
 bool has_vanished(int socket) {

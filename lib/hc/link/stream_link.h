@@ -20,8 +20,10 @@ using Deadline = std::chrono::steady_clock::time_point;
 /// Takes messages from a descriptor whose reads do not wait; those of sockets never do.
 class StreamSource final : public Source {
  public:
-  StreamSource(Descriptor descriptor, const LinkOptions& options)
+  /// @param may_await_writer  it is a FIFO, opened by name, perhaps before its first writer.
+  StreamSource(Descriptor descriptor, const LinkOptions& options, bool may_await_writer = false)
       : descriptor_(std::move(descriptor)),
+        may_await_writer_(may_await_writer),
         begin_(::lseek(descriptor_.get(), 0, SEEK_CUR)),
         reader_(options.limits) {}
 
@@ -33,7 +35,10 @@ class StreamSource final : public Source {
   [[nodiscard]] bool between_messages() const { return reader_.finish().has_value(); }
 
  private:
+  [[nodiscard]] bool awaits_writer() const;
+
   Descriptor descriptor_;
+  bool may_await_writer_;
   off_t begin_;            // where in a file the stream begins, -1 in what is none [byte]
   bool is_socket_ = true;  // until a first read says otherwise
   StreamReader reader_;
@@ -71,6 +76,9 @@ class StreamSink final : public Sink {
   Encoder encoder_;
   Traffic traffic_;
 };
+
+/// Lets a pipe hold more than the kernel's 64 KiB; harmless where it is none.
+void widen_pipe(int descriptor);
 
 /// How long a TCP peer may leave what it must answer without an answer.
 constexpr std::chrono::seconds kVanishTime{4};
