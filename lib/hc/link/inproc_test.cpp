@@ -11,7 +11,7 @@ std::pair<std::string, std::string> make() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Inproc, LinkConformance,
-                         ::testing::Values(Transport{"inproc", make, false, true, true, true}));
+                         ::testing::Values(Transport{"inproc", make, false, true}));
 
 TEST(Inproc, AnEndHasOneUser) {
   auto first = source_of("inproc:one");

@@ -40,10 +40,10 @@ inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
   };
   auto sink_listens = [scheme] {
     std::string place = scheme.place();
-    return std::pair{scheme.dial + place, scheme.listen + place};
+    return std::pair{scheme.dial + place, scheme.listen + place + "?readers=1"};
   };
-  return {{scheme.name + "_source_listens", source_listens, false, false, true},
-          {scheme.name + "_sink_listens", sink_listens, true, true, false}};
+  return {{scheme.name + "_source_listens", source_listens, false, false},
+          {scheme.name + "_sink_listens", sink_listens, true, true}};
 }
 
 /// What a link told its log.

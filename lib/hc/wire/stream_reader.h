@@ -27,7 +27,7 @@ namespace hc {
 ///
 /// Messages own their elements, share memory with one another, and may be held as long as one
 /// likes. Memory: one block of 64 KiB, and what the elements need as they come; a message promised
-/// but not sent costs 1 MiB at most.
+/// but not sent costs 1 MiB at most, or as much as the largest message that did come.
 class StreamReader {
  public:
   explicit StreamReader(const Limits& limits = {}) : limits_(limits) {}
