@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/link/stream_link.h>
@@ -52,12 +53,11 @@ class ListeningSource final : public Source {
     std::uint64_t heard = 0;  // when: the number of messages and peers that had come by then
   };
 
-  ListeningSource(ListeningSocket socket, Descriptor poll, Descriptor timer,
-                  const LinkOptions& options)
+  ListeningSource(ListeningSocket socket, Descriptor poll, Descriptor timer, LinkOptions options)
       : socket_(std::move(socket)),
         poll_(std::move(poll)),
         timer_(std::move(timer)),
-        options_(options) {}
+        options_(std::move(options)) {}
 
   Status watch(int descriptor);
   void forget(int descriptor);
@@ -85,8 +85,8 @@ class ListeningSink final : public Sink {
  public:
   /// @param readers  how many peers to wait for before the first message and before the end; 0: one
   ///     before the first message, none before the end.
-  ListeningSink(ListeningSocket socket, std::int64_t readers, const LinkOptions& options)
-      : socket_(std::move(socket)), readers_(readers), options_(options) {}
+  ListeningSink(ListeningSocket socket, std::int64_t readers, LinkOptions options)
+      : socket_(std::move(socket)), readers_(readers), options_(std::move(options)) {}
 
   Status send(const Message& message) override;
   Status close() override;
