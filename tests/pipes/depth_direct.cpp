@@ -14,8 +14,8 @@ int main(int, char** argv) {
   std::string folder = argv[1];
   cv::Mat left = hc::vision::fit(cv::imread(folder + "/aloeL.jpg"), 800, 600);
   cv::Mat right = hc::vision::fit(cv::imread(folder + "/aloeR.jpg"), 800, 600);
-  cv::Mat truth = hc::vision::fit(cv::imread(folder + "/aloeGT.png", cv::IMREAD_GRAYSCALE), 800,
-                                  600, false);
+  cv::Mat truth =
+      hc::vision::fit(cv::imread(folder + "/aloeGT.png", cv::IMREAD_GRAYSCALE), 800, 600, false);
   cv::cvtColor(left, left, cv::COLOR_BGR2GRAY);
   cv::cvtColor(right, right, cv::COLOR_BGR2GRAY);
   cv::Mat found;
