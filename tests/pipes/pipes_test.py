@@ -577,6 +577,7 @@ class Documents(Pipes):
 
     def commands(self, name):
         text = (ROOT / name).read_text()
+        text = text.replace("7311", str(free_port()))  # may be somebody else's just now
         blocks = re.findall(r"```sh\n(.*?)```", text, re.S)
         self.assertTrue(blocks)
         return [block for block in blocks if "./dev" not in block]
