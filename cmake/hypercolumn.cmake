@@ -77,7 +77,10 @@ endif()
 
 set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
 set(HC_TEST_SECONDS 120) # a test that takes longer hangs
-set(HC_TEST_ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.txt:print_suppressions=0")
+# What sanitizers find in other people's libraries is overlooked.
+set(HC_TSAN_OPTIONS "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/races.supp:print_suppressions=0")
+set(HC_TEST_ENVIRONMENT ${HC_TSAN_OPTIONS}
+    "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp:print_suppressions=0")
 
 # hc_layer(wire DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
 # One layer of the core: target hc::wire, its headers installed, each of its tests a program.
@@ -117,6 +120,7 @@ function(hc_test name)
   target_compile_definitions(${name} PRIVATE HC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              HC_BINARY_DIR="${PROJECT_BINARY_DIR}")
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
+                       ENVIRONMENT ${HC_TSAN_OPTIONS}
                        DISCOVERY_TIMEOUT 60)
 endfunction()
 
@@ -156,7 +160,7 @@ function(hc_cases name)
     add_test(NAME case.${name}.${case}
              COMMAND ${PROJECT_SOURCE_DIR}/scripts/run_case ${PROJECT_BINARY_DIR} ${folder})
     set_tests_properties(case.${name}.${case} PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
-                         ENVIRONMENT ${HC_TEST_ENVIRONMENT})
+                         ENVIRONMENT "${HC_TEST_ENVIRONMENT}")
   endforeach()
 endfunction()
 
