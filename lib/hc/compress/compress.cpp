@@ -28,7 +28,7 @@ Result<Message> plain_message(const Message& message, const SharedBytes& bytes) 
 /// holds 128 KiB at most (RFC 8878, 3.1.1.2). One component of a JPEG picture has all pixels, in
 /// blocks of 64 that take a bit each at least (ITU-T T.81, A.1.1 and F.1.2).
 constexpr std::uint64_t kMostForZstd = (std::uint64_t{128} << 10) / 4;
-constexpr std::uint64_t kMostForJpeg = 64 * 8;
+constexpr std::uint64_t kMostForJpeg = std::uint64_t{64} * 8;
 
 Error too_few(int rule, std::uint64_t promised, const Message& message) {
   return damaged(rule,

@@ -26,9 +26,9 @@ enum Field : std::size_t {
   Mode,
   Coord,
   Width,
-  Height,
-  kFields
+  Height
 };
+constexpr std::size_t kFields = Height + 1;
 
 struct FieldRule {
   std::string_view name;
