@@ -35,6 +35,13 @@ struct Running {
   std::vector<Traffic> counters;  // of its links, as it reported them last
 };
 
+/// How a process has ended, by its status.
+std::string end_in_words(int status) {
+  if (status == 0) return "ended";
+  if (status > 128) return "killed by signal " + std::to_string(status - 128);
+  return "failed with status " + std::to_string(status);
+}
+
 class Runner {
  public:
   Runner(const Plan& plan, const RunOptions& options) : plan_(plan), options_(options) {}
@@ -72,8 +79,8 @@ class Runner {
         read_counters(module);
         bool failed = note_end(module);
         if (failed && !kill_at) {
-          outcome = Error{Code::Closed, "module " + module.module->name + " failed with status " +
-                                            std::to_string(*module.status)};
+          outcome = Error{Code::Closed,
+                          "module " + module.module->name + ": " + end_in_words(*module.status)};
           end_all();
         }
       }
@@ -172,12 +179,8 @@ class Runner {
     // Its last words stand in the pipe; who else still holds that open may do so for ever.
     for (int piece = 0; piece < kLastPieces && read_lines(module);) ++piece;
     end_lines(module);
-    int status = *module.status;
-    bool good = status == 0;
-    say(module.module->name + (good           ? ": ended"
-                               : status > 128 ? ": killed by signal " + std::to_string(status - 128)
-                                              : ": failed with status " + std::to_string(status)));
-    return !good;
+    say(module.module->name + ": " + end_in_words(*module.status));
+    return *module.status != 0;
   }
 
   const Plan& plan_;

@@ -61,7 +61,7 @@ TEST_F(Run, AFailureEndsTheOthers) {
   auto report = run();
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, Code::Closed);
-  EXPECT_EQ(report.error().detail, "module b failed with status 3");
+  EXPECT_EQ(report.error().detail, "module b: failed with status 3");
   EXPECT_TRUE(said("b: failed with status 3"));
   EXPECT_TRUE(said("a: killed by signal 15"));
 }
@@ -70,7 +70,7 @@ TEST_F(Run, ASignalIsNamed) {
   add("a", "kill -KILL $$");
   auto report = run();
   ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().detail, "module a failed with status 137");
+  EXPECT_EQ(report.error().detail, "module a: killed by signal 9");
   EXPECT_TRUE(said("a: killed by signal 9"));
 }
 
