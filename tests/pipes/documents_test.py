@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The commands of the README and the documents."""
+
+import pathlib
+import re
+import unittest
+
+from harness import DATA, Pipes, ROOT, free_port
+
+
+class Documents(Pipes):
+    """Every command of the README and the documents, as it stands there."""
+
+    def commands(self, name):
+        text = (ROOT / name).read_text()
+        text = text.replace("7311", str(free_port()))  # may be somebody else's just now
+        blocks = re.findall(r"```sh\n(.*?)```", text, re.S)
+        self.assertTrue(blocks)
+        return [block for block in blocks if "./dev" not in block]
+
+    def run_document(self, name):
+        pathlib.Path(self.path("graphs")).symlink_to(ROOT / "graphs")
+        pathlib.Path(self.path("modules")).symlink_to(ROOT / "modules")
+        pathlib.Path(self.path("data")).symlink_to(DATA)
+        for block in self.commands(name):
+            with self.subTest(block):
+                expected = "".join(
+                    line[2:] + "\n" for line in block.splitlines() if line.startswith("# ")
+                )
+                command = "".join(
+                    line + "\n" for line in block.splitlines() if not line.startswith("# ")
+                )
+                out = self.shell("set -e\n" + command)
+                for line in expected.splitlines():
+                    pattern = re.escape(line).replace("…", ".*").replace(r"\.\.\.", ".*")
+                    self.assertRegex(out + self.err, pattern)
+
+    def test_readme(self):
+        self.run_document("README.md")
+
+    def test_tutorial(self):
+        self.run_document("doc/tutorial.md")
+
+    def test_modules(self):
+        self.run_document("doc/modules.md")
+
+
+if __name__ == "__main__":
+    unittest.main()

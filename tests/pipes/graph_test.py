@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Graphs: hc run and what comes of its processes."""
+
+import os
+import pathlib
+import re
+import signal
+import unittest
+
+from harness import BUILD, DATA, Pipes, ROOT, WATCHDOG, wait_until
+
+
+class Graph(Pipes):
+    def write(self, name, text):
+        pathlib.Path(self.path(name)).write_text(text)
+
+    def test_depth_graph_is_as_good_as_opencv_called_directly(self):
+        out = self.shell("hc run %s/graphs/depth.toml" % ROOT)
+        said = self.err
+        direct = self.shell("%s/tests/depth_direct %s" % (BUILD, DATA))
+        self.assertIn("depth_score: " + direct, said)
+        share = float(re.search(r"bad pixels ([0-9.]+) %", direct)[1])
+        self.assertLess(abs(share - 2.7), 0.2)
+        self.assertRegex(out, r"camera\.left -> depth\.left +1 message +1\.44 MB")
+        self.assertRegex(out, r"depth\.depth -> view\.image +1 message +1\.92 MB")
+        picture = pathlib.Path(self.path("depth.png")).read_bytes()
+        self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(picture[16:24], b"\0\0\3\x20\0\0\2\x58")  # 800 x 600
+
+    def test_one_pipe_does_the_same(self):
+        out = self.shell(
+            "hc camera {0}/aloeL.jpg {0}/aloeR.jpg --rectified --width 200 --height 150 | "
+            "hc depth --disparities 32 | hc view --save out/ && ls out".format(DATA)
+        )
+        self.assertEqual(out.split(), ["1_0.png", "2_0.png"])
+
+    def test_set_reaches_the_module_and_errors_name_it(self):
+        graph = "%s/graphs/depth.toml" % ROOT
+        self.shell("hc run %s --set depth.disparities=20" % graph, 1)
+        self.assertIn("depth: disparities is not a multiple of 16", self.err)
+        self.assertIn("hc run: Closed: module depth: failed with status 1", self.err)
+        self.shell("hc run %s --set camera.source=none.jpg" % graph, 1)
+        self.assertIn("camera: none.jpg: cannot be opened", self.err)
+        self.shell("hc run %s --set depht.disparities=16" % graph, 2)
+        self.assertIn('did you mean "depth"?', self.err)
+        self.shell("hc run %s --set depth.disparitis=16" % graph, 2)
+        self.assertIn('did you mean "disparities"?', self.err)
+
+    LIVE = """
+[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true, rate = 200, width = 80, height = 60 }
+[modules.brightness]
+[modules.store]
+program = "./store"
+[[links]]
+from = "camera.left"
+to = "brightness.image"
+"""
+
+    def run_live(self):
+        self.write("live.toml", re.sub(r"\[modules.store\]\n.*\n", "", self.LIVE % DATA))
+        process = self.start("exec hc run live.toml")
+        lines = []
+        while len(lines) < 2:
+            lines.append(process.stderr.readline().decode())
+        self.assertEqual(lines, ["camera: started\n", "brightness: started\n"])
+        return process
+
+    @staticmethod
+    def children(pid):
+        path = pathlib.Path("/proc/%d/task/%d/children" % (pid, pid))
+        return [int(word) for word in path.read_text().split()] if path.exists() else []
+
+    def test_interrupt_ends_a_graph_cleanly(self):
+        process = self.run_live()
+        children = self.children(process.pid)
+        self.assertEqual(len(children), 2)
+        os.kill(process.pid, signal.SIGINT)
+        out, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertIn(b"graph: stopping\n", err)
+        self.assertIn(b"camera.left -> brightness.image", out)
+        for child in children:
+            self.assertFalse(os.path.exists("/proc/%d" % child))
+
+    def test_a_killed_runner_leaves_nothing(self):
+        process = self.run_live()
+        children = self.children(process.pid)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        is_gone = lambda child: not os.path.exists("/proc/%d/exe" % child) or not os.readlink(
+            "/proc/%d/exe" % child
+        ).startswith(str(BUILD))
+        for child in children:
+            wait_until(lambda: is_gone(child))
+
+    def test_a_killed_module_is_named_and_ends_the_graph(self):
+        process = self.run_live()
+        os.kill(self.children(process.pid)[1], signal.SIGKILL)
+        _, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(b"brightness: killed by signal 9\n", err)
+
+    def test_a_program_that_is_no_module_is_refused(self):
+        self.write("bad.toml", '[modules.store]\nprogram = "/bin/true"\n')
+        self.shell("hc run bad.toml", 2)
+        self.assertIn("bad.toml:1: module store: /bin/true --describe prints no", self.err)
+        self.write("bad.toml", "[modules.camra]\n")
+        self.shell("hc run bad.toml", 2)
+        self.assertIn('bad.toml:1: no program "camra", did you mean "camera"?', self.err)
+
+    def test_a_reader_that_has_enough_ends_the_graph(self):
+        self.write(
+            "once",
+            """#!/bin/sh
+[ "$1" = --describe ] && exec echo '{"inputs":[{"name":"in","types":[]}],"outputs":[],"parameters":[]}'
+for word; do case $word in in=*) exec hc cat --count 1 "${word#in=}" >once.txt ;; esac; done
+""",
+        )
+        os.chmod(self.path("once"), 0o755)
+        self.write(
+            "once.toml",
+            """[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true }
+[modules.once]
+program = "./once"
+[[links]]
+from = "camera.left"
+to = "once.in"
+"""
+            % DATA,
+        )
+        self.shell("hc run once.toml")
+        self.assertIn("rgb_image", pathlib.Path(self.path("once.txt")).read_text())
+
+    def test_a_module_without_a_description_is_named(self):
+        self.write("false.toml", '[modules.store]\nprogram = "/bin/false"\n')
+        self.shell("hc run false.toml", 2)
+        self.assertIn("false.toml:1: module store: /bin/false --describe failed with", self.err)
+        self.environment["PATH"] = "%s:%s" % (self.folder.name, self.environment["PATH"])
+        os.mkdir(self.path("gadget"))
+        self.shell("hc gadget", 2)
+        self.assertIn('no verb and no module "gadget"', self.err)
+
+    def test_values_are_checked_before_anything_starts(self):
+        graph = "%s/graphs/depth.toml" % ROOT
+        self.shell("hc run %s --set camera.width=-1" % graph, 2)
+        self.assertIn('--set: module camera: parameter width: "-1" is not from 0', self.err)
+        self.assertNotIn("started", self.err)
+
+    def test_a_module_that_waits_for_a_link_can_be_told_to_stop(self):
+        for command in (
+            "hc brightness --in 'tcp:localhost:1?wait=60'",
+            "hc cat 'tcp:localhost:1?wait=60'",
+        ):
+            process = self.start("exec " + command)
+
+            wait_until(lambda: self.catches_term(process.pid))
+            os.kill(process.pid, signal.SIGTERM)
+            _, err = process.communicate(timeout=WATCHDOG)
+            self.assertEqual((process.returncode, err), (0, b""))
+
+    def test_a_window_shows_the_picture(self):
+        """On a virtual display, whose memory is looked at."""
+        command = (
+            "hc camera %s/aloeL.jpg --count 0 --loop --rate 20 --width 320 --height 240" % DATA
+        )
+        display = self.start("exec Xvfb -displayfd 1 -screen 0 640x480x24 -fbdir . -nolisten tcp")
+        self.environment["DISPLAY"] = ":" + display.stdout.readline().decode().strip()
+        view = self.start("%s | hc view --window yes" % command)
+        screen = pathlib.Path(self.path("Xvfb_screen0"))
+
+        def colours():
+            self.assertIsNone(view.poll(), view.poll() is not None and view.stderr.read())
+            pixels = screen.read_bytes()[-640 * 480 * 4 :]
+            return {pixels[i : i + 3] for i in range(0, len(pixels), 4)}
+
+        wait_until(lambda: len(colours()) > 1000)  # a photograph, not a grey window
+        self.end(view)
+        self.end(display)
+
+    def test_a_killed_runner_leaves_nothing_that_a_wrapper_started(self):
+        """Beside the module itself: a process in the background, and one in its own session."""
+        mark = "1000.%d" % os.getpid()
+        self.write(
+            "wrapper",
+            """#!/bin/sh
+[ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
+sleep %s & setsid sleep %s & echo ready >&2; sleep %s; echo behind
+"""
+            % (mark, mark, mark),
+        )
+        os.chmod(self.path("wrapper"), 0o755)
+        self.write("wrapper.toml", '[modules.wrapper]\nprogram = "./wrapper"\n')
+
+        def sleepers():
+            found = []
+            for process in pathlib.Path("/proc").glob("[0-9]*"):
+                try:
+                    words = (process / "cmdline").read_bytes().split(b"\0")
+                    if words[:2] == [b"sleep", mark.encode()]:
+                        found.append(int(process.name))
+                except OSError:
+                    pass  # it has ended meanwhile
+            return found
+
+        for number in (signal.SIGKILL, signal.SIGTERM):
+            process = self.start("exec hc run wrapper.toml")
+            for line in (b"wrapper: started\n", b"wrapper: ready\n"):
+                self.assertEqual(process.stderr.readline(), line)
+            wait_until(lambda: len(sleepers()) == 3)
+            children = self.children(process.pid)
+            self.assertEqual(len(children), 1)
+            os.kill(process.pid, number)
+            process.wait(timeout=WATCHDOG)
+            wait_until(lambda: not sleepers())
+            for child in children:
+                wait_until(lambda: not os.path.exists("/proc/%d/exe" % child))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests of whole programs share: a folder, a shell in it, and events to wait for.
+
+    graph_test.py BUILD_FOLDER [TEST …], and so the others
+"""
+
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).parents[2]
+DATA = os.environ.get("HC_DATA", "/usr/share/doc/opencv-doc/examples/data")
+BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
+WATCHDOG = 100  # seconds after which a program hangs
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def wait_until(condition):
+    """Waits for an event that gives no notice."""
+    end = time.monotonic() + WATCHDOG
+    while not condition():
+        assert time.monotonic() < end, "nothing happened"
+        time.sleep(0.01)
+
+
+def listens(port):
+    """Whether somebody listens on a port, asked of the kernel and not by connecting."""
+    wanted = "0100007F:%04X 00000000:0000 0A" % port
+    return wanted in pathlib.Path("/proc/net/tcp").read_text()
+
+
+class Pipes(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.environment = dict(os.environ, HC_DATA=DATA)
+        self.environment["PATH"] = "%s/bin:%s" % (BUILD, os.environ["PATH"])
+        self.environment.pop("DISPLAY", None)
+
+    def start(self, command, **options):
+        options = dict(dict(stdin=-3, stdout=-1, stderr=-1), **options)
+        process = subprocess.Popen(
+            ["bash", "-o", "pipefail", "-c", command],
+            cwd=self.folder.name,
+            env=self.environment,
+            start_new_session=True,
+            **options,
+        )
+        self.addCleanup(self.end, process)
+        return process
+
+    def end(self, process):
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+    def shell(self, command, status=0, data=b""):
+        process = self.start(command, stdin=-1)
+        out, err = process.communicate(data, timeout=WATCHDOG)
+        self.assertEqual(process.returncode, status, (command, out[-500:], err[-2000:]))
+        self.err = err.decode()
+        return out.decode(errors="replace")
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    @staticmethod
+    def catches_term(pid):
+        text = pathlib.Path("/proc/%d/status" % pid).read_text()
+        return int(re.search(r"SigCgt:\t([0-9a-f]+)", text)[1], 16) >> (signal.SIGTERM - 1) & 1

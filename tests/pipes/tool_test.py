@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The verbs of hc, and modules as programs."""
+
+import json
+import os
+import pathlib
+import signal
+import time
+import unittest
+
+from harness import DATA, PYTHON, Pipes, WATCHDOG, free_port, listens, wait_until
+
+
+class Tool(Pipes):
+    def test_exit_status_and_one_line(self):
+        for command, status, line in [
+            ("hc cat /nowhere", 1, "hc cat: NotFound: /nowhere: open(/nowhere): No such file"),
+            ("hc nonsense", 2, 'hc: no verb and no module "nonsense"; see hc --help'),
+            ("hc cat --nonsense", 2, "hc cat: The following argument was not expected: --nonsense"),
+            ("hc play", 2, "hc play: file is required"),
+            ("hc run missing.toml", 1, "hc run: NotFound: missing.toml: cannot be read"),
+            ("hc camera nothing.jpg", 1, "camera: nothing.jpg: cannot be opened"),
+            (
+                "echo rubbish | hc cat",
+                1,
+                'hc cat: Malformed: -: R5 version: "rubbish" is not an integer',
+            ),
+            (
+                "hc send --type position 1 2",
+                2,
+                "hc send: Usage: 2 numbers do not make elements of 3",
+            ),
+            ("hc camra", 2, 'hc: no verb and no module "camra", did you mean "camera"?'),
+            ("hc describe camra", 1, 'hc describe: NotFound: no module "camra", did you mean'),
+            ("hc send", 2, "hc send: Usage: nothing to send"),
+            ("hc send --text a 1", 2, "hc send: Usage: --text and numbers do not go together"),
+            ("hc send --text a --width 1", 2, "hc send: Usage: --scalar, --components and --width"),
+            ("hc send --coord head 1", 2, 'hc send: --coord: "head" is not a whole number'),
+            ("hc cat --count -1", 2, 'hc cat: --count: "-1" is not a whole number'),
+            ("hc cat inproc:x", 2, "hc cat: Usage: inproc:x: inproc links threads"),
+            (
+                "DISPLAY=:9797 hc view --window yes",
+                1,
+                "view: window: there is no display",
+            ),
+            ("hc send --type position 1 2 x", 1, 'hc send: Malformed: elements: R27: "x" is not'),
+        ]:
+            with self.subTest(command):
+                self.shell(command, status)
+                self.assertTrue(self.err.startswith(line), self.err)
+                self.assertEqual(self.err.count("\n"), 1, self.err)
+
+    def test_send_makes_what_it_is_told(self):
+        out = self.shell(
+            "hc send --src 3 --dst -1 --seq 9 --ttl 2 --time 5 --mode 4 --coord 1003 --encoding zstd"
+            " --type transformation --scalar f32 --width 2 1 0 0 1 | hc cat --json"
+        )
+        told = json.loads(out)
+        for key, value in dict(
+            src=3, dst=-1, seq=9, ttl=2, time=5, mode=4, coord=1003, width=2, height=2
+        ).items():
+            self.assertEqual(told[key], value)
+        self.assertEqual((told["encoding"], told["scalar"]), ("zstd", "f32"))
+        self.assertEqual(told["elements"], [[1, 0], [0, 1]])
+
+    def test_send_takes_pictures_and_arrays(self):
+        self.shell(
+            PYTHON
+            + ' -c \'import numpy; numpy.save("a.npy", numpy.arange(6, dtype="<f4").reshape(2, 3))\''
+        )
+        out = json.loads(self.shell("hc send --npy a.npy --type intensity_image | hc cat --json"))
+        self.assertEqual(out["type"], "intensity_image")
+        out = json.loads(self.shell("hc send --npy a.npy | hc cat --json"))
+        self.assertEqual((out["type"], out["elements"]), ("table", [[0, 1, 2], [3, 4, 5]]))
+        out = self.shell("hc send --picture %s/aloeL.jpg --src 4 --encoding jpeg | hc info" % DATA)
+        self.assertIn("1282x1110 rgb_image 3 x u8, jpeg", out)
+
+    def record(self):
+        """Ten positions, 20 ms apart, of two senders; one lost."""
+        lines = []
+        for i in range(10):
+            lines.append(
+                "1 7 0 %d 8 %d 10390 0 3 1 1\n%d 0 0\n" % (i, 10**18 + i * 20_000_000, i)
+            )
+            if i != 4:
+                lines.append(
+                    "1 8 0 %d 8 %d 120190 0 0 1 1\n%d\n" % (i, 10**18 + i * 20_000_000, i)
+                )
+        pathlib.Path(self.path("r.mtp")).write_text("".join(lines))
+
+    def test_info_tells_rates_gaps_and_sizes(self):
+        self.record()
+        out = self.shell("hc info r.mtp")
+        self.assertRegex(out, r" 7 +10 +240 B +0\.180 s +50 Hz +0 +0  1x1 position 3 x f64, text")
+        self.assertRegex(out, r" 8 +9 +72 B +0\.180 s +44\.4 Hz +1 +0  1x1 table 1 x f64, text")
+        self.assertIn("19 messages", out)
+
+    def test_record_and_play_give_the_same_bytes(self):
+        self.record()
+        self.shell("hc play --speed max r.mtp | hc record copy.mtp")
+        self.shell("cmp r.mtp copy.mtp")
+        out = self.shell("hc play --speed max --from 0.05 --to 0.1 r.mtp | hc cat --json")
+        self.assertEqual([json.loads(line)["seq"] for line in out.splitlines()], [3, 3, 4, 5, 5])
+        out = self.shell("hc play --speed max --loop r.mtp | hc cat --json --count 50")
+        self.assertEqual(out.count("\n"), 50)
+
+    def test_play_keeps_the_time_of_the_recording(self):
+        self.record()
+        begin = time.monotonic()
+        self.shell("hc play r.mtp > /dev/null")
+        self.assertGreaterEqual(time.monotonic() - begin, 0.18)
+        begin = time.monotonic()
+        self.shell("hc play --speed 0.5 r.mtp > /dev/null")
+        self.assertGreaterEqual(time.monotonic() - begin, 0.36)
+
+    def test_a_truncated_file_gives_what_is_whole(self):
+        self.record()
+        whole = pathlib.Path(self.path("r.mtp")).read_bytes()
+        pathlib.Path(self.path("cut.mtp")).write_bytes(whole[:-3])
+        out = self.shell("hc cat --json cut.mtp", 1)
+        self.assertEqual(out.count("\n"), 18)
+        self.assertIn(
+            "R2 stream: truncated after 18 messages, at byte %d" % (len(whole) - 3), self.err
+        )
+
+    def test_skip_goes_on_behind_damage(self):
+        self.record()
+        whole = pathlib.Path(self.path("r.mtp")).read_text().splitlines(True)
+        whole[4] = whole[4].replace("10390", "99999")
+        pathlib.Path(self.path("bad.mtp")).write_text("".join(whole))
+        out = self.shell("hc cat --json --skip bad.mtp")
+        self.assertEqual(out.count("\n"), 18)
+        self.assertIn("R20 info", self.err)
+        self.assertEqual(self.shell("hc cat --json bad.mtp", 1).count("\n"), 2)
+
+    def test_output_that_fails_is_told(self):
+        self.record()
+        for command in (
+            "hc cat r.mtp >/dev/full",
+            "hc cat --raw --skip r.mtp >/dev/full",
+            "hc info r.mtp >/dev/full",
+            "hc camera --help >/dev/full",
+            "hc describe brightness >/dev/full",
+        ):
+            with self.subTest(command):
+                self.shell(command, 1)
+                self.assertIn("No space left on device", self.err)
+
+    def test_busy_verbs_can_be_told_to_stop(self):
+        self.record()
+        for command in (
+            "hc play r.mtp --loop --speed max >/dev/null",
+            "hc play r.mtp --loop --speed max --out tcp-listen:%d" % free_port(),
+            "hc cat /dev/zero --skip --limit 10",
+        ):
+            with self.subTest(command):
+                process = self.start("exec " + command)
+                wait_until(lambda: self.catches_term(process.pid))
+                os.kill(process.pid, signal.SIGTERM)
+                process.communicate(timeout=WATCHDOG)
+                self.assertIn(process.returncode, (0, 1))
+
+    def test_a_loop_over_nothing_ends(self):
+        self.shell(": >empty.mtp; hc play empty.mtp --loop")
+        self.record()
+        self.shell("hc play r.mtp --loop --from 100")
+
+    def test_record_does_not_empty_what_it_reads(self):
+        self.record()
+        before = pathlib.Path(self.path("r.mtp")).read_bytes()
+        for command in ("hc record r.mtp --in r.mtp", "hc record ./r.mtp < r.mtp"):
+            self.shell(command, 2)
+            self.assertIn("is the file that is written", self.err)
+        self.assertEqual(pathlib.Path(self.path("r.mtp")).read_bytes(), before)
+        self.shell(
+            "hc record 'odd?name&=.mtp' --in r.mtp --in r.mtp && hc play --speed max 'odd?name&=.mtp' | hc info"
+        )
+
+    def test_record_names_the_link_that_is_wrong(self):
+        self.record()
+        pathlib.Path(self.path("bad.mtp")).write_text("rubbish\n")
+        self.shell(": >empty.mtp; hc record x.mtp --in empty.mtp --in bad.mtp --in r.mtp", 1)
+        self.assertIn("bad.mtp: R5", self.err)
+
+    def test_a_picture_gets_the_header_that_was_asked_for(self):
+        out = self.shell(
+            "hc send --picture %s/aloeL.jpg --src 3 --dst 5 --seq 9 --ttl 2 --time 5 --mode 4 --coord 8"
+            " | hc cat --raw | head -n 1" % DATA
+        )
+        self.assertEqual(out, "1 3 5 9 2 5 30301 4 8 1282 1110\n")
+        self.shell("hc send --picture none.jpg", 1)
+        self.assertEqual(self.err.count("\n"), 1)
+
+    def test_hostile_messages_end_with_one_line(self):
+        head = "1 7 0 0 8 0 "
+        for line, told in [
+            (head + "30301 1 7 9223372036854775808 1", "R15 width"),
+            (head + "30301 1 7 -1 1", "R15 width"),
+            (head + "30301 1 7 2147483647 2147483647", "R24 width"),
+            (head + "30301 1 7 1", "R4 height"),
+            (head + "30301 1 7 1 1 1", "R4 header"),
+            (head + "9" * 10000, "R3 header"),
+            (head + "0x7 1 7 1 1", "R5 info"),
+            (head + "30301 1 7 1\0 1", "R5 width"),
+            (head + "40102 1 7 16000 16000\n22\n" + "x" * 22, "R36 elements"),
+        ]:
+            with self.subTest(told):
+                self.shell("hc cat", 1, line.encode() + b"\n")
+                self.assertRegex(self.err, r"^hc cat: [A-Za-z]+: -: %s: .*, at byte \d+\n$" % told)
+        self.shell("head -c 1000000000 /dev/zero | tr '\\0' 1 | hc cat; exit ${PIPESTATUS[2]}", 1)
+        self.assertIn("R3 header", self.err)
+
+    def test_describe_is_json(self):
+        for module in ("camera", "depth", "view", "brightness", "depth_score"):
+            told = json.loads(self.shell("hc describe " + module))
+            self.assertEqual(told["name"], module)
+            self.assertIn(told["summary"], self.shell("hc %s --help" % module))
+
+    def test_interrupt_ends_a_verb_cleanly(self):
+        port = free_port()
+        for command in ("hc cat tcp-listen:%d" % port, "hc record x.mtp --in tcp-listen:%d" % port):
+            process = self.start("exec " + command)
+            wait_until(lambda: listens(port))
+            os.kill(process.pid, signal.SIGINT)
+            process.communicate(timeout=WATCHDOG)
+            self.assertEqual(process.returncode, 0, command)
+
+
+if __name__ == "__main__":
+    unittest.main()
