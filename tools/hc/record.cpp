@@ -46,14 +46,14 @@ void run(const Options& options) {
   hc::Message message;
   while (!hc::stop_requested()) {  // what has come is kept
     bool any = false;
-    std::vector<int> descriptors;
+    std::vector<hc::Source*> open;
     for (auto& [uri, source] : links) {
       if (source == nullptr) continue;
       auto got = value_or_fail(source->take(message), uri);
       if (got == hc::Got::End)
         source.reset();
       else
-        descriptors.push_back(source->descriptor());
+        open.push_back(source.get());
       if (got != hc::Got::Message) continue;
       any = true;
       if (auto sent = sink->send(message); !sent) throw Failure(options.file, sent.error());
@@ -62,8 +62,8 @@ void run(const Options& options) {
                                     bytes_in_words(static_cast<double>(traffic.bytes))));
       if (traffic.messages == options.count) return;
     }
-    if (descriptors.empty()) return;
-    if (!any) static_cast<void>(hc::wait_readable(descriptors, hc::stop_descriptor()));
+    if (open.empty()) return;
+    if (!any) static_cast<void>(hc::wait_any(open, hc::stop_descriptor()));
   }
 }
 

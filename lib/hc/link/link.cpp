@@ -79,14 +79,35 @@ Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,
   return static_cast<std::size_t>(first - polled.begin());
 }
 
+Result<bool> Source::wait(int stop, std::chrono::milliseconds timeout) {
+  std::array<int, 1> descriptors = {descriptor()};
+  auto ready = wait_readable(descriptors, stop, timeout);
+  if (!ready) return ready.error();
+  return *ready < descriptors.size();
+}
+
+Result<bool> wait_any(std::span<Source* const> sources, int stop,
+                      std::chrono::milliseconds timeout) {
+  if (sources.size() == 1) return sources[0]->wait(stop, timeout);
+  std::vector<int> descriptors;
+  bool ready_now = false;
+  for (Source* source : sources) {
+    ready_now = !source->prepare_wait() || ready_now;
+    descriptors.push_back(source->descriptor());
+  }
+  if (ready_now) timeout = std::chrono::milliseconds(0);  // but a wish to stop comes first
+  auto ready = wait_readable(descriptors, stop, timeout);
+  if (!ready) return ready.error();
+  return ready_now || *ready < descriptors.size();
+}
+
 Result<bool> receive(Source& source, Message& message, int stop) {
   while (true) {
     auto got = source.take(message);
     if (!got) return got.error();
     if (*got == Got::Message) return true;
     if (*got == Got::End) return false;
-    std::array<int, 1> descriptors = {source.descriptor()};
-    if (auto ready = wait_readable(descriptors, stop); !ready) return ready.error();
+    if (auto ready = source.wait(stop); !ready) return ready.error();
   }
 }
 

@@ -19,14 +19,25 @@ namespace hc {
 /// What came of asking a source.
 enum class Got {
   Message,  ///< a message
-  Nothing,  ///< none now; descriptor() tells when to ask again
+  Nothing,  ///< none now; wait() or wait_any() tell when to ask again
   End,      ///< none any more: the other side has closed, or the file is at its end
 };
 
-/// What went over a link.
+/// What went over a link, and what did not.
 struct Traffic {
   std::uint64_t messages = 0;
-  std::uint64_t bytes = 0;  ///< as on the wire; of elements alone where there is no wire (inproc)
+  /// As on the wire; of elements alone where there is no wire (inproc, shm).
+  std::uint64_t bytes = 0;
+  /// Messages that had to wait for their turn (`rate`), and went later or are among the lost.
+  std::uint64_t kept_back = 0;
+  /// Messages lost because a newer one took their place while the reader was slow (`keep`),
+  std::uint64_t superseded = 0;
+  /// … while they were kept back (`rate`),
+  std::uint64_t over_rate = 0;
+  /// … because there was no memory for them (`memory`),
+  std::uint64_t over_memory = 0;
+  /// … because the connection was lost when they were on their way (`reconnect`).
+  std::uint64_t cut = 0;
 };
 
 /// The end of a link where messages come out.
@@ -34,14 +45,27 @@ class Source {
  public:
   virtual ~Source() = default;
 
-  /// Takes the next message; never waits. `message` keeps its elements alive by itself.
+  /// Takes the next message; never waits. `message` keeps its elements alive by itself; what it
+  /// held before is let go of, whatever comes.
   ///
   /// Errors: those of StreamReader, Truncated, System; the link is of no use afterwards. A
   /// listening source closes the connection at fault, tells the log, and goes on with the others.
   virtual Result<Got> take(Message& message) = 0;
 
-  /// A descriptor for poll(): readable when take() may have something. The same for life.
+  /// A descriptor for poll(): readable when take() may have something, if prepare_wait() has said
+  /// so since take() gave Nothing. The same for life.
   [[nodiscard]] virtual int descriptor() const = 0;
+
+  /// Has descriptor() tell of the next message; false when there is something to take already.
+  /// wait_any() is this with poll() behind it.
+  virtual bool prepare_wait() { return true; }
+
+  /// Waits until take() may have something, in the way that is fastest for this one source; false
+  /// when `timeout` has passed.
+  ///
+  /// Errors: Stopped (`stop` is readable), System.
+  virtual Result<bool> wait(int stop = -1,
+                            std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
 
   /// What take() has given so far.
   [[nodiscard]] virtual Traffic traffic() const = 0;
@@ -57,12 +81,18 @@ class Sink {
  public:
   virtual ~Sink() = default;
 
-  /// Puts a message in, whole; waits as long as the link is full or has no reader yet.
+  /// Puts a message in, whole. Waits as long as the link is full or has no reader yet; with another
+  /// `keep` than all it does not wait for a reader that is slow.
   ///
   /// Errors: Closed (the reader has gone), Stopped (LinkOptions::stop became readable before the
   /// first byte went), Truncated (it became so later, and the reader did not take the rest within
   /// 2 s; the link is of no use afterwards), System.
   virtual Status send(const Message& message) = 0;
+
+  /// A message to be filled in place and sent: in the memory that readers will see where the
+  /// transport shares any, else on the heap. Sent to another sink, it is copied there.
+  /// A header that check() refuses is a bug.
+  virtual Draft loan(const Header& header) { return Draft::make(header); }
 
   /// Ends the link: the reader finds End behind the last message. Errors as send().
   virtual Status close() = 0;
@@ -93,6 +123,12 @@ struct LinkOptions {
 /// file or host), Closed (nobody listens), Stopped, System (name in use, …).
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
+
+/// Waits until one of `sources` may have something to take; false when `timeout` has passed.
+///
+/// Errors: Stopped (`stop` is readable), System.
+Result<bool> wait_any(std::span<Source* const> sources, int stop = -1,
+                      std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
 
 /// Waits until one of `descriptors` is readable; gives its index.
 ///

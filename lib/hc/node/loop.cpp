@@ -135,11 +135,11 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
 }
 
 void Module::Loop::wait() {
-  std::vector<int> descriptors;
+  std::vector<Source*> sources;
   for (const auto& link : sources_)
-    if (link.source != nullptr) descriptors.push_back(link.source->descriptor());
+    if (link.source != nullptr) sources.push_back(link.source.get());
   auto timeout = manage_ ? std::chrono::milliseconds(kReportPeriod) : std::chrono::milliseconds(-1);
-  auto ready = wait_readable(descriptors, options_.stop, timeout);
+  auto ready = wait_any(sources, options_.stop, timeout);
   if (!ready) fail("poll", ready.error());
 }
 

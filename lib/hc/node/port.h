@@ -71,7 +71,13 @@ class Output {
 
   /// A message to be filled in place and sent, which saves a copy of large elements.
   [[nodiscard]] DraftOf<K> loan(std::int32_t width, std::int32_t height) const {
-    return {Draft::make(state_->type.info, width, height)};
+    Header header;
+    header.info = state_->type.info;
+    header.width = width;
+    header.height = height;
+    for (const auto& link : state_->links)
+      if (link->sink != nullptr) return {link->sink->loan(header)};
+    return {Draft::make(header)};
   }
 
   /// Whether anybody takes what is sent; a module may save itself the work otherwise.

@@ -4,6 +4,14 @@
 #include <new>
 
 namespace hc {
+namespace {
+
+void check_own(const Header& header) {
+  auto valid = check(header, {~std::uint64_t{0}});
+  HC_CHECK(valid, valid.error().text());
+}
+
+}  // namespace
 
 SharedBytes allocate_bytes(std::size_t size) {
   constexpr std::align_val_t kAlignment{64};
@@ -27,12 +35,16 @@ Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
 }
 
 Draft Draft::make(const Header& header) {
-  auto valid = check(header, {~std::uint64_t{0}});
-  HC_CHECK(valid, valid.error().text());
+  check_own(header);
+  return make(header, allocate_bytes(header.element_bytes()));
+}
+
+Draft Draft::make(const Header& header, SharedBytes bytes) {
+  check_own(header);
   Draft draft;
   draft.header = header;
   draft.size_ = header.element_bytes();
-  draft.bytes_ = allocate_bytes(draft.size_);
+  draft.bytes_ = std::move(bytes);
   return draft;
 }
 

@@ -108,6 +108,8 @@ class Draft {
   static Draft make(const Info& info, std::int32_t width, std::int32_t height);
   /// The same with the rest of the header given too.
   static Draft make(const Header& header);
+  /// The same in memory that is there already, aligned for the scalar and as large as is needed.
+  static Draft make(const Header& header, SharedBytes bytes);
 
   Header header;  ///< everything but info, width and height may be changed
 
