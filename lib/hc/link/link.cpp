@@ -17,7 +17,7 @@ using internal::Transport;
 
 /// Every transport there is. `?` options that a scheme has are named here, so that one misspelt is
 /// refused and not overlooked.
-constexpr std::array<Transport, 7> kTransports = {{
+constexpr std::array<Transport, 8> kTransports = {{
     {"-", "", "", internal::open_stdin, internal::open_stdout},
     {"file", "", "", internal::open_file_source, internal::open_file_sink},
     {"tcp", "wait", "wait", internal::open_tcp_source, internal::open_tcp_sink},
@@ -25,6 +25,7 @@ constexpr std::array<Transport, 7> kTransports = {{
     {"unix", "wait", "wait", internal::open_unix_source, internal::open_unix_sink},
     {"unix-listen", "", "readers", internal::listen_unix_source, internal::listen_unix_sink},
     {"inproc", "", "", internal::open_inproc_source, internal::open_inproc_sink},
+    {"shm", "keep spin wait", "keep readers", internal::open_shm_source, internal::open_shm_sink},
 }};
 
 /// @param option  which of a transport's options the end that is opened may have.
@@ -37,7 +38,7 @@ Result<const Transport*> find_transport(const Uri& uri, std::string_view Transpo
     }
     std::string_view allowed = transport.*option;
     for (const auto& [key, value] : uri.options)
-      if (key != allowed)
+      if ((" " + std::string(allowed) + " ").find(" " + key + " ") == std::string::npos)
         return Error{Code::Unsupported,
                      uri.scheme + " has no option \"" + key + "\" here" +
                          (allowed.empty() ? "" : ", only \"" + std::string(allowed) + "\"")};
@@ -114,13 +115,15 @@ Result<bool> receive(Source& source, Message& message, int stop) {
 namespace internal {
 
 Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t otherwise) {
+  constexpr std::int64_t kMost = 1'000'000'000;
   auto text = uri.option(key, "");
   if (text.empty()) return otherwise;
   std::int64_t value = 0;
   const char* end = text.data() + text.size();
   auto [stop, status] = std::from_chars(text.data(), end, value);
-  if (stop != end || status != std::errc() || value < 0 || value > 86400)
-    return Error{Code::Usage, "option " + std::string(key) + " is a whole number from 0 to 86400"};
+  if (stop != end || status != std::errc() || value < 0 || value > kMost)
+    return Error{Code::Usage, "option " + std::string(key) + " is a whole number from 0 to " +
+                                  std::to_string(kMost)};
   return value;
 }
 

@@ -10,6 +10,7 @@
 
 #include <hc/link/listener.h>
 #include <hc/link/transports.h>
+#include <hc/link/unix.h>
 
 namespace hc::internal {
 namespace {
@@ -51,18 +52,6 @@ Status admit_same_user(int peer) {
                                  std::to_string(credentials.uid)};
 }
 
-Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options) {
-  auto wait = number_option(uri, "wait", 0);
-  if (!wait) return wait.error();
-  auto address = address_of(uri);
-  if (!address) return address.error();
-  const std::array<Address, 1> addresses = {{{&address->address, address->size}}};
-  auto connected = connect_to(addresses, uri.rest, std::chrono::seconds(*wait), options.stop);
-  if (!connected || !is_abstract(uri)) return connected;
-  if (auto same = admit_same_user(connected->get()); !same) return same.error();
-  return connected;
-}
-
 /// Whether a socket's file was left behind by a process that was killed: nobody has it bound.
 ///
 /// Asked with a socket of the other kind, which a listener is never told of; a connection would
@@ -73,6 +62,20 @@ bool is_left_behind(const UnixAddress& address) {
   if (::connect(probe.get(), place, address.size) == 0 || errno != ECONNREFUSED) return false;
   struct stat status {};
   return ::stat(address.address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode);
+}
+
+}  // namespace
+
+Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options) {
+  auto wait = number_option(uri, "wait", 0);
+  if (!wait) return wait.error();
+  auto address = address_of(uri);
+  if (!address) return address.error();
+  const std::array<Address, 1> addresses = {{{&address->address, address->size}}};
+  auto connected = connect_to(addresses, uri.rest, std::chrono::seconds(*wait), options.stop);
+  if (!connected || !is_abstract(uri)) return connected;
+  if (auto same = admit_same_user(connected->get()); !same) return same.error();
+  return connected;
 }
 
 Result<ListeningSocket> listen_unix(const Uri& uri) {
@@ -89,8 +92,6 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
   if (!is_abstract(uri)) socket.unlink_path = uri.rest;
   return socket;
 }
-
-}  // namespace
 
 Result<std::unique_ptr<Source>> open_unix_source(const Uri& uri, const LinkOptions& options) {
   auto connected = connect_unix(uri, options);

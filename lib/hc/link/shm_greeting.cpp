@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/shm_greeting.h>
+
+#include <sys/socket.h>
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <optional>
+
+#include <hc/link/crash_point.h>
+#include <hc/link/socket.h>
+#include <hc/link/stream_link.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::string_view kGreeting = "MTP-SHM/1 ";
+constexpr std::size_t kMostBytes = 256;      // of a greeting
+constexpr std::size_t kMostDescriptors = 4;  // more than are wanted, so that none is overlooked
+constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 40;  // [byte]
+
+struct Greeting {
+  std::string text;  // without the words that every greeting begins with, nor its line feed
+  Descriptor memory;
+};
+
+Error malformed(std::string what) {
+  return {Code::Malformed, "shm: " + std::move(what)};
+}
+
+/// Sends one greeting, whole or not at all.
+Status send_greeting(int socket, std::string_view text, int descriptor) {
+  std::string line(kGreeting);
+  line.append(text).append("\n");
+  iovec part{line.data(), line.size()};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+  msghdr header{};
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  if (descriptor >= 0) {
+    header.msg_control = control.data();
+    header.msg_controllen = control.size();
+    cmsghdr* passed = CMSG_FIRSTHDR(&header);
+    passed->cmsg_level = SOL_SOCKET;
+    passed->cmsg_type = SCM_RIGHTS;
+    passed->cmsg_len = CMSG_LEN(sizeof(int));
+    std::memcpy(CMSG_DATA(passed), &descriptor, sizeof descriptor);
+  }
+  auto sent = system_call("sendmsg", "shm",
+                          [&] { return ::sendmsg(socket, &header, MSG_NOSIGNAL | MSG_DONTWAIT); });
+  if (!sent) return sent.error();
+  return {};
+}
+
+/// Takes one greeting, which comes in one piece; never waits.
+Result<Greeting> take_greeting(int socket) {
+  std::array<char, kMostBytes> bytes;
+  iovec part{bytes.data(), bytes.size()};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(kMostDescriptors * sizeof(int))> control{};
+  msghdr header{};
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  header.msg_control = control.data();
+  header.msg_controllen = control.size();
+  auto size = system_call("recvmsg", "shm", [&] {
+    return ::recvmsg(socket, &header, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
+  });
+  if (!size) return size.error();
+  std::array<Descriptor, kMostDescriptors> descriptors;  // whatever comes is closed again
+  std::size_t count = 0;
+  for (cmsghdr* each = CMSG_FIRSTHDR(&header); each != nullptr; each = CMSG_NXTHDR(&header, each)) {
+    if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SCM_RIGHTS) continue;
+    for (std::size_t at = CMSG_LEN(0); at + sizeof(int) <= each->cmsg_len; at += sizeof(int)) {
+      int number = -1;
+      std::memcpy(&number, reinterpret_cast<const char*>(each) + at, sizeof number);
+      descriptors[count++] = Descriptor(number);
+    }
+  }
+  std::string_view text(bytes.data(), static_cast<std::size_t>(*size));
+  if (text.empty()) return Error{Code::Closed, "shm: the other side has gone"};
+  if (!text.starts_with(kGreeting) || text.find('\n') != text.size() - 1)
+    return malformed("what answers is no end of a shared memory link");
+  if (count > 1 || (header.msg_flags & MSG_CTRUNC) != 0)
+    return malformed("more was handed over than one memory");
+  text = text.substr(kGreeting.size(), text.size() - kGreeting.size() - 1);
+  return Greeting{std::string(text), std::move(descriptors[0])};
+}
+
+/// The value of `KEY=` in a greeting's words; nothing where it is not there.
+std::optional<std::string_view> word(std::string_view text, std::string_view key) {
+  while (!text.empty()) {
+    auto end = std::min(text.find(' '), text.size());
+    auto entry = text.substr(0, end);
+    if (entry.starts_with(key) && entry.substr(key.size()).starts_with('='))
+      return entry.substr(key.size() + 1);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> number(std::optional<std::string_view> text) {
+  std::uint64_t value = 0;
+  if (!text || text->empty()) return std::nullopt;
+  auto [stop, status] = std::from_chars(text->data(), text->data() + text->size(), value);
+  if (status != std::errc() || stop != text->data() + text->size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+Uri meeting_place(const Uri& uri) {
+  return {"unix", "@hypercolumn-shm-" + uri.rest, {}};
+}
+
+Result<std::uint64_t> parse_keep(std::string_view text) {
+  if (text == "all") return std::uint64_t{0};
+  if (text == "latest") return std::uint64_t{1};
+  auto count = number(text);
+  if (!count || *count == 0)
+    return Error{Code::Usage, "keep is \"all\", \"latest\" or a number from 1 on, not \"" +
+                                  std::string(text) + "\""};
+  return *count;
+}
+
+Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page, int stop) {
+  auto page_descriptor = page.read_only();
+  if (!page_descriptor) return page_descriptor.error();
+  std::string words = keep.empty() ? "reader" : "keep=" + std::string(keep);
+  if (auto sent = send_greeting(socket, words, page_descriptor->get()); !sent) return sent.error();
+  HC_CRASH_POINT("reader greeted");
+  auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
+  auto answered = wait_for(socket, POLLIN, stop, deadline);
+  if (!answered) return answered.error();
+  if (!*answered) return Error{Code::Closed, "shm: the publisher does not answer"};
+  auto greeting = take_greeting(socket);
+  if (!greeting) return greeting.error();
+  constexpr std::string_view kRefused = "refused: ";
+  if (greeting->text.starts_with(kRefused))
+    return Error{Code::Closed,
+                 "shm: the publisher refused: " + greeting->text.substr(kRefused.size())};
+  auto bytes = number(word(greeting->text, "bytes")), begin = number(word(greeting->text, "begin"));
+  auto kept = number(word(greeting->text, "keep"));
+  if (!bytes || !begin || !kept || *bytes < kLeastMemory || *bytes > kMostMemory)
+    return malformed("no offer: \"" + greeting->text + "\"");
+  auto memory = SharedMemory::map(std::move(greeting->memory), *bytes);
+  if (!memory) return malformed(memory.error().detail);
+  HC_CRASH_POINT("reader has memory");
+  return Offer{*begin, *kept, std::move(*memory)};
+}
+
+Result<Hello> take_hello(int socket, std::uint64_t otherwise) {
+  auto greeting = take_greeting(socket);
+  if (!greeting) return greeting.error();
+  Hello hello;
+  hello.keep = otherwise;
+  if (auto text = word(greeting->text, "keep")) {
+    auto keep = parse_keep(*text);
+    if (!keep) return malformed(keep.error().detail);
+    hello.keep = *keep;
+  }
+  auto page = SharedMemory::map(std::move(greeting->memory), kPageBytes);
+  if (!page) return malformed(page.error().detail);
+  hello.page = std::move(*page);
+  return hello;
+}
+
+Status answer(int socket, std::uint64_t begin, std::uint64_t keep, std::uint64_t bytes,
+              int read_only_memory) {
+  return send_greeting(socket,
+                       "bytes=" + std::to_string(bytes) + " begin=" + std::to_string(begin) +
+                           " keep=" + std::to_string(keep),
+                       read_only_memory);
+}
+
+void refuse(int socket, std::string_view why) {
+  static_cast<void>(send_greeting(socket, "refused: " + std::string(why.substr(0, 128)), -1));
+}
+
+}  // namespace hc::internal

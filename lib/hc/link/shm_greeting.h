@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// How a reader and a publisher of shared memory meet, over a Unix socket: each says one line of
+// text and hands over its memory. Internal.
+//
+//   reader:     MTP-SHM/1 keep=all            with its page
+//   publisher:  MTP-SHM/1 bytes=N begin=P keep=K  with its memory, or
+//               MTP-SHM/1 refused: WHY
+//
+// From then on the publisher says a byte when the reader has asked to be woken so; the reader ends
+// its own direction when it takes no more, and the connection when it holds no more.
+
+#include <string>
+#include <string_view>
+
+#include <hc/base/uri.h>
+#include <hc/link/shm_memory.h>
+
+namespace hc::internal {
+
+/// What a reader asks for.
+struct Hello {
+  std::uint64_t keep =
+      0;  ///< newest messages that wait for it at most; 0: all, the publisher waits
+  SharedMemory page;
+};
+
+/// What a publisher offers.
+struct Offer {
+  std::uint64_t begin = 0;  ///< position of the first message for this reader
+  std::uint64_t keep = 0;   ///< what is kept for it, as in Hello
+  SharedMemory memory;
+};
+
+/// The Unix socket where `shm:NAME` is met: abstract, so that nothing is left of it.
+Uri meeting_place(const Uri& uri);
+
+/// The reader's side; waits for the answer, 4 s at most.
+///
+/// @param keep  nothing: as the publisher wants it.
+/// Errors: Malformed (no such peer, or what it hands over is not as it should be), Closed (it has
+/// refused or gone), Stopped, System.
+Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page, int stop);
+
+/// The publisher's side: what a reader has said; never waits.
+///
+/// @param otherwise  what is kept for one who does not say.
+/// Errors: Malformed, Closed.
+Result<Hello> take_hello(int socket, std::uint64_t otherwise);
+
+/// Hands the memory over; never waits. Errors: Closed, System.
+Status answer(int socket, std::uint64_t begin, std::uint64_t keep, std::uint64_t bytes,
+              int read_only_memory);
+void refuse(int socket, std::string_view why);
+
+/// How many messages wait: "all", which is 0, "latest" or a number from 1 on. Errors: Usage.
+Result<std::uint64_t> parse_keep(std::string_view text);
+
+}  // namespace hc::internal

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/shm_memory.h>
+
+#include <fcntl.h>
+#include <linux/futex.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+
+#include <climits>
+#include <ctime>
+
+namespace hc::internal {
+namespace {
+
+constexpr int kFixedSize = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
+
+Result<std::byte*> map_bytes(int descriptor, std::uint64_t bytes, int protection) {
+  void* data = ::mmap(nullptr, bytes, protection, MAP_SHARED, descriptor, 0);
+  if (data == MAP_FAILED) return system_error("mmap", "");
+  return static_cast<std::byte*>(data);
+}
+
+}  // namespace
+
+Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reserved) {
+  auto number = system_call("memfd_create", "", [] {
+    return ::memfd_create("hypercolumn", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  });
+  if (!number) return number.error();
+  SharedMemory memory;
+  memory.descriptor_ = Descriptor(*number);
+  auto sized =
+      system_call("ftruncate", "", [&] { return ::ftruncate(*number, static_cast<off_t>(bytes)); });
+  if (!sized) return sized.error();
+  auto data = map_bytes(*number, bytes, PROT_READ | PROT_WRITE);
+  if (!data) return data.error();
+  memory.data_ = *data;
+  memory.bytes_ = bytes;
+  // Large pages are fewer to set up and to look up, for who writes images; it is advice alone.
+  ::madvise(*data, bytes, MADV_HUGEPAGE);
+  // The mapping made above goes on writing; nobody can make another that does.
+  auto sealed = system_call("fcntl", "F_ADD_SEALS", [&] {
+    return ::fcntl(*number, F_ADD_SEALS, kFixedSize | F_SEAL_FUTURE_WRITE);
+  });
+  if (!sealed) return sealed.error();
+  if (auto done = memory.reserve(reserved); !done) return done.error();
+  return memory;
+}
+
+Result<SharedMemory> SharedMemory::map(Descriptor descriptor, std::uint64_t bytes) {
+  auto refuse = [](std::string what) {
+    return Error{Code::Malformed, "the memory that was handed over " + std::move(what)};
+  };
+  int seals = ::fcntl(descriptor.get(), F_GET_SEALS);
+  if (seals < 0) return refuse("is none that can be sealed");
+  if ((seals & kFixedSize) != kFixedSize) return refuse("could change its size");
+  struct stat status {};
+  if (::fstat(descriptor.get(), &status) != 0 ||
+      static_cast<std::uint64_t>(status.st_size) != bytes)
+    return refuse("has " + std::to_string(status.st_size) + " bytes, not " + std::to_string(bytes));
+  auto data = map_bytes(descriptor.get(), bytes, PROT_READ);
+  if (!data) return refuse("cannot be mapped: " + data.error().detail);
+  SharedMemory memory;
+  memory.data_ = *data;
+  memory.bytes_ = bytes;
+  return memory;
+}
+
+SharedMemory& SharedMemory::operator=(SharedMemory&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(data_, other.data_);
+  std::swap(bytes_, other.bytes_);
+  std::swap(reserved_, other.reserved_);
+  return *this;
+}
+
+SharedMemory::~SharedMemory() {
+  if (data_ != nullptr) ::munmap(data_, bytes_);
+}
+
+Status SharedMemory::reserve(std::uint64_t end) {
+  end = (end + kPageBytes - 1) / kPageBytes * kPageBytes;
+  if (end <= reserved_) return {};
+  // Through the mapping, so that the advice on large pages is heard; where that call is not known,
+  // through the descriptor.
+  auto populated = system_call("madvise", "MADV_POPULATE_WRITE", [&] {
+    return ::madvise(data_ + reserved_, end - reserved_, MADV_POPULATE_WRITE);
+  });
+  if (!populated) {
+    auto allocated = system_call("fallocate", "", [&] {
+      return ::fallocate(descriptor_.get(), 0, static_cast<off_t>(reserved_),
+                         static_cast<off_t>(end - reserved_));
+    });
+    if (!allocated) return allocated.error();
+  }
+  reserved_ = end;
+  return {};
+}
+
+Result<Descriptor> SharedMemory::read_only() const {
+  std::string path = "/proc/self/fd/" + std::to_string(descriptor_.get());
+  auto number =
+      system_call("open", path, [&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
+  if (!number) return number.error();
+  return Descriptor(*number);
+}
+
+void futex_wait(const SharedWord<std::uint32_t>& word, std::uint32_t value,
+                std::chrono::nanoseconds timeout) {
+  timespec time{};
+  time.tv_sec = timeout.count() / 1'000'000'000;
+  time.tv_nsec = timeout.count() % 1'000'000'000;
+  ::syscall(SYS_futex, &word, FUTEX_WAIT, value, &time, nullptr, 0);
+}
+
+void futex_wake(const SharedWord<std::uint32_t>& word) {
+  ::syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
+}
+
+}  // namespace hc::internal

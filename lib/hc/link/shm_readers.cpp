@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/shm_readers.h>
+
+#include <sys/eventfd.h>
+
+#include <algorithm>
+
+#include <hc/link/crash_point.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::chrono::milliseconds kRetry{200};  // until one is let in again who could not be
+
+}  // namespace
+
+Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
+                                                     const SharedMemory& memory, std::uint64_t keep,
+                                                     LinkOptions options) {
+  auto event = system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
+  if (!event) return event.error();
+  auto read_only = memory.read_only();
+  if (!read_only) return read_only.error();
+  std::unique_ptr<ShmReaders> readers(new ShmReaders(std::move(socket), Descriptor(*event),
+                                                     std::move(*read_only), std::move(options)));
+  readers->head_ = reinterpret_cast<const Head*>(memory.data());
+  readers->bytes_ = memory.size();
+  readers->keep_ = keep;
+  auto watch = Watch::make(readers->socket_.descriptor.get(),
+                           [all = readers.get()](std::uint32_t) { all->accept_all(); });
+  if (!watch) return watch.error();
+  readers->watch_ = std::move(*watch);
+  if (auto watched = readers->watch_->want(EPOLLIN); !watched) return watched.error();
+  return readers;
+}
+
+ShmReaders::~ShmReaders() {
+  // Callbacks first: they use what the members are. Readers' watches outside the lock, which a
+  // callback that runs now may be waiting for.
+  watch_.reset();
+  for (auto* list : {&strangers_, &come_, &current_})
+    for (auto& reader : *list) reader->watch.reset();
+}
+
+void ShmReaders::log(std::string_view line) const {
+  if (options_.log) options_.log(Severity::Warning, line);
+}
+
+void ShmReaders::accept_all() {
+  while (true) {
+    auto peer = accept_peer(socket_, options_);
+    if (peer && !*peer) {
+      static_cast<void>(watch_->want(EPOLLIN));
+      return;
+    }
+    auto reader = std::make_shared<ShmReader>();
+    auto watch = peer ? Watch::make(peer->get(),
+                                    [this, each = reader.get()](std::uint32_t events) {
+                                      if ((events & (EPOLLHUP | EPOLLERR)) != 0)
+                                        let_go(*each);
+                                      else if (each->memory.data() == nullptr)
+                                        hear(*each);
+                                      else
+                                        tell_change(*each);  // it has left
+                                    })
+                      : Result<std::unique_ptr<Watch>>(peer.error());
+    if (!watch) {
+      // No descriptor or memory is to be had now: who waits is overlooked for a while.
+      log(watch.error().text());
+      static_cast<void>(watch_->want(0));
+      watch_->call_at(std::chrono::steady_clock::now() + kRetry);
+      return;
+    }
+    reader->socket = std::move(*peer);
+    reader->watch = std::move(*watch);
+    std::shared_ptr<ShmReader> silent;
+    {
+      std::lock_guard lock(mutex_);
+      if (strangers_.size() == kMostReaders) {  // who says nothing cannot keep others out
+        silent = strangers_.front();
+        strangers_.erase(strangers_.begin());
+      }
+      strangers_.push_back(reader);
+    }
+    static_cast<void>(reader->watch->want(EPOLLIN));
+  }
+}
+
+/// A stranger has said something.
+void ShmReaders::hear(ShmReader& reader) {
+  auto hello = take_hello(reader.socket.get(), keep_);
+  HC_CRASH_POINT("publisher greeted");
+  std::string why;
+  if (!hello) why = hello.error().detail;
+  std::shared_ptr<ShmReader> owner;
+  {
+    std::lock_guard lock(mutex_);
+    auto found = std::find_if(strangers_.begin(), strangers_.end(),
+                              [&](const auto& each) { return each.get() == &reader; });
+    owner = *found;
+    strangers_.erase(found);
+    if (why.empty() && count_ == kMostReaders)
+      why = "it has " + std::to_string(kMostReaders) + " readers already";
+    if (why.empty()) {
+      reader.memory = std::move(hello->page);
+      reader.keep = hello->keep;
+      reader.begin = head_->published.load(std::memory_order_acquire);
+      come_.push_back(owner);
+      ++count_;
+      // Before it is answered: it holds nothing until then, and from then on is taken into account.
+      changed_.store(true, std::memory_order_seq_cst);
+    }
+  }
+  if (!why.empty()) {
+    log("shm: refused a reader: " + why);
+    refuse(reader.socket.get(), why);
+    return;  // the last owner goes here, and with it the connection
+  }
+  HC_CRASH_POINT("publisher knows reader");
+  // Edge-triggered: the reader's end of its direction, and then that of the connection.
+  static_cast<void>(reader.watch->want(EPOLLRDHUP | EPOLLET));
+  if (!answer(reader.socket.get(), reader.begin, reader.keep, bytes_, read_only_.get()))
+    let_go(reader);
+  HC_CRASH_POINT("publisher answered");
+  tell_change(reader);
+}
+
+/// A reader or stranger has gone, or died, which looks the same: what it held is free.
+void ShmReaders::let_go(ShmReader& reader) {
+  std::shared_ptr<ShmReader> owner;
+  {
+    std::lock_guard lock(mutex_);
+    if (reader.memory.data() != nullptr) {
+      if (reader.gone.exchange(true)) return;
+      --count_;
+    } else {
+      auto found = std::find_if(strangers_.begin(), strangers_.end(),
+                                [&](const auto& each) { return each.get() == &reader; });
+      if (found == strangers_.end()) return;
+      owner = *found;
+      strangers_.erase(found);
+      return;
+    }
+  }
+  static_cast<void>(reader.watch->want(0));
+  tell_change(reader);
+}
+
+void ShmReaders::tell_change(const ShmReader& reader) {
+  changed_.store(true, std::memory_order_seq_cst);
+  ::eventfd_write(event_.get(), 1);
+  futex_wake(reader.page().progress);  // the publisher may wait for room from this reader
+}
+
+void ShmReaders::refresh() {
+  std::vector<std::shared_ptr<ShmReader>> gone;  // their watches end outside the lock
+  std::lock_guard lock(mutex_);
+  changed_.store(false, std::memory_order_relaxed);
+  eventfd_t count = 0;
+  ::eventfd_read(event_.get(), &count);
+  current_.insert(current_.end(), come_.begin(), come_.end());
+  come_.clear();
+  auto first_gone = std::stable_partition(current_.begin(), current_.end(),
+                                          [](const auto& reader) { return !reader->gone.load(); });
+  gone.assign(first_gone, current_.end());
+  current_.erase(first_gone, current_.end());
+}
+
+}  // namespace hc::internal

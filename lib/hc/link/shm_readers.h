@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The readers of a publisher of shared memory: lets them in, and notices when they leave or die,
+// on the thread that serves links, whatever the publisher does meanwhile. Internal.
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <hc/link/reactor.h>
+#include <hc/link/shm_greeting.h>
+#include <hc/link/shm_memory.h>
+#include <hc/link/socket.h>
+
+namespace hc::internal {
+
+/// One reader, as its publisher sees it.
+struct ShmReader {
+  Descriptor socket;
+  SharedMemory memory;      ///< a ReaderPage
+  std::uint64_t keep = 0;   ///< newest messages that wait for it at most; 0: all of them
+  std::uint64_t begin = 0;  ///< position of its first message
+  std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
+  std::atomic<bool> gone{false};
+  std::unique_ptr<Watch> watch;
+
+  [[nodiscard]] const ReaderPage& page() const {
+    return *reinterpret_cast<const ReaderPage*>(memory.data());
+  }
+  [[nodiscard]] bool left() const {
+    return page().cursor.load(std::memory_order_acquire) == ReaderPage::kLeft;
+  }
+  /// The position that it takes next, as far as that can be: whatever its page says, at least where
+  /// it began and at most what has been published.
+  [[nodiscard]] std::uint64_t cursor(std::uint64_t published) const {
+    auto cursor = page().cursor.load(std::memory_order_acquire);
+    return std::min(std::max(cursor, begin), published);
+  }
+};
+
+class ShmReaders {
+ public:
+  /// @param head  of `memory`; says where a reader that comes begins.
+  /// @param keep  for readers that do not say.
+  static Result<std::unique_ptr<ShmReaders>> make(ListeningSocket socket,
+                                                  const SharedMemory& memory, std::uint64_t keep,
+                                                  LinkOptions options);
+  ~ShmReaders();
+  ShmReaders(const ShmReaders&) = delete;
+  ShmReaders& operator=(const ShmReaders&) = delete;
+
+  /// Those there are, as of the last refresh(). On the publisher's thread.
+  [[nodiscard]] std::vector<std::shared_ptr<ShmReader>>& current() { return current_; }
+
+  /// Whether some have come or gone since.
+  ///
+  /// A reader that can hold a slot by now has come before the caller's last fence ("hold"), and is
+  /// seen here.
+  [[nodiscard]] bool changed() const { return changed_.load(std::memory_order_relaxed); }
+  void refresh();
+
+  /// Readable when some have come or gone since refresh().
+  [[nodiscard]] int event() const { return event_.get(); }
+
+ private:
+  ShmReaders(ListeningSocket socket, Descriptor event, Descriptor read_only, LinkOptions options)
+      : socket_(std::move(socket)),
+        event_(std::move(event)),
+        read_only_(std::move(read_only)),
+        options_(std::move(options)) {}
+
+  void accept_all();
+  void hear(ShmReader& reader);
+  void let_go(ShmReader& reader);
+  void tell_change(const ShmReader& reader);
+  void log(std::string_view line) const;
+
+  ListeningSocket socket_;
+  Descriptor event_, read_only_;
+  LinkOptions options_;
+  const Head* head_ = nullptr;
+  std::uint64_t bytes_ = 0, keep_ = 0;
+  std::vector<std::shared_ptr<ShmReader>> current_;
+  std::atomic<bool> changed_{false};
+
+  std::mutex mutex_;                                   // of what follows
+  std::vector<std::shared_ptr<ShmReader>> strangers_;  // have not said what they are yet
+  std::vector<std::shared_ptr<ShmReader>> come_;       // since refresh()
+  std::size_t count_ = 0;                              // of readers, those in come_ included
+
+  std::unique_ptr<Watch> watch_;  // last, so that it ends first
+};
+
+}  // namespace hc::internal

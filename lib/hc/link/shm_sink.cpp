@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+// The publisher of `shm:NAME`.
+#include <sys/socket.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <functional>
+
+#include <hc/link/crash_point.h>
+#include <hc/link/shm_readers.h>
+#include <hc/link/shm_slots.h>
+#include <hc/link/stream_link.h>
+#include <hc/link/transports.h>
+#include <hc/link/unix.h>
+
+namespace hc::internal {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+using std::memory_order_acquire;
+using std::memory_order_relaxed;
+using std::memory_order_release;
+using std::memory_order_seq_cst;
+
+constexpr std::uint64_t kDefaultMemory = std::uint64_t{64} << 20;  // [byte]
+/// How far a publisher that loses nothing gets ahead of its slowest reader: what it writes then is
+/// in the caches still when it is read.
+constexpr std::uint64_t kAheadBytes = std::uint64_t{4} << 20;
+constexpr std::uint64_t kAheadMessages = 2;  // at least, however large
+constexpr std::uint64_t kBatch = 64;         // cells that are withdrawn together
+/// How often one who waits looks whether it is to stop.
+constexpr std::chrono::milliseconds kLookPeriod{20};
+
+class ShmSink final : public Sink {
+ public:
+  ShmSink(SharedMemory memory, std::int64_t counted, std::uint64_t keep, int stop)
+      : memory_(std::make_shared<SharedMemory>(std::move(memory))),
+        head_(*reinterpret_cast<Head*>(memory_->data())),
+        cells_(reinterpret_cast<Cell*>(memory_->data() + kRingBegin)),
+        slots_(std::make_shared<SlotPool>(kSlotsBegin, memory_->size())),
+        counted_(counted),
+        keep_(keep),
+        stop_(stop) {}
+  ~ShmSink() override { end(); }
+
+  Status begin(ListeningSocket socket, const LinkOptions& options) {
+    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_, options);
+    if (!readers) return readers.error();
+    readers_ = std::move(*readers);
+    return {};
+  }
+
+  Status send(const Message& message) override;
+  Draft loan(const Header& header) override;
+  Status close() override;
+  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+
+ private:
+  void refresh();
+  Status await_readers(std::size_t count);
+  Status wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room);
+  Status make_cell_free();
+  Status place(const Message& message, Slot*& slot);
+  Slot* take_slot(std::uint64_t bytes);
+  Slot* reserve(Slot* slot);
+  void withdraw(std::uint64_t end);
+  void sweep();
+  void publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot);
+  void wake_readers();
+  void end();
+
+  [[nodiscard]] std::uint64_t taken_by_all() const;
+  [[nodiscard]] std::uint64_t wanted_by_none() const;
+  [[nodiscard]] const ShmReader* blocker() const;
+  [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes) const;
+
+  // Readers' messages outlive the sink, and so may those of this process that own slots.
+  std::shared_ptr<SharedMemory> memory_;
+  Head& head_;
+  Cell* cells_;
+  std::shared_ptr<SlotPool> slots_;
+  std::unique_ptr<ShmReaders> readers_;
+  std::int64_t counted_;
+  std::uint64_t keep_;
+  int stop_;
+
+  std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
+  std::array<Slot*, kCells> slot_of_cell_{};
+  std::array<std::uint64_t, kCells> ahead_{};  // bytes in slots, sent before the message of a cell
+  std::uint64_t slot_bytes_ = 0;               // the same of the next message
+  std::size_t present_ = 0;                    // readers that still take messages
+  bool begun_ = false, ended_ = false;
+  Traffic traffic_;
+};
+
+/// Learns who has come and gone. Cost: next to nothing when nobody has.
+void ShmSink::refresh() {
+  if (!readers_->changed()) return;
+  readers_->refresh();
+  present_ =
+      static_cast<std::size_t>(std::count_if(readers_->current().begin(), readers_->current().end(),
+                                             [](const auto& reader) { return !reader->left(); }));
+}
+
+/// The position below which every reader that loses nothing has taken all.
+std::uint64_t ShmSink::taken_by_all() const {
+  std::uint64_t taken = published_;
+  for (const auto& reader : readers_->current())
+    if (reader->keep == 0) taken = std::min(taken, reader->cursor(published_));
+  return taken;
+}
+
+/// The position below which no reader wants anything any more.
+std::uint64_t ShmSink::wanted_by_none() const {
+  std::uint64_t end = published_;
+  for (const auto& reader : readers_->current()) {
+    auto cursor = reader->cursor(published_);
+    if (reader->keep > 0 && published_ - cursor > reader->keep) cursor = published_ - reader->keep;
+    end = std::min(end, cursor);
+  }
+  return end;
+}
+
+/// Whom one waits for: the slowest of those that lose nothing, if it has not taken all, else
+/// anybody who holds something; null when it is nobody.
+const ShmReader* ShmSink::blocker() const {
+  const ShmReader* slowest = nullptr;
+  const ShmReader* holder = nullptr;
+  for (const auto& reader : readers_->current()) {
+    auto cursor = reader->cursor(published_);
+    if (reader->keep == 0 && cursor < published_ &&
+        (slowest == nullptr || cursor < slowest->cursor(published_)))
+      slowest = reader.get();
+    for (const auto& held : reader->page().held)
+      if (held.load(memory_order_acquire) != 0) holder = reader.get();
+  }
+  return slowest != nullptr ? slowest : holder;
+}
+
+bool ShmSink::is_too_far_ahead(std::uint64_t bytes) const {
+  auto taken = taken_by_all();
+  return published_ - taken >= kAheadMessages &&
+         slot_bytes_ + bytes - ahead_[taken % kCells] > kAheadBytes;
+}
+
+Status ShmSink::await_readers(std::size_t count) {
+  while (true) {
+    refresh();
+    if (present_ >= count) return {};
+    auto changed = wait_for(readers_->event(), POLLIN, stop_);
+    if (!changed) return changed.error();
+  }
+}
+
+/// Waits until `has_room()`, or the readers that were counted have left.
+Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room) {
+  struct Wish {
+    Head& head;
+    ~Wish() { head.wanted.store(0, memory_order_relaxed); }
+  } wish{head_};
+  head_.wanted.store(wanted, memory_order_relaxed);
+  while (true) {
+    refresh();
+    const ShmReader* reader = blocker();
+    auto progress = reader == nullptr ? 0 : reader->page().progress.load(memory_order_acquire);
+    std::atomic_thread_fence(memory_order_seq_cst);  // room
+    if (has_room()) return {};
+    if (readers_->changed()) continue;
+    if (reader == nullptr)
+      return Error{Code::TooLarge, "shm: no room left: this program holds all of the memory"};
+    HC_CRASH_POINT("publisher waits for room");
+    futex_wait(reader->page().progress, progress, kLookPeriod);
+    auto stop = wait_readable({}, stop_, std::chrono::milliseconds(0));
+    if (!stop) return stop.error();
+  }
+}
+
+/// Takes cells below `end` back: readers that come to them skip them.
+void ShmSink::withdraw(std::uint64_t end) {
+  if (end <= oldest_) return;
+  head_.oldest.store(end, memory_order_release);
+  HC_CRASH_POINT("publisher withdrew");
+  for (; oldest_ < end; ++oldest_)
+    if (Slot*& slot = slot_of_cell_[oldest_ % kCells]; slot != nullptr) {
+      --slot->cells;
+      slot = nullptr;
+    }
+}
+
+/// Finds out which slots nobody refers to or holds any more.
+void ShmSink::sweep() {
+  std::atomic_thread_fence(memory_order_seq_cst);  // hold
+  refresh();
+  std::vector<std::uint64_t> held;
+  for (const auto& reader : readers_->current())
+    for (const auto& slot : reader->page().held)
+      if (auto begin = slot.load(memory_order_acquire); begin != 0) held.push_back(begin);
+  slots_->sweep([&](const Slot& slot) {
+    return !slot.referred_to() && std::find(held.begin(), held.end(), slot.begin) == held.end();
+  });
+  HC_CRASH_POINT("publisher swept");
+}
+
+/// Sees that a new slot's pages are there; null when the host has no memory for them.
+Slot* ShmSink::reserve(Slot* slot) {
+  if (slot == nullptr || memory_->reserve(slot->begin + slot->bytes)) return slot;
+  return nullptr;  // left unused for good: it is at the end of what can be had
+}
+
+/// A slot, without taking from a reader what it wants; null when there is none.
+Slot* ShmSink::take_slot(std::uint64_t bytes) {
+  if (Slot* slot = slots_->reuse(bytes); slot != nullptr) return slot;
+  withdraw(wanted_by_none());
+  sweep();
+  if (Slot* slot = slots_->reuse(bytes); slot != nullptr) return slot;
+  return reserve(slots_->allocate(bytes));
+}
+
+/// Finds a slot for elements, and copies them if they are not in one already. Null: the message is
+/// lost, as there is no memory for it and one does not wait.
+Status ShmSink::place(const Message& message, Slot*& slot) {
+  const std::byte* from = message.elements.data();
+  auto bytes = message.elements.size();
+  bool loaned = from >= memory_->data() + kSlotsBegin && from < memory_->data() + memory_->size();
+  slot = loaned ? slots_->find(static_cast<std::uint64_t>(from - memory_->data())) : nullptr;
+  if (slot != nullptr && bytes <= slot->bytes) return {};
+  if (bytes > memory_->size() - kSlotsBegin)
+    return Error{Code::TooLarge,
+                 "shm: a message of " + std::to_string(bytes) +
+                     " bytes does not fit memory=" + std::to_string(memory_->size())};
+  slot = take_slot(bytes);
+  // What the readers that lose messages have not taken is lost now, the oldest first.
+  while (slot == nullptr && oldest_ < taken_by_all()) {
+    withdraw(oldest_ + 1);
+    sweep();
+    slot = slots_->reuse(bytes);
+    if (slot == nullptr) slot = reserve(slots_->allocate(bytes));
+  }
+  if (slot == nullptr && keep_ == 0) {
+    auto room = wait_for_room(Head::kAnyRoom, [&] {
+      slot = take_slot(bytes);
+      return slot != nullptr;
+    });
+    if (!room) return room;
+  }
+  if (slot == nullptr) return {};
+  HC_CRASH_POINT("publisher has slot");
+  std::memcpy(memory_->data() + slot->begin, from, bytes);
+  HC_CRASH_POINT("publisher filled slot");
+  return {};
+}
+
+/// Sees that the next message has a cell.
+Status ShmSink::make_cell_free() {
+  withdraw(std::min(taken_by_all(), published_ - kCells + kBatch));
+  if (published_ - oldest_ < kCells) return {};
+  // Half of the ring at once, since to wake is dear.
+  auto wanted = published_ - kCells / 2;
+  auto room = wait_for_room(wanted, [&] { return taken_by_all() >= wanted; });
+  if (room) withdraw(std::min(taken_by_all(), published_ - kCells + kBatch));
+  return room;
+}
+
+Status ShmSink::send(const Message& message) {
+  refresh();
+  if (!begun_ && (keep_ == 0 || counted_ > 0)) {
+    auto came = await_readers(static_cast<std::size_t>(std::max<std::int64_t>(counted_, 1)));
+    if (!came) return came;
+  }
+  begun_ = true;
+  if (present_ == 0) {
+    if (counted_ > 0) return Error{Code::Closed, "shm: the readers have gone"};
+    if (keep_ == 0)
+      if (auto came = await_readers(1); !came) return came;
+  }
+  alignas(std::uint64_t) std::array<char, Cell::kTextBytes + kMaxHeaderBytes> text;
+  auto header_bytes =
+      format_header(message.header, std::span<char, kMaxHeaderBytes>(text.data(), kMaxHeaderBytes));
+  auto bytes = message.elements.size();
+  auto text_bytes = header_bytes;
+  Slot* slot = nullptr;
+  if (header_bytes + bytes <= Cell::kTextBytes) {
+    if (bytes > 0) std::memcpy(text.data() + header_bytes, message.elements.data(), bytes);
+    text_bytes += bytes;
+  } else {
+    if (is_too_far_ahead(bytes)) {
+      auto room = wait_for_room(Head::kAnyRoom, [&] { return !is_too_far_ahead(bytes); });
+      if (!room) return room;
+    }
+    if (auto placed = place(message, slot); !placed) return placed;
+    if (slot == nullptr) {
+      ++traffic_.over_memory;
+      return {};
+    }
+    ++slot->cells;
+  }
+  if (published_ - oldest_ == kCells)
+    if (auto freed = make_cell_free(); !freed) {
+      if (slot != nullptr) --slot->cells;
+      return freed;
+    }
+  ahead_[published_ % kCells] = slot_bytes_;
+  if (slot != nullptr) slot_bytes_ += bytes;
+  slot_of_cell_[published_ % kCells] = slot;
+  std::array<std::uint64_t, Cell::kWords> words;
+  std::memcpy(words.data(), text.data(), text_bytes);
+  publish({words.data(), (text_bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t)},
+          bytes << 16 | header_bytes, slot);
+  ++traffic_.messages;
+  traffic_.bytes += bytes;
+  return {};
+}
+
+void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot) {
+  Cell& cell = cells_[published_ % kCells];
+  // Who was overtaken and reads this cell now finds `oldest` beyond it afterwards.
+  std::atomic_thread_fence(memory_order_release);
+  cell.slot.store(slot == nullptr ? 0 : slot->begin, memory_order_relaxed);
+  cell.sizes.store(sizes, memory_order_relaxed);
+  for (std::size_t i = 0; i < text.size(); ++i) cell.text[i].store(text[i], memory_order_relaxed);
+  HC_CRASH_POINT("publisher wrote cell");
+  ++published_;
+  cell.stamp.store(published_, memory_order_release);
+  HC_CRASH_POINT("publisher stamped");
+  head_.published.store(published_, memory_order_release);
+  head_.signal.store(static_cast<std::uint32_t>(published_), memory_order_release);
+  HC_CRASH_POINT("publisher published");
+  wake_readers();
+  HC_CRASH_POINT("publisher woke readers");
+}
+
+void ShmSink::wake_readers() {
+  std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  refresh();
+  bool sleeps = false;
+  for (const auto& reader : readers_->current()) {
+    auto armed = reader->page().armed.load(memory_order_relaxed);
+    if (armed == 0 || armed == reader->woken) continue;
+    reader->woken = armed;
+    if (armed % 2 == 0)
+      sleeps = true;
+    else
+      ::send(reader->socket.get(), "!", 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+  if (sleeps) futex_wake(head_.signal);
+}
+
+Draft ShmSink::loan(const Header& header) {
+  auto bytes = header.element_bytes();
+  refresh();
+  Slot* slot = bytes > Cell::kTextBytes / 2 ? take_slot(bytes) : nullptr;
+  if (slot == nullptr) return Draft::make(header);
+  HC_CRASH_POINT("publisher loaned");
+  ++slot->messages;
+  return Draft::make(header, SharedBytes(memory_->data() + slot->begin,
+                                         [slot, memory = memory_, slots = slots_](std::byte*) {
+                                           slot->messages.fetch_sub(1, memory_order_release);
+                                         }));
+}
+
+Status ShmSink::close() {
+  Status awaited;
+  if (!begun_ && counted_ > 0) awaited = await_readers(static_cast<std::size_t>(counted_));
+  end();
+  return awaited;
+}
+
+/// Readers have the memory for as long as they want; they need nobody to take what is in it.
+void ShmSink::end() {
+  if (ended_ || readers_ == nullptr) return;
+  ended_ = true;
+  head_.closed.store(1, memory_order_release);
+  HC_CRASH_POINT("publisher closed");
+  head_.signal.store(static_cast<std::uint32_t>(published_) + 1, memory_order_release);
+  futex_wake(head_.signal);
+  readers_.reset();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
+  auto counted = number_option(uri, "readers", 0);
+  if (!counted) return counted.error();
+  auto keep = parse_keep(uri.option("keep", "all"));
+  if (!keep) return keep.error();
+  auto socket = listen_unix(meeting_place(uri));
+  if (!socket) return socket.error();
+  auto memory = SharedMemory::make(kDefaultMemory, kSlotsBegin);
+  if (!memory) return memory.error();
+  auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted, *keep, options.stop);
+  if (auto begun = sink->begin(std::move(*socket), options); !begun) return begun.error();
+  return std::unique_ptr<Sink>(std::move(sink));
+}
+
+}  // namespace hc::internal
