@@ -74,7 +74,7 @@ class ShmSink final : public Sink {
   [[nodiscard]] std::uint64_t taken_by_all() const;
   [[nodiscard]] std::uint64_t wanted_by_none() const;
   [[nodiscard]] const ShmReader* blocker() const;
-  [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes) const;
+  [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes);
 
   // Readers' messages outlive the sink, and so may those of this process that own slots.
   std::shared_ptr<SharedMemory> memory_;
@@ -90,7 +90,9 @@ class ShmSink final : public Sink {
   std::array<Slot*, kCells> slot_of_cell_{};
   std::array<std::uint64_t, kCells> ahead_{};  // bytes in slots, sent before the message of a cell
   std::uint64_t slot_bytes_ = 0;               // the same of the next message
-  std::size_t present_ = 0;                    // readers that still take messages
+  std::uint64_t taken_ = 0;                    // by all, at the last look
+  SmallBytes small_;
+  std::size_t present_ = 0;  // readers that still take messages
   bool begun_ = false, ended_ = false;
   Traffic traffic_;
 };
@@ -139,10 +141,17 @@ const ShmReader* ShmSink::blocker() const {
   return slowest != nullptr ? slowest : holder;
 }
 
-bool ShmSink::is_too_far_ahead(std::uint64_t bytes) const {
-  auto taken = taken_by_all();
-  return published_ - taken >= kAheadMessages &&
-         slot_bytes_ + bytes - ahead_[taken % kCells] > kAheadBytes;
+/// Whether `bytes` more in slots are too many for the slowest of those that lose nothing. Cost: a
+/// look at what each has taken, but only when it seems so from the last look.
+bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
+  auto seems_so = [&] {
+    return published_ - taken_ >= kAheadMessages &&
+           slot_bytes_ + bytes - ahead_[taken_ % kCells] > kAheadBytes;
+  };
+  taken_ = std::max(taken_, oldest_);
+  if (!seems_so()) return false;
+  taken_ = taken_by_all();
+  return seems_so();
 }
 
 Status ShmSink::await_readers(std::size_t count) {
@@ -350,7 +359,9 @@ void ShmSink::wake_readers() {
 Draft ShmSink::loan(const Header& header) {
   auto bytes = header.element_bytes();
   refresh();
-  Slot* slot = bytes > Cell::kTextBytes / 2 ? take_slot(bytes) : nullptr;
+  // What will be copied into a cell needs no slot.
+  if (bytes <= Cell::kTextBytes / 2) return Draft::make(header, small_.allocate(bytes));
+  Slot* slot = take_slot(bytes);
   if (slot == nullptr) return Draft::make(header);
   HC_CRASH_POINT("publisher loaned");
   ++slot->messages;

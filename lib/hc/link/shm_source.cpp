@@ -31,7 +31,6 @@ constexpr std::uint64_t kLookEvery = 64;  // messages
 /// waits on the socket.
 constexpr std::chrono::milliseconds kFutexTime{100};
 constexpr std::chrono::milliseconds kSpinLook{1};  // how often one who spins looks at all else
-constexpr std::size_t kBlockBytes = 64 << 10;      // for small messages, which are copied
 
 constexpr int kMostSkips = 64;  // until who is overtaken again and again looks after other things
 
@@ -110,7 +109,6 @@ class ShmSource final : public Source {
   bool copy(Copy& cell) const;
   Status deliver(const Copy& cell, Message& message, std::size_t index);
   [[nodiscard]] std::size_t find_free_hold() const;
-  SharedBytes room_in_block(std::size_t bytes);
   void arm(bool on_socket);
   void disarm();
 
@@ -123,8 +121,7 @@ class ShmSource final : public Source {
   bool armed_ = false;
   bool publisher_gone_ = false;
   bool told_ = false;  // that too many are held
-  SharedBytes block_;
-  std::size_t block_used_ = kBlockBytes;
+  SmallBytes small_;
   Traffic traffic_;
 };
 
@@ -180,18 +177,6 @@ std::size_t ShmSource::find_free_hold() const {
   return index;
 }
 
-SharedBytes ShmSource::room_in_block(std::size_t bytes) {
-  constexpr std::size_t kAlignment = alignof(std::max_align_t);
-  auto size = (bytes + kAlignment - 1) / kAlignment * kAlignment;
-  if (kBlockBytes - block_used_ < size) {
-    block_ = allocate_bytes(kBlockBytes);
-    block_used_ = 0;
-  }
-  SharedBytes room(block_, block_.get() + block_used_);
-  block_used_ += size;
-  return room;
-}
-
 /// Makes a message of a cell, of which a slot is held already.
 Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t index) {
   auto line = read_header_line({cell.text(), cell.header_bytes}, options_.limits, traffic_.bytes);
@@ -204,7 +189,7 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t index)
   message.header = header;
   message.byte = traffic_.bytes;
   if (cell.slot == 0) {
-    auto room = room_in_block(cell.bytes);
+    auto room = small_.allocate(cell.bytes);
     std::memcpy(room.get(), cell.text() + cell.header_bytes, cell.bytes);
     message.elements = {room.get(), cell.bytes};
     message.owner = std::move(room);

@@ -15,7 +15,8 @@ INSTANTIATE_TEST_SUITE_P(Shm, LinkConformance,
                          ::testing::Values(Transport{"shm",
                                                      [] {
                                                        auto name = fresh_name();
-                                                       return std::pair(name + "?wait=10", name);
+                                                       return std::pair(name + "?wait=10",
+                                                                        name + "?readers=1");
                                                      },
                                                      true}),
                          [](const auto& test) { return test.param.name; });

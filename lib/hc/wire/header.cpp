@@ -212,6 +212,12 @@ class CanonicalFields {
   const char* end_;
 };
 
+/// Whether a header's sides have rules of their own (R21 … R23).
+bool has_shape_rule(const Info& info) {
+  return info.encoding == Encoding::Jpeg || info.type == MatrixType::DenseGraph ||
+         info.type == MatrixType::SparseGraph;
+}
+
 /// Reads a header in canonical form; gives false, and leaves the judgement to the slow way, for
 /// every other one and for those whose sides have rules of their own (R21 … R23).
 bool parse_canonical(std::string_view line, const Limits& limits, Header& header) {
@@ -222,8 +228,7 @@ bool parse_canonical(std::string_view line, const Limits& limits, Header& header
          fields.take(header.ttl, kMaxTtl) && fields.take(header.time, kMax63) &&
          fields.take_info(header.info) && fields.take(header.mode) && fields.take(header.coord) &&
          fields.take(header.width) && fields.take_last(header.height) &&
-         header.info.encoding != Encoding::Jpeg && header.info.type != MatrixType::DenseGraph &&
-         header.info.type != MatrixType::SparseGraph && has_good_size(header, limits);
+         !has_shape_rule(header.info) && has_good_size(header, limits);
 }
 
 /// Integers as R5 spells them, or nothing. One that does not fit into 64 bits becomes the largest
@@ -301,6 +306,12 @@ Result<Header> parse_header(std::string_view line, const Limits& limits, std::ui
 }
 
 Status check(const Header& header, const Limits& limits) {
+  // Nearly every header is right, which is found out without looking for what may be wrong.
+  bool below_0 = (header.src | header.mode | header.coord | header.width | header.height) < 0 ||
+                 (header.seq | header.time) < 0;
+  if (!below_0 && broken_rule(header.info) == 0 && !has_shape_rule(header.info) &&
+      has_good_size(header, limits))
+    return {};
   Fields values = {kVersion, header.src,  header.dst,   header.seq,   header.ttl,   header.time,
                    0,        header.mode, header.coord, header.width, header.height};
   auto as_error = [](const Finding& finding) {

@@ -19,6 +19,19 @@ SharedBytes allocate_bytes(std::size_t size) {
   return {bytes, [](std::byte* freed) { ::operator delete(freed, kAlignment); }};
 }
 
+SharedBytes SmallBytes::allocate(std::size_t size) {
+  HC_CHECK(size <= kMost, size);
+  constexpr std::size_t kAlignment = alignof(std::max_align_t);
+  std::size_t rounded = (size + kAlignment - 1) / kAlignment * kAlignment;
+  if (kBlock - used_ < rounded) {
+    block_ = allocate_bytes(kBlock);
+    used_ = 0;
+  }
+  SharedBytes bytes(block_, block_.get() + used_);
+  used_ += rounded;
+  return bytes;
+}
+
 Message Message::keep() const {
   if (owner != nullptr) return *this;
   SharedBytes bytes = allocate_bytes(elements.size());
@@ -35,7 +48,7 @@ Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
 }
 
 Draft Draft::make(const Header& header) {
-  check_own(header);
+  check_own(header);  // before its size is believed
   return make(header, allocate_bytes(header.element_bytes()));
 }
 

@@ -57,6 +57,22 @@ using SharedBytes = std::shared_ptr<std::byte[]>;
 /// Fresh bytes, not initialised, aligned to 64. Cost: one allocation.
 SharedBytes allocate_bytes(std::size_t size);
 
+/// Gives out bytes for small elements, many from one allocation, which lives as long as any of
+/// them.
+class SmallBytes {
+ public:
+  static constexpr std::size_t kMost = 4096;  ///< bytes that can be had at once
+
+  /// Fresh bytes, not initialised, aligned for every scalar. Cost: no allocation, as a rule.
+  SharedBytes allocate(std::size_t size);
+
+ private:
+  static constexpr std::size_t kBlock = std::size_t{64} << 10;
+
+  SharedBytes block_;
+  std::size_t used_ = kBlock;
+};
+
 /// A header and its elements.
 struct Message {
   Header header;
