@@ -104,11 +104,13 @@ void ShmReaders::hear(ShmReader& reader) {
     if (why.empty()) {
       reader.memory = std::move(hello->page);
       reader.keep = hello->keep;
+      // First: a publisher that has published more than what is read here looks at this afterwards
+      // ("wake"), before it takes anything back that the reader is to have.
+      changed_.store(true, std::memory_order_relaxed);
+      std::atomic_thread_fence(std::memory_order_seq_cst);
       reader.begin = head_->published.load(std::memory_order_acquire);
       come_.push_back(owner);
       ++count_;
-      // Before it is answered: it holds nothing until then, and from then on is taken into account.
-      changed_.store(true, std::memory_order_seq_cst);
     }
   }
   if (!why.empty()) {

@@ -32,6 +32,8 @@ constexpr std::uint64_t kLookEvery = 64;  // messages
 constexpr std::chrono::milliseconds kFutexTime{100};
 constexpr std::chrono::milliseconds kSpinLook{1};  // how often one who spins looks at all else
 
+constexpr std::size_t kCopyHold = kMostHeld - 1;
+constexpr std::size_t kNoHold = kMostHeld;
 constexpr int kMostSkips = 64;  // until who is overtaken again and again looks after other things
 
 void relax() {
@@ -107,8 +109,10 @@ class ShmSource final : public Source {
   void look_at_socket();
   void skip_to(std::uint64_t position);
   bool copy(Copy& cell) const;
-  Status deliver(const Copy& cell, Message& message, std::size_t index);
-  [[nodiscard]] std::size_t find_free_hold() const;
+  Status deliver(const Copy& cell, Message& message, std::size_t hold);
+  std::size_t take_hold(std::uint64_t slot);
+  [[nodiscard]] bool is_withdrawn() const;
+  void finish_cell(bool has_slot);
   void arm(bool on_socket);
   void disarm();
 
@@ -169,16 +173,17 @@ bool ShmSource::copy(Copy& cell) const {
   return true;
 }
 
-std::size_t ShmSource::find_free_hold() const {
-  const auto& held = attachment_->own().held;
+/// Holds a slot; the last of the holds, which is for messages that are copied, when all are taken.
+std::size_t ShmSource::take_hold(std::uint64_t slot) {
+  auto& held = attachment_->own().held;
   std::size_t index = 0;
-  // The last one is for a message that is copied.
-  while (index < kMostHeld - 1 && held[index].load(memory_order_acquire) != 0) ++index;
+  while (index < kCopyHold && held[index].load(memory_order_acquire) != 0) ++index;
+  held[index].store(slot, memory_order_relaxed);
   return index;
 }
 
-/// Makes a message of a cell, of which a slot is held already.
-Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t index) {
+/// Makes a message of a cell that was copied, whose slot is held.
+Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) {
   auto line = read_header_line({cell.text(), cell.header_bytes}, options_.limits, traffic_.bytes);
   if (!line) return line.error();
   if (line->bytes != cell.header_bytes) return damaged("a header without its end");
@@ -186,31 +191,34 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t index)
   bool right = is_compressed(header) ? cell.bytes <= options_.limits.element_bytes
                                      : cell.bytes == header.element_bytes();
   if (!right) return damaged(std::to_string(cell.bytes) + " bytes of elements for " + text(header));
+  const auto& memory = attachment_->memory;
+  if (hold != kNoHold && (cell.slot < kSlotsBegin || cell.slot % kLine != 0 ||
+                          cell.slot >= memory.size() || cell.bytes > memory.size() - cell.slot))
+    return damaged("the place of a slot");
   message.header = header;
   message.byte = traffic_.bytes;
-  if (cell.slot == 0) {
+  ++traffic_.messages;
+  traffic_.bytes += cell.bytes;
+  if (hold == kNoHold) {
     auto room = small_.allocate(cell.bytes);
     std::memcpy(room.get(), cell.text() + cell.header_bytes, cell.bytes);
     message.elements = {room.get(), cell.bytes};
     message.owner = std::move(room);
     return {};
   }
-  const std::byte* from = attachment_->memory.data() + cell.slot;
-  if (index < kMostHeld - 1) {
-    message.elements = {from, cell.bytes};
+  const std::byte* from = memory.data() + cell.slot;
+  message.elements = {from, cell.bytes};
+  if (hold < kCopyHold) {
     message.owner = std::shared_ptr<const void>(
-        from, [attachment = attachment_, index](const void*) { attachment->let_go(index); });
+        from, [attachment = attachment_, hold](const void*) { attachment->let_go(hold); });
     return {};
   }
   if (!told_ && options_.log)
-    options_.log(Severity::Warning,
-                 "shm: " + std::to_string(kMostHeld - 1) +
-                     " messages are held; as long as it is so, others are copied");
+    options_.log(Severity::Warning, "shm: " + std::to_string(kCopyHold) +
+                                        " messages are held; while it is so, others are copied");
   told_ = true;
-  message.elements = {from, cell.bytes};
-  message.owner = nullptr;
   message = message.keep();
-  attachment_->let_go(index);
+  attachment_->let_go(hold);
   return {};
 }
 
@@ -218,57 +226,50 @@ Result<Got> ShmSource::take(Message& message) {
   message.owner.reset();
   message.elements = {};
   const Head& head = attachment_->head();
-  ReaderPage& own = attachment_->own();
   for (int tries = 0; tries < kMostSkips; ++tries) {
     if (keep_ > 0) {
       auto published = head.published.load(memory_order_acquire);
-      if (published - cursor_ > keep_ && published > cursor_) skip_to(published - keep_);
+      if (published > cursor_ + keep_) skip_to(published - keep_);
     }
     auto stamp = attachment_->cell(cursor_).stamp.load(memory_order_acquire);
-    if (stamp <= cursor_) {
-      own.cursor.store(cursor_, memory_order_release);
-      return has_ended() ? Got::End : Got::Nothing;
-    }
+    if (stamp <= cursor_) return has_ended() ? Got::End : Got::Nothing;
     if (stamp == cursor_ + 1) {
       Copy cell;
-      bool whole = copy(cell);
-      std::size_t index = kMostHeld;
-      bool valid_slot = true;
-      if (whole && cell.slot != 0) {
-        const auto memory = attachment_->memory.size();
-        valid_slot = cell.slot >= kSlotsBegin && cell.slot % kLine == 0 && cell.slot < memory &&
-                     cell.bytes <= memory - cell.slot;
-        index = find_free_hold();
-        own.held[index].store(cell.slot, memory_order_relaxed);
-      }
-      own.cursor.store(cursor_ + 1, memory_order_release);
-      HC_CRASH_POINT("reader holds");
-      bool look = cell.slot != 0 || cursor_ % kLookEvery == 0;
-      std::atomic_thread_fence(look ? memory_order_seq_cst : memory_order_acquire);  // hold, room
-      if (head.oldest.load(memory_order_acquire) <= cursor_) {
-        HC_CRASH_POINT("reader validated");
-        ++cursor_;
-        if (look) attachment_->offer_room();
-        Status delivered = damaged("the sizes of a cell");
-        if (whole && valid_slot) delivered = deliver(cell, message, index);
-        if (!delivered) {
-          if (index < kMostHeld) attachment_->let_go(index);
+      if (!copy(cell)) return damaged("the sizes of a cell");
+      auto hold = cell.slot == 0 ? kNoHold : take_hold(cell.slot);
+      // Who loses nothing is waited for; others have to see that they were not overtaken meanwhile.
+      if (keep_ == 0 || !is_withdrawn()) {
+        finish_cell(cell.slot != 0);
+        if (auto delivered = deliver(cell, message, hold); !delivered) {
+          if (hold != kNoHold) attachment_->let_go(hold);
           return delivered.error();
         }
-        ++traffic_.messages;
-        traffic_.bytes += cell.bytes;
-        if (armed_) disarm();
-        HC_CRASH_POINT("reader delivers");
         return Got::Message;
       }
-      if (index < kMostHeld) attachment_->let_go(index);
+      if (hold != kNoHold) attachment_->let_go(hold);
     }
-    // Overtaken: this cell has been withdrawn.
     auto oldest = head.oldest.load(memory_order_acquire);
     if (oldest <= cursor_) return damaged("the stamp of a cell");
     skip_to(oldest);
   }
   return Got::Nothing;  // the publisher is faster; wait() comes back at once
+}
+
+bool ShmSource::is_withdrawn() const {
+  std::atomic_thread_fence(memory_order_seq_cst);  // hold
+  return attachment_->head().oldest.load(memory_order_acquire) > cursor_;
+}
+
+/// Says that the cell has been taken. Whoever reads that also reads what is held by then.
+void ShmSource::finish_cell(bool has_slot) {
+  HC_CRASH_POINT("reader holds");
+  ++cursor_;
+  attachment_->own().cursor.store(cursor_, memory_order_release);
+  HC_CRASH_POINT("reader took");
+  if (armed_) disarm();
+  if (keep_ > 0 || !(has_slot || cursor_ % kLookEvery == 0)) return;
+  std::atomic_thread_fence(memory_order_seq_cst);  // room
+  attachment_->offer_room();
 }
 
 void ShmSource::arm(bool on_socket) {
