@@ -67,7 +67,9 @@ class Reactor {
 
   Status want(std::uint64_t id, std::uint32_t events) {
     std::lock_guard lock(mutex_);
-    Entry& entry = *entries_.at(id);
+    auto found = entries_.find(id);
+    if (found == entries_.end()) return {};  // by its callback, while it is being destroyed
+    Entry& entry = *found->second;
     if (events == entry.wanted) return {};
     int operation = events == 0 ? EPOLL_CTL_DEL : entry.wanted == 0 ? EPOLL_CTL_ADD : EPOLL_CTL_MOD;
     auto done = control(operation, entry.descriptor, events, id);
@@ -77,7 +79,9 @@ class Reactor {
 
   void call_at(std::uint64_t id, TimePoint when) {
     std::lock_guard lock(mutex_);
-    Entry& entry = *entries_.at(id);
+    auto found = entries_.find(id);
+    if (found == entries_.end()) return;
+    Entry& entry = *found->second;
     if (entry.due <= when) return;
     due_.erase({entry.due, id});
     entry.due = when;

@@ -30,16 +30,23 @@ Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
                            [all = readers.get()](std::uint32_t) { all->accept_all(); });
   if (!watch) return watch.error();
   readers->watch_ = std::move(*watch);
-  if (auto watched = readers->watch_->want(EPOLLIN); !watched) return watched.error();
+  readers->watching_ = readers->watch_.get();
+  if (auto watched = readers->watching_->want(EPOLLIN); !watched) return watched.error();
   return readers;
 }
 
 ShmReaders::~ShmReaders() {
-  // Callbacks first: they use what the members are. Readers' watches outside the lock, which a
-  // callback that runs now may be waiting for.
+  {
+    std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
   watch_.reset();
-  for (auto* list : {&strangers_, &come_, &current_})
-    for (auto& reader : *list) reader->watch.reset();
+  std::vector<std::shared_ptr<ShmReader>> all;  // whose watches end outside the lock
+  std::lock_guard lock(mutex_);
+  for (auto* list : {&strangers_, &come_, &current_}) {
+    all.insert(all.end(), list->begin(), list->end());
+    list->clear();
+  }
 }
 
 void ShmReaders::log(std::string_view line) const {
@@ -50,7 +57,7 @@ void ShmReaders::accept_all() {
   while (true) {
     auto peer = accept_peer(socket_, options_);
     if (peer && !*peer) {
-      static_cast<void>(watch_->want(EPOLLIN));
+      static_cast<void>(watching_->want(EPOLLIN));
       return;
     }
     auto reader = std::make_shared<ShmReader>();
@@ -67,22 +74,24 @@ void ShmReaders::accept_all() {
     if (!watch) {
       // No descriptor or memory is to be had now: who waits is overlooked for a while.
       log(watch.error().text());
-      static_cast<void>(watch_->want(0));
-      watch_->call_at(std::chrono::steady_clock::now() + kRetry);
+      static_cast<void>(watching_->want(0));
+      watching_->call_at(std::chrono::steady_clock::now() + kRetry);
       return;
     }
     reader->socket = std::move(*peer);
     reader->watch = std::move(*watch);
+    reader->watching = reader->watch.get();
     std::shared_ptr<ShmReader> silent;
     {
       std::lock_guard lock(mutex_);
+      if (ending_) return;
       if (strangers_.size() == kMostReaders) {  // who says nothing cannot keep others out
         silent = strangers_.front();
         strangers_.erase(strangers_.begin());
       }
       strangers_.push_back(reader);
     }
-    static_cast<void>(reader->watch->want(EPOLLIN));
+    static_cast<void>(reader->watching->want(EPOLLIN));
   }
 }
 
@@ -95,10 +104,8 @@ void ShmReaders::hear(ShmReader& reader) {
   std::shared_ptr<ShmReader> owner;
   {
     std::lock_guard lock(mutex_);
-    auto found = std::find_if(strangers_.begin(), strangers_.end(),
-                              [&](const auto& each) { return each.get() == &reader; });
-    owner = *found;
-    strangers_.erase(found);
+    owner = take_stranger(reader);
+    if (owner == nullptr) return;
     if (why.empty() && count_ == kMostReaders)
       why = "it has " + std::to_string(kMostReaders) + " readers already";
     if (why.empty()) {
@@ -120,7 +127,7 @@ void ShmReaders::hear(ShmReader& reader) {
   }
   HC_CRASH_POINT("publisher knows reader");
   // Edge-triggered: the reader's end of its direction, and then that of the connection.
-  static_cast<void>(reader.watch->want(EPOLLRDHUP | EPOLLET));
+  static_cast<void>(reader.watching->want(EPOLLRDHUP | EPOLLET));
   if (!answer(reader.socket.get(), reader.begin, reader.keep, bytes_, read_only_.get()))
     let_go(reader);
   HC_CRASH_POINT("publisher answered");
@@ -129,23 +136,25 @@ void ShmReaders::hear(ShmReader& reader) {
 
 /// A reader or stranger has gone, or died, which looks the same: what it held is free.
 void ShmReaders::let_go(ShmReader& reader) {
-  std::shared_ptr<ShmReader> owner;
-  {
-    std::lock_guard lock(mutex_);
-    if (reader.memory.data() != nullptr) {
-      if (reader.gone.exchange(true)) return;
-      --count_;
-    } else {
-      auto found = std::find_if(strangers_.begin(), strangers_.end(),
-                                [&](const auto& each) { return each.get() == &reader; });
-      if (found == strangers_.end()) return;
-      owner = *found;
-      strangers_.erase(found);
-      return;
-    }
-  }
-  static_cast<void>(reader.watch->want(0));
-  tell_change(reader);
+  static_cast<void>(reader.watching->want(0));
+  std::shared_ptr<ShmReader> owner;  // goes outside the lock
+  std::lock_guard lock(mutex_);
+  if (ending_) return;
+  owner = take_stranger(reader);
+  if (owner != nullptr || reader.gone.load()) return;
+  --count_;
+  reader.gone.store(true);
+  tell_change(reader);  // refresh() waits for the lock, so the reader is there still
+}
+
+/// The owner of a stranger, who is none any more; null when the reader is none.
+std::shared_ptr<ShmReader> ShmReaders::take_stranger(const ShmReader& reader) {
+  auto found = std::find_if(strangers_.begin(), strangers_.end(),
+                            [&](const auto& each) { return each.get() == &reader; });
+  if (found == strangers_.end()) return nullptr;
+  auto owner = *found;
+  strangers_.erase(found);
+  return owner;
 }
 
 void ShmReaders::tell_change(const ShmReader& reader) {

@@ -24,7 +24,8 @@ struct ShmReader {
   std::uint64_t begin = 0;  ///< position of its first message
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
   std::atomic<bool> gone{false};
-  std::unique_ptr<Watch> watch;
+  Watch* watching = nullptr;     ///< for its callback, which may run while it is being destroyed
+  std::unique_ptr<Watch> watch;  ///< last, so that it ends first
 
   [[nodiscard]] const ReaderPage& page() const {
     return *reinterpret_cast<const ReaderPage*>(memory.data());
@@ -74,6 +75,7 @@ class ShmReaders {
   void accept_all();
   void hear(ShmReader& reader);
   void let_go(ShmReader& reader);
+  std::shared_ptr<ShmReader> take_stranger(const ShmReader& reader);
   void tell_change(const ShmReader& reader);
   void log(std::string_view line) const;
 
@@ -89,8 +91,10 @@ class ShmReaders {
   std::vector<std::shared_ptr<ShmReader>> strangers_;  // have not said what they are yet
   std::vector<std::shared_ptr<ShmReader>> come_;       // since refresh()
   std::size_t count_ = 0;                              // of readers, those in come_ included
+  bool ending_ = false;
 
-  std::unique_ptr<Watch> watch_;  // last, so that it ends first
+  Watch* watching_ = nullptr;  // as in ShmReader
+  std::unique_ptr<Watch> watch_;
 };
 
 }  // namespace hc::internal

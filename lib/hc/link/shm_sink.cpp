@@ -27,7 +27,7 @@ using std::memory_order_seq_cst;
 constexpr std::uint64_t kDefaultMemory = std::uint64_t{64} << 20;  // [byte]
 /// How far a publisher that loses nothing gets ahead of its slowest reader: what it writes then is
 /// in the caches still when it is read.
-constexpr std::uint64_t kAheadBytes = std::uint64_t{4} << 20;
+constexpr std::uint64_t kAheadBytes = std::uint64_t{8} << 20;
 constexpr std::uint64_t kAheadMessages = 2;  // at least, however large
 constexpr std::uint64_t kBatch = 64;         // cells that are withdrawn together
 /// How often one who waits looks whether it is to stop.
