@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a link does when its reader is slow, or is to be spared: how many messages wait, how much
+// memory they take, and how fast they go. Internal. Pure: time is passed in.
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include <hc/base/result.h>
+#include <hc/base/uri.h>
+
+namespace hc::internal {
+
+using TimePoint = std::chrono::steady_clock::time_point;
+
+/// The options of a sink that say so.
+struct Policy {
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+  /// Messages that wait for a slow reader before the oldest is dropped; kAll: the writer waits, and
+  /// none is dropped.
+  std::size_t keep = kAll;
+  std::uint64_t rate = 0;        ///< [message/s]; 0: as fast as they come
+  std::uint64_t burst = 1;       ///< messages that may follow at once when none came for long
+  std::uint64_t byte_rate = 0;   ///< [byte/s]; 0: as fast as they come
+  std::uint64_t byte_burst = 1;  ///< [byte]
+  std::uint64_t memory = std::uint64_t{64} << 20;  ///< of the messages that wait [byte]
+
+  [[nodiscard]] bool writer_waits() const { return keep == kAll; }
+};
+
+/// The names of these options, as the table of transports needs them.
+constexpr std::string_view kPolicyOptions = "keep rate burst byte_rate byte_burst memory";
+
+/// Reads `keep=all|latest|N`, `rate=`, `burst=` (default 1), `byte_rate=`, `byte_burst=` (default:
+/// of one second), `memory=`; the last three are bytes, perhaps with K, M or G (of 1024) behind.
+///
+/// Errors: Usage.
+Result<Policy> parse_policy(const Uri& uri);
+
+/// Lets `rate` tokens a second pass, and `burst` at once when none were taken for long. What costs
+/// more than the burst passes when the bucket is full, and leaves a debt. Exact: integers alone.
+class TokenBucket {
+ public:
+  /// Full at first. Both up to kMost; rate 0: there is no limit.
+  TokenBucket(std::uint64_t rate, std::uint64_t burst);
+  static constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
+
+  /// When `tokens`, up to kMost, may be taken: `now`, or later if none are taken until then.
+  TimePoint ready_at(std::uint64_t tokens, TimePoint now);
+  void take(std::uint64_t tokens, TimePoint now);
+
+ private:
+  void fill(TimePoint now);
+
+  std::int64_t rate_;      // [1e-9 token/ns]
+  std::int64_t capacity_;  // [1e-9 token]
+  std::int64_t level_;     // the same; below 0: debt
+  TimePoint filled_ = TimePoint::min();
+};
+
+/// Both limits of a policy: messages and bytes.
+class Pacer {
+ public:
+  explicit Pacer(const Policy& policy)
+      : limited_(policy.rate > 0 || policy.byte_rate > 0),
+        messages_(policy.rate, policy.burst),
+        bytes_(policy.byte_rate, policy.byte_burst) {}
+
+  /// Whether there is any limit; without one, no time needs to be known.
+  [[nodiscard]] bool limited() const { return limited_; }
+  /// When a message of so many bytes may go: `now` or later.
+  TimePoint ready_at(std::uint64_t bytes, TimePoint now);
+  void take(std::uint64_t bytes, TimePoint now);
+
+ private:
+  bool limited_;
+  TokenBucket messages_, bytes_;
+};
+
+}  // namespace hc::internal

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/policy.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <hc/link/outbox.h>
+
+namespace hc::internal {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+constexpr TimePoint kBegin{std::chrono::hours(1000)};
+
+Result<Policy> policy_of(const std::string& options) {
+  return parse_policy(*parse_uri("tcp:host:1" + options));
+}
+
+TEST(Policy, TheWriterWaitsUnlessAskedOtherwise) {
+  auto policy = policy_of("");
+  EXPECT_TRUE(policy->writer_waits());
+  EXPECT_EQ(policy->rate, 0U);
+  EXPECT_EQ(policy->memory, 64U << 20);
+  EXPECT_TRUE(policy_of("?keep=all")->writer_waits());
+}
+
+TEST(Policy, IsReadFromOptions) {
+  auto policy = policy_of("?keep=5&rate=30&burst=3&byte_rate=2M&byte_burst=100&memory=1G");
+  ASSERT_TRUE(policy) << policy.error().text();
+  EXPECT_EQ(policy->keep, 5U);
+  EXPECT_EQ(policy->rate, 30U);
+  EXPECT_EQ(policy->burst, 3U);
+  EXPECT_EQ(policy->byte_rate, 2U << 20);
+  EXPECT_EQ(policy->byte_burst, 100U);
+  EXPECT_EQ(policy->memory, 1U << 30);
+  EXPECT_EQ(policy_of("?keep=latest")->keep, 1U);
+  EXPECT_EQ(policy_of("?byte_rate=7K")->byte_burst, 7U << 10);
+}
+
+TEST(Policy, WhatMakesNoSenseIsRefused) {
+  for (const char* options :
+       {"?keep=0", "?keep=-1", "?keep=newest", "?keep=1K", "?rate=0", "?rate=x", "?rate=3M",
+        "?burst=1.5", "?byte_rate=3T", "?byte_burst=K", "?memory=5G", "?memory=4294967297"})
+    EXPECT_EQ(policy_of(options).error().code, Code::Usage) << options;
+  EXPECT_EQ(policy_of("?keep=x").error().detail,
+            "option keep is all, latest, or how many messages");
+}
+
+TEST(TokenBucket, WithoutARateThereIsNoLimit) {
+  TokenBucket bucket(0, 1);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(bucket.ready_at(TokenBucket::kMost, kBegin), kBegin);
+    bucket.take(TokenBucket::kMost, kBegin);
+  }
+}
+
+TEST(TokenBucket, ABurstThenTheRateToTheNanosecond) {
+  TokenBucket bucket(3, 2);
+  TimePoint now = kBegin;
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(bucket.ready_at(1, now), now);
+    bucket.take(1, now);
+  }
+  // No error adds up over thirds of a second: after n seconds, 3 n tokens have come.
+  for (int i = 1; i <= 300; ++i) {
+    now = bucket.ready_at(1, now);
+    EXPECT_EQ(now, kBegin + nanoseconds((1'000'000'000LL * i + 2) / 3)) << i;
+    EXPECT_GT(bucket.ready_at(1, now - nanoseconds(1)), now - nanoseconds(1));
+    bucket.take(1, now);
+  }
+}
+
+TEST(TokenBucket, IsNeverFullerThanTheBurst) {
+  TokenBucket bucket(10, 4);
+  TimePoint now = kBegin + std::chrono::hours(24 * 365 * 100);
+  bucket.take(4, kBegin);
+  EXPECT_EQ(bucket.ready_at(4, now), now);
+  bucket.take(4, now);
+  EXPECT_EQ(bucket.ready_at(1, now), now + milliseconds(100));
+}
+
+TEST(TokenBucket, WhatIsLargerThanTheBurstLeavesADebt) {
+  TokenBucket bucket(100, 50);
+  EXPECT_EQ(bucket.ready_at(1000, kBegin), kBegin);
+  bucket.take(1000, kBegin);
+  EXPECT_EQ(bucket.ready_at(1, kBegin), kBegin + nanoseconds(9'510'000'000));
+  EXPECT_EQ(bucket.ready_at(1000, kBegin), kBegin + seconds(10));
+}
+
+TEST(TokenBucket, NothingOverflows) {
+  TokenBucket bucket(TokenBucket::kMost, TokenBucket::kMost);
+  bucket.take(TokenBucket::kMost, kBegin);
+  bucket.take(TokenBucket::kMost, kBegin);
+  EXPECT_EQ(bucket.ready_at(TokenBucket::kMost, kBegin), kBegin + seconds(2));
+  EXPECT_EQ(bucket.ready_at(TokenBucket::kMost, kBegin + std::chrono::hours(1'000'000)),
+            kBegin + std::chrono::hours(1'000'000));
+}
+
+TEST(TokenBucket, AClockThatStandsStillGivesNothing) {
+  TokenBucket bucket(1000, 1);
+  bucket.take(1, kBegin);
+  EXPECT_EQ(bucket.ready_at(1, kBegin - seconds(1)), kBegin - seconds(1) + milliseconds(1));
+}
+
+/// Pushes messages 0, 1, … of `bytes` each; gives what is left.
+std::vector<int> left_of(Outbox<int>& outbox, int count, std::uint64_t bytes, Traffic& traffic) {
+  for (int i = 0; i < count; ++i) outbox.push(i, bytes, traffic);
+  std::vector<int> left;
+  while (!outbox.empty()) left.push_back(outbox.pop(kBegin));
+  return left;
+}
+
+TEST(Outbox, KeepsAllThatAreToBeKept) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of(""));
+  EXPECT_EQ(left_of(outbox, 1000, 10, traffic).size(), 1000U);
+  EXPECT_EQ(traffic.superseded, 0U);
+  EXPECT_EQ(outbox.bytes(), 0U);
+}
+
+TEST(Outbox, DropsTheOldestAndCountsThem) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of("?keep=3"));
+  EXPECT_EQ(left_of(outbox, 10, 10, traffic), (std::vector<int>{7, 8, 9}));
+  EXPECT_EQ(traffic.superseded, 7U);
+  EXPECT_EQ(traffic.kept_back + traffic.over_rate + traffic.over_memory + traffic.cut, 0U);
+}
+
+TEST(Outbox, IsBoundedInMemoryToo) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of("?keep=100&memory=1K"));
+  EXPECT_EQ(left_of(outbox, 10, 300, traffic), (std::vector<int>{7, 8, 9}));
+  EXPECT_EQ(traffic.over_memory, 7U);
+  EXPECT_EQ(traffic.superseded, 0U);
+}
+
+TEST(Outbox, TheNewestStaysHoweverLarge) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of("?keep=100&memory=1K"));
+  EXPECT_EQ(left_of(outbox, 3, 5000, traffic), std::vector<int>{2});
+  EXPECT_EQ(traffic.over_memory, 2U);
+}
+
+TEST(Outbox, WhatThePaceKeepsBackIsCountedOnce) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of("?keep=2&rate=10&burst=2"));
+  EXPECT_TRUE(outbox.pass(1, kBegin));
+  EXPECT_TRUE(outbox.pass(1, kBegin));
+  ASSERT_FALSE(outbox.pass(1, kBegin));
+  for (int i = 0; i < 5; ++i) {
+    outbox.push(i, 1, traffic);
+    EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin + milliseconds(100));
+    EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin + milliseconds(100));
+  }
+  EXPECT_EQ(traffic.kept_back, 5U);
+  EXPECT_EQ(traffic.over_rate, 3U);
+  EXPECT_EQ(traffic.superseded, 0U);
+  auto now = kBegin + milliseconds(100);
+  EXPECT_EQ(outbox.ready_at(now, traffic), now);
+  EXPECT_EQ(outbox.pop(now), 3);
+  EXPECT_EQ(outbox.ready_at(now, traffic), now + milliseconds(100));
+  EXPECT_EQ(traffic.kept_back, 5U);
+}
+
+TEST(Outbox, BytesHaveAPaceToo) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of("?keep=9&byte_rate=1000&byte_burst=500"));
+  EXPECT_TRUE(outbox.pass(800, kBegin));
+  outbox.push(1, 200, traffic);
+  EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin + milliseconds(500));
+}
+
+TEST(Outbox, OneThatNobodyHoldsBackIsSuperseded) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of("?keep=1&rate=10"));
+  outbox.push(0, 1, traffic);  // it could go, were there room
+  EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin);
+  outbox.push(1, 1, traffic);
+  EXPECT_EQ(traffic.superseded, 1U);
+  EXPECT_EQ(traffic.kept_back + traffic.over_rate, 0U);
+  EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin);
+}
+
+TEST(Outbox, OneMayBeTakenBack) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of(""));
+  outbox.push(0, 5, traffic);
+  outbox.push(1, 6, traffic);
+  outbox.take_back();
+  EXPECT_EQ(outbox.bytes(), 5U);
+  EXPECT_EQ(outbox.front(), 0);
+  EXPECT_EQ(outbox.clear(), 1U);
+  EXPECT_EQ(outbox.ready_at(kBegin, traffic), TimePoint::max());
+}
+
+}  // namespace
+}  // namespace hc::internal
