@@ -25,7 +25,8 @@ constexpr std::array<Transport, 8> kTransports = {{
     {"unix", "wait", "wait", internal::open_unix_source, internal::open_unix_sink},
     {"unix-listen", "", "readers", internal::listen_unix_source, internal::listen_unix_sink},
     {"inproc", "", "", internal::open_inproc_source, internal::open_inproc_sink},
-    {"shm", "keep spin wait", "keep readers", internal::open_shm_source, internal::open_shm_sink},
+    {"shm", "keep spin wait", "keep readers rate burst byte_rate byte_burst memory",
+     internal::open_shm_source, internal::open_shm_sink},
 }};
 
 /// @param option  which of a transport's options the end that is opened may have.

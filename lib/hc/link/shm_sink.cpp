@@ -8,6 +8,7 @@
 #include <functional>
 
 #include <hc/link/crash_point.h>
+#include <hc/link/paced_sink.h>
 #include <hc/link/shm_readers.h>
 #include <hc/link/shm_slots.h>
 #include <hc/link/stream_link.h>
@@ -24,7 +25,6 @@ using std::memory_order_relaxed;
 using std::memory_order_release;
 using std::memory_order_seq_cst;
 
-constexpr std::uint64_t kDefaultMemory = std::uint64_t{64} << 20;  // [byte]
 /// How far a publisher that loses nothing gets ahead of its slowest reader: what it writes then is
 /// in the caches still when it is read.
 constexpr std::uint64_t kAheadBytes = std::uint64_t{8} << 20;
@@ -394,15 +394,19 @@ void ShmSink::end() {
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
   auto counted = number_option(uri, "readers", 0);
   if (!counted) return counted.error();
-  auto keep = parse_keep(uri.option("keep", "all"));
-  if (!keep) return keep.error();
+  auto policy = parse_policy(uri);
+  if (!policy) return policy.error();
+  if (policy->memory < kLeastMemory)
+    return Error{Code::Usage, "shm: memory is at least " + std::to_string(kLeastMemory) +
+                                  " bytes, not " + std::to_string(policy->memory)};
   auto socket = listen_unix(meeting_place(uri));
   if (!socket) return socket.error();
-  auto memory = SharedMemory::make(kDefaultMemory, kSlotsBegin);
+  auto memory = SharedMemory::make(policy->memory / kPageBytes * kPageBytes, kSlotsBegin);
   if (!memory) return memory.error();
-  auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted, *keep, options.stop);
+  auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted,
+                                        policy->writer_waits() ? 0 : policy->keep, options.stop);
   if (auto begun = sink->begin(std::move(*socket), options); !begun) return begun.error();
-  return std::unique_ptr<Sink>(std::move(sink));
+  return make_paced(std::move(sink), *policy, options);
 }
 
 }  // namespace hc::internal

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/paced_sink.h>
+
+#include <sys/eventfd.h>
+
+#include <mutex>
+
+#include <hc/link/outbox.h>
+#include <hc/link/reactor.h>
+#include <hc/link/stream_link.h>
+
+namespace hc::internal {
+namespace {
+
+class PacedSink final : public Sink {
+ public:
+  PacedSink(std::unique_ptr<Sink> sink, const Policy& policy, Descriptor changed, int stop)
+      : sink_(std::move(sink)),
+        writer_waits_(policy.writer_waits()),
+        outbox_(policy),
+        changed_(std::move(changed)),
+        stop_(stop) {}
+
+  Status watch() {
+    auto timer = Watch::make(-1, [this](std::uint32_t) { send_what_is_ready(); });
+    if (!timer) return timer.error();
+    timer_ = std::move(*timer);
+    alarm_ = timer_.get();
+    return {};
+  }
+
+  Status send(const Message& message) override {
+    auto bytes = message.elements.size();
+    std::lock_guard lock(mutex_);
+    if (!outcome_) return outcome_;
+    auto now = Clock::now();
+    if (outbox_.pass(bytes, now)) return sink_->send(message);
+    outbox_.push(message.keep(), bytes, lost_);
+    auto ready = outbox_.ready_at(now, lost_);
+    if (!writer_waits_) {
+      alarm_->call_at(ready);
+      return {};
+    }
+    if (auto waited = wait_until(ready); !waited) {
+      outbox_.take_back();
+      return waited;
+    }
+    return sink_->send(outbox_.pop(Clock::now()));
+  }
+
+  Draft loan(const Header& header) override {
+    std::lock_guard lock(mutex_);
+    return sink_->loan(header);
+  }
+
+  /// What is kept back goes first, at its pace.
+  Status close() override {
+    while (true) {
+      {
+        std::lock_guard lock(mutex_);
+        if (!outcome_) return outcome_;
+        if (outbox_.empty()) return sink_->close();
+        eventfd_t count = 0;
+        ::eventfd_read(changed_.get(), &count);
+      }
+      if (auto waited = wait_for(changed_.get(), POLLIN, stop_); !waited) return waited.error();
+    }
+  }
+
+  [[nodiscard]] Traffic traffic() const override {
+    std::lock_guard lock(mutex_);
+    Traffic traffic = sink_->traffic();
+    traffic.kept_back += lost_.kept_back;
+    traffic.superseded += lost_.superseded;
+    traffic.over_rate += lost_.over_rate;
+    traffic.over_memory += lost_.over_memory;
+    return traffic;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Status wait_until(TimePoint ready) const {
+    auto left = std::chrono::ceil<std::chrono::milliseconds>(ready - Clock::now());
+    if (left.count() <= 0) return {};
+    auto waited = wait_readable({}, stop_, left);
+    return waited ? Status() : waited.error();
+  }
+
+  void send_what_is_ready() {
+    std::lock_guard lock(mutex_);
+    while (outcome_ && !outbox_.empty()) {
+      auto now = Clock::now();
+      if (auto ready = outbox_.ready_at(now, lost_); ready > now) {
+        alarm_->call_at(ready);
+        return;
+      }
+      outcome_ = sink_->send(outbox_.pop(now));
+    }
+    ::eventfd_write(changed_.get(), 1);
+  }
+
+  mutable std::mutex mutex_;  // of what follows
+  std::unique_ptr<Sink> sink_;
+  bool writer_waits_;
+  Outbox<Message> outbox_;
+  Traffic lost_;
+  Status outcome_;      // of the thread that serves links; told at the next call
+  Descriptor changed_;  // eventfd: nothing waits any more, or the sink has failed
+  int stop_;
+  Watch* alarm_ = nullptr;  // for its callback, which may run while it is being destroyed
+  std::unique_ptr<Watch> timer_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> make_paced(std::unique_ptr<Sink> sink, const Policy& policy,
+                                         const LinkOptions& options) {
+  if (policy.rate == 0 && policy.byte_rate == 0) return sink;
+  auto changed =
+      system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
+  if (!changed) return changed.error();
+  auto paced =
+      std::make_unique<PacedSink>(std::move(sink), policy, Descriptor(*changed), options.stop);
+  if (auto watched = paced->watch(); !watched) return watched.error();
+  return std::unique_ptr<Sink>(std::move(paced));
+}
+
+}  // namespace hc::internal
