@@ -61,9 +61,11 @@ void print_links(const hc::Plan& plan, const hc::RunReport& report) {
   std::string text;
   for (std::size_t i = 0; i < plan.links.size(); ++i) {
     std::string name = plan.links[i].from.text() + " -> " + plan.links[i].to.text();
-    text += fmt::format("{:<{}}  {:>8} message{}  {:>9}\n", name, widest, report.links[i].messages,
-                        report.links[i].messages == 1 ? " " : "s",
-                        bytes_in_words(static_cast<double>(report.links[i].bytes)));
+    const auto& [sent, lost] = report.links[i];
+    text +=
+        fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
+                    sent.messages == 1 ? " " : "s", bytes_in_words(static_cast<double>(sent.bytes)),
+                    lost == 0 ? "" : fmt::format("  {} lost", lost));
   }
   print(text);
 }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <sstream>
 
+#include <hc/link/policy.h>
+
 // toml++ before 3.4 asserts, or assumes, what hostile text can break (a line end in a table's
 // name), and reports the error right behind it; so it is to go on.
 #pragma push_macro("NDEBUG")
@@ -278,15 +280,34 @@ class Reader {
     return GraphPort{text->substr(0, dot), text->substr(dot + 1)};
   }
 
+  static Status check_policy(const std::string& key, const std::string& value) {
+    auto policy = internal::parse_policy({"", "", {{key, value}}});
+    return policy ? Status() : policy.error();
+  }
+
   Status read_link(const toml::node& node) {
     if (!node.is_table()) return error(node, "a link is written as [[links]]");
     const toml::table& table = *node.as_table();
-    if (auto known = check_keys(table, {"from", "to"}, "in a link"); !known) return known;
+    const std::vector<std::string> policies = {"keep",      "rate",       "burst",
+                                               "byte_rate", "byte_burst", "memory"};
+    std::vector<std::string> keys = {"from", "to"};
+    keys.insert(keys.end(), policies.begin(), policies.end());
+    if (auto known = check_keys(table, keys, "in a link"); !known) return known;
     auto from = read_port(table, "from");
     if (!from) return from.error();
     auto to = read_port(table, "to");
     if (!to) return to.error();
-    graph_.links.push_back({*from, *to, line_of(node)});
+    GraphLink link{*from, *to, {}, line_of(node)};
+    for (const auto& key : policies) {
+      const toml::node* value = table.get(key);
+      if (value == nullptr) continue;
+      auto text = value->value_exact<std::string>();
+      if (auto number = value->value_exact<std::int64_t>()) text = std::to_string(*number);
+      if (!text) return error(*value, key + " is a whole number or a string");
+      if (auto valid = check_policy(key, *text); !valid) return error(*value, valid.error().detail);
+      link.policy[key] = *text;
+    }
+    graph_.links.push_back(std::move(link));
     return {};
   }
 

@@ -41,6 +41,7 @@ struct GraphPort {
 /// A link, from an output to an input.
 struct GraphLink {
   GraphPort from, to;
+  std::map<std::string, std::string> policy;  ///< `keep`, `rate` and so on, as in a link's URI
   int line = 0;
 };
 

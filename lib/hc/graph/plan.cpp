@@ -89,8 +89,7 @@ class Planner {
       if (!checked) return checked.error();
       ++plan_.modules[index_[link.to.module]].inputs;
     }
-    std::map<std::string, std::size_t> outputs;
-    for (std::size_t i = 0; i < graph_.links.size(); ++i) add_link(graph_.links[i], i, outputs);
+    add_links();
     return std::move(plan_);
   }
 
@@ -193,20 +192,73 @@ class Planner {
     return {};
   }
 
-  void add_link(const GraphLink& link, std::size_t number,
-                std::map<std::string, std::size_t>& outputs) {
-    std::string name = "@" + token_ + "-" + std::to_string(number);
-    std::size_t from = index_[link.from.module], to = index_[link.to.module];
+  /// Whether a module can be linked by shared memory; what is no program of ours may know only
+  /// streams.
+  bool shares_memory(const std::string& module) const {
+    const Json& description = described_.at(module);
+    if (!description.contains("transports")) return false;
+    const Json& known = description["transports"];
+    return std::find(known.begin(), known.end(), "shm") != known.end();
+  }
+
+  /// Images are as good as they are new, so that the newest alone waits for who is slow; of
+  /// anything else all.
+  std::string keep_of(const GraphLink& link) const {
+    if (auto given = link.policy.find("keep"); given != link.policy.end()) return given->second;
+    const Json* output = find_named(described_.at(link.from.module)["outputs"], link.from.port);
+    const std::string type = output->at("types").at(0).at("type");
+    return type == name(MatrixType::RgbImage) || type == name(MatrixType::IntensityImage) ? "latest"
+                                                                                          : "all";
+  }
+
+  /// What one link of an output says to its sender, as options of a URI; `keep` is the reader's
+  /// affair where memory is shared.
+  static std::string pace_of(const GraphLink& link) {
+    std::string options;
+    for (const auto& [key, value] : link.policy)
+      if (key != "keep") options.append("&").append(key).append("=").append(value);
+    return options;
+  }
+
+  /// Gives each link its two ends. The links of an output that share memory have one sending end in
+  /// common, but for those that have a pace or bound of their own; every other link has a socket.
+  /// Senders wait for their readers, so that it does not matter who starts first.
+  void add_links() {
+    struct Sender {
+      std::size_t readers = 0;
+      std::string uri;
+      PlannedLink::End end;
+    };
+    std::map<std::string, Sender> senders;  // by output, and number of a link of its own
+    auto key_of = [&](std::size_t number) {
+      const GraphLink& link = graph_.links[number];
+      bool own = !pace_of(link).empty() || !shares_memory(link.to.module) ||
+                 !shares_memory(link.from.module);
+      return link.from.text() + (own ? " " + std::to_string(number) : "");
+    };
+    for (std::size_t i = 0; i < graph_.links.size(); ++i) ++senders[key_of(i)].readers;
+    std::vector<std::size_t> inputs(plan_.modules.size()), outputs(plan_.modules.size());
     auto add = [&](std::size_t module, std::string option, std::string value) {
       plan_.modules[module].command.push_back(std::move(option));
       plan_.modules[module].command.push_back(std::move(value));
     };
-    // Each link is a socket of its own; its sender waits for its one reader, so nothing is lost
-    // whichever starts first.
-    add(from, "--out", link.from.port + "=unix-listen:" + name + "?readers=1");
-    add(to, "--in", link.to.port + "=unix:" + name + "?wait=60");
-    plan_.links.push_back(
-        {link.from, link.to, from, plan_.modules[from].inputs + outputs[link.from.module]++});
+    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
+      const GraphLink& link = graph_.links[i];
+      std::size_t from = index_[link.from.module], to = index_[link.to.module];
+      bool shared = shares_memory(link.from.module) && shares_memory(link.to.module);
+      Sender& sender = senders[key_of(i)];
+      std::string keep = keep_of(link) == "all" ? "" : "&keep=" + keep_of(link);
+      if (sender.uri.empty()) {
+        std::string name = token_ + "-" + std::to_string(i);
+        sender.uri = shared ? "shm:" + name : "unix:@" + name;
+        sender.end = {from, plan_.modules[from].inputs + outputs[from]++};
+        add(from, "--out",
+            link.from.port + "=" + (shared ? "shm:" + name : "unix-listen:@" + name) + "?readers=" +
+                std::to_string(sender.readers) + (shared ? "" : keep) + pace_of(link));
+      }
+      add(to, "--in", link.to.port + "=" + sender.uri + "?wait=60" + (shared ? keep : ""));
+      plan_.links.push_back({link.from, link.to, sender.end, {to, inputs[to]++}});
+    }
   }
 
   Graph graph_;

@@ -21,11 +21,14 @@ struct PlannedModule {
   std::size_t inputs = 0;            ///< links into it; the counters begin with these
 };
 
-/// A link, and where its counters are found.
+/// A link, and where the counters of its ends are found.
 struct PlannedLink {
+  struct End {
+    std::size_t module = 0;  ///< index in Plan::modules
+    std::size_t row = 0;     ///< of that module's counters
+  };
   GraphPort from, to;
-  std::size_t module = 0;  ///< the one that sends: index in Plan::modules
-  std::size_t row = 0;     ///< of that module's counters
+  End sender, reader;
 };
 
 struct Plan {

@@ -23,6 +23,12 @@ Result<std::string> describe(const std::string& program) {
   if (program == "filter") return module(port("in", "map", 0), port("out", "map", 0));
   if (program == "sink") return module(port("in", "map", 8) + "," + port("text", "string", 0), "");
   if (program == "any") return module(R"({"name":"in","types":[]})", "");
+  const std::string transports = R"(,"transports":["-","unix","shm"]})";
+  auto shares = [&](std::string text) { return text.replace(text.size() - 1, 1, transports); };
+  if (program == "eye") return shares(module("", port("image", "intensity_image", 0)));
+  if (program == "seer")
+    return shares(
+        module(port("in", "intensity_image", 0) + "," + port("more", "intensity_image", 0), ""));
   if (program == "dumb") return std::string("hello");
   if (program == "odd") return std::string(R"({"inputs":[{}],"outputs":3,"parameters":[{"x":1}]})");
   return Error{Code::NotFound, "no such program"};
@@ -64,9 +70,45 @@ to = "sink.in"
                    "in=unix:@t-0?wait=60", "--out", "out=unix-listen:@t-2?readers=1"}));
   EXPECT_EQ(planned->modules[1].manage_uri, "unix-listen:@t-a");
   // Where the counters of each link are: a's output comes behind its one input.
-  EXPECT_EQ(planned->links[1].row, 1U);
-  EXPECT_EQ(planned->links[2].module, 1U);
-  EXPECT_EQ(planned->links[2].row, 1U);
+  EXPECT_EQ(planned->links[1].sender.row, 1U);
+  EXPECT_EQ(planned->links[2].sender.module, 1U);
+  EXPECT_EQ(planned->links[2].sender.row, 1U);
+  EXPECT_EQ(planned->links[2].reader.module, 2U);
+  EXPECT_EQ(planned->links[2].reader.row, 1U);
+}
+
+/// The values of an option in a module's command.
+std::vector<std::string> values_of(const PlannedModule& module, const std::string& option) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i + 1 < module.command.size(); ++i)
+    if (module.command[i] == option) values.push_back(module.command[i + 1]);
+  return values;
+}
+
+TEST(Plan, LinksOfAnOutputShareItsMemory) {
+  auto link = [](const std::string& to, const std::string& more = "") {
+    return "[[links]]\nfrom = \"eye.image\"\nto = \"" + to + "\"\n" + more + "\n";
+  };
+  auto planned = plan(R"([modules.eye]
+[modules.a]
+program = "seer"
+[modules.b]
+program = "seer"
+[modules.any]
+)" + link("a.in") + link("b.in", "keep = \"all\"") +
+                      link("a.more", "keep = 3\nrate = 10\nmemory = \"8M\"") + link("any.in"));
+  ASSERT_TRUE(planned) << planned.error().detail;
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(values_of(planned->modules[0], "--out"),
+            (Words{"image=shm:t-0?readers=2", "image=shm:t-2?readers=1&memory=8M&rate=10",
+                   "image=unix-listen:@t-3?readers=1&keep=latest"}));
+  EXPECT_EQ(values_of(planned->modules[1], "--in"),
+            (Words{"in=shm:t-0?wait=60&keep=latest", "more=shm:t-2?wait=60&keep=3"}));
+  EXPECT_EQ(values_of(planned->modules[2], "--in"), (Words{"in=shm:t-0?wait=60"}));
+  EXPECT_EQ(values_of(planned->modules[3], "--in"), (Words{"in=unix:@t-3?wait=60"}));
+  EXPECT_EQ(planned->links[1].sender.row, 0U);
+  EXPECT_EQ(planned->links[2].sender.row, 1U);
+  EXPECT_EQ(planned->links[2].reader.row, 1U);
 }
 
 TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {

@@ -87,8 +87,8 @@ class Runner {
     }
     if (!outcome) return outcome.error();
     for (const auto& link : plan_.links) {
-      const auto& counters = running_[link.module].counters;
-      report.links.push_back(link.row < counters.size() ? counters[link.row] : Traffic{});
+      auto sent = counters_at(link.sender);
+      report.links.push_back({sent, sent.lost() + counters_at(link.reader).lost()});
     }
     return report;
   }
@@ -117,6 +117,11 @@ class Runner {
   [[nodiscard]] bool all_ended() const {
     return std::all_of(running_.begin(), running_.end(),
                        [](const Running& module) { return module.status.has_value(); });
+  }
+
+  [[nodiscard]] Traffic counters_at(const PlannedLink::End& end) const {
+    const auto& counters = running_[end.module].counters;
+    return end.row < counters.size() ? counters[end.row] : Traffic{};
   }
 
   [[nodiscard]] std::vector<int> descriptors() const {
@@ -162,11 +167,14 @@ class Runner {
       auto got = module.manage->take(message);
       if (!got || *got != Got::Message) return;
       auto rows = message.view<std::int64_t>();
-      if (!rows || rows->components() != 2) continue;
+      if (!rows || rows->components() < 2 || rows->width() != 1) continue;
       module.counters.clear();
-      for (std::size_t row = 0; row < rows->height() && rows->width() == 1; ++row)
-        module.counters.push_back({static_cast<std::uint64_t>(rows->at(row, 0, 0)),
-                                   static_cast<std::uint64_t>(rows->at(row, 0, 1))});
+      for (std::size_t row = 0; row < rows->height(); ++row) {
+        Counters counters{};
+        auto numbers = rows->row(row);
+        std::copy_n(numbers.begin(), std::min(numbers.size(), counters.size()), counters.begin());
+        module.counters.push_back(traffic_of(counters));
+      }
     }
   }
 

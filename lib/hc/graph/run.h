@@ -14,10 +14,16 @@
 
 namespace hc {
 
+/// What went over a link of a graph.
+struct LinkReport {
+  Traffic sent;            ///< as its sender counts
+  std::uint64_t lost = 0;  ///< messages that either end has left out, for whatever reason
+};
+
 /// What a graph has done.
 struct RunReport {
-  std::vector<Traffic> links;  ///< in the order of Plan::links
-  bool stopped = false;        ///< ended because it was told to
+  std::vector<LinkReport> links;  ///< in the order of Plan::links
+  bool stopped = false;           ///< ended because it was told to
 };
 
 struct RunOptions {

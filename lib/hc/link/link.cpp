@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <hc/link/descriptor.h>
@@ -48,7 +49,33 @@ Result<const Transport*> find_transport(const Uri& uri, std::string_view Transpo
   return Error{Code::Unsupported, "no transport \"" + uri.scheme + "\"; there are " + known};
 }
 
+/// A Traffic's members in the order of a report.
+constexpr std::array kMembers = {&Traffic::messages,   &Traffic::bytes,     &Traffic::kept_back,
+                                 &Traffic::superseded, &Traffic::over_rate, &Traffic::over_memory,
+                                 &Traffic::cut};
+static_assert(kMembers.size() == std::tuple_size_v<Counters>);
+
 }  // namespace
+
+Counters counters_of(const Traffic& traffic) {
+  Counters counters{};
+  for (std::size_t i = 0; i < counters.size(); ++i)
+    counters[i] = static_cast<std::int64_t>(traffic.*kMembers[i]);
+  return counters;
+}
+
+Traffic traffic_of(const Counters& counters) {
+  Traffic traffic;
+  for (std::size_t i = 0; i < counters.size(); ++i)
+    traffic.*kMembers[i] = static_cast<std::uint64_t>(counters[i]);
+  return traffic;
+}
+
+std::vector<std::string_view> transports() {
+  std::vector<std::string_view> schemes;
+  for (const Transport& transport : kTransports) schemes.push_back(transport.scheme);
+  return schemes;
+}
 
 Status Source::resume() {
   return Error{Code::Unsupported, "only a file can be read on after an error"};

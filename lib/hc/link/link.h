@@ -4,10 +4,13 @@
 // carries them; link.cpp has the one table of schemes, and each transport is a file of its own.
 // An object is used from one thread; different objects from different threads.
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include <hc/base/log.h>
 #include <hc/base/result.h>
@@ -26,7 +29,7 @@ enum class Got {
 /// What went over a link, and what did not.
 struct Traffic {
   std::uint64_t messages = 0;
-  /// As on the wire; of elements alone where there is no wire (inproc, shm).
+  /// As on the wire; of elements alone where there is no wire (inproc), with their header (shm).
   std::uint64_t bytes = 0;
   /// Messages that had to wait for their turn (`rate`), and went later or are among the lost.
   std::uint64_t kept_back = 0;
@@ -38,7 +41,14 @@ struct Traffic {
   std::uint64_t over_memory = 0;
   /// … because the connection was lost when they were on their way (`reconnect`).
   std::uint64_t cut = 0;
+
+  [[nodiscard]] std::uint64_t lost() const { return superseded + over_rate + over_memory + cut; }
 };
+
+/// The numbers of a Traffic in the order of its members, as a module reports them.
+using Counters = std::array<std::int64_t, 7>;
+Counters counters_of(const Traffic& traffic);
+Traffic traffic_of(const Counters& counters);
 
 /// The end of a link where messages come out.
 class Source {
@@ -123,6 +133,9 @@ struct LinkOptions {
 /// file or host), Closed (nobody listens), Stopped, System (name in use, …).
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
+
+/// The schemes that open_source() and open_sink() know.
+std::vector<std::string_view> transports();
 
 /// Waits until one of `sources` may have something to take; false when `timeout` has passed.
 ///

@@ -12,7 +12,8 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
   EXPECT_EQ(source.error().code, Code::Unsupported);
   EXPECT_EQ(
       source.error().detail,
-      "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, unix, unix-listen, inproc");
+      "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, unix, unix-listen, inproc, "
+      "shm");
   EXPECT_FALSE(open_sink(*parse_uri("pigeon:home")));
 }
 

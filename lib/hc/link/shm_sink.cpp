@@ -318,7 +318,7 @@ Status ShmSink::send(const Message& message) {
   publish({words.data(), (text_bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t)},
           bytes << 16 | header_bytes, slot);
   ++traffic_.messages;
-  traffic_.bytes += bytes;
+  traffic_.bytes += header_bytes + bytes;
   return {};
 }
 

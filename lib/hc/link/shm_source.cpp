@@ -198,7 +198,7 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
   message.header = header;
   message.byte = traffic_.bytes;
   ++traffic_.messages;
-  traffic_.bytes += cell.bytes;
+  traffic_.bytes += cell.header_bytes + cell.bytes;
   if (hold == kNoHold) {
     auto room = small_.allocate(cell.bytes);
     std::memcpy(room.get(), cell.text() + cell.header_bytes, cell.bytes);

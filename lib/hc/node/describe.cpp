@@ -117,6 +117,7 @@ std::string describe(const Module& module) {
              .add("inputs", array(module.inputs(), input))
              .add("outputs", array(module.outputs(), output))
              .add("parameters", array(module.parameters(), parameter))
+             .add("transports", array(transports(), in_quotes))
              .text() +
          "\n";
 }

@@ -2,6 +2,7 @@
 #include <hc/node/loop.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include <hc/base/program.h>
 #include <hc/compress/compress.h>
@@ -147,13 +148,13 @@ void Module::Loop::report() {
   if (manage_ == nullptr || module_.clock_.monotonic() - reported_ < kReportPeriod) return;
   reported_ = module_.clock_.monotonic();
   auto links = sources_.size() + sinks_.size();
-  Draft draft = Draft::make(table<std::int64_t>(2).type.info, 1, static_cast<std::int32_t>(links));
+  Draft draft = Draft::make(table<std::int64_t>(std::tuple_size_v<Counters>).type.info, 1,
+                            static_cast<std::int32_t>(links));
   auto rows = draft.view<std::int64_t>();
   std::size_t row = 0;
   auto put = [&](const Traffic& traffic) {
-    rows.at(row, 0, 0) = static_cast<std::int64_t>(traffic.messages);
-    rows.at(row, 0, 1) = static_cast<std::int64_t>(traffic.bytes);
-    ++row;
+    auto counters = counters_of(traffic);
+    std::copy(counters.begin(), counters.end(), rows.row(row++).begin());
   };
   for (const auto& link : sources_) put(link.source ? link.source->traffic() : link.traffic);
   for (const auto& link : sinks_) put(link->sink ? link->sink->traffic() : link->traffic);
