@@ -227,7 +227,8 @@ TEST(Module, DescribesItself) {
       R"("scalar":"f64","width":0,"height":0,"coord":0}],"encoding":"text","doc":"centre"}],)"
       R"("parameters":[{"name":"hue","type":"number","unit":"turn","default":0.5,"least":0,"most":1,)"
       R"("doc":"colour"},{"name":"how","type":"string","unit":"","default":"fast","choices":)"
-      R"(["fast","good"],"doc":"way"}]})"
+      R"(["fast","good"],"doc":"way"}],)"
+      R"("transports":["-","file","tcp","tcp-listen","unix","unix-listen","inproc","shm"]})"
       "\n");
   std::string help = internal::help(module);
   for (const char* part : {"Usage: hc blob", "picture (rgb_image 3 x u8, coordinate system 7)",
