@@ -44,11 +44,12 @@ void run(const Options& options) {
     bool is_read = options.raw    ? send(*raw, message)
                    : options.json ? print(to_json_as(expanded, message.header) + "\n")
                                   : print(to_readable(expanded));
-    if (!is_read) return;
+    if (!is_read) break;
     skipper.whole_message();
     ++shown;
   }
   if (raw != nullptr) static_cast<void>(raw->close());
+  say_losses("hc cat", options.uri, source->traffic());
 }
 
 }  // namespace

@@ -68,6 +68,9 @@ class Skipper {
 /// Sends a message; false when nobody reads any more.
 bool send(hc::Sink& sink, const hc::Message& message);
 
+/// Says how many messages a link has lost and why, if any.
+void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic);
+
 /// Writes to standard output; false when nobody reads any more. Any other error is a Failure.
 bool print(std::string_view text);
 

@@ -98,6 +98,7 @@ void run(const Options& options) {
   auto traffic = source->traffic();
   print(fmt::format("{} message{}, {}\n", traffic.messages, traffic.messages == 1 ? "" : "s",
                     bytes_in_words(static_cast<double>(traffic.bytes))));
+  say_losses("hc info", options.uri, traffic);
   if (fault) throw Failure(*fault);
 }
 

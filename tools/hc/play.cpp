@@ -102,6 +102,7 @@ void run(const Options& options) {
   while (play_once(options, speed, *sink, progress) && options.loop) {
   }
   auto closed = sink->close();
+  say_losses("hc play", options.out, sink->traffic());
   if (!closed && closed.error().code != hc::Code::Closed)
     throw Failure(options.out, closed.error());
 }

@@ -50,10 +50,12 @@ void run(const Options& options) {
     for (auto& [uri, source] : links) {
       if (source == nullptr) continue;
       auto got = value_or_fail(source->take(message), uri);
-      if (got == hc::Got::End)
+      if (got == hc::Got::End) {
+        say_losses("hc record", uri, source->traffic());
         source.reset();
-      else
+      } else {
         open.push_back(source.get());
+      }
       if (got != hc::Got::Message) continue;
       any = true;
       if (auto sent = sink->send(message); !sent) throw Failure(options.file, sent.error());
@@ -65,6 +67,8 @@ void run(const Options& options) {
     if (open.empty()) return;
     if (!any) static_cast<void>(hc::wait_any(open, hc::stop_descriptor()));
   }
+  for (const auto& [uri, source] : links)
+    if (source != nullptr) say_losses("hc record", uri, source->traffic());
 }
 
 }  // namespace
