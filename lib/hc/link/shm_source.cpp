@@ -184,10 +184,12 @@ std::size_t ShmSource::take_hold(std::uint64_t slot) {
 
 /// Makes a message of a cell that was copied, whose slot is held.
 Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) {
-  auto line = read_header_line({cell.text(), cell.header_bytes}, options_.limits, traffic_.bytes);
-  if (!line) return line.error();
-  if (line->bytes != cell.header_bytes) return damaged("a header without its end");
-  const Header& header = line->header;
+  std::string_view line(cell.text(), cell.header_bytes);
+  if (!line.ends_with('\n')) return damaged("a header without its end");
+  line.remove_suffix(1);
+  auto parsed = parse_header(line, options_.limits, traffic_.bytes);
+  if (!parsed) return parsed.error();
+  const Header& header = *parsed;
   bool right = is_compressed(header) ? cell.bytes <= options_.limits.element_bytes
                                      : cell.bytes == header.element_bytes();
   if (!right) return damaged(std::to_string(cell.bytes) + " bytes of elements for " + text(header));
