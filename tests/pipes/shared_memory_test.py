@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""shm: links between whole programs."""
+
+import os
+import pathlib
+import signal
+import unittest
+
+import harness
+from harness import WATCHDOG, wait_until
+
+
+def listens_at(name):
+    return "@hypercolumn-shm-" + name in pathlib.Path("/proc/net/unix").read_text()
+
+
+class SharedMemory(harness.Pipes):
+    def setUp(self):
+        super().setUp()
+        self.name = "test-%d-%s" % (os.getpid(), self.id().rsplit(".", 1)[1][:20])
+        self.uri = "shm:" + self.name
+
+    def many(self, count, path="many.mtp"):
+        """A recording of pictures that their seq tells."""
+        with open(self.path(path), "wb") as file:
+            for i in range(count):
+                file.write(
+                    b"1 5 0 %d 8 0 40101 0 0 200 100\n" % i + bytes([i % 251]) * 20000 + b"\n"
+                )
+
+    def test_two_readers_get_the_same_bytes(self):
+        self.many(500)
+        readers = [
+            self.start("exec hc record %d.mtp --in '%s?wait=60'" % (i, self.uri)) for i in range(2)
+        ]
+        self.shell("hc play --speed max many.mtp --out '%s?readers=2'" % self.uri)
+        for reader in readers:
+            self.assertEqual(reader.wait(WATCHDOG), 0)
+        self.shell("cmp many.mtp 0.mtp && cmp many.mtp 1.mtp")
+
+    def test_a_killed_publisher_leaves_whole_messages_and_its_name(self):
+        self.many(50)
+        reader = self.start("exec hc record got.mtp --in '%s?wait=60'" % self.uri)
+        publisher = self.start("exec hc play --loop --speed max many.mtp --out %s" % self.uri)
+        got = pathlib.Path(self.path("got.mtp"))
+        wait_until(lambda: got.exists() and got.stat().st_size > 100_000)
+        os.kill(publisher.pid, signal.SIGKILL)
+        _, err = reader.communicate(timeout=WATCHDOG)
+        self.assertEqual(reader.returncode, 0)
+        self.assertIn(b"the publisher has died", err)
+        self.assertIn(" messages, ", self.shell("hc info got.mtp"))  # all of them are whole
+        self.assertFalse(listens_at(self.name))
+        self.test_two_readers_get_the_same_bytes()
+
+    def test_a_killed_reader_does_not_hold_up_the_publisher(self):
+        self.many(50)
+        publisher = self.start(
+            "exec hc play --loop --speed max many.mtp --out '%s?readers=2&memory=2M'" % self.uri
+        )
+        victim = self.start("exec hc cat --raw '%s?wait=60'" % self.uri)  # nobody reads its output
+        steady = self.start("hc cat --raw --count 20000 '%s?wait=60' | wc -c" % self.uri)
+        os.read(victim.stdout.fileno(), 1000)
+        os.kill(victim.pid, signal.SIGKILL)
+        out, _ = steady.communicate(timeout=WATCHDOG)
+        self.assertGreater(int(out), 20000 * 20000)
+        publisher.terminate()
+
+    def test_who_keeps_the_latest_is_told_what_it_lost(self):
+        self.many(2000)
+        slow = self.start("exec hc cat --raw '%s?wait=60&keep=latest'" % self.uri)
+        self.shell("hc play --speed max many.mtp --out '%s?readers=1'" % self.uri)
+        out, err = slow.communicate(timeout=WATCHDOG)
+        self.assertIn(b"superseded", err)
+        count = out.count(b"1 5 0 ")
+        self.assertIn(b"lost %d messages" % (2000 - count), err)
+        self.assertIn(b"\n1 5 0 1999 8 0 40101 ", out)  # the newest one is never left out
+
+    def test_options_that_make_no_sense_are_refused(self):
+        for command, status, words in (
+            ("hc cat '%s?spin=often'", 2, "option spin is a whole number"),
+            ("hc cat '%s?keep=none'", 2, "keep is"),
+            ("hc cat '%s?readers=1'", 1, 'no option "readers"'),
+            ("hc cat '%s'", 1, "nobody listens there"),
+            ("hc send 1 --out '%s?memory=1K'", 2, "memory is at least"),
+        ):
+            self.shell(command % self.uri, status)
+            self.assertIn(words, self.err)
+            self.assertEqual(self.err.count("\n"), 1, self.err)
+
+
+if __name__ == "__main__":
+    unittest.main()
