@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the link benchmark measures: its cases and measures. README.md says how each is meant."""
+
+import dataclasses
+
+IMAGE = 1_440_000
+
+
+@dataclasses.dataclass(frozen=True)
+class Measure:
+    name: str
+    title: str
+    bytes: int
+    readers: int = 1
+    is_latency: bool = False
+
+    @property
+    def key(self):
+        return "median_us" if self.is_latency else "per_second"
+
+
+MEASURES = [
+    Measure("latency_96", "96 B [µs]", 96, is_latency=True),
+    Measure("latency_64k", "64 KiB [µs]", 65536, is_latency=True),
+    Measure("latency_image", "1.44 MB [µs]", IMAGE, is_latency=True),
+    Measure("messages", "96 B [1/s]", 96),
+    Measure("images", "1.44 MB [1/s]", IMAGE),
+    Measure("fan_out", "1.44 MB to 4 [1/s]", IMAGE, readers=4),
+]
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+    name: str
+    kind: str  # bare, ours or peer
+    program: str
+    about: str
+    arguments: tuple = ()
+    environment: dict = dataclasses.field(default_factory=dict)
+    cannot: dict = dataclasses.field(default_factory=dict)  # name of a measure: why not
+    needs_roudi: bool = False
+
+
+def _bare(name, program, mode, about):
+    return Case("bare_" + name, "bare", program, about, ("mode=" + mode,))
+
+
+def _ours(name, sink, source, about):
+    return Case(name, "ours", "ours", about, ("sink=" + sink, "source=" + source))
+
+
+def _peer(name, program, mode, about, **more):
+    return Case(name, "peer", program, about, ("mode=" + mode,), **more)
+
+
+CASES = [
+    Case(
+        "bare_memcpy",
+        "bare",
+        "floor_memcpy",
+        "one memcpy within a process; images are written, copied and read by one thread",
+        cannot={"fan_out": "one process"},
+    ),
+    _bare("shm_polled", "floor_shm", "poll", "ring in shared memory, the reader looks until"),
+    _bare("shm_futex", "floor_shm", "futex", "the same, the reader sleeps on a futex"),
+    _bare("pipe", "floor_stream", "pipe", "named pipe of 1 MiB, one writev a message, read"),
+    _bare("unix", "floor_stream", "unix", "Unix socket, one writev a message, read"),
+    _bare("tcp", "floor_stream", "tcp", "TCP on loopback with TCP_NODELAY, one writev, read"),
+    _ours("shm_polled", "shm:{link}?readers={readers}", "shm:{link}?wait=10&spin=1000000", "polls"),
+    _ours("shm_waiting", "shm:{link}?readers={readers}", "shm:{link}?wait=10&spin=0", "sleeps"),
+    _ours(
+        "unix",
+        "unix-listen:@hc_bench_{link}?readers={readers}",
+        "unix:@hc_bench_{link}?wait=10",
+        "the publisher listens",
+    ),
+    _ours(
+        "tcp",
+        "tcp-listen:127.0.0.1:{port}?readers={readers}",
+        "tcp:127.0.0.1:{port}?wait=10",
+        "the publisher listens",
+    ),
+    _peer(
+        "iceoryx_polled",
+        "iceoryx",
+        "poll",
+        "take() until there is one; queue of 256, of 2 images; WAIT_FOR_CONSUMER",
+        needs_roudi=True,
+    ),
+    _peer(
+        "iceoryx_waitset",
+        "iceoryx",
+        "waitset",
+        "the same, a WaitSet where take() gives none",
+        needs_roudi=True,
+    ),
+    _peer("zeromq_ipc", "zeromq", "ipc", "PUSH and PULL, XPUB_NODROP to 4; 1000 deep, 4 images"),
+    _peer("zeromq_tcp", "zeromq", "tcp", "the same on loopback"),
+]

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+#include <vector>
+
+#include "pattern.h"
+
+namespace bench {
+namespace {
+
+constexpr double kWarmSeconds = 0.05;
+
+double seconds_now() {
+  using Seconds = std::chrono::duration<double>;
+  return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// A counter that costs less than a clock, which a polled round of 0.3 µs would show.
+std::uint64_t ticks() {
+#ifdef __x86_64__
+  return __builtin_ia32_rdtsc();
+#else
+  return static_cast<std::uint64_t>(seconds_now() * 1e9);
+#endif
+}
+
+void pause() {
+#ifdef __x86_64__
+  __builtin_ia32_pause();
+#endif
+}
+
+Setup parse(int argc, char** argv) {
+  Setup setup;
+  for (int i = 1; i < argc; ++i) {
+    std::string argument = argv[i], key = argument.substr(0, argument.find('='));
+    if (key.size() == argument.size()) fail("arguments are KEY=VALUE: " + argument);
+    std::string value = argument.substr(key.size() + 1);
+    if (key == "role") {
+      setup.role = value;
+    } else if (key == "mode") {
+      setup.mode = value;
+    } else if (key == "link") {
+      setup.link = value;
+    } else if (key == "folder") {
+      setup.folder = value;
+    } else if (key == "sink") {
+      setup.sink = value;
+    } else if (key == "source") {
+      setup.source = value;
+    } else if (key == "port") {
+      setup.port = std::stoi(value);
+    } else if (key == "readers") {
+      setup.readers = std::stoi(value);
+    } else if (key == "reader") {
+      setup.reader = std::stoi(value);
+    } else if (key == "rounds") {
+      setup.rounds = std::stoi(value);
+    } else if (key == "seconds") {
+      setup.seconds = std::stod(value);
+    } else if (key == "bytes") {
+      setup.bytes = std::stoul(value);
+    } else {
+      fail("no such argument: " + key);
+    }
+  }
+  return setup;
+}
+
+void say(const std::string& line) {
+  std::puts(line.c_str());
+  std::fflush(stdout);
+}
+
+/// Waits for a line on standard input; false when it has ended.
+bool await_line() {
+  char byte = 0;
+  while (true) {
+    ssize_t size = ::read(STDIN_FILENO, &byte, 1);
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) return false;
+    if (byte == '\n') return true;
+  }
+}
+
+void expect_bytes(std::span<const std::byte> message, const Setup& setup) {
+  // Our 96 bytes on the wire are a header and elements; of the latter there are fewer.
+  if (message.size() < 8 || (message.size() != setup.bytes && setup.sink.empty()))
+    fail("received " + std::to_string(message.size()) + " bytes");
+}
+
+void ping(const Setup& setup, Publisher& publisher, Subscriber& subscriber) {
+  std::vector<std::uint64_t> rounds;
+  rounds.reserve(static_cast<std::size_t>(setup.rounds));
+  auto round = [&] {
+    publisher.resend();
+    return subscriber.receive();
+  };
+  const double warm_end = seconds_now() + kWarmSeconds;
+  for (int i = 0; i < setup.rounds / 10 && seconds_now() < warm_end; ++i)
+    expect_bytes(round(), setup);
+  const double begin = seconds_now();
+  const std::uint64_t begin_ticks = ticks();
+  // Of one stamp a round, so that nothing but the round is between two of them.
+  const auto limit = static_cast<std::uint64_t>(setup.rounds);
+  std::uint64_t last = begin_ticks;
+  while (rounds.size() < limit) {
+    static_cast<void>(round());
+    std::uint64_t now = ticks();
+    rounds.push_back(now - last);
+    last = now;
+    if (rounds.size() % 64 == 0 || !setup.is_small()) {
+      if (seconds_now() - begin > setup.seconds) break;
+      last = ticks();
+    }
+  }
+  const double nanoseconds_a_tick =
+      (seconds_now() - begin) * 1e9 / static_cast<double>(ticks() - begin_ticks);
+  std::sort(rounds.begin(), rounds.end());
+  auto half_trip = [&](double part) {  // [µs]
+    auto at = static_cast<std::size_t>(part * static_cast<double>(rounds.size() - 1));
+    return static_cast<double>(rounds[at]) * nanoseconds_a_tick / 2e3;
+  };
+  char line[200];
+  std::snprintf(line, sizeof line, R"({"rounds": %zu, "median_us": %.4f, "p99_us": %.4f})",
+                rounds.size(), half_trip(0.5), half_trip(0.99));
+  say(line);
+  if (await_line()) publisher.resend();  // pong knows by now that it is the last
+}
+
+void pong(Publisher& publisher, Subscriber& subscriber) {
+  std::atomic<bool> is_last = false;
+  std::thread listener([&] {
+    await_line();
+    is_last = true;
+    say("{}");
+  });
+  while (true) {
+    static_cast<void>(subscriber.receive());
+    if (is_last.load(std::memory_order_relaxed)) break;
+    publisher.resend();
+  }
+  listener.join();
+}
+
+void publish(const Setup& setup, Publisher& publisher) {
+  const std::uint64_t look_every = setup.is_small() ? 64 : 1;
+  const double end = seconds_now() + setup.seconds + 2 * kWarmSeconds;
+  bool over = false;
+  for (std::uint64_t number = 0; !over; ++number) {
+    over = number % look_every == 0 && seconds_now() > end;
+    auto room = publisher.loan();
+    write_pattern(room.data(), room.size(), over ? kLast + number : number);
+    publisher.publish();
+  }
+  say("{}");
+}
+
+void subscribe(const Setup& setup, Subscriber& subscriber) {
+  const std::uint64_t look_every = setup.is_small() ? 64 : 1;
+  std::uint64_t received = 0, next = 0, lost = 0, counted_from = 0, counted = 0;
+  double first = 0, begin = 0, end = 0;
+  for (bool over = false; !over;) {
+    auto message = subscriber.receive();
+    expect_bytes(message, setup);
+    if (!read_pattern(message)) fail("received other bytes than were sent");
+    std::uint64_t number = first_word(message);
+    over = number >= kLast;
+    if (over) number -= kLast;
+    lost += number - next;
+    next = number + 1;
+    if (++received % look_every != 0) continue;
+    double now = seconds_now();
+    if (first == 0) first = now;
+    if (now - first < kWarmSeconds) continue;
+    if (begin == 0) {
+      begin = now;
+      counted_from = received;
+    } else if (now - begin <= setup.seconds) {
+      end = now;
+      counted = received - counted_from;
+    }
+  }
+  char line[200];
+  std::snprintf(line, sizeof line, R"({"received": %llu, "lost": %llu, "per_second": %.3f})",
+                static_cast<unsigned long long>(received), static_cast<unsigned long long>(lost),
+                end > begin ? static_cast<double>(counted) / (end - begin) : 0.0);
+  say(line);
+}
+
+}  // namespace
+
+void fail(std::string_view what) {
+  std::fprintf(stderr, "%.*s\n", static_cast<int>(what.size()), what.data());
+  // Without destructors: those of a peer may wait for what does not come any more.
+  std::_Exit(1);
+}
+
+int require(int result, std::string_view what) {
+  if (result < 0) fail(std::string(what) + ": " + std::to_string(errno));
+  return result;
+}
+
+void Spin::operator()() {
+  constexpr int kTriesAlone = 2000;
+  if (++tries_ < kTriesAlone)
+    pause();
+  else
+    ::sched_yield();
+}
+
+int run(int argc, char** argv, MakePublisher make_publisher, MakeSubscriber make_subscriber) {
+  const Setup setup = parse(argc, argv);
+  // Ping's messages go over the link …_a, the answers over …_b and the next port.
+  Setup to = setup, from = setup;
+  (setup.role == "pong" ? to : from).link += "_b";
+  (setup.role == "pong" ? from : to).link += "_a";
+  (setup.role == "pong" ? to : from).port += 1;
+  if (!setup.is_latency()) to = from = setup;
+
+  std::unique_ptr<Publisher> publisher;
+  std::unique_ptr<Subscriber> subscriber;
+  if (setup.role != "subscribe") publisher = make_publisher(to);
+  if (setup.role != "publish") subscriber = make_subscriber(from);
+  if (publisher) publisher->await_readers();
+  if (subscriber) subscriber->await_writer();
+  say("ready");
+  if (!await_line()) return 1;
+  if (setup.role == "ping") {
+    ping(setup, *publisher, *subscriber);
+  } else if (setup.role == "pong") {
+    pong(*publisher, *subscriber);
+  } else if (setup.role == "publish") {
+    publish(setup, *publisher);
+  } else if (setup.role == "subscribe") {
+    subscribe(setup, *subscriber);
+  } else {
+    fail("no such role: " + setup.role);
+  }
+  while (await_line()) {
+  }
+  return 0;
+}
+
+}  // namespace bench

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the processes of one case and measure, and RouDi for iceoryx; leaves nothing behind."""
+
+import ctypes
+import glob
+import json
+import os
+import select
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+
+PATIENCE = 10  # until processes are ready, and until they end after their time [s]
+ROUDI_CONFIG = """[general]
+version = 1
+[[segment]]
+[[segment.mempool]]
+size = 128
+count = 10000
+[[segment.mempool]]
+size = 66048
+count = 100
+[[segment.mempool]]
+size = 1500032
+count = 100
+"""
+# What peers leave in /dev/shm when they are killed, and our floor.
+SHARED_MEMORY = ["hc_bench_*", "fastrtps_*", "sem.fastrtps_*", "fast_datasharing_*", "iceoryx_mgmt"]
+
+
+class Failed(Exception):
+    """A case did not do a measure; says why in a few words."""
+
+
+def _die_with_parent():
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+
+
+class Process:
+    def __init__(self, command, environment, processor):
+        def prepare():
+            _die_with_parent()
+            if processor is not None:
+                os.sched_setaffinity(0, {processor % os.cpu_count()})
+
+        self.errors = tempfile.TemporaryFile()
+        self.pending = b""
+        self.popen = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.errors,
+            env={**os.environ, **environment},
+            preexec_fn=prepare,
+        )
+
+    def why(self):
+        self.errors.seek(0)
+        lines = self.errors.read().decode(errors="replace").strip().splitlines()
+        return lines[-1][:100] if lines else "it ended"
+
+    def line(self, deadline):
+        """The next line that is ours: peers print their own between."""
+        while True:
+            line, found, self.pending = self.pending.partition(b"\n")
+            if found:
+                if line == b"ready" or line.startswith(b"{"):
+                    return line.decode()
+                continue
+            self.pending = line
+            left = deadline - time.monotonic()
+            if left <= 0 or not select.select([self.popen.stdout], [], [], left)[0]:
+                raise Failed("no answer")
+            chunk = os.read(self.popen.stdout.fileno(), 65536)
+            if not chunk:
+                raise Failed(self.why())
+            self.pending += chunk
+
+    def tell(self):
+        try:
+            self.popen.stdin.write(b"\n")
+            self.popen.stdin.flush()
+        except BrokenPipeError as error:
+            raise Failed(self.why()) from error
+
+    def end(self, patience):
+        try:
+            self.popen.stdin.close()
+        except BrokenPipeError:
+            pass
+        try:
+            self.popen.wait(patience)
+        except subprocess.TimeoutExpired:
+            self.popen.kill()
+            self.popen.wait()
+        self.popen.stdout.close()
+        self.errors.close()
+
+
+def free_ports(count=8, first=[20000]):
+    """The first of some neighbouring ports, below those that the system gives away."""
+    while True:
+        first[0] = 20000 + (first[0] - 20000 + count) % 10000
+        try:
+            for port in range(first[0], first[0] + count):
+                with socket.socket() as one:
+                    one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                    one.bind(("127.0.0.1", port))
+            return first[0]
+        except OSError:
+            continue
+
+
+class Runner:
+    """A context: what it made is gone when it is left."""
+
+    def __init__(self, programs, seconds, pin):
+        self.programs, self.seconds, self.pin = programs, seconds, pin
+        self.roudi, self.count = None, 0
+
+    def __enter__(self):
+        self.folder = tempfile.mkdtemp(prefix="hc_bench_")
+        self.before = self._shared_memory()
+        return self
+
+    def __exit__(self, *_):
+        self.stop_roudi()
+        shutil.rmtree(self.folder, ignore_errors=True)
+        for path in self._shared_memory() - self.before:
+            os.unlink(path)
+
+    @staticmethod
+    def _shared_memory():
+        return {path for name in SHARED_MEMORY for path in glob.glob("/dev/shm/" + name)}
+
+    def start_roudi(self):
+        config = os.path.join(self.folder, "roudi.toml")
+        with open(config, "w") as file:
+            file.write(ROUDI_CONFIG)
+        # Without monitoring, which takes a process for dead that a busy machine kept waiting.
+        self.roudi = Process(["iox-roudi", "-c", config, "-m", "off"], {}, None)
+        deadline = time.monotonic() + PATIENCE
+        while b"RouDi is ready" not in self.roudi.pending:
+            if not select.select([self.roudi.popen.stdout], [], [], deadline - time.monotonic())[0]:
+                raise Failed("RouDi does not start")
+            chunk = os.read(self.roudi.popen.stdout.fileno(), 65536)
+            if not chunk:
+                raise Failed("RouDi: " + self.roudi.why())
+            self.roudi.pending += chunk
+
+    def stop_roudi(self):
+        if self.roudi:
+            self.roudi.popen.terminate()
+            self.roudi.end(PATIENCE)
+        self.roudi = None
+
+    def run(self, case, measure):
+        """The numbers of one run. Raises Failed."""
+        program = os.path.join(self.programs, case.program)
+        if case.program == "floor_memcpy":
+            done = subprocess.run([program, str(measure.bytes), str(self.seconds)], stdout=-1)
+            return json.loads(done.stdout)
+        if case.needs_roudi and not self.roudi:
+            self.start_roudi()
+        self.count += 1
+        common = [
+            "link=l%d_%d" % (os.getpid(), self.count),
+            "folder=" + self.folder,
+            "port=%d" % free_ports(),
+            "bytes=%d" % measure.bytes,
+            "seconds=%g" % self.seconds,
+            "readers=%d" % measure.readers,
+            *case.arguments,
+        ]
+        if measure.is_latency:
+            roles = [["role=ping"], ["role=pong"]]
+        else:
+            readers = range(measure.readers)
+            roles = [["role=publish"]] + [["role=subscribe", "reader=%d" % i] for i in readers]
+        processes, failed = [], True
+        try:
+            for i, role in enumerate(roles):
+                processor = i if self.pin else None
+                command = [program, *role, *common]
+                processes.append(Process(command, case.environment, processor))
+            found = self._measure(processes, measure.is_latency)
+            failed = False
+            return found
+        finally:
+            for process in processes:
+                if failed:
+                    process.popen.kill()
+            for process in processes:
+                process.end(PATIENCE / 5)
+            if failed and case.needs_roudi:
+                self.stop_roudi()  # it does not clean up after processes that were killed
+
+    def _measure(self, processes, is_latency):
+        deadline = time.monotonic() + PATIENCE
+        for process in processes:
+            process.line(deadline)
+        for process in reversed(processes):
+            process.tell()
+        deadline = time.monotonic() + 2 * self.seconds + PATIENCE
+        first, *others = processes
+        found = json.loads(first.line(deadline))
+        if is_latency:
+            others[0].tell()
+            others[0].line(deadline)
+            first.tell()
+            return found
+        readers = [json.loads(other.line(deadline)) for other in others]
+        found = min(readers, key=lambda reader: reader["per_second"])
+        found["lost"] = sum(reader["lost"] for reader in readers)
+        return found
