@@ -53,6 +53,20 @@ def _peer(name, program, mode, about, **more):
     return Case(name, "peer", program, about, ("mode=" + mode,), **more)
 
 
+def _cyclone(more=""):
+    """Its advice for large samples; loopback has no multicast, so it is told whom to look for."""
+    text = """<CycloneDDS><Domain Id="any"><General>
+<Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
+<AllowMulticast>false</AllowMulticast>
+<MaxMessageSize>65500B</MaxMessageSize></General>
+<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>20</MaxAutoParticipantIndex>
+<Peers><Peer Address="127.0.0.1"/></Peers></Discovery>
+<Internal><SocketReceiveBufferSize min="4MB"/></Internal>%s</Domain></CycloneDDS>"""
+    return {"CYCLONEDDS_URI": text % more}
+
+
+_LOSSLESS = ("messages", "images", "fan_out")  # measures that count what arrives
+
 CASES = [
     Case(
         "bare_memcpy",
@@ -96,4 +110,35 @@ CASES = [
     ),
     _peer("zeromq_ipc", "zeromq", "ipc", "PUSH and PULL, XPUB_NODROP to 4; 1000 deep, 4 images"),
     _peer("zeromq_tcp", "zeromq", "tcp", "the same on loopback"),
+    _peer("nng_ipc", "nng", "ipc", "pair0, one for each reader; 128 deep, 2 images"),
+    _peer("nng_tcp", "nng", "tcp", "the same on loopback"),
+    _peer(
+        "cyclone_shm",
+        "cyclone",
+        "shm",
+        "reliable, KEEP_LAST, samples lent through iceoryx, WaitSet",
+        environment=_cyclone("<SharedMemory><Enable>true</Enable></SharedMemory>"),
+        needs_roudi=True,
+    ),
+    _peer(
+        "cyclone_udp",
+        "cyclone",
+        "udp",
+        "reliable, KEEP_ALL, UDP on loopback, WaitSet",
+        environment=_cyclone(),
+    ),
+    _peer(
+        "fastdds_datasharing",
+        "fastdds",
+        "datasharing",
+        "reliable, KEEP_ALL, loaned samples, wait_for_unread_message",
+    ),
+    _peer("fastdds_shm", "fastdds", "shm", "the same over its shared-memory transport"),
+    _peer(
+        "lcm",
+        "lcm",
+        "udpm",
+        "udpm with ttl 0",
+        cannot={name: "its publisher never waits, so messages are lost" for name in _LOSSLESS},
+    ),
 ]
