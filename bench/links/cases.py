@@ -13,6 +13,7 @@ class Measure:
     bytes: int
     readers: int = 1
     is_latency: bool = False
+    processors: int = 2  # that the processes are bound to; 0: none, the system chooses
 
     @property
     def key(self):
@@ -21,11 +22,12 @@ class Measure:
 
 MEASURES = [
     Measure("latency_96", "96 B [µs]", 96, is_latency=True),
+    Measure("latency_96_one", "96 B, 1 CPU [µs]", 96, is_latency=True, processors=1),
     Measure("latency_64k", "64 KiB [µs]", 65536, is_latency=True),
     Measure("latency_image", "1.44 MB [µs]", IMAGE, is_latency=True),
     Measure("messages", "96 B [1/s]", 96),
     Measure("images", "1.44 MB [1/s]", IMAGE),
-    Measure("fan_out", "1.44 MB to 4 [1/s]", IMAGE, readers=4),
+    Measure("fan_out", "1.44 MB to 4 [1/s]", IMAGE, readers=4, processors=0),
 ]
 
 
@@ -41,12 +43,15 @@ class Case:
     needs_roudi: bool = False
 
 
-def _bare(name, program, mode, about):
-    return Case("bare_" + name, "bare", program, about, ("mode=" + mode,))
+_POLLS = {"latency_96_one": "polling takes a processor for each"}
 
 
-def _ours(name, sink, source, about):
-    return Case(name, "ours", "ours", about, ("sink=" + sink, "source=" + source))
+def _bare(name, program, mode, about, **more):
+    return Case("bare_" + name, "bare", program, about, ("mode=" + mode,), **more)
+
+
+def _ours(name, sink, source, about, **more):
+    return Case(name, "ours", "ours", about, ("sink=" + sink, "source=" + source), **more)
 
 
 def _peer(name, program, mode, about, **more):
@@ -73,15 +78,32 @@ CASES = [
         "bare",
         "floor_memcpy",
         "one memcpy within a process; images are written, copied and read by one thread",
-        cannot={"fan_out": "one process"},
+        cannot={"fan_out": "one process", "latency_96_one": "one process"},
     ),
-    _bare("shm_polled", "floor_shm", "poll", "ring in shared memory, the reader looks until"),
+    _bare(
+        "shm_polled",
+        "floor_shm",
+        "poll",
+        "ring in shared memory, the reader looks until there is a message",
+        cannot=_POLLS,
+    ),
     _bare("shm_futex", "floor_shm", "futex", "the same, the reader sleeps on a futex"),
     _bare("pipe", "floor_stream", "pipe", "named pipe of 1 MiB, one writev a message, read"),
     _bare("unix", "floor_stream", "unix", "Unix socket, one writev a message, read"),
     _bare("tcp", "floor_stream", "tcp", "TCP on loopback with TCP_NODELAY, one writev, read"),
-    _ours("shm_polled", "shm:{link}?readers={readers}", "shm:{link}?wait=10&spin=1000000", "polls"),
-    _ours("shm_waiting", "shm:{link}?readers={readers}", "shm:{link}?wait=10&spin=0", "sleeps"),
+    _ours(
+        "shm_polled",
+        "shm:{link}?readers={readers}",
+        "shm:{link}?wait=10&spin=1000000",
+        "the reader looks for a second before it sleeps",
+        cannot=_POLLS,
+    ),
+    _ours(
+        "shm_waiting",
+        "shm:{link}?readers={readers}",
+        "shm:{link}?wait=10&spin=0",
+        "the reader sleeps at once",
+    ),
     _ours(
         "unix",
         "unix-listen:@hc_bench_{link}?readers={readers}",
@@ -100,6 +122,7 @@ CASES = [
         "poll",
         "take() until there is one; queue of 256, of 2 images; WAIT_FOR_CONSUMER",
         needs_roudi=True,
+        cannot=_POLLS,
     ),
     _peer(
         "iceoryx_waitset",

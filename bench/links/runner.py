@@ -63,22 +63,19 @@ class Process:
         lines = self.errors.read().decode(errors="replace").strip().splitlines()
         return lines[-1][:100] if lines else "it ended"
 
-    def line(self, deadline):
-        """The next line that is ours: peers print their own between."""
-        while True:
-            line, found, self.pending = self.pending.partition(b"\n")
-            if found:
-                if line == b"ready" or line.startswith(b"{"):
-                    return line.decode()
-                continue
-            self.pending = line
-            left = deadline - time.monotonic()
-            if left <= 0 or not select.select([self.popen.stdout], [], [], left)[0]:
-                raise Failed("no answer")
-            chunk = os.read(self.popen.stdout.fileno(), 65536)
-            if not chunk:
-                raise Failed(self.why())
-            self.pending += chunk
+    def take_line(self):
+        """The next line that is ours, of what has come; peers print theirs between."""
+        while b"\n" in self.pending:
+            line, _, self.pending = self.pending.partition(b"\n")
+            if line == b"ready" or line.startswith(b"{"):
+                return line.decode()
+        return None
+
+    def read(self):
+        chunk = os.read(self.popen.stdout.fileno(), 65536)
+        if not chunk:
+            raise Failed(self.why())
+        self.pending += chunk
 
     def tell(self):
         try:
@@ -118,8 +115,8 @@ def free_ports(count=8, first=[20000]):
 class Runner:
     """A context: what it made is gone when it is left."""
 
-    def __init__(self, programs, seconds, pin):
-        self.programs, self.seconds, self.pin = programs, seconds, pin
+    def __init__(self, programs, seconds):
+        self.programs, self.seconds = programs, seconds
         self.roudi, self.count = None, 0
 
     def __enter__(self):
@@ -147,10 +144,7 @@ class Runner:
         while b"RouDi is ready" not in self.roudi.pending:
             if not select.select([self.roudi.popen.stdout], [], [], deadline - time.monotonic())[0]:
                 raise Failed("RouDi does not start")
-            chunk = os.read(self.roudi.popen.stdout.fileno(), 65536)
-            if not chunk:
-                raise Failed("RouDi: " + self.roudi.why())
-            self.roudi.pending += chunk
+            self.roudi.read()
 
     def stop_roudi(self):
         if self.roudi:
@@ -184,10 +178,10 @@ class Runner:
         processes, failed = [], True
         try:
             for i, role in enumerate(roles):
-                processor = i if self.pin else None
+                processor = i % measure.processors if measure.processors else None
                 command = [program, *role, *common]
                 processes.append(Process(command, case.environment, processor))
-            found = self._measure(processes, measure.is_latency)
+            found = measure_once(processes, measure, self.seconds)
             failed = False
             return found
         finally:
@@ -199,21 +193,38 @@ class Runner:
             if failed and case.needs_roudi:
                 self.stop_roudi()  # it does not clean up after processes that were killed
 
-    def _measure(self, processes, is_latency):
-        deadline = time.monotonic() + PATIENCE
-        for process in processes:
-            process.line(deadline)
-        for process in reversed(processes):
-            process.tell()
-        deadline = time.monotonic() + 2 * self.seconds + PATIENCE
-        first, *others = processes
-        found = json.loads(first.line(deadline))
-        if is_latency:
-            others[0].tell()
-            others[0].line(deadline)
-            first.tell()
-            return found
-        readers = [json.loads(other.line(deadline)) for other in others]
-        found = min(readers, key=lambda reader: reader["per_second"])
-        found["lost"] = sum(reader["lost"] for reader in readers)
+
+def await_line(process, processes, deadline):
+    """The next line of a process; Failed when one of all processes ends before."""
+    outputs = {one.popen.stdout: one for one in processes}
+    while (line := process.take_line()) is None:
+        left = deadline - time.monotonic()
+        ready = select.select(list(outputs), [], [], max(left, 0))[0]
+        if not ready:
+            raise Failed("no answer")
+        for output in ready:
+            outputs[output].read()
+    return line
+
+
+def measure_once(processes, measure, seconds):
+    """The numbers that processes measure, the first of which pings or publishes."""
+    first, *others = processes
+    deadline = time.monotonic() + PATIENCE
+    for process in processes:
+        await_line(process, processes, deadline)
+    for process in reversed(processes):
+        process.tell()
+    deadline = time.monotonic() + 2 * seconds + PATIENCE
+    found = json.loads(await_line(first, processes, deadline))
+    if measure.is_latency:
+        others[0].tell()
+        await_line(others[0], processes, deadline)
+        first.tell()  # to send the last
         return found
+    readers = [json.loads(await_line(other, processes, deadline)) for other in others]
+    found = min(readers, key=lambda reader: reader["per_second"])
+    if found["per_second"] == 0:
+        raise Failed("stalls")
+    found["lost"] = sum(reader["lost"] for reader in readers)
+    return found

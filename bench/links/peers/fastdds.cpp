@@ -2,7 +2,8 @@
 // Fast DDS 2.9, reliable and KEEP_ALL, so that the writer waits; discovery over shared memory. Mode
 // `datasharing`: plain samples are loaned and written where the reader reads them. Mode `shm`: its
 // shared-memory transport, with segments for 8 images. Readers sleep in wait_for_unread_message and
-// take one loaned sample.
+// take one loaned sample. With data sharing a sample counts as read when it is taken, so a fast
+// writer overwrites it while it is read, and the harness refuses it.
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -26,6 +27,7 @@ using bench::Setup;
 using eprosima::fastrtps::Duration_t;
 
 constexpr int kDomain = 17;
+const Duration_t kHeartbeat(0, 1'000'000);  // [ns]
 constexpr std::uint32_t kHeadBytes = 4;  // of a serialised payload: how it is encoded
 
 /// Some bytes, of a number that is the same for all samples of a topic.
@@ -97,7 +99,7 @@ Qos with_policies(Qos qos, const Setup& setup) {
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = Duration_t(10, 0);
   qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
-  const int depth = setup.is_small() ? 1000 : 4;
+  const int depth = setup.is_small() ? 1000 : setup.mode == "shm" ? 4 : 16;
   qos.resource_limits().max_samples = qos.resource_limits().max_samples_per_instance = depth;
   qos.resource_limits().allocated_samples = depth;
   qos.resource_limits().max_instances = 1;
@@ -113,6 +115,8 @@ class Publisher final : public bench::Publisher {
   explicit Publisher(const Setup& setup) : setup_(setup), node_(setup) {
     auto* publisher = node_.participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
     auto qos = with_policies(dds::DATAWRITER_QOS_DEFAULT, setup);
+    // What a full writer waits for; the default of 3 s would let it fail.
+    qos.reliable_writer_qos().times.heartbeatPeriod = kHeartbeat;
     writer_ = publisher->create_datawriter(node_.topic, qos);
     if (writer_ == nullptr) bench::fail("Fast DDS creates no writer");
   }
@@ -152,6 +156,7 @@ class Subscriber final : public bench::Subscriber {
   explicit Subscriber(const Setup& setup) : bytes_(setup.bytes), node_(setup) {
     auto* subscriber = node_.participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
     auto qos = with_policies(dds::DATAREADER_QOS_DEFAULT, setup);
+    qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
     reader_ = subscriber->create_datareader(node_.topic, qos);
     if (reader_ == nullptr) bench::fail("Fast DDS creates no reader");
   }
