@@ -176,7 +176,6 @@ def plot(results, cases, measures, path):
     ]
     colors = {"ours": "#c0392b", "peer": "#2c6fbb", "bare": "#999999"}
     for measure in measures:
-        title = measure.title if measure.is_latency else measure.title
         kind = "latency of " if measure.is_latency else "throughput of "
         lines = []
         for case in cases:
@@ -187,7 +186,7 @@ def plot(results, cases, measures, path):
         if not lines:
             script.append("set multiplot next")
             continue
-        script.append("set title '%s%s'" % (kind, title))
+        script.append("set title '%s%s'" % (kind, measure.title))
         script.append("$data << EOD\n%s\nEOD" % "\n".join(lines))
         script.append(
             "plot [-0.6:%g] $data using 0:2:3:xtic(1) with boxes lc rgb variable"

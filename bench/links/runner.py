@@ -13,7 +13,7 @@ import subprocess
 import tempfile
 import time
 
-PATIENCE = 10  # until processes are ready, and until they end after their time [s]
+PATIENCE = 6  # until processes are ready, and until they end after their time [s]
 ROUDI_CONFIG = """[general]
 version = 1
 [[segment]]
