@@ -35,15 +35,33 @@ class Failed(Exception):
     """A case did not do a measure; says why in a few words."""
 
 
-def _die_with_parent():
-    pr_set_pdeathsig = 1
-    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+def _shared_memory():
+    return {path for name in SHARED_MEMORY for path in glob.glob("/dev/shm/" + name)}
+
+
+def start_cleaner(folder):
+    """A process that cleans up when this one ends, however it does, or closes the pipe: that and
+    its process number are returned."""
+    before = _shared_memory()
+    reading, writing = os.pipe()
+    process = os.fork()
+    if process:
+        os.close(reading)
+        return writing, process
+    os.setsid()  # what interrupts the others does not interrupt it
+    os.close(writing)
+    os.read(reading, 1)
+    shutil.rmtree(folder, ignore_errors=True)
+    for path in _shared_memory() - before:
+        os.unlink(path)
+    os._exit(0)
 
 
 class Process:
-    def __init__(self, command, environment, processor):
+    def __init__(self, command, environment={}, processor=None, last_signal=signal.SIGKILL):
         def prepare():
-            _die_with_parent()
+            pr_set_pdeathsig = 1  # when the parent dies, however it does
+            ctypes.CDLL(None).prctl(pr_set_pdeathsig, last_signal)
             if processor is not None:
                 os.sched_setaffinity(0, {processor % os.cpu_count()})
 
@@ -121,25 +139,21 @@ class Runner:
 
     def __enter__(self):
         self.folder = tempfile.mkdtemp(prefix="hc_bench_")
-        self.before = self._shared_memory()
+        self.cleaner = start_cleaner(self.folder)
         return self
 
     def __exit__(self, *_):
         self.stop_roudi()
-        shutil.rmtree(self.folder, ignore_errors=True)
-        for path in self._shared_memory() - self.before:
-            os.unlink(path)
-
-    @staticmethod
-    def _shared_memory():
-        return {path for name in SHARED_MEMORY for path in glob.glob("/dev/shm/" + name)}
+        os.close(self.cleaner[0])
+        os.waitpid(self.cleaner[1], 0)
 
     def start_roudi(self):
         config = os.path.join(self.folder, "roudi.toml")
         with open(config, "w") as file:
             file.write(ROUDI_CONFIG)
         # Without monitoring, which takes a process for dead that a busy machine kept waiting.
-        self.roudi = Process(["iox-roudi", "-c", config, "-m", "off"], {}, None)
+        command = ["iox-roudi", "-c", config, "-m", "off"]
+        self.roudi = Process(command, last_signal=signal.SIGTERM)
         deadline = time.monotonic() + PATIENCE
         while b"RouDi is ready" not in self.roudi.pending:
             if not select.select([self.roudi.popen.stdout], [], [], deadline - time.monotonic())[0]:
