@@ -111,7 +111,7 @@ class Publisher final : public bench::Publisher {
       auto& sleeps = memory_.ring->publisher_sleeps.count;
       if (memory_.sleeps) sleeps.store(1);
       std::uint32_t most = 0;
-      Counter* slowest = nullptr;
+      Counter* slowest = &memory_.ring->read[0].count;
       for (int i = 0; i < readers_; ++i) {
         auto& read = memory_.ring->read[i].count;
         std::uint32_t behind = published_ - read.load();

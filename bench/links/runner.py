@@ -2,6 +2,7 @@
 """Runs the processes of one case and measure, and RouDi for iceoryx; leaves nothing behind."""
 
 import ctypes
+import fcntl
 import glob
 import json
 import os
@@ -10,6 +11,7 @@ import shutil
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -138,6 +140,13 @@ class Runner:
         self.roudi, self.count = None, 0
 
     def __enter__(self):
+        # Two at once would measure each other, and there can be one RouDi only.
+        self.lock = open(os.path.join(tempfile.gettempdir(), "hc_bench.lock"), "a")
+        try:
+            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            print("waiting for another benchmark to end", file=sys.stderr)
+            fcntl.flock(self.lock, fcntl.LOCK_EX)
         self.folder = tempfile.mkdtemp(prefix="hc_bench_")
         self.cleaner = start_cleaner(self.folder)
         return self

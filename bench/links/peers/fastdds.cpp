@@ -28,7 +28,7 @@ using eprosima::fastrtps::Duration_t;
 
 constexpr int kDomain = 17;
 const Duration_t kHeartbeat(0, 1'000'000);  // [ns]
-constexpr std::uint32_t kHeadBytes = 4;  // of a serialised payload: how it is encoded
+constexpr std::uint32_t kHeadBytes = 4;     // of a serialised payload: how it is encoded
 
 /// Some bytes, of a number that is the same for all samples of a topic.
 class Bytes final : public dds::TopicDataType {
