@@ -172,7 +172,7 @@ def plot(results, cases, measures, path):
         "set output '%s'" % path,
         "set multiplot layout %d,1" % len(measures),
         "set style fill solid; set boxwidth 0.7; set logscale y; set grid y; unset key",
-        "set xtics rotate by -35 noenhanced",
+        "set xtics rotate by -35 noenhanced; set rmargin 16",
     ]
     colors = {"ours": "#c0392b", "peer": "#2c6fbb", "bare": "#999999"}
     for measure in measures:
