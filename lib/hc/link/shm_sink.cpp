@@ -14,6 +14,7 @@
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
 #include <hc/link/unix.h>
+#include <hc/wire/header_memo.h>
 
 namespace hc::internal {
 namespace {
@@ -91,6 +92,7 @@ class ShmSink final : public Sink {
   std::array<std::uint64_t, kCells> ahead_{};  // bytes in slots, sent before the message of a cell
   std::uint64_t slot_bytes_ = 0;               // the same of the next message
   std::uint64_t taken_ = 0;                    // by all, at the last look
+  HeaderMemo memo_;
   SmallBytes small_;
   std::size_t present_ = 0;  // readers that still take messages
   bool begun_ = false, ended_ = false;
@@ -284,14 +286,16 @@ Status ShmSink::send(const Message& message) {
     if (keep_ == 0)
       if (auto came = await_readers(1); !came) return came;
   }
-  alignas(std::uint64_t) std::array<char, Cell::kTextBytes + kMaxHeaderBytes> text;
+  // The header's line and the elements behind it, if they are small, in words.
+  std::array<std::uint64_t, Cell::kWords + kMaxHeaderBytes / sizeof(std::uint64_t)> words;
+  char* text = reinterpret_cast<char*>(words.data());
   auto header_bytes =
-      format_header(message.header, std::span<char, kMaxHeaderBytes>(text.data(), kMaxHeaderBytes));
+      memo_.format(message.header, std::span<char, kMaxHeaderBytes>(text, kMaxHeaderBytes));
   auto bytes = message.elements.size();
   auto text_bytes = header_bytes;
   Slot* slot = nullptr;
   if (header_bytes + bytes <= Cell::kTextBytes) {
-    if (bytes > 0) std::memcpy(text.data() + header_bytes, message.elements.data(), bytes);
+    if (bytes > 0) std::memcpy(text + header_bytes, message.elements.data(), bytes);
     text_bytes += bytes;
   } else {
     if (is_too_far_ahead(bytes)) {
@@ -313,8 +317,6 @@ Status ShmSink::send(const Message& message) {
   ahead_[published_ % kCells] = slot_bytes_;
   if (slot != nullptr) slot_bytes_ += bytes;
   slot_of_cell_[published_ % kCells] = slot;
-  std::array<std::uint64_t, Cell::kWords> words;
-  std::memcpy(words.data(), text.data(), text_bytes);
   publish({words.data(), (text_bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t)},
           bytes << 16 | header_bytes, slot);
   ++traffic_.messages;

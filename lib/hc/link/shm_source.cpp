@@ -11,6 +11,7 @@
 #include <hc/link/transports.h>
 #include <hc/link/unix.h>
 #include <hc/wire/framing.h>
+#include <hc/wire/header_memo.h>
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <emmintrin.h>
@@ -125,6 +126,7 @@ class ShmSource final : public Source {
   bool armed_ = false;
   bool publisher_gone_ = false;
   bool told_ = false;  // that too many are held
+  HeaderMemo memo_;
   SmallBytes small_;
   Traffic traffic_;
 };
@@ -187,7 +189,7 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
   std::string_view line(cell.text(), cell.header_bytes);
   if (!line.ends_with('\n')) return damaged("a header without its end");
   line.remove_suffix(1);
-  auto parsed = parse_header(line, options_.limits, traffic_.bytes);
+  auto parsed = memo_.parse(line, options_.limits, traffic_.bytes);
   if (!parsed) return parsed.error();
   const Header& header = *parsed;
   bool right = is_compressed(header) ? cell.bytes <= options_.limits.element_bytes
