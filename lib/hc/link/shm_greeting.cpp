@@ -126,7 +126,8 @@ Result<std::uint64_t> parse_keep(std::string_view text) {
 Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page, int stop) {
   auto page_descriptor = page.read_only();
   if (!page_descriptor) return page_descriptor.error();
-  std::string words = keep.empty() ? "reader" : "keep=" + std::string(keep);
+  std::string words = keep.empty() ? "" : "keep=" + std::string(keep) + " ";
+  words += can_order_everywhere() ? "orders=1" : "orders=0";
   if (auto sent = send_greeting(socket, words, page_descriptor->get()); !sent) return sent.error();
   HC_CRASH_POINT("reader greeted");
   auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
@@ -146,7 +147,7 @@ Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page,
   auto memory = SharedMemory::map(std::move(greeting->memory), *bytes);
   if (!memory) return malformed(memory.error().detail);
   HC_CRASH_POINT("reader has memory");
-  return Offer{*begin, *kept, std::move(*memory)};
+  return Offer{*begin, *kept, word(greeting->text, "orders") == "1", std::move(*memory)};
 }
 
 Result<Hello> take_hello(int socket, std::uint64_t otherwise) {
@@ -159,17 +160,18 @@ Result<Hello> take_hello(int socket, std::uint64_t otherwise) {
     if (!keep) return malformed(keep.error().detail);
     hello.keep = *keep;
   }
+  hello.orders = word(greeting->text, "orders") == "1";
   auto page = SharedMemory::map(std::move(greeting->memory), kPageBytes);
   if (!page) return malformed(page.error().detail);
   hello.page = std::move(*page);
   return hello;
 }
 
-Status answer(int socket, std::uint64_t begin, std::uint64_t keep, std::uint64_t bytes,
-              int read_only_memory) {
+Status answer(int socket, const Offer& offer, std::uint64_t bytes, int read_only_memory) {
   return send_greeting(socket,
-                       "bytes=" + std::to_string(bytes) + " begin=" + std::to_string(begin) +
-                           " keep=" + std::to_string(keep),
+                       "bytes=" + std::to_string(bytes) + " begin=" + std::to_string(offer.begin) +
+                           " keep=" + std::to_string(offer.keep) +
+                           (offer.orders ? " orders=1" : " orders=0"),
                        read_only_memory);
 }
 

@@ -3,9 +3,12 @@
 // How a reader and a publisher of shared memory meet, over a Unix socket: each says one line of
 // text and hands over its memory. Internal.
 //
-//   reader:     MTP-SHM/1 keep=all            with its page
-//   publisher:  MTP-SHM/1 bytes=N begin=P keep=K  with its memory, or
+//   reader:     MTP-SHM/1 keep=all orders=1                with its page
+//   publisher:  MTP-SHM/1 bytes=N begin=P keep=K orders=1  with its memory, or
 //               MTP-SHM/1 refused: WHY
+//
+// The reader leaves keep out to have what the publisher has chosen. orders=1: it can order stores
+// everywhere, and the publisher relies on that ("wake" in shm_layout.h).
 //
 // From then on the publisher says a byte when the reader has asked to be woken so; the reader ends
 // its own direction when it takes no more, and the connection when it holds no more.
@@ -20,8 +23,8 @@ namespace hc::internal {
 
 /// What a reader asks for.
 struct Hello {
-  std::uint64_t keep =
-      0;  ///< newest messages that wait for it at most; 0: all, the publisher waits
+  std::uint64_t keep = 0;  ///< newest messages that wait for it; 0: all, the publisher waits
+  bool orders = false;     ///< it can order_everywhere()
   SharedMemory page;
 };
 
@@ -29,7 +32,8 @@ struct Hello {
 struct Offer {
   std::uint64_t begin = 0;  ///< position of the first message for this reader
   std::uint64_t keep = 0;   ///< what is kept for it, as in Hello
-  SharedMemory memory;
+  bool orders = false;      ///< the reader has to order_everywhere() before it sleeps
+  SharedMemory memory;      ///< as the reader maps it
 };
 
 /// The Unix socket where `shm:NAME` is met: abstract, so that nothing is left of it.
@@ -48,9 +52,9 @@ Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page,
 /// Errors: Malformed, Closed.
 Result<Hello> take_hello(int socket, std::uint64_t otherwise);
 
-/// Hands the memory over; never waits. Errors: Closed, System.
-Status answer(int socket, std::uint64_t begin, std::uint64_t keep, std::uint64_t bytes,
-              int read_only_memory);
+/// Hands the memory over, of `bytes`, with what else the offer says; never waits. Errors: Closed,
+/// System.
+Status answer(int socket, const Offer& offer, std::uint64_t bytes, int read_only_memory);
 void refuse(int socket, std::string_view why);
 
 /// How many messages wait: "all", which is 0, "latest" or a number from 1 on. Errors: Usage.

@@ -13,6 +13,7 @@
 // the processor: both sides put a sequentially consistent fence in between. There are three such
 // pairs, named where they stand in the code:
 //   wake:  publish, look whether a reader sleeps    | say that one sleeps, look for a message
+//          (where the kernel can, the sleeper orders both sides, and publishing needs no fence)
 //   room:  say that one waits for room, look for it | give room, look whether it is waited for
 //   hold:  withdraw a cell, look who holds its slot | hold a slot, look whether it is withdrawn
 
@@ -33,8 +34,12 @@ constexpr std::size_t kLine = 64;  ///< what caches exchange [byte]; also the al
 constexpr std::uint64_t kCells = 1024;
 constexpr std::size_t kCellBytes = 256;
 constexpr std::uint64_t kPageBytes = 4096;  ///< of a reader's page, and of the publisher's head
-constexpr std::size_t kMostHeld = 64;       ///< slots that one reader may hold
-constexpr std::size_t kMostReaders = 64;    ///< of one publisher
+/// Both sides fetch the start of a cell so many messages ahead: it comes from the other's cache,
+/// which takes longer than all else.
+constexpr std::uint64_t kFetchAhead = 8;
+constexpr std::size_t kFetchBytes = 2 * kLine;
+constexpr std::size_t kMostHeld = 64;     ///< slots that one reader may hold
+constexpr std::size_t kMostReaders = 64;  ///< of one publisher
 
 /// A message, or where its elements are.
 struct alignas(kLine) Cell {

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <linux/futex.h>
+#include <linux/membarrier.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -104,6 +105,21 @@ Result<Descriptor> SharedMemory::read_only() const {
       system_call("open", path, [&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
   if (!number) return number.error();
   return Descriptor(*number);
+}
+
+bool allow_ordering() {
+  return ::syscall(SYS_membarrier, MEMBARRIER_CMD_REGISTER_GLOBAL_EXPEDITED, 0, 0) == 0;
+}
+
+bool can_order_everywhere() {
+  auto commands = ::syscall(SYS_membarrier, MEMBARRIER_CMD_QUERY, 0, 0);
+  return commands > 0 && (commands & MEMBARRIER_CMD_GLOBAL_EXPEDITED) != 0;
+}
+
+void order_everywhere() {
+  std::atomic_thread_fence(std::memory_order_seq_cst);
+  ::syscall(SYS_membarrier, MEMBARRIER_CMD_GLOBAL_EXPEDITED, 0, 0);
+  std::atomic_thread_fence(std::memory_order_seq_cst);
 }
 
 void futex_wait(const SharedWord<std::uint32_t>& word, std::uint32_t value,

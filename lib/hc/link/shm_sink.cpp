@@ -47,7 +47,7 @@ class ShmSink final : public Sink {
   ~ShmSink() override { end(); }
 
   Status begin(ListeningSocket socket, const LinkOptions& options) {
-    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_, options);
+    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_, allow_ordering(), options);
     if (!readers) return readers.error();
     readers_ = std::move(*readers);
     return {};
@@ -60,6 +60,7 @@ class ShmSink final : public Sink {
 
  private:
   void refresh();
+  void refresh_for_sure();
   Status await_readers(std::size_t count);
   Status wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room);
   Status make_cell_free();
@@ -95,6 +96,7 @@ class ShmSink final : public Sink {
   HeaderMemo memo_;
   SmallBytes small_;
   std::size_t present_ = 0;  // readers that still take messages
+  bool all_order_ = true;    // readers order both sides before they sleep
   bool begun_ = false, ended_ = false;
   Traffic traffic_;
 };
@@ -103,9 +105,18 @@ class ShmSink final : public Sink {
 void ShmSink::refresh() {
   if (!readers_->changed()) return;
   readers_->refresh();
-  present_ =
-      static_cast<std::size_t>(std::count_if(readers_->current().begin(), readers_->current().end(),
-                                             [](const auto& reader) { return !reader->left(); }));
+  const auto& readers = readers_->current();
+  present_ = static_cast<std::size_t>(std::count_if(
+      readers.begin(), readers.end(), [](const auto& reader) { return !reader->left(); }));
+  all_order_ = std::all_of(readers.begin(), readers.end(),
+                           [](const auto& reader) { return reader->orders; });
+}
+
+/// The same for sure, of all who could have been told where they begin; before one takes back what
+/// they are to have.
+void ShmSink::refresh_for_sure() {
+  std::atomic_thread_fence(memory_order_seq_cst);
+  refresh();
 }
 
 /// The position below which every reader that loses nothing has taken all.
@@ -202,8 +213,7 @@ void ShmSink::withdraw(std::uint64_t end) {
 
 /// Finds out which slots nobody refers to or holds any more.
 void ShmSink::sweep() {
-  std::atomic_thread_fence(memory_order_seq_cst);  // hold
-  refresh();
+  refresh_for_sure();  // hold
   std::vector<std::uint64_t> held;
   for (const auto& reader : readers_->current())
     for (const auto& slot : reader->page().held)
@@ -223,6 +233,7 @@ Slot* ShmSink::reserve(Slot* slot) {
 /// A slot, without taking from a reader what it wants; null when there is none.
 Slot* ShmSink::take_slot(std::uint64_t bytes) {
   if (Slot* slot = slots_->reuse(bytes); slot != nullptr) return slot;
+  refresh_for_sure();
   withdraw(wanted_by_none());
   sweep();
   if (Slot* slot = slots_->reuse(bytes); slot != nullptr) return slot;
@@ -265,6 +276,7 @@ Status ShmSink::place(const Message& message, Slot*& slot) {
 
 /// Sees that the next message has a cell.
 Status ShmSink::make_cell_free() {
+  refresh_for_sure();
   withdraw(std::min(taken_by_all(), published_ - kCells + kBatch));
   if (published_ - oldest_ < kCells) return {};
   // Half of the ring at once, since to wake is dear.
@@ -326,6 +338,9 @@ Status ShmSink::send(const Message& message) {
 
 void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot) {
   Cell& cell = cells_[published_ % kCells];
+  const Cell& later = cells_[(published_ + kFetchAhead) % kCells];
+  for (std::size_t line = 0; line < kFetchBytes; line += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&later) + line, 1);
   // Who was overtaken and reads this cell now finds `oldest` beyond it afterwards.
   std::atomic_thread_fence(memory_order_release);
   cell.slot.store(slot == nullptr ? 0 : slot->begin, memory_order_relaxed);
@@ -343,7 +358,8 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
 }
 
 void ShmSink::wake_readers() {
-  std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  if (!all_order_) std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  std::atomic_signal_fence(memory_order_seq_cst);
   refresh();
   bool sleeps = false;
   for (const auto& reader : readers_->current()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A reader of `shm:NAME`.
+#include <sched.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -31,7 +32,11 @@ constexpr std::uint64_t kLookEvery = 64;  // messages
 /// How long one sleeps on the futex, which is quick to wake but hears of nothing else, before one
 /// waits on the socket.
 constexpr std::chrono::milliseconds kFutexTime{100};
-constexpr std::chrono::milliseconds kSpinLook{1};  // how often one who spins looks at all else
+/// About as long as it takes to sleep and wake: who spins so long never loses more than that.
+constexpr std::int64_t kDefaultSpin = 20;           // [µs]
+constexpr std::chrono::microseconds kSpinAlone{5};  // until one who spins lets others run
+constexpr int kSpinRounds = 32;                     // between two looks at the clock
+constexpr std::chrono::milliseconds kSpinLook{1};   // how often one who spins looks at all else
 
 constexpr std::size_t kCopyHold = kMostHeld - 1;
 constexpr std::size_t kNoHold = kMostHeld;
@@ -78,11 +83,12 @@ struct Attachment {
 
 class ShmSource final : public Source {
  public:
-  ShmSource(std::shared_ptr<Attachment> attachment, std::uint64_t begin, std::uint64_t keep,
+  ShmSource(std::shared_ptr<Attachment> attachment, const Offer& offer,
             std::chrono::microseconds spin, LinkOptions options)
       : attachment_(std::move(attachment)),
-        cursor_(begin),
-        keep_(keep),
+        cursor_(offer.begin),
+        keep_(offer.keep),
+        orders_(offer.orders),
         spin_(spin),
         options_(std::move(options)) {}
 
@@ -112,6 +118,7 @@ class ShmSource final : public Source {
   bool copy(Copy& cell) const;
   Status deliver(const Copy& cell, Message& message, std::size_t hold);
   std::size_t take_hold(std::uint64_t slot);
+  void fetch_ahead();
   [[nodiscard]] bool is_withdrawn() const;
   void finish_cell(bool has_slot);
   void arm(bool on_socket);
@@ -120,6 +127,8 @@ class ShmSource final : public Source {
   std::shared_ptr<Attachment> attachment_;
   std::uint64_t cursor_;
   std::uint64_t keep_;
+  bool orders_;
+  std::uint64_t known_ = 0;  // positions below are known to be published
   std::chrono::microseconds spin_;
   LinkOptions options_;
   std::uint32_t arming_ = 0;
@@ -238,6 +247,7 @@ Result<Got> ShmSource::take(Message& message) {
     auto stamp = attachment_->cell(cursor_).stamp.load(memory_order_acquire);
     if (stamp <= cursor_) return has_ended() ? Got::End : Got::Nothing;
     if (stamp == cursor_ + 1) {
+      fetch_ahead();
       Copy cell;
       if (!copy(cell)) return damaged("the sizes of a cell");
       auto hold = cell.slot == 0 ? kNoHold : take_hold(cell.slot);
@@ -257,6 +267,16 @@ Result<Got> ShmSource::take(Message& message) {
     skip_to(oldest);
   }
   return Got::Nothing;  // the publisher is faster; wait() comes back at once
+}
+
+/// Has the cells that are to come brought here, of those that are there.
+void ShmSource::fetch_ahead() {
+  if (cursor_ >= known_ && cursor_ % kFetchAhead == 0)
+    known_ = attachment_->head().published.load(memory_order_relaxed);
+  if (cursor_ + kFetchAhead >= known_) return;
+  const Cell& later = attachment_->cell(cursor_ + kFetchAhead);
+  for (std::size_t line = 0; line < kFetchBytes; line += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&later) + line);
 }
 
 bool ShmSource::is_withdrawn() const {
@@ -282,7 +302,10 @@ void ShmSource::arm(bool on_socket) {
   attachment_->own().armed.store(value, memory_order_relaxed);
   armed_ = true;
   HC_CRASH_POINT("reader armed");
-  std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  if (orders_)  // wake
+    order_everywhere();
+  else
+    std::atomic_thread_fence(memory_order_seq_cst);
 }
 
 void ShmSource::disarm() {
@@ -308,10 +331,11 @@ Result<bool> ShmSource::wait(int stop, std::chrono::milliseconds timeout) {
     return stopped ? Status() : stopped.error();
   };
   for (auto next_look = begin + kSpinLook; passed() < spin_;) {
-    for (int i = 0; i < 64; ++i) {
+    for (int i = 0; i < kSpinRounds; ++i) {
       if (is_ready()) return true;
       relax();
     }
+    if (passed() > kSpinAlone) ::sched_yield();
     if (is_over()) return false;
     if (Clock::now() < next_look) continue;
     if (auto looked = look(); !looked) return looked.error();
@@ -352,7 +376,7 @@ Result<bool> ShmSource::wait(int stop, std::chrono::milliseconds timeout) {
 Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOptions& options) {
   auto wait = number_option(uri, "wait", 0);
   if (!wait) return wait.error();
-  auto spin = number_option(uri, "spin", 0);
+  auto spin = number_option(uri, "spin", kDefaultSpin);
   if (!spin) return spin.error();
   auto keep = uri.option("keep", "");
   if (!keep.empty())
@@ -370,10 +394,9 @@ Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOption
   auto offer = greet(attachment->socket.get(), keep, attachment->page, options.stop);
   if (!offer) return offer.error();
   attachment->memory = std::move(offer->memory);
-  auto begin = offer->begin;
-  attachment->own().cursor.store(begin, memory_order_release);
+  attachment->own().cursor.store(offer->begin, memory_order_release);
   return std::unique_ptr<Source>(std::make_unique<ShmSource>(
-      std::move(attachment), begin, offer->keep, std::chrono::microseconds(*spin), options));
+      std::move(attachment), *offer, std::chrono::microseconds(*spin), options));
 }
 
 }  // namespace hc::internal
