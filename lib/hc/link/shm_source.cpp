@@ -94,6 +94,7 @@ class ShmSource final : public Source {
 
   ~ShmSource() override {
     attachment_->own().cursor.store(ReaderPage::kLeft, memory_order_release);
+    HC_CRASH_POINT("reader left");
     ::shutdown(attachment_->socket.get(), SHUT_WR);
   }
 
@@ -250,6 +251,7 @@ Result<Got> ShmSource::take(Message& message) {
       fetch_ahead();
       Copy cell;
       if (!copy(cell)) return damaged("the sizes of a cell");
+      HC_CRASH_POINT("reader copied");
       auto hold = cell.slot == 0 ? kNoHold : take_hold(cell.slot);
       // Who loses nothing is waited for; others have to see that they were not overtaken meanwhile.
       if (keep_ == 0 || !is_withdrawn()) {
