@@ -3,6 +3,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstring>
@@ -79,7 +80,9 @@ Result<Greeting> take_greeting(int socket) {
   }
   std::string_view text(bytes.data(), static_cast<std::size_t>(*size));
   if (text.empty()) return Error{Code::Closed, "shm: the other side has gone"};
-  if (!text.starts_with(kGreeting) || text.find('\n') != text.size() - 1)
+  // Its words are shown to people, so they are printable.
+  auto end = std::find_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; });
+  if (!text.starts_with(kGreeting) || end != text.end() - 1 || *end != '\n')
     return malformed("what answers is no end of a shared memory link");
   if (count > 1 || (header.msg_flags & MSG_CTRUNC) != 0)
     return malformed("more was handed over than one memory");

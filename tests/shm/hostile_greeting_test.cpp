@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who answers at a shared memory link's socket with what it should not: one clear error, and those
+// who keep the rules go on.
+#include <fcntl.h>
+
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
+#include <mutex>
+
+#include "checked_message.h"
+#include "hostile_peer.h"
+
+namespace hc::testing {
+namespace {
+
+using internal::Descriptor;
+using internal::kLeastMemory;
+using internal::kPageBytes;
+
+/// What is handed over, and what is said of it.
+struct Case {
+  std::string name;
+  std::function<std::vector<Descriptor>(std::uint64_t bytes)> make;
+  std::string error;
+};
+
+std::vector<Descriptor> one(Descriptor descriptor) {
+  std::vector<Descriptor> all;
+  all.push_back(std::move(descriptor));
+  return all;
+}
+Descriptor open_file(const char* path, int flags) {
+  return Descriptor(::open(path, flags | O_CLOEXEC));
+}
+Descriptor reopen(const Descriptor& descriptor, int flags) {
+  return open_file(("/proc/self/fd/" + std::to_string(descriptor.get())).c_str(), flags);
+}
+
+const std::vector<Case>& memories() {
+  static const std::vector<Case> kMemories = {
+      {"none", [](auto) { return std::vector<Descriptor>(); }, "is none that can be sealed"},
+      {"two",
+       [](auto bytes) {
+         auto both = one(make_memfd(bytes, kSealed));
+         both.push_back(make_memfd(bytes, kSealed));
+         return both;
+       },
+       "more was handed over than one memory"},
+      {"many",
+       [](auto bytes) {
+         std::vector<Descriptor> all(12);
+         for (auto& each : all) each = make_memfd(bytes, kSealed);
+         return all;
+       },
+       "more was handed over than one memory"},
+      {"file",
+       [](auto bytes) {
+         Descriptor file(::open("/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
+         EXPECT_EQ(::ftruncate(file.get(), static_cast<off_t>(bytes)), 0);
+         return one(std::move(file));
+       },
+       "the memory that was handed over "},
+      {"unsealed", [](auto bytes) { return one(make_memfd(bytes, 0)); }, "could change its size"},
+      {"growing", [](auto bytes) { return one(make_memfd(bytes, F_SEAL_SHRINK | F_SEAL_SEAL)); },
+       "could change its size"},
+      {"shrinking",
+       [](auto bytes) {
+         auto memory = make_memfd(bytes, F_SEAL_GROW);
+         EXPECT_EQ(::ftruncate(memory.get(), 0), 0);
+         return one(std::move(memory));
+       },
+       "could change its size"},
+      {"short", [](auto bytes) { return one(make_memfd(bytes - kPageBytes, kSealed)); },
+       " bytes, not "},
+      {"empty", [](auto) { return one(make_memfd(0, kSealed)); }, "has 0 bytes, not "},
+      {"long", [](auto bytes) { return one(make_memfd(bytes + 1, kSealed)); }, " bytes, not "},
+      {"zero", [](auto) { return one(open_file("/dev/zero", O_RDWR)); },
+       "is none that can be sealed"},
+      {"folder", [](auto) { return one(open_file("/", O_RDONLY)); }, "is none that can be sealed"},
+      {"pipe",
+       [](auto) {
+         std::array<int, 2> ends{};
+         EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+         Descriptor other(ends[1]);
+         return one(Descriptor(ends[0]));
+       },
+       "is none that can be sealed"},
+      {"socket", [](auto) { return one(Descriptor(::socket(AF_UNIX, SOCK_STREAM, 0))); },
+       "is none that can be sealed"},
+      {"path", [](auto bytes) { return one(reopen(make_memfd(bytes, kSealed), O_PATH)); },
+       "is none that can be sealed"},
+      {"unreadable", [](auto bytes) { return one(reopen(make_memfd(bytes, kSealed), O_WRONLY)); },
+       "cannot be mapped"},
+  };
+  return kMemories;
+}
+
+std::vector<int> numbers_of(const std::vector<Descriptor>& descriptors) {
+  std::vector<int> numbers;
+  for (const auto& each : descriptors) numbers.push_back(each.get());
+  return numbers;
+}
+
+struct Text {
+  std::string text, error;
+};
+
+TEST(HostilePublisher, HandsOverWhatIsNoSealedMemory) {
+  for (const auto& each : memories()) {
+    auto name = fresh_name();
+    FakePublisher publisher(name);
+    auto memory = each.make(kLeastMemory);
+    auto source = publisher.open(name, offer(kLeastMemory), numbers_of(memory));
+    ASSERT_FALSE(source) << each.name;
+    EXPECT_EQ(source.error().code, Code::Malformed) << each.name;
+    EXPECT_NE(source.error().detail.find(each.error), std::string::npos)
+        << each.name << ": " << source.error().detail;
+  }
+}
+
+TEST(HostilePublisher, MayHandOverMemoryThatCanOnlyBeRead) {
+  auto name = fresh_name();
+  FakePublisher publisher(name);
+  auto memory = reopen(make_memfd(kLeastMemory, kSealed), O_RDONLY);
+  EXPECT_TRUE(publisher.open(name, offer(kLeastMemory), {memory.get()}));
+}
+
+TEST(HostilePublisher, SaysWhatIsNoOffer) {
+  const std::string stranger = "no end of a shared memory link", none = "no offer: ";
+  const std::vector<Text> texts = {
+      {"HTTP/1.1 400 Bad Request\r\n\r\n", stranger},
+      {"MTP-SHM/2 bytes=1 begin=0 keep=0\n", stranger},
+      {"MTP-SHM/1 bytes=", stranger},
+      {"MTP-SHM/1 bytes=2000000 begin=0 keep=0", stranger},
+      {"MTP-SHM/1 x\nMTP-SHM/1 y\n", stranger},
+      {"MTP-SHM/1 refused: \x1b[2J\n", stranger},
+      {std::string("MTP-SHM/1 refused: \0\n", 21), stranger},
+      {std::string(100'000, 'x'), stranger},
+      {"\n", stranger},
+      {"MTP-SHM/1 " + std::string(1000, 'x') + "\n", stranger},
+      {"MTP-SHM/1 \n", none},
+      {offer(0), none},
+      {offer(kLeastMemory - kPageBytes), none},
+      {offer((std::uint64_t{1} << 40) + 1), none},
+      {offer(std::numeric_limits<std::uint64_t>::max()), none},
+      {"MTP-SHM/1 bytes=18446744073709551616 begin=0 keep=0\n", none},
+      {"MTP-SHM/1 bytes=-1 begin=0 keep=0\n", none},
+      {"MTP-SHM/1 bytes=2000000x begin=0 keep=0\n", none},
+      {"MTP-SHM/1 bytes=2000000 begin= keep=0\n", none},
+      {"MTP-SHM/1 bytes=2000000 keep=0\n", none},
+      {"MTP-SHM/1 bytes=2000000 begin=0\n", none},
+      {"MTP-SHM/1 refused: it is Sunday\n", "the publisher refused: it is Sunday"},
+  };
+  for (const auto& each : texts) {
+    auto name = fresh_name();
+    FakePublisher publisher(name);
+    auto memory = make_memfd(kLeastMemory, kSealed);
+    auto source = publisher.open(name, each.text, {memory.get()});
+    ASSERT_FALSE(source) << each.text;
+    EXPECT_NE(source.error().detail.find(each.error), std::string::npos)
+        << each.text << ": " << source.error().detail;
+    for (char letter : source.error().detail) EXPECT_GE(letter, ' ') << source.error().detail;
+  }
+}
+
+TEST(HostilePublisher, GoesOrSaysNothing) {
+  auto name = fresh_name();
+  FakePublisher publisher(name);
+  auto left = publisher.open(name, "", {}, true);
+  ASSERT_FALSE(left);
+  EXPECT_EQ(left.error().text(), "Closed: shm: the other side has gone");
+  auto silent = publisher.open(name, "", {});  // waits for as long as an answer may take
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error().text(), "Closed: shm: the publisher does not answer");
+}
+
+/// A publisher with a reader that keeps the rules, and what the publisher's log says.
+class HostileReader : public ::testing::Test {
+ protected:
+  HostileReader() {
+    LinkOptions options;
+    options.log = [this](Severity, std::string_view line) {
+      std::lock_guard lock(mutex_);
+      lines_.emplace_back(line);
+      said_.notify_all();
+    };
+    sink_ = std::move(*open_sink(*parse_uri(name_), options));
+    source_ = std::move(*open_source(*parse_uri(name_)));
+  }
+  ~HostileReader() override { sink_.reset(); }
+
+  std::string next_line() {
+    std::unique_lock lock(mutex_);
+    said_.wait(lock, [&] { return !lines_.empty(); });
+    auto line = lines_.front();
+    lines_.pop_front();
+    return line;
+  }
+  void expect_to_go_on() {
+    for (auto bytes : {24, 100'000}) {
+      ASSERT_TRUE(sink_->send(make_checked(sink_.get(), 1, ++seq_, bytes)));
+      Message message;
+      auto got = receive(*source_, message);
+      ASSERT_TRUE(got && *got);
+      EXPECT_EQ(message.header.seq, seq_);
+      EXPECT_TRUE(is_whole(message));
+    }
+  }
+  void expect_refused(const std::string& text, const std::vector<Descriptor>& descriptors,
+                      const std::string& error) {
+    auto socket = connect_to_publisher(name_);
+    hand_over(socket.get(), text, numbers_of(descriptors));
+    auto line = next_line();
+    EXPECT_TRUE(line.starts_with("shm: refused a reader: ")) << line;
+    EXPECT_NE(line.find(error), std::string::npos) << text << ": " << line;
+    for (char letter : line) EXPECT_GE(letter, ' ') << line;
+    auto answer = rest_of(socket.get());
+    EXPECT_TRUE(answer.empty() || answer.starts_with("MTP-SHM/1 refused: ")) << answer;
+    expect_to_go_on();
+  }
+
+  const std::string name_ = fresh_name();
+  std::mutex mutex_;
+  std::condition_variable said_;
+  std::deque<std::string> lines_;
+  std::unique_ptr<Sink> sink_;
+  std::unique_ptr<Source> source_;
+  std::int64_t seq_ = 0;
+};
+
+TEST_F(HostileReader, HandsOverWhatIsNoSealedPage) {
+  for (const auto& each : memories()) {
+    SCOPED_TRACE(each.name);
+    expect_refused("MTP-SHM/1 reader\n", each.make(kPageBytes), each.error);
+  }
+}
+
+TEST_F(HostileReader, SaysWhatIsNoHello) {
+  const std::string stranger = "no end of a shared memory link", keep = "keep is \"all\"";
+  const std::vector<Text> texts = {{"GET / HTTP/1.1\r\n\r\n", stranger},
+                                   {"MTP-SHM/1 keep=all", stranger},
+                                   {"MTP-SHM/1 keep=a\nb\n", stranger},
+                                   {"MTP-SHM/1 keep=\x1b[2J\n", stranger},
+                                   {"MTP-SHM/1 " + std::string(5000, 'x') + "\n", stranger},
+                                   {"MTP-SHM/1 keep=0\n", keep},
+                                   {"MTP-SHM/1 keep=-1\n", keep},
+                                   {"MTP-SHM/1 keep=\n", keep},
+                                   {"MTP-SHM/1 keep=18446744073709551616\n", keep}};
+  for (const auto& each : texts)
+    expect_refused(each.text, one(make_memfd(kPageBytes, kSealed)), each.error);
+}
+
+TEST_F(HostileReader, SaysNothing) {
+  std::vector<Descriptor> silent(3 * internal::kMostReaders);
+  for (auto& each : silent) each = connect_to_publisher(name_);
+  auto late = open_source(*parse_uri(name_));
+  ASSERT_TRUE(late) << late.error().text();
+  expect_to_go_on();
+  Message message;
+  EXPECT_TRUE(*receive(**late, message));
+}
+
+TEST_F(HostileReader, GoesAtOnce) {
+  for (int i = 0; i < 200; ++i) {
+    auto socket = connect_to_publisher(name_);
+    auto page = make_memfd(kPageBytes, kSealed);
+    if (i % 3 > 0) hand_over(socket.get(), "MTP-SHM/1 reader\n", {page.get()});
+    if (i % 3 > 1) ::shutdown(socket.get(), SHUT_WR);
+  }
+  expect_to_go_on();
+}
+
+TEST_F(HostileReader, NeverTakesWhatWakesIt) {
+  auto socket = connect_to_publisher(name_);
+  Writable page(kPageBytes);
+  page.page().armed.store(1);
+  hand_over(socket.get(), "MTP-SHM/1 keep=latest\n", {page.descriptor()});
+  pollfd polled{socket.get(), POLLIN, 0};
+  ASSERT_EQ(::poll(&polled, 1, -1), 1);
+  for (std::uint32_t i = 0; i < 3000; ++i) {  // more than the socket takes
+    page.page().armed.store(2 * i + 3);
+    expect_to_go_on();
+  }
+}
+
+TEST_F(HostileReader, CannotBeTooMany) {
+  std::vector<std::unique_ptr<Source>> sources;
+  while (sources.size() + 1 < internal::kMostReaders)
+    sources.push_back(std::move(*open_source(*parse_uri(name_ + "?keep=latest"))));
+  auto refused = open_source(*parse_uri(name_));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text(),
+            "Closed: shm: the publisher refused: it has 64 readers already");
+  EXPECT_EQ(next_line(), "shm: refused a reader: it has 64 readers already");
+  expect_to_go_on();
+}
+
+}  // namespace
+}  // namespace hc::testing
