@@ -66,6 +66,7 @@ class ShmSink final : public Sink {
   Status make_cell_free();
   Status place(const Message& message, Slot*& slot);
   Slot* take_slot(std::uint64_t bytes);
+  Slot* clear_slot(std::uint64_t bytes);
   Slot* reserve(Slot* slot);
   void withdraw(std::uint64_t end);
   void sweep();
@@ -240,6 +241,19 @@ Slot* ShmSink::take_slot(std::uint64_t bytes) {
   return reserve(slots_->allocate(bytes));
 }
 
+/// A slot, for which the readers that lose messages lose what they have not taken, the oldest
+/// first; null when those that lose none want or hold all the rest.
+Slot* ShmSink::clear_slot(std::uint64_t bytes) {
+  Slot* slot = take_slot(bytes);
+  while (slot == nullptr && oldest_ < taken_by_all()) {
+    withdraw(oldest_ + 1);
+    sweep();
+    slot = slots_->reuse(bytes);
+    if (slot == nullptr) slot = reserve(slots_->allocate(bytes));
+  }
+  return slot;
+}
+
 /// Finds a slot for elements, and copies them if they are not in one already. Null: the message is
 /// lost, as there is no memory for it and one does not wait.
 Status ShmSink::place(const Message& message, Slot*& slot) {
@@ -252,17 +266,10 @@ Status ShmSink::place(const Message& message, Slot*& slot) {
     return Error{Code::TooLarge,
                  "shm: a message of " + std::to_string(bytes) +
                      " bytes does not fit memory=" + std::to_string(memory_->size())};
-  slot = take_slot(bytes);
-  // What the readers that lose messages have not taken is lost now, the oldest first.
-  while (slot == nullptr && oldest_ < taken_by_all()) {
-    withdraw(oldest_ + 1);
-    sweep();
-    slot = slots_->reuse(bytes);
-    if (slot == nullptr) slot = reserve(slots_->allocate(bytes));
-  }
+  slot = clear_slot(bytes);
   if (slot == nullptr && keep_ == 0) {
     auto room = wait_for_room(Head::kAnyRoom, [&] {
-      slot = take_slot(bytes);
+      slot = clear_slot(bytes);
       return slot != nullptr;
     });
     if (!room) return room;

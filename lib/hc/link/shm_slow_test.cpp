@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Readers of shared memory that lag behind, hold much, come and go, beside others that do not.
+#include <hc/link/link_conformance.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <numeric>
+#include <vector>
+
+#include <hc/link/shm_layout.h>
+
+namespace hc::testing {
+namespace {
+
+constexpr std::int32_t kSmall = 10, kLarge = 100'000;  // elements [byte]
+
+std::string fresh_name() {
+  static int count = 0;
+  return "shm:slow-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+}
+
+TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?readers=2&memory=2M");
+  auto reader = source_of(name);
+  auto lagging = source_of(name + "?keep=1000");  // more than fit into the memory
+  constexpr int kCount = 100;
+  std::thread publisher([&] {
+    for (int i = 0; i < kCount; ++i) {
+      auto sent = sink->send(numbered(i, kLarge));
+      ASSERT_TRUE(sent) << i << ": " << sent.error().text();
+    }
+    ASSERT_TRUE(sink->close());
+  });
+  Message message;
+  for (int i = 0; i < kCount; ++i) {
+    auto got = receive(*reader, message);
+    ASSERT_TRUE(got && *got);
+    ASSERT_EQ(message.header.seq, i);
+  }
+  publisher.join();
+  while (*lagging->take(message) == Got::Message) {
+  }
+  EXPECT_EQ(message.header.seq, kCount - 1);
+  EXPECT_EQ(lagging->traffic().messages + lagging->traffic().superseded, std::uint64_t{kCount});
+}
+
+}  // namespace
+}  // namespace hc::testing
