@@ -45,5 +45,29 @@ TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
   EXPECT_EQ(lagging->traffic().messages + lagging->traffic().superseded, std::uint64_t{kCount});
 }
 
+/// A cell that is written anew while it is read is no damage.
+TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?keep=latest&readers=1");
+  auto source = source_of(name + "?keep=" + std::to_string(internal::kCells));
+  std::atomic<bool> done{false};
+  std::thread publisher([&] {
+    Message small = numbered(1, kSmall);
+    Message large = sink->loan(numbered(2, kLarge).header).finish();  // sent without a copy
+    // No cell gets the same kind twice in a row.
+    for (int i = 0; i < 2'000'000; ++i) ASSERT_TRUE(sink->send(i % 3 == 0 ? small : large));
+    done = true;
+  });
+  Message message;
+  while (!done) {
+    auto got = source->take(message);
+    ASSERT_TRUE(got) << got.error().text();
+    if (*got == Got::Message) {
+      ASSERT_EQ(message.elements.size(), message.header.element_bytes());
+    }
+  }
+  publisher.join();
+}
+
 }  // namespace
 }  // namespace hc::testing

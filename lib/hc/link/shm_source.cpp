@@ -171,7 +171,7 @@ void ShmSource::skip_to(std::uint64_t position) {
   cursor_ = position;
 }
 
-/// Copies a cell; false when it is not one.
+/// Copies a cell; false when it is not one, or when another was just being written over it.
 bool ShmSource::copy(Copy& cell) const {
   const Cell& shared = attachment_->cell(cursor_);
   cell.slot = shared.slot.load(memory_order_relaxed);
@@ -250,13 +250,14 @@ Result<Got> ShmSource::take(Message& message) {
     if (stamp == cursor_ + 1) {
       fetch_ahead();
       Copy cell;
-      if (!copy(cell)) return damaged("the sizes of a cell");
+      bool fits = copy(cell);
       HC_CRASH_POINT("reader copied");
       auto hold = cell.slot == 0 ? kNoHold : take_hold(cell.slot);
       // Who loses nothing is waited for; others have to see that they were not overtaken meanwhile.
       if (keep_ == 0 || !is_withdrawn()) {
         finish_cell(cell.slot != 0);
-        if (auto delivered = deliver(cell, message, hold); !delivered) {
+        auto delivered = fits ? deliver(cell, message, hold) : damaged("the sizes of a cell");
+        if (!delivered) {
           if (hold != kNoHold) attachment_->let_go(hold);
           return delivered.error();
         }
