@@ -3,11 +3,13 @@
 // Ends of a shared memory link that do not keep the rules: whatever text and descriptors a test
 // wants are handed over, and the words of the memory are the test's own to write.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 
 #include <array>
+#include <cstdlib>
 #include <string>
 #include <thread>
 #include <vector>
@@ -136,6 +138,25 @@ class FakePublisher {
 inline std::string offer(std::uint64_t bytes, std::uint64_t begin = 0, std::uint64_t keep = 0) {
   return "MTP-SHM/1 bytes=" + std::to_string(bytes) + " begin=" + std::to_string(begin) +
          " keep=" + std::to_string(keep) + "\n";
+}
+
+/// A small generator that keeps up with what it is to disturb.
+class Dice {
+ public:
+  std::uint64_t operator()() {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    return state_ ^= state_ << 17;
+  }
+
+ private:
+  std::uint64_t state_ = 0x1234'5678'9abc'def1;
+};
+
+/// How often hostile words are tried.
+inline std::int64_t rounds(std::int64_t otherwise) {
+  const char* text = std::getenv("HC_SHM_ROUNDS");
+  return text == nullptr ? otherwise : std::atoll(text);
 }
 
 /// A connection to the publisher of the name.

@@ -145,10 +145,12 @@ bool ShmSource::is_ready() const {
   return attachment_->cell(cursor_).stamp.load(memory_order_acquire) > cursor_ || has_ended();
 }
 
-/// Nothing more comes, and all that came has been taken.
+/// Nothing comes where there was nothing a moment ago: the publisher has gone, or has closed and all
+/// that it published has been taken.
 bool ShmSource::has_ended() const {
-  return (publisher_gone_ || attachment_->head().closed.load(memory_order_acquire) != 0) &&
-         cursor_ >= attachment_->head().published.load(memory_order_acquire);
+  const Head& head = attachment_->head();
+  return publisher_gone_ || (head.closed.load(memory_order_acquire) != 0 &&
+                             cursor_ >= head.published.load(memory_order_acquire));
 }
 
 /// Takes the bytes that woke us, and notices when the publisher has gone.
@@ -243,7 +245,7 @@ Result<Got> ShmSource::take(Message& message) {
   for (int tries = 0; tries < kMostSkips; ++tries) {
     if (keep_ > 0) {
       auto published = head.published.load(memory_order_acquire);
-      if (published > cursor_ + keep_) skip_to(published - keep_);
+      if (published > cursor_ && published - cursor_ > keep_) skip_to(published - keep_);
     }
     auto stamp = attachment_->cell(cursor_).stamp.load(memory_order_acquire);
     if (stamp <= cursor_) return has_ended() ? Got::End : Got::Nothing;
