@@ -56,10 +56,11 @@ void disturb(const FakeReader& reader, const std::atomic<bool>& done) {
         break;
       case 5:
         words.progress.fetch_add(1, std::memory_order_relaxed);
+        internal::futex_wake(words.progress);  // else the publisher would mostly sleep
         break;
       default:
         words.held[number / 8 % internal::kMostHeld].store(
-            number % 8 == 6 ? 0 : kSlotsBegin + number / 1024 % 64 * 100'032,
+            number % 32 == 7 ? kSlotsBegin + number / 1024 % 64 * 100'032 : 0,
             std::memory_order_relaxed);
     }
   }
@@ -71,7 +72,7 @@ void disturb(const FakeReader& reader, const std::atomic<bool>& done) {
 TEST(HostileReaderPage, WordsChangeWhileTheyAreUsed) {
   for (const char* keep : {"all", "latest", "700"}) {
     auto name = fresh_name();
-    auto sink = std::move(*open_sink(*parse_uri(name + "?readers=2&memory=2M")));
+    auto sink = std::move(*open_sink(*parse_uri(name + "?memory=2M")));
     auto source = std::move(*open_source(*parse_uri(name)));
     FakeReader hostile(name, keep);
     std::atomic<bool> done{false};
@@ -99,6 +100,47 @@ TEST(HostileReaderPage, WordsChangeWhileTheyAreUsed) {
     done = true;
     writer.join();
   }
+}
+
+/// Where it says that it is goes back and forth between two looks of the publisher.
+TEST(HostileReaderPage, TheCursorGoesBackwards) {
+  auto name = fresh_name();
+  auto sink = std::move(*open_sink(*parse_uri(name)));
+  auto source = std::move(*open_source(*parse_uri(name)));
+  FakeReader hostile(name, "all");
+  std::atomic<bool> done{false};
+  std::thread writer([&] {
+    Dice dice;
+    while (!done.load(std::memory_order_relaxed)) {
+      const auto& position = dice() % 2 == 0 ? hostile.head().published : hostile.head().oldest;
+      for (auto i = dice() % 16; i > 0; --i)
+        hostile.page().cursor.store(position.load(), std::memory_order_relaxed);
+      if (dice() % 64 != 0) continue;
+      hostile.page().progress.fetch_add(1);
+      internal::futex_wake(hostile.page().progress);
+    }
+    hostile.page().cursor.store(internal::ReaderPage::kLeft);
+  });
+  const auto count = rounds(300'000);
+  std::thread publisher([&] {
+    Message message = make_checked(nullptr, 1, 0, 24);
+    for (; message.header.seq < count; ++message.header.seq) {
+      auto sent = sink->send(message);
+      ASSERT_TRUE(sent) << sent.error().text();
+    }
+    ASSERT_TRUE(sink->close());
+  });
+  Message message;
+  for (std::int64_t i = 0; i < count; ++i) {
+    auto got = receive(*source, message);
+    ASSERT_TRUE(got) << got.error().text();
+    ASSERT_TRUE(*got);
+    ASSERT_EQ(message.header.seq, i);
+    if (i % 1000 == 0) std::this_thread::yield();
+  }
+  publisher.join();
+  done = true;
+  writer.join();
 }
 
 /// Whatever it asks for, and however it goes on.

@@ -161,7 +161,7 @@ Result<Hello> take_hello(int socket, std::uint64_t otherwise) {
   if (auto text = word(greeting->text, "keep")) {
     auto keep = parse_keep(*text);
     if (!keep) return malformed(keep.error().detail);
-    hello.keep = *keep;
+    if (*keep > 0) hello.keep = *keep;  // none can have a publisher wait that does not
   }
   hello.orders = word(greeting->text, "orders") == "1";
   auto page = SharedMemory::map(std::move(greeting->memory), kPageBytes);

@@ -48,7 +48,8 @@ Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page,
 
 /// The publisher's side: what a reader has said; never waits.
 ///
-/// @param otherwise  what is kept for one who does not say.
+/// @param otherwise  what is kept for one who does not say, or who asks for all: a publisher that
+///     waits for none says so here, and 0 where it waits.
 /// Errors: Malformed, Closed.
 Result<Hello> take_hello(int socket, std::uint64_t otherwise);
 

@@ -117,7 +117,7 @@ void ShmReaders::hear(ShmReader& reader) {
       // before it takes anything back, which the reader is to have.
       changed_.store(true, std::memory_order_relaxed);
       std::atomic_thread_fence(std::memory_order_seq_cst);
-      reader.begin = head_->published.load(std::memory_order_acquire);
+      reader.begin = reader.seen = head_->published.load(std::memory_order_acquire);
       come_.push_back(owner);
       ++count_;
     }

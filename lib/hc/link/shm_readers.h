@@ -23,6 +23,7 @@ struct ShmReader {
   std::uint64_t keep = 0;   ///< newest messages that wait for it at most; 0: all of them
   bool orders = false;      ///< it orders both sides before it sleeps
   std::uint64_t begin = 0;  ///< position of its first message
+  std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
   std::atomic<bool> gone{false};
   Watch* watching = nullptr;     ///< for its callback, which may run while it is being destroyed
@@ -35,10 +36,10 @@ struct ShmReader {
     return page().cursor.load(std::memory_order_acquire) == ReaderPage::kLeft;
   }
   /// The position that it takes next, as far as that can be: whatever its page says, at least where
-  /// it began and at most what has been published.
-  [[nodiscard]] std::uint64_t cursor(std::uint64_t published) const {
-    auto cursor = page().cursor.load(std::memory_order_acquire);
-    return std::min(std::max(cursor, begin), published);
+  /// it has been and at most what has been published.
+  [[nodiscard]] std::uint64_t cursor(std::uint64_t published) {
+    seen = std::max(seen, std::min(page().cursor.load(std::memory_order_acquire), published));
+    return seen;
   }
 };
 

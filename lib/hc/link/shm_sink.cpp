@@ -142,7 +142,7 @@ std::uint64_t ShmSink::wanted_by_none() const {
 /// Whom one waits for: the slowest of those that lose nothing, if it has not taken all, else
 /// anybody who holds something; null when it is nobody.
 const ShmReader* ShmSink::blocker() const {
-  const ShmReader* slowest = nullptr;
+  ShmReader* slowest = nullptr;
   const ShmReader* holder = nullptr;
   for (const auto& reader : readers_->current()) {
     auto cursor = reader->cursor(published_);
