@@ -76,7 +76,7 @@ class ShmSink final : public Sink {
 
   [[nodiscard]] std::uint64_t taken_by_all() const;
   [[nodiscard]] std::uint64_t wanted_by_none() const;
-  [[nodiscard]] const ShmReader* blocker() const;
+  [[nodiscard]] std::shared_ptr<const ShmReader> blocker() const;
   [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes);
 
   // Readers' messages outlive the sink, and so may those of this process that own slots.
@@ -141,16 +141,15 @@ std::uint64_t ShmSink::wanted_by_none() const {
 
 /// Whom one waits for: the slowest of those that lose nothing, if it has not taken all, else
 /// anybody who holds something; null when it is nobody.
-const ShmReader* ShmSink::blocker() const {
-  ShmReader* slowest = nullptr;
-  const ShmReader* holder = nullptr;
+std::shared_ptr<const ShmReader> ShmSink::blocker() const {
+  std::shared_ptr<ShmReader> slowest, holder;
   for (const auto& reader : readers_->current()) {
     auto cursor = reader->cursor(published_);
     if (reader->keep == 0 && cursor < published_ &&
         (slowest == nullptr || cursor < slowest->cursor(published_)))
-      slowest = reader.get();
+      slowest = reader;
     for (const auto& held : reader->page().held)
-      if (held.load(memory_order_acquire) != 0) holder = reader.get();
+      if (held.load(memory_order_acquire) != 0) holder = reader;
   }
   return slowest != nullptr ? slowest : holder;
 }
@@ -186,7 +185,7 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
   head_.wanted.store(wanted, memory_order_relaxed);
   while (true) {
     refresh();
-    const ShmReader* reader = blocker();
+    const auto reader = blocker();  // kept, since it may go while one looks for room
     auto progress = reader == nullptr ? 0 : reader->page().progress.load(memory_order_acquire);
     std::atomic_thread_fence(memory_order_seq_cst);  // room
     if (has_room()) return {};

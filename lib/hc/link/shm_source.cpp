@@ -145,8 +145,8 @@ bool ShmSource::is_ready() const {
   return attachment_->cell(cursor_).stamp.load(memory_order_acquire) > cursor_ || has_ended();
 }
 
-/// Nothing comes where there was nothing a moment ago: the publisher has gone, or has closed and all
-/// that it published has been taken.
+/// Nothing comes where there was nothing a moment ago: the publisher has gone, or has closed and
+/// all that it published has been taken.
 bool ShmSource::has_ended() const {
   const Head& head = attachment_->head();
   return publisher_gone_ || (head.closed.load(memory_order_acquire) != 0 &&
