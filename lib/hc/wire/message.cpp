@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/wire/message.h>
 
+#include <algorithm>
 #include <new>
 
 namespace hc {
@@ -22,7 +23,7 @@ SharedBytes allocate_bytes(std::size_t size) {
 SharedBytes SmallBytes::allocate(std::size_t size) {
   HC_CHECK(size <= kMost, size);
   constexpr std::size_t kAlignment = alignof(std::max_align_t);
-  std::size_t rounded = (size + kAlignment - 1) / kAlignment * kAlignment;
+  std::size_t rounded = (std::max<std::size_t>(size, 1) + kAlignment - 1) / kAlignment * kAlignment;
   if (kBlock - used_ < rounded) {
     block_ = allocate_bytes(kBlock);
     used_ = 0;
