@@ -102,14 +102,13 @@ void ShmReaders::hear(ShmReader& reader) {
   HC_CRASH_POINT("publisher greeted");
   std::string why;
   if (!hello) why = hello.error().detail;
-  std::shared_ptr<ShmReader> owner;
   {
     std::lock_guard lock(mutex_);
-    owner = take_stranger(reader);
-    if (owner == nullptr) return;
     if (why.empty() && count_ == kMostReaders)
       why = "it has " + std::to_string(kMostReaders) + " readers already";
     if (why.empty()) {
+      auto owner = take_stranger(reader);
+      if (owner == nullptr) return;
       reader.memory = std::move(hello->page);
       reader.keep = hello->keep;
       reader.orders = orders_ && hello->orders;
@@ -118,14 +117,16 @@ void ShmReaders::hear(ShmReader& reader) {
       changed_.store(true, std::memory_order_relaxed);
       std::atomic_thread_fence(std::memory_order_seq_cst);
       reader.begin = reader.seen = head_->published.load(std::memory_order_acquire);
-      come_.push_back(owner);
+      // Nobody else owns it: who ends the list then waits for this callback, which goes on.
+      come_.push_back(std::move(owner));
       ++count_;
     }
   }
   if (!why.empty()) {
     log("shm: refused a reader: " + why);
     refuse(reader.socket.get(), why);
-    return;  // the last owner goes here, and with it the connection
+    let_go(reader);
+    return;
   }
   HC_CRASH_POINT("publisher knows reader");
   // Edge-triggered: the reader's end of its direction, and then that of the connection.
