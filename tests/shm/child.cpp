@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -86,6 +87,14 @@ std::string Child::line() {
   return line;
 }
 
+std::int64_t Child::first_behind(std::int64_t place) {
+  say("after " + std::to_string(place));
+  std::string answer = line();
+  while (answer.starts_with("end")) answer = line();
+  EXPECT_FALSE(answer.empty());
+  return answer.empty() ? 0 : std::stoll(answer);
+}
+
 void Child::look(std::int64_t microseconds) const {
   pollfd polled{socket_.get(), POLLIN, 0};
   timespec time{microseconds / 1'000'000, microseconds % 1'000'000 * 1000};
@@ -94,6 +103,13 @@ void Child::look(std::int64_t microseconds) const {
 
 void Child::signal(int number) const {
   if (pid_ > 0) ::kill(pid_, number);
+}
+
+void Child::freeze() const {
+  signal(SIGSTOP);
+  int status = 0;
+  EXPECT_EQ(::waitpid(pid_, &status, WUNTRACED), pid_);
+  EXPECT_TRUE(WIFSTOPPED(status));
 }
 
 void Child::kill() {
@@ -135,6 +151,19 @@ int Child::shared_memories() const {
 
 int Child::descriptors() const {
   return count_entries("/proc/" + std::to_string(pid_) + "/fd");
+}
+
+std::int64_t Child::memory_made() const {
+  namespace fs = std::filesystem;
+  std::int64_t bytes = 0;
+  std::error_code gone;
+  for (const auto& entry : fs::directory_iterator("/proc/" + std::to_string(pid_) + "/fd", gone)) {
+    struct stat status {};
+    if (fs::read_symlink(entry, gone).string().find("memfd:hypercolumn") != std::string::npos &&
+        ::stat(entry.path().c_str(), &status) == 0)
+      bytes = std::max<std::int64_t>(bytes, status.st_blocks * 512);
+  }
+  return bytes;
 }
 
 std::string command(bool& ended) {

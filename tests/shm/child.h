@@ -34,12 +34,17 @@ class Child {
   void say(const std::string& line) const;
   /// The next line of the child, waited for; empty when it has ended.
   std::string line();
+  /// The place of the first message behind `place` that this reader gets; what it says of links
+  /// that ended is passed over.
+  std::int64_t first_behind(std::int64_t place);
   /// Waits `microseconds`, or until the child says something or ends.
   void look(std::int64_t microseconds) const;
 
   /// Ends it as `kill -9`, if it has not ended; does not ask how it ended.
   void kill();
   void signal(int number) const;
+  /// Stops it, and waits until it has stopped.
+  void freeze() const;
   /// Waits for its end; as waitpid().
   int wait();
   /// Asks it to end.
@@ -50,6 +55,8 @@ class Child {
   /// How many of its open descriptors and mappings are shared memory of links.
   [[nodiscard]] int shared_memories() const;
   [[nodiscard]] int descriptors() const;
+  /// How much memory there is behind the shared memory that it has made. [byte]
+  [[nodiscard]] std::int64_t memory_made() const;
 
  private:
   pid_t pid_ = -1;

@@ -116,21 +116,13 @@ class ShmCrash : public ::testing::TestWithParam<Point> {
     latest_ = make_reader("newest", 3);
   }
 
-  /// What a reader says when it has a message behind `place`; ends of links are passed over.
-  static std::int64_t hear_from(Child& reader, std::int64_t place) {
-    reader.say("after " + std::to_string(place));
-    std::string line = reader.line();
-    while (line.starts_with("end")) line = reader.line();
-    EXPECT_FALSE(line.empty());
-    return line.empty() ? 0 : std::stoll(line);
-  }
   /// Both readers get messages that were sent from now on.
   void expect_to_go_on() {
-    for (Child* reader : {&steady_, &latest_}) hear_from(*reader, hear_from(*reader, 0) + 100);
+    for (Child* reader : {&steady_, &latest_}) reader->first_behind(reader->first_behind(0) + 100);
   }
   void expect_the_next_to_be_heard() {
     publisher_ = make_publisher("readers=2");
-    for (Child* reader : {&steady_, &latest_}) hear_from(*reader, std::int64_t{id_} << 40);
+    for (Child* reader : {&steady_, &latest_}) reader->first_behind(std::int64_t{id_} << 40);
     expect_a_good_end();
   }
   /// The publisher ends well, and both readers then have all that they should.
@@ -175,7 +167,7 @@ TEST_F(ShmCrash, ReadersAreKilledAtRandomMoments) {
   const auto memories = publisher_.shared_memories(), descriptors = publisher_.descriptors();
   for (int i = 0; i < random_kills(); ++i) {
     auto victim = make_reader(i % 3 == 0 ? "newest" : "gapless", 10);
-    if (i % 2 == 0) hear_from(victim, 0);
+    if (i % 2 == 0) victim.first_behind(0);
     victim.look(below(20'000));
     victim.kill();
     expect_to_go_on();
@@ -190,7 +182,7 @@ TEST_F(ShmCrash, PublishersAreKilledAtRandomMoments) {
   for (int i = 0; i < random_kills(); ++i) {
     publisher_ = make_publisher("readers=2");  // the name is free at once
     if (i % 2 == 0)
-      for (Child* reader : {&steady_, &latest_}) hear_from(*reader, std::int64_t{id_} << 40);
+      for (Child* reader : {&steady_, &latest_}) reader->first_behind(std::int64_t{id_} << 40);
     publisher_.look(below(20'000));
     publisher_.kill();
   }
@@ -202,6 +194,7 @@ TEST_F(ShmCrash, SlotsComeBack) {
   constexpr int kSlots = 18;  // of 100,000 bytes, in 2 MiB
   publisher_ = make_publisher("readers=1&memory=2M", "", 0, "100000");
   steady_ = make_reader("gapless", 0);
+  steady_.first_behind(0);
   std::int64_t longest = 0;
   for (int i = 0; i < random_kills() / 3; ++i) {
     Child victim(
@@ -230,7 +223,7 @@ TEST_P(ShmReaderCrash, OthersGoOn) {
   for (int i = 0; i < point_kills(); ++i) {
     auto victim = make_reader("gapless", 10, crash_at(GetParam()));
     if (std::string_view(GetParam().name) == "reader left") {
-      hear_from(victim, 0);
+      victim.first_behind(0);
       victim.stop();
     }
     expect_killed(victim);
