@@ -105,6 +105,12 @@ CASES = [
         "the reader sleeps at once",
     ),
     _ours(
+        "shm",
+        "shm:{link}?readers={readers}",
+        "shm:{link}?wait=10",
+        "as it is unless one says otherwise: the reader looks for 20 µs, then sleeps",
+    ),
+    _ours(
         "unix",
         "unix-listen:@hc_bench_{link}?readers={readers}",
         "unix:@hc_bench_{link}?wait=10",

@@ -97,15 +97,17 @@ def best(results, names, measure):
 
 
 def targets(results):
-    """Tuples: what it says, measure, ours, reference, and the largest or smallest ratio asked."""
+    """Tuples: measure, ours, references, the largest or smallest ratio asked, and the references'
+    measure where it is another one."""
     iceoryx = [name for name, program in PROGRAM_OF.items() if program == "iceoryx"]
     peers = [case.name for case in CASES if case.kind == "peer"]
-    shm = ["shm_polled", "shm_waiting"]
+    shm = ["shm_polled", "shm_waiting", "shm"]
     yield "latency_96", ["shm_polled"], ["iceoryx_polled"], 1 / 3
     yield "latency_96", ["shm_waiting"], ["iceoryx_waitset"], 1
     yield "latency_96", ["shm_waiting"], ["bare_shm_futex"], 1.25
     yield "latency_96_one", ["shm_waiting"], ["iceoryx_waitset"], 1
     yield "latency_96_one", ["shm_waiting"], ["bare_shm_futex"], 1.25
+    yield "latency_image", ["shm_polled"], ["shm_polled"], 1.1, "latency_96"
     yield "messages", shm, peers, 3
     yield "images", shm, iceoryx, 1
     yield "fan_out", shm, iceoryx, 1
@@ -119,11 +121,12 @@ def targets(results):
 def ratios(results, is_markdown):
     """What was asked and what was got; a ratio is the median of the rounds' ratios."""
     lines = []
-    for measure, ours, references, asked in targets(results):
-        our, reference = best(results, ours, measure), best(results, references, measure)
+    for measure, ours, references, asked, *other in targets(results):
+        other = other[0] if other else measure
+        our, reference = best(results, ours, measure), best(results, references, other)
         if not our or not reference:
             continue
-        pairs = zip(numbers_of(results, our, measure), numbers_of(results, reference, measure))
+        pairs = zip(numbers_of(results, our, measure), numbers_of(results, reference, other))
         got = statistics.median(a / b for a, b in pairs)
         is_latency = measure.startswith("latency")
         good = got <= asked if is_latency else got >= asked
@@ -132,7 +135,7 @@ def ratios(results, is_markdown):
             (
                 measure,
                 our,
-                reference,
+                reference if other == measure else other,
                 "%s %.3g" % (sign, asked),
                 "%.3g" % got,
                 "yes" if good else "NO",
