@@ -150,7 +150,7 @@ Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page,
   auto memory = SharedMemory::map(std::move(greeting->memory), *bytes);
   if (!memory) return malformed(memory.error().detail);
   HC_CRASH_POINT("reader has memory");
-  return Offer{*begin, *kept, word(greeting->text, "orders") == "1", std::move(*memory)};
+  return Offer{*begin, *kept, std::move(*memory)};
 }
 
 Result<Hello> take_hello(int socket, std::uint64_t otherwise) {
@@ -173,8 +173,7 @@ Result<Hello> take_hello(int socket, std::uint64_t otherwise) {
 Status answer(int socket, const Offer& offer, std::uint64_t bytes, int read_only_memory) {
   return send_greeting(socket,
                        "bytes=" + std::to_string(bytes) + " begin=" + std::to_string(offer.begin) +
-                           " keep=" + std::to_string(offer.keep) +
-                           (offer.orders ? " orders=1" : " orders=0"),
+                           " keep=" + std::to_string(offer.keep),
                        read_only_memory);
 }
 

@@ -4,11 +4,11 @@
 // text and hands over its memory. Internal.
 //
 //   reader:     MTP-SHM/1 keep=all orders=1                with its page
-//   publisher:  MTP-SHM/1 bytes=N begin=P keep=K orders=1  with its memory, or
+//   publisher:  MTP-SHM/1 bytes=N begin=P keep=K           with its memory, or
 //               MTP-SHM/1 refused: WHY
 //
 // The reader leaves keep out to have what the publisher has chosen. orders=1: it can order stores
-// everywhere, and the publisher relies on that ("wake" in shm_layout.h).
+// everywhere, and will where the publisher relies on that (Head::unfenced).
 //
 // From then on the publisher says a byte when the reader has asked to be woken so; the reader ends
 // its own direction when it takes no more, and the connection when it holds no more.
@@ -32,7 +32,6 @@ struct Hello {
 struct Offer {
   std::uint64_t begin = 0;  ///< position of the first message for this reader
   std::uint64_t keep = 0;   ///< what is kept for it, as in Hello
-  bool orders = false;      ///< the reader has to order_everywhere() before it sleeps
   SharedMemory memory;      ///< as the reader maps it
 };
 

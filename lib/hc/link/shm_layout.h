@@ -13,7 +13,6 @@
 // the processor: both sides put a sequentially consistent fence in between. There are three such
 // pairs, named where they stand in the code:
 //   wake:  publish, look whether a reader sleeps    | say that one sleeps, look for a message
-//          (where the kernel can, the sleeper orders both sides, and publishing needs no fence)
 //   room:  say that one waits for room, look for it | give room, look whether it is waited for
 //   hold:  withdraw a cell, look who holds its slot | hold a slot, look whether it is withdrawn
 
@@ -62,6 +61,9 @@ struct Head {
   /// What the publisher waits for: 0 nothing, kAnyRoom, else a reader's cursor at least here.
   alignas(kLine) SharedWord<std::uint64_t> wanted;
   alignas(kLine) SharedWord<std::uint32_t> closed;  ///< 1: nothing more comes
+  /// 1: nobody has slept for a while, and the publisher leaves the fence of "wake" out; who goes to
+  /// sleep then has to order the stores of both sides.
+  SharedWord<std::uint32_t> unfenced;
 
   static constexpr std::uint64_t kAnyRoom = 1;
 };

@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kRetry{200};  // until one is let in again w
 
 Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
                                                      const SharedMemory& memory, std::uint64_t keep,
-                                                     bool orders, LinkOptions options) {
+                                                     LinkOptions options) {
   auto event = system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
   if (!event) return event.error();
   auto read_only = memory.read_only();
@@ -26,7 +26,6 @@ Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
   readers->head_ = reinterpret_cast<const Head*>(memory.data());
   readers->bytes_ = memory.size();
   readers->keep_ = keep;
-  readers->orders_ = orders;
   auto watch = Watch::make(readers->socket_.descriptor.get(),
                            [all = readers.get()](std::uint32_t) { all->accept_all(); });
   if (!watch) return watch.error();
@@ -111,11 +110,11 @@ void ShmReaders::hear(ShmReader& reader) {
       if (owner == nullptr) return;
       reader.memory = std::move(hello->page);
       reader.keep = hello->keep;
-      reader.orders = orders_ && hello->orders;
+      reader.orders = hello->orders;
       // First: a publisher that has published more than what is read here sees this when it looks
       // before it takes anything back, which the reader is to have.
       changed_.store(true, std::memory_order_relaxed);
-      std::atomic_thread_fence(std::memory_order_seq_cst);
+      order_everywhere();
       reader.begin = reader.seen = head_->published.load(std::memory_order_acquire);
       // Nobody else owns it: who ends the list then waits for this callback, which goes on.
       come_.push_back(std::move(owner));
@@ -131,7 +130,7 @@ void ShmReaders::hear(ShmReader& reader) {
   HC_CRASH_POINT("publisher knows reader");
   // Edge-triggered: the reader's end of its direction, and then that of the connection.
   static_cast<void>(reader.watching->want(EPOLLRDHUP | EPOLLET));
-  Offer offer{reader.begin, reader.keep, reader.orders, {}};
+  Offer offer{reader.begin, reader.keep, {}};
   if (!answer(reader.socket.get(), offer, bytes_, read_only_.get())) let_go(reader);
   HC_CRASH_POINT("publisher answered");
   tell_change(reader);

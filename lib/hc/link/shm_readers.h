@@ -21,7 +21,7 @@ struct ShmReader {
   Descriptor socket;
   SharedMemory memory;      ///< a ReaderPage
   std::uint64_t keep = 0;   ///< newest messages that wait for it at most; 0: all of them
-  bool orders = false;      ///< it orders both sides before it sleeps
+  bool orders = false;      ///< it can order the stores of both sides
   std::uint64_t begin = 0;  ///< position of its first message
   std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
@@ -47,10 +47,9 @@ class ShmReaders {
  public:
   /// @param head  of `memory`; says where a reader that comes begins.
   /// @param keep  for readers that do not say.
-  /// @param orders  the publisher allows its readers to order stores for it.
   static Result<std::unique_ptr<ShmReaders>> make(ListeningSocket socket,
                                                   const SharedMemory& memory, std::uint64_t keep,
-                                                  bool orders, LinkOptions options);
+                                                  LinkOptions options);
   ~ShmReaders();
   ShmReaders(const ShmReaders&) = delete;
   ShmReaders& operator=(const ShmReaders&) = delete;
@@ -87,7 +86,6 @@ class ShmReaders {
   LinkOptions options_;
   const Head* head_ = nullptr;
   std::uint64_t bytes_ = 0, keep_ = 0;
-  bool orders_ = false;
   std::vector<std::shared_ptr<ShmReader>> current_;
   std::atomic<bool> changed_{false};
 

@@ -30,7 +30,9 @@ using std::memory_order_seq_cst;
 /// in the caches still when it is read.
 constexpr std::uint64_t kAheadBytes = std::uint64_t{8} << 20;
 constexpr std::uint64_t kAheadMessages = 2;  // at least, however large
-constexpr std::uint64_t kBatch = 64;         // cells that are withdrawn together
+constexpr int kUndisturbed =
+    64;  // messages published while nobody slept, until the fence is left out
+constexpr std::uint64_t kBatch = 64;  // cells that are withdrawn together
 /// How often one who waits looks whether it is to stop.
 constexpr std::chrono::milliseconds kLookPeriod{20};
 
@@ -47,7 +49,7 @@ class ShmSink final : public Sink {
   ~ShmSink() override { end(); }
 
   Status begin(ListeningSocket socket, const LinkOptions& options) {
-    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_, allow_ordering(), options);
+    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_, options);
     if (!readers) return readers.error();
     readers_ = std::move(*readers);
     return {};
@@ -72,6 +74,8 @@ class ShmSink final : public Sink {
   void sweep();
   void publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot);
   void wake_readers();
+  bool wake_sleepers();
+  void fence_again();
   void end();
 
   [[nodiscard]] std::uint64_t taken_by_all() const;
@@ -97,7 +101,10 @@ class ShmSink final : public Sink {
   HeaderMemo memo_;
   SmallBytes small_;
   std::size_t present_ = 0;  // readers that still take messages
-  bool all_order_ = true;    // readers order both sides before they sleep
+  const bool ordering_ = allow_ordering();
+  bool may_leave_fence_ = false;  // all readers can order the stores of both sides
+  bool fencing_ = true;           // not Head::unfenced
+  int undisturbed_ = 0;           // messages published since a reader slept
   bool begun_ = false, ended_ = false;
   Traffic traffic_;
 };
@@ -109,8 +116,9 @@ void ShmSink::refresh() {
   const auto& readers = readers_->current();
   present_ = static_cast<std::size_t>(std::count_if(
       readers.begin(), readers.end(), [](const auto& reader) { return !reader->left(); }));
-  all_order_ = std::all_of(readers.begin(), readers.end(),
-                           [](const auto& reader) { return reader->orders; });
+  may_leave_fence_ = ordering_ && std::all_of(readers.begin(), readers.end(),
+                                              [](const auto& reader) { return reader->orders; });
+  fence_again();
 }
 
 /// The same for sure, of all who could have been told where they begin; before one takes back what
@@ -363,21 +371,43 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
   HC_CRASH_POINT("publisher woke readers");
 }
 
+/// Wakes those who sleep, and leaves out the fence when nobody has for a while: it takes longer
+/// than all the rest where many small messages are published.
 void ShmSink::wake_readers() {
-  if (!all_order_) std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  if (fencing_) std::atomic_thread_fence(memory_order_seq_cst);  // wake
   std::atomic_signal_fence(memory_order_seq_cst);
   refresh();
-  bool sleeps = false;
+  if (wake_sleepers()) {
+    fence_again();
+  } else if (fencing_ && may_leave_fence_ && ++undisturbed_ >= kUndisturbed) {
+    fencing_ = false;
+    head_.unfenced.store(1, memory_order_relaxed);
+    std::atomic_thread_fence(memory_order_seq_cst);  // wake: who has not seen that yet is seen here
+    if (wake_sleepers()) fence_again();
+  }
+}
+
+void ShmSink::fence_again() {
+  undisturbed_ = 0;
+  if (fencing_) return;
+  fencing_ = true;
+  head_.unfenced.store(0, memory_order_release);
+}
+
+bool ShmSink::wake_sleepers() {
+  bool any = false, on_futex = false;
   for (const auto& reader : readers_->current()) {
     auto armed = reader->page().armed.load(memory_order_relaxed);
     if (armed == 0 || armed == reader->woken) continue;
     reader->woken = armed;
+    any = true;
     if (armed % 2 == 0)
-      sleeps = true;
+      on_futex = true;
     else
       ::send(reader->socket.get(), "!", 1, MSG_DONTWAIT | MSG_NOSIGNAL);
   }
-  if (sleeps) futex_wake(head_.signal);
+  if (on_futex) futex_wake(head_.signal);
+  return any;
 }
 
 Draft ShmSink::loan(const Header& header) {

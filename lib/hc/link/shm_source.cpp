@@ -34,7 +34,7 @@ constexpr std::uint64_t kLookEvery = 64;  // messages
 constexpr std::chrono::milliseconds kFutexTime{100};
 /// About as long as it takes to sleep and wake: who spins so long never loses more than that.
 constexpr std::int64_t kDefaultSpin = 20;           // [µs]
-constexpr std::chrono::microseconds kSpinAlone{5};  // until one who spins lets others run
+constexpr std::chrono::microseconds kSpinAlone{2};  // until one who spins lets others run
 constexpr int kSpinRounds = 32;                     // between two looks at the clock
 constexpr std::chrono::milliseconds kSpinLook{1};   // how often one who spins looks at all else
 
@@ -88,7 +88,6 @@ class ShmSource final : public Source {
       : attachment_(std::move(attachment)),
         cursor_(offer.begin),
         keep_(offer.keep),
-        orders_(offer.orders),
         spin_(spin),
         options_(std::move(options)) {}
 
@@ -128,7 +127,6 @@ class ShmSource final : public Source {
   std::shared_ptr<Attachment> attachment_;
   std::uint64_t cursor_;
   std::uint64_t keep_;
-  bool orders_;
   std::uint64_t known_ = 0;  // positions below are known to be published
   std::chrono::microseconds spin_;
   LinkOptions options_;
@@ -307,10 +305,8 @@ void ShmSource::arm(bool on_socket) {
   attachment_->own().armed.store(value, memory_order_relaxed);
   armed_ = true;
   HC_CRASH_POINT("reader armed");
-  if (orders_)  // wake
-    order_everywhere();
-  else
-    std::atomic_thread_fence(memory_order_seq_cst);
+  std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  if (attachment_->head().unfenced.load(memory_order_relaxed) != 0) order_everywhere();
 }
 
 void ShmSource::disarm() {
