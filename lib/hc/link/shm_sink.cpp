@@ -232,19 +232,19 @@ void ShmSink::sweep() {
   HC_CRASH_POINT("publisher swept");
 }
 
-/// Sees that a new slot's pages are there; null when the host has no memory for them.
+/// Sees that a slot's pages are there; null when the host has no memory for them.
 Slot* ShmSink::reserve(Slot* slot) {
   if (slot == nullptr || memory_->reserve(slot->begin + slot->bytes)) return slot;
-  return nullptr;  // left unused for good: it is at the end of what can be had
+  return nullptr;  // the next sweep takes it back, and it is tried again
 }
 
 /// A slot, without taking from a reader what it wants; null when there is none.
 Slot* ShmSink::take_slot(std::uint64_t bytes) {
-  if (Slot* slot = slots_->reuse(bytes); slot != nullptr) return slot;
+  if (Slot* slot = reserve(slots_->reuse(bytes)); slot != nullptr) return slot;
   refresh_for_sure();
   withdraw(wanted_by_none());
   sweep();
-  if (Slot* slot = slots_->reuse(bytes); slot != nullptr) return slot;
+  if (Slot* slot = reserve(slots_->reuse(bytes)); slot != nullptr) return slot;
   return reserve(slots_->allocate(bytes));
 }
 
@@ -255,7 +255,7 @@ Slot* ShmSink::clear_slot(std::uint64_t bytes) {
   while (slot == nullptr && oldest_ < taken_by_all()) {
     withdraw(oldest_ + 1);
     sweep();
-    slot = slots_->reuse(bytes);
+    slot = reserve(slots_->reuse(bytes));
     if (slot == nullptr) slot = reserve(slots_->allocate(bytes));
   }
   return slot;

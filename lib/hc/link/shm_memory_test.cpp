@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/shm_memory.h>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+
+#include <array>
+#include <cstddef>
+#include <thread>
+
+#include <hc/link/link.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::uint64_t kBytes = 8 * kPageBytes;
+
+SharedMemory make(std::uint64_t reserved) {
+  auto memory = SharedMemory::make(kBytes, reserved);
+  EXPECT_TRUE(memory) << memory.error().text();
+  return std::move(*memory);
+}
+
+std::int64_t pages_of(const SharedMemory& memory) {
+  struct stat status {};
+  EXPECT_EQ(::fstat(memory.read_only()->get(), &status), 0);
+  return status.st_blocks * 512 / static_cast<std::int64_t>(kPageBytes);
+}
+
+TEST(SharedMemory, IsSeenByBothSides) {
+  auto written = make(kBytes);
+  auto read = SharedMemory::map(std::move(*written.read_only()), kBytes);
+  ASSERT_TRUE(read) << read.error().text();
+  written.data()[kBytes - 1] = std::byte{7};
+  EXPECT_EQ(read->data()[kBytes - 1], std::byte{7});
+  EXPECT_NE(read->data(), written.data());
+  EXPECT_EQ(read->size(), kBytes);
+}
+
+TEST(SharedMemory, OnlyItsMakerWritesAndNobodyResizes) {
+  auto memory = make(kBytes);
+  auto shown = memory.read_only();
+  ASSERT_TRUE(shown);
+  EXPECT_EQ(::mmap(nullptr, kBytes, PROT_WRITE, MAP_SHARED, shown->get(), 0), MAP_FAILED);
+  // A peer may open what it was handed once more, to write; the seals still hold.
+  Descriptor again(
+      ::open(("/proc/self/fd/" + std::to_string(shown->get())).c_str(), O_RDWR | O_CLOEXEC));
+  ASSERT_TRUE(again);
+  EXPECT_EQ(::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED, again.get(), 0),
+            MAP_FAILED);
+  EXPECT_LT(::write(again.get(), "x", 1), 0);
+  EXPECT_LT(::ftruncate(again.get(), 0), 0);
+  EXPECT_LT(::ftruncate(again.get(), static_cast<off_t>(2 * kBytes)), 0);
+  EXPECT_LT(::fallocate(again.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, kPageBytes), 0);
+  EXPECT_LT(::fcntl(again.get(), F_ADD_SEALS, F_SEAL_WRITE), 0);
+}
+
+TEST(SharedMemory, TakesPagesWhenTheyAreReserved) {
+  auto memory = make(kPageBytes);
+  EXPECT_EQ(pages_of(memory), 1);
+  ASSERT_TRUE(memory.reserve(3 * kPageBytes - 1));
+  EXPECT_EQ(pages_of(memory), 3);
+  ASSERT_TRUE(memory.reserve(10));
+  EXPECT_EQ(pages_of(memory), 3);
+  ASSERT_TRUE(memory.reserve(kBytes));
+  EXPECT_EQ(pages_of(memory), 8);
+}
+
+TEST(SharedMemory, OutlivesItsMaker) {
+  auto memory = std::make_unique<SharedMemory>(make(kBytes));
+  memory->data()[5] = std::byte{9};
+  auto read = std::move(*SharedMemory::map(std::move(*memory->read_only()), kBytes));
+  memory.reset();
+  EXPECT_EQ(read.data()[5], std::byte{9});
+}
+
+TEST(SharedMemory, OfAnotherSizeIsRefused) {
+  auto memory = make(kBytes);
+  for (auto bytes : {kBytes - 1, kBytes + 1, kBytes + kPageBytes}) {
+    auto mapped = SharedMemory::map(std::move(*memory.read_only()), bytes);
+    ASSERT_FALSE(mapped);
+    EXPECT_EQ(
+        mapped.error().text(),
+        "Malformed: the memory that was handed over has 32768 bytes, not " + std::to_string(bytes));
+  }
+}
+
+/// From now on this thread gets no pages for shared memory. False: the host does not let us.
+bool refuse_pages() {
+  auto same = [](unsigned value, unsigned char otherwise) {
+    return sock_filter(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, otherwise));
+  };
+  auto load = [](std::size_t offset) {
+    return sock_filter(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<unsigned>(offset)));
+  };
+  std::array<sock_filter, 8> filter = {{
+      load(offsetof(seccomp_data, nr)),
+      same(SYS_fallocate, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOMEM),
+      same(SYS_madvise, 3),
+      load(offsetof(seccomp_data, args) + 2 * sizeof(std::uint64_t)),
+      same(MADV_POPULATE_WRITE, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOMEM),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  }};
+  sock_fprog program{filter.size(), filter.data()};
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+/// Writing into a page that the host does not have would kill the publisher.
+TEST(SharedMemory, WhatTheHostHasNoPagesForIsNotWritten) {
+  auto uri = *parse_uri("shm:no-pages-" + std::to_string(::getpid()) + "?keep=latest");
+  auto sink = std::move(*open_sink(uri));
+  bool refused = false;
+  std::thread publisher([&] {
+    refused = refuse_pages();
+    Message message =
+        Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 100'000, 1)
+            .finish();
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(message));
+  });
+  publisher.join();
+  if (!refused) GTEST_SKIP() << "no seccomp here";
+  EXPECT_EQ(sink->traffic().over_memory, 10U);
+  EXPECT_EQ(sink->traffic().messages, 0U);
+}
+
+}  // namespace
+}  // namespace hc::internal
