@@ -2,6 +2,7 @@
 #include <hc/link/shm_readers.h>
 
 #include <sys/eventfd.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 
@@ -177,6 +178,52 @@ void ShmReaders::refresh() {
                                           [](const auto& reader) { return !reader->gone.load(); });
   gone.assign(first_gone, current_.end());
   current_.erase(first_gone, current_.end());
+}
+
+std::uint64_t ShmReaders::taken_by_all(std::uint64_t published) const {
+  std::uint64_t taken = published;
+  for (const auto& reader : current_)
+    if (reader->keep == 0) taken = std::min(taken, reader->cursor(published));
+  return taken;
+}
+
+std::uint64_t ShmReaders::wanted_by_none(std::uint64_t published) const {
+  std::uint64_t end = published;
+  for (const auto& reader : current_) {
+    auto cursor = reader->cursor(published);
+    if (reader->keep > 0 && published - cursor > reader->keep) cursor = published - reader->keep;
+    end = std::min(end, cursor);
+  }
+  return end;
+}
+
+std::shared_ptr<const ShmReader> ShmReaders::blocker(std::uint64_t published) const {
+  std::shared_ptr<ShmReader> slowest, holder;
+  for (const auto& reader : current_) {
+    auto cursor = reader->cursor(published);
+    if (reader->keep == 0 && cursor < published &&
+        (slowest == nullptr || cursor < slowest->cursor(published)))
+      slowest = reader;
+    for (const auto& held : reader->page().held)
+      if (held.load(std::memory_order_acquire) != 0) holder = reader;
+  }
+  return slowest != nullptr ? slowest : holder;
+}
+
+bool ShmReaders::wake(const SharedWord<std::uint32_t>& signal) {
+  bool any = false, on_futex = false;
+  for (const auto& reader : current_) {
+    auto armed = reader->page().armed.load(std::memory_order_relaxed);
+    if (armed == 0 || armed == reader->woken) continue;
+    reader->woken = armed;
+    any = true;
+    if (armed % 2 == 0)
+      on_futex = true;
+    else
+      ::send(reader->socket.get(), "!", 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+  if (on_futex) futex_wake(signal);
+  return any;
 }
 
 }  // namespace hc::internal

@@ -64,6 +64,18 @@ class ShmReaders {
   [[nodiscard]] bool changed() const { return changed_.load(std::memory_order_relaxed); }
   void refresh();
 
+  // Of those there are, on the publisher's thread; `published` is the position it publishes next.
+
+  /// The position below which every reader that loses nothing has taken all.
+  [[nodiscard]] std::uint64_t taken_by_all(std::uint64_t published) const;
+  /// The position below which no reader wants anything any more.
+  [[nodiscard]] std::uint64_t wanted_by_none(std::uint64_t published) const;
+  /// Whom a publisher waits for: the slowest of those that lose nothing, if it has not taken all,
+  /// else anybody who holds something; null when it is nobody.
+  [[nodiscard]] std::shared_ptr<const ShmReader> blocker(std::uint64_t published) const;
+  /// Wakes those who sleep, on `signal` or their sockets; whether there were any.
+  bool wake(const SharedWord<std::uint32_t>& signal);
+
   /// Readable when some have come or gone since refresh().
   [[nodiscard]] int event() const { return event_.get(); }
 

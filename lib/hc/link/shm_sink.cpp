@@ -74,13 +74,9 @@ class ShmSink final : public Sink {
   void sweep();
   void publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot);
   void wake_readers();
-  bool wake_sleepers();
   void fence_again();
   void end();
 
-  [[nodiscard]] std::uint64_t taken_by_all() const;
-  [[nodiscard]] std::uint64_t wanted_by_none() const;
-  [[nodiscard]] std::shared_ptr<const ShmReader> blocker() const;
   [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes);
 
   // Readers' messages outlive the sink, and so may those of this process that own slots.
@@ -128,40 +124,6 @@ void ShmSink::refresh_for_sure() {
   refresh();
 }
 
-/// The position below which every reader that loses nothing has taken all.
-std::uint64_t ShmSink::taken_by_all() const {
-  std::uint64_t taken = published_;
-  for (const auto& reader : readers_->current())
-    if (reader->keep == 0) taken = std::min(taken, reader->cursor(published_));
-  return taken;
-}
-
-/// The position below which no reader wants anything any more.
-std::uint64_t ShmSink::wanted_by_none() const {
-  std::uint64_t end = published_;
-  for (const auto& reader : readers_->current()) {
-    auto cursor = reader->cursor(published_);
-    if (reader->keep > 0 && published_ - cursor > reader->keep) cursor = published_ - reader->keep;
-    end = std::min(end, cursor);
-  }
-  return end;
-}
-
-/// Whom one waits for: the slowest of those that lose nothing, if it has not taken all, else
-/// anybody who holds something; null when it is nobody.
-std::shared_ptr<const ShmReader> ShmSink::blocker() const {
-  std::shared_ptr<ShmReader> slowest, holder;
-  for (const auto& reader : readers_->current()) {
-    auto cursor = reader->cursor(published_);
-    if (reader->keep == 0 && cursor < published_ &&
-        (slowest == nullptr || cursor < slowest->cursor(published_)))
-      slowest = reader;
-    for (const auto& held : reader->page().held)
-      if (held.load(memory_order_acquire) != 0) holder = reader;
-  }
-  return slowest != nullptr ? slowest : holder;
-}
-
 /// Whether `bytes` more in slots are too many for the slowest of those that lose nothing. Cost: a
 /// look at what each has taken, but only when it seems so from the last look.
 bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
@@ -171,7 +133,7 @@ bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
   };
   taken_ = std::max(taken_, oldest_);
   if (!seems_so()) return false;
-  taken_ = taken_by_all();
+  taken_ = readers_->taken_by_all(published_);
   return seems_so();
 }
 
@@ -193,7 +155,8 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
   head_.wanted.store(wanted, memory_order_relaxed);
   while (true) {
     refresh();
-    const auto reader = blocker();  // kept, since it may go while one looks for room
+    const auto reader =
+        readers_->blocker(published_);  // kept, since it may go while one looks for room
     auto progress = reader == nullptr ? 0 : reader->page().progress.load(memory_order_acquire);
     std::atomic_thread_fence(memory_order_seq_cst);  // room
     if (has_room()) return {};
@@ -242,7 +205,7 @@ Slot* ShmSink::reserve(Slot* slot) {
 Slot* ShmSink::take_slot(std::uint64_t bytes) {
   if (Slot* slot = reserve(slots_->reuse(bytes)); slot != nullptr) return slot;
   refresh_for_sure();
-  withdraw(wanted_by_none());
+  withdraw(readers_->wanted_by_none(published_));
   sweep();
   if (Slot* slot = reserve(slots_->reuse(bytes)); slot != nullptr) return slot;
   return reserve(slots_->allocate(bytes));
@@ -252,7 +215,7 @@ Slot* ShmSink::take_slot(std::uint64_t bytes) {
 /// first; null when those that lose none want or hold all the rest.
 Slot* ShmSink::clear_slot(std::uint64_t bytes) {
   Slot* slot = take_slot(bytes);
-  while (slot == nullptr && oldest_ < taken_by_all()) {
+  while (slot == nullptr && oldest_ < readers_->taken_by_all(published_)) {
     withdraw(oldest_ + 1);
     sweep();
     slot = reserve(slots_->reuse(bytes));
@@ -291,12 +254,12 @@ Status ShmSink::place(const Message& message, Slot*& slot) {
 /// Sees that the next message has a cell.
 Status ShmSink::make_cell_free() {
   refresh_for_sure();
-  withdraw(std::min(taken_by_all(), published_ - kCells + kBatch));
+  withdraw(std::min(readers_->taken_by_all(published_), published_ - kCells + kBatch));
   if (published_ - oldest_ < kCells) return {};
   // Half of the ring at once, since to wake is dear.
   auto wanted = published_ - kCells / 2;
-  auto room = wait_for_room(wanted, [&] { return taken_by_all() >= wanted; });
-  if (room) withdraw(std::min(taken_by_all(), published_ - kCells + kBatch));
+  auto room = wait_for_room(wanted, [&] { return readers_->taken_by_all(published_) >= wanted; });
+  if (room) withdraw(std::min(readers_->taken_by_all(published_), published_ - kCells + kBatch));
   return room;
 }
 
@@ -377,13 +340,13 @@ void ShmSink::wake_readers() {
   if (fencing_) std::atomic_thread_fence(memory_order_seq_cst);  // wake
   std::atomic_signal_fence(memory_order_seq_cst);
   refresh();
-  if (wake_sleepers()) {
+  if (readers_->wake(head_.signal)) {
     fence_again();
   } else if (fencing_ && may_leave_fence_ && ++undisturbed_ >= kUndisturbed) {
     fencing_ = false;
     head_.unfenced.store(1, memory_order_relaxed);
     std::atomic_thread_fence(memory_order_seq_cst);  // wake: who has not seen that yet is seen here
-    if (wake_sleepers()) fence_again();
+    if (readers_->wake(head_.signal)) fence_again();
   }
 }
 
@@ -392,22 +355,6 @@ void ShmSink::fence_again() {
   if (fencing_) return;
   fencing_ = true;
   head_.unfenced.store(0, memory_order_release);
-}
-
-bool ShmSink::wake_sleepers() {
-  bool any = false, on_futex = false;
-  for (const auto& reader : readers_->current()) {
-    auto armed = reader->page().armed.load(memory_order_relaxed);
-    if (armed == 0 || armed == reader->woken) continue;
-    reader->woken = armed;
-    any = true;
-    if (armed % 2 == 0)
-      on_futex = true;
-    else
-      ::send(reader->socket.get(), "!", 1, MSG_DONTWAIT | MSG_NOSIGNAL);
-  }
-  if (on_futex) futex_wake(head_.signal);
-  return any;
 }
 
 Draft ShmSink::loan(const Header& header) {
