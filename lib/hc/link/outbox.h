@@ -28,13 +28,19 @@ class Outbox {
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] const Item& front() const { return items_.front().item; }
 
-  /// Adds a message, and drops what there is no room for.
+  /// Whether there is memory for one more; always for the first.
+  [[nodiscard]] bool has_memory(std::uint64_t bytes) const {
+    return items_.empty() || bytes_ + bytes <= memory_;
+  }
+
+  /// Adds a message, and drops what there is no room for; nothing where all are kept.
   void push(Item item, std::uint64_t bytes, Traffic& traffic) {
     // Who stands behind one that is kept back is kept back too.
     bool held = !items_.empty() && items_.front().held;
     items_.push_back({std::move(item), bytes, false});
     bytes_ += bytes;
     if (held) hold(items_.back(), traffic);
+    if (keep_ == Policy::kAll) return;
     while (items_.size() > 1 && bytes_ > memory_) drop(traffic.over_memory);
     while (items_.size() > keep_)
       drop(items_.front().held ? traffic.over_rate : traffic.superseded);

@@ -30,6 +30,7 @@ struct Policy {
   std::uint64_t memory = std::uint64_t{64} << 20;  ///< of the messages that wait [byte]
 
   [[nodiscard]] bool writer_waits() const { return keep == kAll; }
+  [[nodiscard]] bool is_paced() const { return rate > 0 || byte_rate > 0; }
 };
 
 /// The names of these options, as the table of transports needs them.
@@ -66,7 +67,7 @@ class TokenBucket {
 class Pacer {
  public:
   explicit Pacer(const Policy& policy)
-      : limited_(policy.rate > 0 || policy.byte_rate > 0),
+      : limited_(policy.is_paced()),
         messages_(policy.rate, policy.burst),
         bytes_(policy.byte_rate, policy.byte_burst) {}
 

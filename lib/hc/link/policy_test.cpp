@@ -138,6 +138,17 @@ TEST(Outbox, IsBoundedInMemoryToo) {
   EXPECT_EQ(traffic.superseded, 0U);
 }
 
+TEST(Outbox, DropsNothingForMemoryWhereAllAreKept) {
+  Traffic traffic;
+  Outbox<int> outbox(*policy_of("?memory=1K"));
+  EXPECT_TRUE(outbox.has_memory(5000));
+  outbox.push(0, 5000, traffic);
+  EXPECT_FALSE(outbox.has_memory(1));
+  outbox.push(1, 5000, traffic);
+  EXPECT_EQ(outbox.size(), 2U);
+  EXPECT_EQ(traffic.over_memory, 0U);
+}
+
 TEST(Outbox, TheNewestStaysHoweverLarge) {
   Traffic traffic;
   Outbox<int> outbox(*policy_of("?keep=100&memory=1K"));

@@ -68,9 +68,9 @@ class Reactor {
   Status want(std::uint64_t id, std::uint32_t events) {
     std::lock_guard lock(mutex_);
     auto found = entries_.find(id);
-    if (found == entries_.end()) return {};  // by its callback, while it is being destroyed
+    if (found == entries_.end()) return {};  // it ends, and waits for the callback that asks
     Entry& entry = *found->second;
-    if (events == entry.wanted) return {};
+    if (events == entry.wanted && (events & EPOLLONESHOT) == 0) return {};
     int operation = events == 0 ? EPOLL_CTL_DEL : entry.wanted == 0 ? EPOLL_CTL_ADD : EPOLL_CTL_MOD;
     auto done = control(operation, entry.descriptor, events, id);
     if (done) entry.wanted = events;
@@ -80,9 +80,8 @@ class Reactor {
   void call_at(std::uint64_t id, TimePoint when) {
     std::lock_guard lock(mutex_);
     auto found = entries_.find(id);
-    if (found == entries_.end()) return;
+    if (found == entries_.end() || found->second->due <= when) return;
     Entry& entry = *found->second;
-    if (entry.due <= when) return;
     due_.erase({entry.due, id});
     entry.due = when;
     bool is_next = due_.empty() || when < due_.begin()->first;

@@ -44,7 +44,7 @@ class Watch {
 
   /// Has the descriptor watched for EPOLLIN, EPOLLOUT and the like, level-triggered, until the next
   /// want(); with any of them for hang-up and error too, and with EPOLLERR for these alone.
-  /// 0: for nothing. Cost: a system call where something changes.
+  /// 0: for nothing; with EPOLLONESHOT, once. Cost: a system call where something changes.
   ///
   /// Errors: System (no memory; a descriptor that epoll cannot wait for).
   Status want(std::uint32_t events);
