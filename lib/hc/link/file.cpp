@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <hc/link/stream_link.h>
+#include <hc/link/stream_sink.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
@@ -44,7 +45,7 @@ Result<std::unique_ptr<Source>> open_file_source(const Uri& uri, const LinkOptio
 Result<std::unique_ptr<Sink>> open_file_sink(const Uri& uri, const LinkOptions& options) {
   auto descriptor = open_path(uri, O_WRONLY | O_CREAT | O_TRUNC, options.stop);
   if (!descriptor) return descriptor.error();
-  return std::unique_ptr<Sink>(new StreamSink(std::move(*descriptor), options));
+  return StreamSink::make(std::move(*descriptor), uri, options);
 }
 
 }  // namespace hc::internal

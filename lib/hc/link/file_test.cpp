@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sys/stat.h>
 
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -81,7 +80,6 @@ TEST(File, AFullDiskIsTold) {
 }
 
 std::pair<std::string, std::string> make_fifo() {
-  std::signal(SIGPIPE, SIG_IGN);  // as modules do
   static Folder folder;
   static int number = 0;
   std::string path = folder / std::to_string(number++).c_str();

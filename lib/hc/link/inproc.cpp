@@ -2,27 +2,30 @@
 // `inproc:NAME`: between threads of one process, without bytes: the elements are shared.
 #include <sys/eventfd.h>
 
-#include <deque>
 #include <map>
 #include <mutex>
 #include <string>
 
+#include <hc/link/outbox.h>
+#include <hc/link/reactor.h>
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
 namespace {
 
-constexpr std::size_t kCapacity = 64;  // messages under way before the sender waits
+constexpr std::size_t kCapacity = 64;  // messages under way before a sender waits that loses none
 
 /// What the two ends share. Each end holds it; the last one frees it.
 struct Channel {
   std::mutex mutex;
-  std::deque<Message> messages;
+  Outbox<Message> messages{Policy{}};
+  Traffic losses;
   bool has_source = false, has_sink = false;
   bool source_left = false, sink_left = false;
-  Descriptor readable;  // eventfd: messages wait, or the sink has left
-  Descriptor writable;  // eventfd: there is room again, or the source has left
+  Descriptor readable;           // eventfd: messages wait, or the sink has left
+  Descriptor writable;           // eventfd: there is room again, or the source has left
+  std::unique_ptr<Watch> timer;  // raises the first when a message may go; null: each may at once
 };
 
 void raise(const Descriptor& event) {
@@ -79,16 +82,20 @@ class InprocSource final : public Source {
   }
 
   Result<Got> take(Message& message) override {
+    message = {};
     std::lock_guard lock(channel_->mutex);
-    if (channel_->messages.empty()) {
-      if (channel_->sink_left) return Got::End;
+    auto& messages = channel_->messages;
+    if (messages.empty() && channel_->sink_left) return Got::End;
+    TimePoint now;
+    if (channel_->timer != nullptr) now = std::chrono::steady_clock::now();
+    if (auto ready = messages.ready_at(now, channel_->losses); ready > now) {
       lower(channel_->readable);
+      if (ready != TimePoint::max()) channel_->timer->call_at(ready);
       return Got::Nothing;
     }
-    message = std::move(channel_->messages.front());
+    message = messages.pop(now);
     ++traffic_.messages;
     traffic_.bytes += message.elements.size();
-    channel_->messages.pop_front();
     raise(channel_->writable);
     return Got::Message;
   }
@@ -103,8 +110,8 @@ class InprocSource final : public Source {
 
 class InprocSink final : public Sink {
  public:
-  InprocSink(std::shared_ptr<Channel> channel, int stop)
-      : channel_(std::move(channel)), stop_(stop) {}
+  InprocSink(std::shared_ptr<Channel> channel, const Policy& policy, int stop)
+      : channel_(std::move(channel)), waits_(policy.writer_waits()), stop_(stop) {}
   ~InprocSink() override { leave(); }
 
   Status send(const Message& message) override {
@@ -112,11 +119,13 @@ class InprocSink final : public Sink {
       {
         std::lock_guard lock(channel_->mutex);
         if (channel_->source_left) return Error{Code::Closed, "the reader has gone"};
-        if (channel_->messages.size() < kCapacity) {
-          channel_->messages.push_back(message.keep());
+        const auto& waiting = channel_->messages;
+        if (!waits_ ||
+            (waiting.size() < kCapacity && waiting.has_memory(message.elements.size()))) {
+          channel_->messages.push(message.keep(), message.elements.size(), channel_->losses);
           raise(channel_->readable);
-          ++traffic_.messages;
-          traffic_.bytes += message.elements.size();
+          ++messages_;
+          bytes_ += message.elements.size();
           return {};
         }
         lower(channel_->writable);
@@ -130,7 +139,13 @@ class InprocSink final : public Sink {
     return {};
   }
 
-  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+  [[nodiscard]] Traffic traffic() const override {
+    std::lock_guard lock(channel_->mutex);
+    Traffic all = channel_->losses;
+    all.messages = messages_;
+    all.bytes = bytes_;
+    return all;
+  }
 
  private:
   void leave() {
@@ -140,8 +155,9 @@ class InprocSink final : public Sink {
   }
 
   std::shared_ptr<Channel> channel_;
+  bool waits_;
   int stop_;
-  Traffic traffic_;
+  std::uint64_t messages_ = 0, bytes_ = 0;
 };
 
 }  // namespace
@@ -153,9 +169,22 @@ Result<std::unique_ptr<Source>> open_inproc_source(const Uri& uri, const LinkOpt
 }
 
 Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions& options) {
-  auto channel = channels().join(uri.rest, &Channel::has_sink);
-  if (!channel) return channel.error();
-  return std::unique_ptr<Sink>(new InprocSink(std::move(*channel), options.stop));
+  auto policy = parse_policy(uri);
+  if (!policy) return policy.error();
+  auto joined = channels().join(uri.rest, &Channel::has_sink);
+  if (!joined) return joined.error();
+  auto& channel = **joined;
+  std::unique_ptr<Sink> sink(new InprocSink(*joined, *policy, options.stop));
+  std::unique_ptr<Watch> timer;
+  if (policy->is_paced()) {
+    auto made = Watch::make(-1, [&channel](std::uint32_t) { raise(channel.readable); });
+    if (!made) return made.error();
+    timer = std::move(*made);
+  }
+  std::lock_guard lock(channel.mutex);
+  channel.messages = Outbox<Message>(*policy);
+  channel.timer = std::move(timer);
+  return sink;
 }
 
 }  // namespace hc::internal

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <hc/link/descriptor.h>
+#include <hc/link/policy.h>
 #include <hc/link/transports.h>
 
 namespace hc {
@@ -16,37 +17,47 @@ namespace {
 
 using internal::Transport;
 
-/// Every transport there is. `?` options that a scheme has are named here, so that one misspelt is
-/// refused and not overlooked.
+/// Every transport there is. `?` options that an end has are named here, so that one misspelt is
+/// refused and not overlooked; every sink has those of its policy beside.
 constexpr std::array<Transport, 8> kTransports = {{
     {"-", "", "", internal::open_stdin, internal::open_stdout},
     {"file", "", "", internal::open_file_source, internal::open_file_sink},
-    {"tcp", "wait", "wait", internal::open_tcp_source, internal::open_tcp_sink},
+    {"tcp", "wait reconnect", "wait reconnect", internal::open_tcp_source, internal::open_tcp_sink},
     {"tcp-listen", "", "readers", internal::listen_tcp_source, internal::listen_tcp_sink},
-    {"unix", "wait", "wait", internal::open_unix_source, internal::open_unix_sink},
+    {"unix", "wait reconnect", "wait reconnect", internal::open_unix_source,
+     internal::open_unix_sink},
     {"unix-listen", "", "readers", internal::listen_unix_source, internal::listen_unix_sink},
     {"inproc", "", "", internal::open_inproc_source, internal::open_inproc_sink},
-    {"shm", "keep spin wait", "keep readers rate burst byte_rate byte_burst memory",
-     internal::open_shm_source, internal::open_shm_sink},
+    {"shm", "keep spin wait", "readers", internal::open_shm_source, internal::open_shm_sink},
 }};
 
-/// @param option  which of a transport's options the end that is opened may have.
-Result<const Transport*> find_transport(const Uri& uri, std::string_view Transport::*option) {
+/// The words of a text, as `"wait", "reconnect"`; empty where there are none.
+std::string in_quotes(std::string_view words) {
+  std::string list;
+  while (!words.empty()) {
+    auto word = words.substr(0, words.find(' '));
+    words.remove_prefix(std::min(words.size(), word.size() + 1));
+    list.append(list.empty() ? "\"" : ", \"").append(word).append("\"");
+  }
+  return list;
+}
+
+Result<const Transport*> find_transport(const Uri& uri) {
   std::string known;
   for (const Transport& transport : kTransports) {
-    if (transport.scheme != uri.scheme) {
-      known.append(known.empty() ? "" : ", ").append(transport.scheme);
-      continue;
-    }
-    std::string_view allowed = transport.*option;
-    for (const auto& [key, value] : uri.options)
-      if ((" " + std::string(allowed) + " ").find(" " + key + " ") == std::string::npos)
-        return Error{Code::Unsupported,
-                     uri.scheme + " has no option \"" + key + "\" here" +
-                         (allowed.empty() ? "" : ", only \"" + std::string(allowed) + "\"")};
-    return &transport;
+    if (transport.scheme == uri.scheme) return &transport;
+    known.append(known.empty() ? "" : ", ").append(transport.scheme);
   }
   return Error{Code::Unsupported, "no transport \"" + uri.scheme + "\"; there are " + known};
+}
+
+Status check_options(const Uri& uri, std::string_view allowed) {
+  const std::string list = in_quotes(allowed);
+  for (const auto& [key, value] : uri.options)
+    if (list.find('"' + key + '"') == std::string::npos)
+      return Error{Code::Unsupported, uri.scheme + " has no option \"" + key + "\" here" +
+                                          (list.empty() ? "" : ", only " + list)};
+  return {};
 }
 
 /// A Traffic's members in the order of a report.
@@ -82,14 +93,20 @@ Status Source::resume() {
 }
 
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
-  auto transport = find_transport(uri, &Transport::source_option);
+  auto transport = find_transport(uri);
   if (!transport) return transport.error();
+  auto checked = check_options(uri, (*transport)->source_options);
+  if (!checked) return checked.error();
   return (*transport)->open_source(uri, options);
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
-  auto transport = find_transport(uri, &Transport::sink_option);
+  auto transport = find_transport(uri);
   if (!transport) return transport.error();
+  std::string allowed((*transport)->sink_options);
+  allowed.append(allowed.empty() ? "" : " ").append(internal::kPolicyOptions);
+  auto checked = check_options(uri, allowed);
+  if (!checked) return checked.error();
   return (*transport)->open_sink(uri, options);
 }
 

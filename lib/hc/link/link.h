@@ -126,8 +126,25 @@ struct LinkOptions {
 /// Listening is on loopback unless a host is given. Options in the URI:
 /// - `wait=SECONDS` (tcp, unix): how long to try while nobody listens yet; default 0, which gives a
 ///   host that does not answer 4 s.
+/// - `reconnect=SECONDS` (tcp, unix): the link is there at once, outlives its connection, and ends
+///   when it has had none for so long; default 0: it ends with its connection. A message that a
+///   sink has begun on a lost connection is sent anew, whole; whether those that the kernel had
+///   taken have arrived is unknown. A source cannot tell a peer's end from its death, so both lead
+///   to trying again. A name's addresses are looked up once.
 /// - `readers=N` (listening sinks): how many readers to wait for before the first message and
 ///   before the end; default 1 before the first message, and none before the end.
+///
+/// And of every sink; one that listens has them for each reader:
+/// - `keep=all|latest|N`: what to do while the reader is slow: wait for it (default), or keep the
+///   newest or so many messages that have not begun to go, and drop the oldest. What the kernel has
+///   taken, and small messages that are gathered to be written together, have begun. `latest` is 1.
+/// - `rate=N` [message/s], `burst=N` (default 1): messages go no faster, but so many may follow at
+///   once. Where none is dropped the writer waits for its turn.
+/// - `byte_rate=N` [byte/s], `byte_burst=N` (default: of 1 s): the same in bytes. A message that is
+///   larger goes when all of the burst is there, and leaves a debt.
+/// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be
+///   larger.
+/// Bytes may be written with K, M or G (of 1024).
 ///
 /// Errors: Unsupported (no such scheme; an option that it does not have), Usage, NotFound (no such
 /// file or host), Closed (nobody listens), Stopped, System (name in use, …).

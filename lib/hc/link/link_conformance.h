@@ -21,8 +21,9 @@ struct Transport {
   std::string name;
   /// URIs of a fresh link: where messages come out, and where they go in.
   std::function<std::pair<std::string, std::string>()> make;
-  bool sink_first = false;  ///< which end must be opened first
-  bool ends = true;         ///< the source ends when the sink closes (one that listens does not)
+  bool sink_first = false;    ///< which end must be opened first
+  bool ends = true;           ///< the source ends when the sink closes (one that listens does not)
+  bool keeps_at_sink = true;  ///< what is dropped is so at the sink, and counted there
 };
 
 inline void PrintTo(const Transport& transport, std::ostream* out) {
@@ -38,6 +39,11 @@ inline std::unique_ptr<Sink> sink_of(const std::string& uri, LinkOptions options
   auto sink = open_sink(*parse_uri(uri), options);
   EXPECT_TRUE(sink) << uri << ": " << sink.error().text();
   return std::move(*sink);
+}
+
+/// A URI with one more option, or several.
+inline std::string with(const std::string& uri, const std::string& options) {
+  return uri + (uri.find('?') == std::string::npos ? "?" : "&") + options;
 }
 
 /// What tells links to stop, once raised and for ever.
@@ -71,8 +77,10 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LinkConformance);
 
 class LinkConformance : public ::testing::TestWithParam<Transport> {
  protected:
-  void open() {
+  /// @param options  of the sink.
+  void open(const std::string& options = "") {
     auto [from, to] = GetParam().make();
+    if (!options.empty()) to = with(to, options);
     if (GetParam().sink_first) sink_ = sink_of(to);
     source_ = source_of(from);
     if (!GetParam().sink_first) sink_ = sink_of(to);
@@ -99,6 +107,25 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
     auto end = receive(*source_, message);
     ASSERT_TRUE(end) << end.error().text();
     EXPECT_FALSE(*end);
+  }
+
+  /// Closes the sink, takes what there is up to message `last`, and checks that it comes in order,
+  /// and that what does not come was counted.
+  void take_to(std::int64_t last) {
+    std::thread closer([&] { ASSERT_TRUE(sink_->close()); });
+    Message message;
+    std::uint64_t received = 0;
+    for (std::int64_t seq = -1; seq < last; ++received) {
+      auto got = receive(*source_, message);
+      ASSERT_TRUE(got && *got);
+      ASSERT_GT(message.header.seq, seq);
+      seq = message.header.seq;
+      ASSERT_EQ(message.characters(),
+                numbered(seq, static_cast<std::int32_t>(message.elements.size())).characters());
+    }
+    closer.join();
+    EXPECT_EQ(sink_->traffic().messages, static_cast<std::uint64_t>(last) + 1);
+    EXPECT_EQ(sink_->traffic().messages, received + sink_->traffic().lost());
   }
 
   std::unique_ptr<Source> source_;
@@ -128,9 +155,11 @@ TEST_P(LinkConformance, EndsWithoutAMessageOrWaitsForTheNextWriter) {
   Message message;
   if (GetParam().ends) {
     EXPECT_FALSE(*receive(*source_, message));
+    EXPECT_FALSE(*receive(*source_, message));
+  } else {
+    EXPECT_EQ(*source_->take(message), Got::Nothing);
   }
   sender.join();
-  EXPECT_EQ(*source_->take(message), GetParam().ends ? Got::End : Got::Nothing);
 }
 
 TEST_P(LinkConformance, NothingIsNoEnd) {
@@ -184,10 +213,90 @@ TEST_P(LinkConformance, AReaderThatLeavesIsNoticed) {
   EXPECT_EQ(sent.error().code, Code::Closed);
 }
 
+TEST_P(LinkConformance, SmallAndLargeOnesStayInOrder) {
+  open();
+  constexpr int kCount = 2000;
+  std::thread sender([&] {
+    for (int i = 0; i < kCount; ++i)
+      ASSERT_TRUE(sink_->send(numbered(i, i % 100 == 99 ? 200'000 : i % 50)));
+    ASSERT_TRUE(sink_->close());
+  });
+  Message message;
+  for (int i = 0; i < kCount; ++i) {
+    ASSERT_TRUE(*receive(*source_, message));
+    ASSERT_EQ(message.characters(), numbered(i, i % 100 == 99 ? 200'000 : i % 50).characters());
+  }
+  sender.join();
+}
+
+TEST_P(LinkConformance, WithKeepLatestTheWriterNeverWaits) {
+  if (!GetParam().keeps_at_sink) GTEST_SKIP();
+  open("keep=latest");
+  std::int64_t count = 0;  // nobody reads, and this ends all the same
+  while (sink_->traffic().lost() < 10) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
+  take_to(count - 1);
+  EXPECT_GE(sink_->traffic().superseded, 10U);
+  EXPECT_EQ(sink_->traffic().superseded, sink_->traffic().lost());
+}
+
+TEST_P(LinkConformance, WithKeepLatestSmallOnesAreWholeToo) {
+  if (!GetParam().keeps_at_sink) GTEST_SKIP();
+  open("keep=latest");
+  std::int64_t count = 0;
+  while (sink_->traffic().lost() < 10) ASSERT_TRUE(sink_->send(numbered(count++, 30)));
+  take_to(count - 1);
+}
+
+TEST_P(LinkConformance, KeepsAsManyAsAsked) {
+  if (!GetParam().keeps_at_sink) GTEST_SKIP();
+  open("keep=5");
+  std::int64_t count = 0;
+  while (sink_->traffic().lost() < 10) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
+  auto lost_until_now = sink_->traffic().lost();
+  take_to(count - 1);
+  EXPECT_EQ(sink_->traffic().lost(), lost_until_now);
+}
+
+TEST_P(LinkConformance, MemoryIsBounded) {
+  if (!GetParam().keeps_at_sink) GTEST_SKIP();
+  open("keep=1000&memory=1M");
+  std::int64_t count = 0;
+  while (sink_->traffic().lost() < 10) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
+  take_to(count - 1);
+  EXPECT_GE(sink_->traffic().over_memory, 10U);
+  EXPECT_EQ(sink_->traffic().superseded, 0U);
+}
+
+TEST_P(LinkConformance, ARateKeepsMessagesBack) {
+  if (!GetParam().keeps_at_sink) GTEST_SKIP();
+  open("keep=2&rate=20&burst=3");
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink_->send(numbered(i, 10)));
+  take_to(9);
+  auto traffic = sink_->traffic();
+  EXPECT_GE(traffic.kept_back, traffic.over_rate);
+  EXPECT_EQ(traffic.over_memory + traffic.cut, 0U);
+}
+
+TEST_P(LinkConformance, AWriterThatLosesNothingWaitsForItsTurn) {
+  open("rate=1000");
+  transfer(20, 10);
+  EXPECT_EQ(sink_->traffic().lost(), 0U);
+}
+
+TEST_P(LinkConformance, AReaderThatLeavesIsNoticedByAWriterThatDoesNotWait) {
+  open("keep=latest");
+  ASSERT_TRUE(sink_->send(numbered(0, 10)));
+  Message message;
+  ASSERT_TRUE(*receive(*source_, message));
+  source_.reset();
+  Status sent;
+  for (int i = 0; sent; ++i) sent = sink_->send(numbered(i, 100'000));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
 TEST_P(LinkConformance, OptionsOfAnotherTransportAreRefused) {
   auto [from, to] = GetParam().make();
-  auto source = open_source(
-      *parse_uri(from + (from.find('?') == std::string::npos ? "?" : "&") + "flavour=sweet"));
+  auto source = open_source(*parse_uri(with(from, "flavour=sweet")));
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, Code::Unsupported);
 }

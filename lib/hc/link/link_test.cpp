@@ -19,8 +19,13 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
 
 TEST(Open, OptionsAreChecked) {
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?weight=3")).error().detail,
-            "tcp has no option \"weight\" here, only \"wait\"");
+            "tcp has no option \"weight\" here, only \"wait\", \"reconnect\"");
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
+  EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Unsupported);
+  EXPECT_EQ(open_sink(*parse_uri("-?wait=3")).error().detail,
+            "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"byte_rate\", "
+            "\"byte_burst\", \"memory\"");
+  EXPECT_EQ(open_sink(*parse_uri("-?keep=some")).error().code, Code::Usage);
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?wait=x")).error().code, Code::Usage);
   EXPECT_EQ(open_sink(*parse_uri("unix-listen:@x?readers=-1")).error().code, Code::Usage);
 }

@@ -56,7 +56,7 @@ void ShmReaders::log(std::string_view line) const {
 
 void ShmReaders::accept_all() {
   while (true) {
-    auto peer = accept_peer(socket_, options_);
+    auto peer = accept_peer(socket_, options_.log);
     if (peer && !*peer) {
       static_cast<void>(watching_->want(EPOLLIN));
       return;

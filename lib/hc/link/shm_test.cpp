@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Shm, LinkConformance,
                                                        return std::pair(name + "?wait=10",
                                                                         name + "?readers=1");
                                                      },
-                                                     true}),
+                                                     true, true, false}),
                          [](const auto& test) { return test.param.name; });
 
 constexpr std::int32_t kSmall = 10, kLarge = 100'000;  // elements [byte]

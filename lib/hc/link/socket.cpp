@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/socket.h>
 
+#include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <optional>
 
 #include <hc/link/stream_link.h>
@@ -13,37 +17,14 @@
 namespace hc::internal {
 namespace {
 
-constexpr int kBacklog = 128;
-
-Result<Descriptor> open_socket(const void* address) {
-  int family = static_cast<const sockaddr*>(address)->sa_family;
-  auto number = system_call("socket", "", [&] {
-    return ::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  });
-  if (!number) return number.error();
-  return Descriptor(*number);
-}
-
-/// Small messages leave at once, and a peer that vanishes while nothing is said is noticed within
-/// kVanishTime: asked after 1, 2 and 3 s, given up after 4 s. Harmless where the socket is not TCP.
-void set_up(int socket) {
-  static_assert(kVanishTime == std::chrono::seconds(4));
-  const std::array<std::array<int, 3>, 5> options = {{{IPPROTO_TCP, TCP_NODELAY, 1},
-                                                      {SOL_SOCKET, SO_KEEPALIVE, 1},
-                                                      {IPPROTO_TCP, TCP_KEEPIDLE, 1},
-                                                      {IPPROTO_TCP, TCP_KEEPINTVL, 1},
-                                                      {IPPROTO_TCP, TCP_KEEPCNT, 3}}};
-  for (const auto& [level, name, value] : options)
-    ::setsockopt(socket, level, name, &value, sizeof value);
-}
+constexpr int kBacklog = 1024;  // who waits here costs no descriptor
 
 /// One try; none (-1) when nobody listens there, or answers before `deadline`.
 Result<Descriptor> try_to_connect(const Address& address, const std::string& name,
                                   Deadline deadline, int stop) {
-  auto socket = open_socket(address.data);
+  auto socket = open_socket(address);
   if (!socket) return socket;
-  if (::connect(socket->get(), static_cast<const sockaddr*>(address.data), address.size) == 0)
-    return socket;
+  if (::connect(socket->get(), address.get(), address.size) == 0) return socket;
   if (errno == EINPROGRESS) {
     auto answered = wait_for(socket->get(), POLLOUT, stop, deadline);
     if (!answered) return answered.error();
@@ -61,6 +42,19 @@ Result<Descriptor> try_to_connect(const Address& address, const std::string& nam
 }
 
 }  // namespace
+
+Address::Address(const void* data, unsigned length) : size(length) {
+  HC_CHECK(length <= sizeof storage, length);
+  std::memcpy(&storage, data, length);
+}
+
+Result<Descriptor> open_socket(const Address& address) {
+  auto number = system_call("socket", "", [&] {
+    return ::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  });
+  if (!number) return number.error();
+  return Descriptor(*number);
+}
 
 ListeningSocket::~ListeningSocket() {
   if (descriptor && !unlink_path.empty()) ::unlink(unlink_path.c_str());
@@ -80,7 +74,7 @@ Result<Descriptor> connect_to(std::span<const Address> addresses, const std::str
       auto share = (last_answer - now) / static_cast<std::int64_t>(addresses.size() - i);
       auto connected = try_to_connect(addresses[i], name, now + share, stop);
       if (connected && *connected) {
-        set_up(connected->get());
+        set_up_connection(connected->get());
         return connected;
       }
       if (!connected && connected.error().code == Code::Stopped) return connected;
@@ -96,36 +90,71 @@ Result<Descriptor> connect_to(std::span<const Address> addresses, const std::str
   }
 }
 
-Result<Descriptor> listen_on(const void* address, unsigned size, const std::string& name) {
+Result<Descriptor> listen_on(const Address& address, const std::string& name) {
   auto socket = open_socket(address);
   if (!socket) return socket.error();
   int on = 1;
   ::setsockopt(socket->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  auto bound = system_call("bind", name, [&] {
-    return ::bind(socket->get(), static_cast<const sockaddr*>(address), size);
-  });
+  auto bound =
+      system_call("bind", name, [&] { return ::bind(socket->get(), address.get(), address.size); });
   if (!bound) return bound.error();
   auto listening = system_call("listen", name, [&] { return ::listen(socket->get(), kBacklog); });
   if (!listening) return listening.error();
   return socket;
 }
 
-Result<Descriptor> accept_peer(const ListeningSocket& socket, const LinkOptions& options) {
+Result<Descriptor> accept_peer(const ListeningSocket& socket, const LogSink& log) {
   while (true) {
     int number = ::accept4(socket.descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (number >= 0) {
       Descriptor peer(number);
       auto admitted = socket.admit ? socket.admit(number) : Status();
       if (!admitted) {
-        if (options.log) options.log(Severity::Warning, admitted.error().text());
+        if (log) log(Severity::Warning, admitted.error().text());
         continue;
       }
-      set_up(number);
+      set_up_connection(number);
       return peer;
     }
     if (errno == EAGAIN || errno == EWOULDBLOCK) return Descriptor();
     if (errno != EINTR && errno != ECONNABORTED) return system_error("accept", "");
   }
+}
+
+void set_up_connection(int socket) {
+  // The longest pause between the kernel's own tries, of what is sent and of asking for room; else
+  // they are minutes apart after a while, and a link that comes back is in use that late.
+  // Linux 6.15 has it, earlier ones do not know it.
+  constexpr int kLongestPause = 44;  // TCP_RTO_MAX_MS
+  const std::array<std::array<int, 3>, 6> options = {{{IPPROTO_TCP, TCP_NODELAY, 1},
+                                                      {SOL_SOCKET, SO_KEEPALIVE, 1},
+                                                      {IPPROTO_TCP, TCP_KEEPIDLE, 1},
+                                                      {IPPROTO_TCP, TCP_KEEPINTVL, 1},
+                                                      {IPPROTO_TCP, TCP_KEEPCNT, 2},
+                                                      {IPPROTO_TCP, kLongestPause, 1000}}};
+  for (const auto& [level, name, value] : options)
+    ::setsockopt(socket, level, name, &value, sizeof value);
+}
+
+void set_up_reader(int socket) {
+  // The kernel compares when it would ask for the third time, after 3 s.
+  constexpr unsigned kMilliseconds = 2500;
+  ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &kMilliseconds, sizeof kMilliseconds);
+}
+
+PeerLook look_at_peer(int socket) {
+  using std::chrono::milliseconds;
+  constexpr milliseconds kSoonest{50}, kLatest{1000};
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  int unanswered = 0;
+  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return {};
+  if (::ioctl(socket, SIOCOUTQ, &unanswered) != 0 || unanswered == 0) return {};
+  // Without room at the reader's side nothing is sent again, but the reader is asked for room.
+  auto asked = std::max(info.tcpi_retransmits, info.tcpi_probes);
+  milliseconds silent(info.tcpi_last_ack_recv);
+  return {asked >= 2 && silent >= kVanishTime, true,
+          std::clamp(kVanishTime - silent, kSoonest, kLatest)};
 }
 
 }  // namespace hc::internal

@@ -2,6 +2,8 @@
 #pragma once
 // Stream sockets, TCP and Unix alike: connected, listening, and their peers. Internal.
 
+#include <sys/socket.h>
+
 #include <chrono>
 #include <functional>
 #include <span>
@@ -31,11 +33,17 @@ struct ListeningSocket {
   ~ListeningSocket();
 };
 
-/// Where a peer may listen; the memory is somebody else's.
+/// Where a peer may listen: a sockaddr of some family.
 struct Address {
-  const void* data = nullptr;  ///< a sockaddr of some family
-  unsigned size = 0;           ///< [byte]
+  Address(const void* data, unsigned length);
+  [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
+
+  sockaddr_storage storage{};
+  unsigned size;  ///< [byte]
 };
+
+/// A fresh socket for an address, whose calls do not wait. Errors: System.
+Result<Descriptor> open_socket(const Address& address);
 
 /// How long a peer may take to answer when one does not wait for it to begin listening.
 constexpr std::chrono::seconds kAnswerTime{4};
@@ -49,12 +57,37 @@ Result<Descriptor> connect_to(std::span<const Address> addresses, const std::str
                               std::chrono::seconds wait, int stop);
 
 /// A socket that listens on an address; its name is for error lines.
-Result<Descriptor> listen_on(const void* address, unsigned size, const std::string& name);
+Result<Descriptor> listen_on(const Address& address, const std::string& name);
 
 /// Takes the next peer that has connected; none (-1) when there is none just now.
 ///
 /// Errors: System: descriptors or memory have run out, or the network has failed. None is for ever,
 /// and who waits may be let in later.
-Result<Descriptor> accept_peer(const ListeningSocket& socket, const LinkOptions& options);
+Result<Descriptor> accept_peer(const ListeningSocket& socket, const LogSink& log);
+
+/// How long a TCP peer may leave what it must answer without an answer: so one that vanishes is
+/// noticed within 4 s, with what timers are late by.
+constexpr std::chrono::milliseconds kVanishTime{3500};
+
+/// Has a TCP connection send what is small at once, and notice a peer that vanishes while nothing
+/// is said: it is asked after 1 and 2 s, and given up after 3 s. Harmless where the socket is not
+/// TCP.
+void set_up_connection(int socket);
+/// Has one that only receives go by the time too (TCP_USER_TIMEOUT), however few its own questions.
+///
+/// Not for one that sends: there the kernel counts the time in which a reader that is there, and
+/// answers, but is slow, has no room, and would end the link to it. See look_at_peer().
+void set_up_reader(int socket);
+
+/// What a socket's kernel knows of the peer's kernel.
+struct PeerLook {
+  bool vanished = false;     ///< has not answered for kVanishTime, though asked twice
+  bool must_answer = false;  ///< has not acknowledged all yet, so that one is to look again
+  std::chrono::milliseconds next{0};  ///< when
+};
+
+/// Looks whether a peer of TCP that is sent something is still there; where the socket is not TCP,
+/// there is nothing to look after.
+PeerLook look_at_peer(int socket);
 
 }  // namespace hc::internal

@@ -2,22 +2,43 @@
 #pragma once
 // What tcp and unix links do beyond the conformance of all: they listen, refuse, and meet again.
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <functional>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
-#include <hc/link/listener.h>
+#include <hc/link/listening_source.h>
 #include <hc/link/stream_link.h>
 #include <hc/wire/codec.h>
 
 namespace hc::testing {
+
+inline sockaddr_in loopback(std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  return address;
+}
+
+/// A port that the kernel has just found free.
+inline std::string free_port() {
+  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
+  sockaddr_in address = loopback(0);
+  socklen_t size = sizeof address;
+  EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size), 0);
+  EXPECT_EQ(::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+  return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+}
 
 /// A scheme whose links are sockets.
 struct SocketScheme {
@@ -55,6 +76,9 @@ struct Warnings {
     return options;
   }
 };
+
+// Tests that use the helpers above alone need not run the suite.
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SocketLink);
 
 class SocketLink : public ::testing::TestWithParam<SocketScheme> {
  protected:
@@ -221,13 +245,13 @@ TEST_P(SocketLink, AMessageThatIsCutIsTold) {
   EXPECT_TRUE(warnings.lines[0].starts_with("Truncated: R2 stream: truncated after 1 messages"));
 }
 
-/// Leaves the process no free descriptor, for as long as it lives.
+/// Leaves the process no free descriptor, or so many, for as long as it lives.
 class NoDescriptors {
  public:
-  NoDescriptors() {
+  explicit NoDescriptors(rlim_t but = 0) {
     ::getrlimit(RLIMIT_NOFILE, &saved_);
     internal::Descriptor lowest(::eventfd(0, EFD_CLOEXEC));
-    rlimit none = {static_cast<rlim_t>(lowest.get()), saved_.rlim_max};
+    rlimit none = {static_cast<rlim_t>(lowest.get()) + but, saved_.rlim_max};
     EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   }
   ~NoDescriptors() { ::setrlimit(RLIMIT_NOFILE, &saved_); }
@@ -258,11 +282,12 @@ TEST_P(SocketLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
   stop.raise();
   options.stop = stop.options().stop;
   auto sink = sink_of(listen(), options);
-  auto source = source_of(dial());
+  std::unique_ptr<Source> source;
   EXPECT_EQ(sink->traffic().messages, 0U);  // a first call, for which UBSan wants descriptors
   Message first = numbered(1, 1);
   {
-    NoDescriptors none;
+    NoDescriptors none(1);
+    source = source_of(dial());  // takes the one there is
     EXPECT_EQ(sink->send(first).error().code, Code::Stopped);
   }
   EXPECT_EQ(warnings.lines, std::vector<std::string>{"System: accept(): Too many open files"});
@@ -331,6 +356,47 @@ TEST_P(SocketLink, MoreReadersThanThereIsRoomForWait) {
   EXPECT_EQ(::recv(last.get(), &byte, 1, MSG_DONTWAIT), -1);
   peers.erase(peers.begin());
   while (::recv(last.get(), &byte, 1, MSG_DONTWAIT) < 0) ASSERT_TRUE(sink->send(numbered(2, 1)));
+}
+
+TEST_P(SocketLink, OneSlowReaderHoldsUpNoOther) {
+  auto sink = sink_of(listen() + "?readers=2&keep=latest");
+  auto slow = GetParam().connect(place_);
+  auto source = source_of(dial());
+  Message message;
+  // What the other reads is enough for the slow one to have missed some.
+  for (int i = 0; sink->traffic().lost() < 10; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, 100'000)));
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+}
+
+TEST_P(SocketLink, EveryStreamThatIsCutIsToldOnce) {
+  constexpr int kCount = 2000;
+  std::minstd_rand random(1);
+  Warnings warnings;
+  auto source = source_of(listen(), warnings.options());
+  const std::string bytes = encode(numbered(1, 100)) + encode(numbered(2, 100));
+  const std::size_t half = encode(numbered(1, 100)).size();
+  Message message;
+  std::size_t messages = 0, cut = 0;
+  auto take_all = [&] {
+    while (*source->take(message) == Got::Message) ++messages;
+  };
+  std::size_t expected = 0;
+  for (int i = 0; i < kCount; ++i) {
+    std::size_t size = random() % bytes.size();
+    auto peer = GetParam().connect(place_);
+    ASSERT_EQ(::send(peer.get(), bytes.data(), size, 0), static_cast<ssize_t>(size));
+    if (size % half != 0) ++cut;
+    expected += size / half;
+    take_all();
+  }
+  while (warnings.lines.size() < cut || messages < expected) take_all();
+  take_all();
+  EXPECT_EQ(warnings.lines.size(), cut);
+  EXPECT_EQ(messages, expected);
+  for (const auto& line : warnings.lines) EXPECT_TRUE(line.starts_with("Truncated: R2")) << line;
 }
 
 }  // namespace hc::testing

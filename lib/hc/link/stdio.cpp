@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <hc/link/stream_link.h>
+#include <hc/link/stream_sink.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
@@ -14,10 +15,10 @@ Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions& option
   return std::unique_ptr<Source>(new StreamSource(std::move(*descriptor), options));
 }
 
-Result<std::unique_ptr<Sink>> open_stdout(const Uri&, const LinkOptions& options) {
+Result<std::unique_ptr<Sink>> open_stdout(const Uri& uri, const LinkOptions& options) {
   auto descriptor = reopen_without_waiting(STDOUT_FILENO, O_WRONLY);
   if (!descriptor) return descriptor.error();
-  return std::unique_ptr<Sink>(new StreamSink(std::move(*descriptor), options));
+  return StreamSink::make(std::move(*descriptor), uri, options);
 }
 
 }  // namespace hc::internal

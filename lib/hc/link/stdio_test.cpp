@@ -84,7 +84,6 @@ TEST_F(Stdio, TheFlagsOfTheShellsSocketsStay) {
 }
 
 TEST_F(Stdio, AReaderThatHasGoneIsAnEnd) {
-  ::signal(SIGPIPE, SIG_IGN);
   auto sink = sink_of("-");
   release(0);
   EXPECT_EQ(sink->send(numbered(0, 10)).error().code, Code::Closed);

@@ -2,11 +2,8 @@
 #include <hc/link/stream_link.h>
 
 #include <fcntl.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/uio.h>
 
 #include <algorithm>
 #include <array>
@@ -27,6 +24,8 @@ Result<Got> StreamSource::take(Message& message) {
     auto got = reader_.next(message);
     if (!got) return got.error();
     if (*got) return Got::Message;
+    // Who asked and got an answer waits for the next one now: to read once more would be in vain.
+    if (std::exchange(is_dry_, false) && between_messages()) return Got::Nothing;
     auto space = reader_.space();
     ssize_t size = is_socket_ ? ::recv(descriptor_.get(), space.data(), space.size(), MSG_DONTWAIT)
                               : ::read(descriptor_.get(), space.data(), space.size());
@@ -36,6 +35,7 @@ Result<Got> StreamSource::take(Message& message) {
     }
     if (size > 0) {
       reader_.commit(static_cast<std::size_t>(size));
+      is_dry_ = is_socket_ && static_cast<std::size_t>(size) < space.size();
       continue;
     }
     if (size < 0 && errno == EINTR) continue;
@@ -47,6 +47,12 @@ Result<Got> StreamSource::take(Message& message) {
     if (!end) return end.error();
     return Got::End;
   }
+}
+
+Result<bool> StreamSource::wait(int stop, std::chrono::milliseconds timeout) {
+  auto deadline =
+      timeout.count() < 0 ? Deadline::max() : std::chrono::steady_clock::now() + timeout;
+  return wait_for(descriptor_.get(), POLLIN, stop, deadline);
 }
 
 bool StreamSource::awaits_writer() const {
@@ -64,80 +70,6 @@ Status StreamSource::resume() {
       system_call("lseek", "", [&] { return ::lseek(descriptor_.get(), begin, SEEK_SET); });
   if (!moved) return moved.error();
   reader_.resume();
-  return {};
-}
-
-Status StreamSink::send(const Message& message) {
-  return send_pieces(encoder_.encode(message));
-}
-
-Status StreamSink::wait_for_room(bool begun, std::optional<Deadline>& give_up) {
-  while (true) {
-    auto now = std::chrono::steady_clock::now();
-    if (give_up && now >= *give_up)
-      return Error{Code::Truncated,
-                   "asked to stop, and the reader did not take the rest of a message"};
-    auto ready = wait_for(descriptor_.get(), POLLOUT, give_up ? -1 : stop_,
-                          std::min(now + kLookPeriod, give_up.value_or(Deadline::max())));
-    if (ready && *ready) return {};
-    if (!ready && (!begun || ready.error().code != Code::Stopped)) return ready.error();
-    if (!ready) give_up = std::chrono::steady_clock::now() + kGrace;
-    if (auto there = look_after_reader(); !there) return there;
-  }
-}
-
-Status StreamSink::look_after_reader() const {
-  if (is_socket_ && has_vanished(descriptor_.get()))
-    return Error{Code::Closed, "the reader has vanished"};
-  return {};
-}
-
-Status StreamSink::send_pieces(const Pieces& pieces) {
-  std::array<iovec, std::tuple_size_v<Pieces>> parts{};
-  std::size_t used = 0, left = 0;
-  for (auto piece : pieces) {
-    if (piece.empty()) continue;
-    parts[used++] = {const_cast<std::byte*>(piece.data()), piece.size()};
-    left += piece.size();
-  }
-  iovec* part = parts.data();
-  if (auto there = look_after_reader(); !there) return there;
-  const std::size_t whole = left;
-  std::optional<Deadline> give_up;  // set when it is to stop inside the message
-  traffic_.bytes += whole;
-  while (left > 0) {
-    msghdr header{};
-    header.msg_iov = part;
-    header.msg_iovlen = used - static_cast<std::size_t>(part - parts.data());
-    ssize_t size = is_socket_
-                       ? ::sendmsg(descriptor_.get(), &header, MSG_NOSIGNAL | MSG_DONTWAIT)
-                       : ::writev(descriptor_.get(), part, static_cast<int>(header.msg_iovlen));
-    if (size < 0) {
-      if (errno == ENOTSOCK && is_socket_) {
-        is_socket_ = false;
-      } else if (would_wait(errno)) {
-        if (auto room = wait_for_room(left < whole, give_up); !room) return room;
-      } else if (errno != EINTR) {
-        return system_error("write", "");
-      }
-      continue;
-    }
-    left -= static_cast<std::size_t>(size);
-    for (auto rest = static_cast<std::size_t>(size); rest > 0;) {
-      std::size_t taken = std::min(rest, part->iov_len);
-      part->iov_base = static_cast<std::byte*>(part->iov_base) + taken;
-      part->iov_len -= taken;
-      rest -= taken;
-      if (part->iov_len == 0) ++part;
-    }
-  }
-  ++traffic_.messages;
-  return {};
-}
-
-Status StreamSink::close() {
-  if (is_socket_) ::shutdown(descriptor_.get(), SHUT_WR);
-  descriptor_.reset();
   return {};
 }
 
@@ -164,15 +96,6 @@ void widen_pipe(int descriptor) {
   ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
 }
 
-bool has_vanished(int socket) {
-  tcp_info info{};
-  socklen_t size = sizeof info;
-  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return false;
-  // Without room at the reader's side nothing is sent again, but the reader is asked for room.
-  auto asked = std::max(info.tcpi_retransmits, info.tcpi_probes);
-  return asked >= 2 && std::chrono::milliseconds(info.tcpi_last_ack_recv) >= kVanishTime;
-}
-
 Status Pauses::next(int stop) {
   constexpr std::chrono::milliseconds kLongest{200};
   auto waited = wait_readable({}, stop, pause_);
@@ -181,16 +104,18 @@ Status Pauses::next(int stop) {
   return {};
 }
 
-Result<bool> wait_for(int descriptor, short events, int stop, std::optional<Deadline> deadline) {
-  using std::chrono::milliseconds;
+Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline) {
+  using std::chrono::nanoseconds;
   std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};
-  auto ready = system_call("poll", "", [&] {
-    milliseconds left(-1);
-    if (deadline)
-      left =
-          std::max(milliseconds(0),
-                   std::chrono::ceil<milliseconds>(*deadline - std::chrono::steady_clock::now()));
-    return ::poll(polled.data(), polled.size(), static_cast<int>(left.count()));
+  auto ready = system_call("ppoll", "", [&] {
+    timespec left{};
+    if (deadline != Deadline::max()) {
+      auto time =
+          std::max<nanoseconds>(nanoseconds(0), deadline - std::chrono::steady_clock::now());
+      left = {time.count() / std::nano::den, time.count() % std::nano::den};
+    }
+    return ::ppoll(polled.data(), polled.size(), deadline == Deadline::max() ? nullptr : &left,
+                   nullptr);
   });
   if (!ready) return ready.error();
   if (polled[0].revents == 0 && polled[1].revents != 0)

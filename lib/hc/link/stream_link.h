@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages over any descriptor that carries a stream of bytes: pipe, file, terminal, socket.
-// Internal: what stdio, file, tcp and unix share.
+// Messages out of any descriptor that carries a stream of bytes: pipe, file, terminal, socket, and
+// what stdio, file, tcp and unix share beside. Internal. stream_sink.h has the other end.
 
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 #include <hc/link/descriptor.h>
 #include <hc/link/link.h>
-#include <hc/wire/codec.h>
 #include <hc/wire/stream_reader.h>
 
 namespace hc::internal {
@@ -29,6 +27,7 @@ class StreamSource final : public Source {
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
+  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override;
   [[nodiscard]] Traffic traffic() const override { return {reader_.messages(), reader_.bytes()}; }
   Status resume() override;
   /// Whether nothing has come yet of the next message.
@@ -41,54 +40,12 @@ class StreamSource final : public Source {
   bool may_await_writer_;
   off_t begin_;            // where in a file the stream begins, -1 in what is none [byte]
   bool is_socket_ = true;  // until a first read says otherwise
+  bool is_dry_ = false;    // the last read gave all there was, which has been taken
   StreamReader reader_;
-};
-
-/// Puts messages into a descriptor whose writes do not wait; those of sockets never do.
-///
-/// A message that was begun is finished, also when it is to stop: the reader could not tell where
-/// the next one begins, and would call the stream damaged.
-class StreamSink final : public Sink {
- public:
-  /// How long a reader may take, after `stop`, for the rest of a message.
-  static constexpr std::chrono::seconds kGrace{2};
-  /// How often a reader that is waited for is looked after, whether it is still there.
-  static constexpr std::chrono::seconds kLookPeriod{1};
-
-  StreamSink(Descriptor descriptor, const LinkOptions& options)
-      : descriptor_(std::move(descriptor)), stop_(options.stop) {}
-
-  Status send(const Message& message) override;
-  Status close() override;
-  [[nodiscard]] Traffic traffic() const override { return traffic_; }
-
-  /// Sends what an encoder made; several sinks can share one encoding.
-  Status send_pieces(const Pieces& pieces);
-  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
-
- private:
-  Status wait_for_room(bool begun, std::optional<Deadline>& give_up);
-  [[nodiscard]] Status look_after_reader() const;
-
-  Descriptor descriptor_;
-  int stop_;
-  bool is_socket_ = true;  // until a first write says otherwise
-  Encoder encoder_;
-  Traffic traffic_;
 };
 
 /// Lets a pipe hold more than the kernel's 64 KiB; harmless where it is none.
 void widen_pipe(int descriptor);
-
-/// How long a TCP peer may leave what it must answer without an answer.
-constexpr std::chrono::seconds kVanishTime{4};
-
-/// Whether a socket's peer has not answered for kVanishTime, though asked twice; false where the
-/// socket is not TCP.
-///
-/// Not TCP_USER_TIMEOUT, which also ends the link to a reader that is there and answers, but is
-/// slow and has no room for 4 s.
-bool has_vanished(int socket);
 
 /// A descriptor for what `number` is open on, whose reads and writes do not wait (but those of a
 /// socket are to be asked not to), without changing that for the other processes that share it.
@@ -104,10 +61,10 @@ class Pauses {
   std::chrono::milliseconds pause_{1};
 };
 
-/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first.
+/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first, which
+/// Deadline::max() never does.
 ///
 /// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
-Result<bool> wait_for(int descriptor, short events, int stop,
-                      std::optional<Deadline> deadline = std::nullopt);
+Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline = Deadline::max());
 
 }  // namespace hc::internal

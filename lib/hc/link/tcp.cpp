@@ -5,7 +5,10 @@
 
 #include <vector>
 
-#include <hc/link/listener.h>
+#include <hc/link/dialing.h>
+#include <hc/link/listening_sink.h>
+#include <hc/link/listening_source.h>
+
 #include <hc/link/transports.h>
 
 namespace hc::internal {
@@ -30,21 +33,21 @@ Result<Addresses> resolve(const Uri& uri, int flags) {
   return Addresses(list);
 }
 
-Result<Descriptor> connect_tcp(const Uri& uri, const LinkOptions& options) {
-  auto wait = number_option(uri, "wait", 0);
-  if (!wait) return wait.error();
+/// A name may have several addresses; localhost has two.
+Result<Peer> peer_of(const Uri& uri) {
   auto list = resolve(uri, 0);
   if (!list) return list.error();
-  std::vector<Address> addresses;  // a name may have several; localhost has two
+  Peer peer;
+  peer.name = uri.rest;
   for (const addrinfo* each = list->get(); each != nullptr; each = each->ai_next)
-    addresses.push_back({each->ai_addr, each->ai_addrlen});
-  return connect_to(addresses, uri.rest, std::chrono::seconds(*wait), options.stop);
+    peer.addresses.emplace_back(each->ai_addr, each->ai_addrlen);
+  return peer;
 }
 
 Result<ListeningSocket> listen_tcp(const Uri& uri) {
   auto addresses = resolve(uri, AI_PASSIVE);
   if (!addresses) return addresses.error();
-  auto descriptor = listen_on((*addresses)->ai_addr, (*addresses)->ai_addrlen, uri.rest);
+  auto descriptor = listen_on({(*addresses)->ai_addr, (*addresses)->ai_addrlen}, uri.rest);
   if (!descriptor) return descriptor.error();
   ListeningSocket socket;
   socket.descriptor = std::move(*descriptor);
@@ -54,15 +57,15 @@ Result<ListeningSocket> listen_tcp(const Uri& uri) {
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_tcp_source(const Uri& uri, const LinkOptions& options) {
-  auto connected = connect_tcp(uri, options);
-  if (!connected) return connected.error();
-  return std::unique_ptr<Source>(new StreamSource(std::move(*connected), options));
+  auto peer = peer_of(uri);
+  if (!peer) return peer.error();
+  return dial_source(*peer, uri, options);
 }
 
 Result<std::unique_ptr<Sink>> open_tcp_sink(const Uri& uri, const LinkOptions& options) {
-  auto connected = connect_tcp(uri, options);
-  if (!connected) return connected.error();
-  return std::unique_ptr<Sink>(new StreamSink(std::move(*connected), options));
+  auto peer = peer_of(uri);
+  if (!peer) return peer.error();
+  return dial_sink(*peer, uri, options);
 }
 
 Result<std::unique_ptr<Source>> listen_tcp_source(const Uri& uri, const LinkOptions& options) {
@@ -74,7 +77,7 @@ Result<std::unique_ptr<Source>> listen_tcp_source(const Uri& uri, const LinkOpti
 Result<std::unique_ptr<Sink>> listen_tcp_sink(const Uri& uri, const LinkOptions& options) {
   auto socket = listen_tcp(uri);
   if (!socket) return socket.error();
-  return make_listening_sink(std::move(*socket), uri, options);
+  return ListeningSink::make(std::move(*socket), uri, options);
 }
 
 }  // namespace hc::internal

@@ -5,29 +5,11 @@
 
 #include <array>
 
-#include <hc/link/listener.h>
-#include <hc/link/socket_test.h>
+#include <hc/link/listening_source.h>
+#include <hc/link/reconnect_test.h>
 
 namespace hc::testing {
 namespace {
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
-}
-
-/// A port that the kernel has just found free.
-std::string free_port() {
-  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size), 0);
-  EXPECT_EQ(::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
-  return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-}
 
 internal::Descriptor connect(const std::string& place) {
   internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));

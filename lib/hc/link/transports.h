@@ -12,7 +12,7 @@ namespace hc::internal {
 
 struct Transport {
   std::string_view scheme;
-  std::string_view source_option, sink_option;  ///< the one URI option of each end; empty: none
+  std::string_view source_options, sink_options;  ///< names, with blanks between
   Result<std::unique_ptr<Source>> (*open_source)(const Uri&, const LinkOptions&);
   Result<std::unique_ptr<Sink>> (*open_sink)(const Uri&, const LinkOptions&);
 };

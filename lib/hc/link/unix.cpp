@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 
-#include <hc/link/listener.h>
+#include <hc/link/dialing.h>
+#include <hc/link/listening_sink.h>
+#include <hc/link/listening_source.h>
 #include <hc/link/transports.h>
 #include <hc/link/unix.h>
 
@@ -52,6 +54,16 @@ Status admit_same_user(int peer) {
                                  std::to_string(credentials.uid)};
 }
 
+Result<Peer> peer_of(const Uri& uri) {
+  auto address = address_of(uri);
+  if (!address) return address.error();
+  Peer peer;
+  peer.name = uri.rest;
+  peer.addresses.emplace_back(&address->address, address->size);
+  if (is_abstract(uri)) peer.admit = admit_same_user;
+  return peer;
+}
+
 /// Whether a socket's file was left behind by a process that was killed: nobody has it bound.
 ///
 /// Asked with a socket of the other kind, which a listener is never told of; a connection would
@@ -67,15 +79,9 @@ bool is_left_behind(const UnixAddress& address) {
 }  // namespace
 
 Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options) {
-  auto wait = number_option(uri, "wait", 0);
-  if (!wait) return wait.error();
-  auto address = address_of(uri);
-  if (!address) return address.error();
-  const std::array<Address, 1> addresses = {{{&address->address, address->size}}};
-  auto connected = connect_to(addresses, uri.rest, std::chrono::seconds(*wait), options.stop);
-  if (!connected || !is_abstract(uri)) return connected;
-  if (auto same = admit_same_user(connected->get()); !same) return same.error();
-  return connected;
+  auto peer = peer_of(uri);
+  if (!peer) return peer.error();
+  return connect_now(*peer, uri, options);
 }
 
 Result<ListeningSocket> listen_unix(const Uri& uri) {
@@ -86,7 +92,7 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
     socket.admit = admit_same_user;
   else if (is_left_behind(*address))
     ::unlink(uri.rest.c_str());
-  auto descriptor = listen_on(&address->address, address->size, uri.rest);
+  auto descriptor = listen_on({&address->address, address->size}, uri.rest);
   if (!descriptor) return descriptor.error();
   socket.descriptor = std::move(*descriptor);
   if (!is_abstract(uri)) socket.unlink_path = uri.rest;
@@ -94,15 +100,15 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
 }
 
 Result<std::unique_ptr<Source>> open_unix_source(const Uri& uri, const LinkOptions& options) {
-  auto connected = connect_unix(uri, options);
-  if (!connected) return connected.error();
-  return std::unique_ptr<Source>(new StreamSource(std::move(*connected), options));
+  auto peer = peer_of(uri);
+  if (!peer) return peer.error();
+  return dial_source(*peer, uri, options);
 }
 
 Result<std::unique_ptr<Sink>> open_unix_sink(const Uri& uri, const LinkOptions& options) {
-  auto connected = connect_unix(uri, options);
-  if (!connected) return connected.error();
-  return std::unique_ptr<Sink>(new StreamSink(std::move(*connected), options));
+  auto peer = peer_of(uri);
+  if (!peer) return peer.error();
+  return dial_sink(*peer, uri, options);
 }
 
 Result<std::unique_ptr<Source>> listen_unix_source(const Uri& uri, const LinkOptions& options) {
@@ -114,7 +120,7 @@ Result<std::unique_ptr<Source>> listen_unix_source(const Uri& uri, const LinkOpt
 Result<std::unique_ptr<Sink>> listen_unix_sink(const Uri& uri, const LinkOptions& options) {
   auto socket = listen_unix(uri);
   if (!socket) return socket.error();
-  return make_listening_sink(std::move(*socket), uri, options);
+  return ListeningSink::make(std::move(*socket), uri, options);
 }
 
 }  // namespace hc::internal

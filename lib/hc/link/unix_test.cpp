@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <hc/link/socket_test.h>
+#include <hc/link/reconnect_test.h>
 
 namespace hc::testing {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The listening ends of tcp and unix links: any number of peers come and go. Internal.
+// The listening end of tcp and unix links where messages come out: any number of peers come and go.
+// Internal.
 
 #include <memory>
 #include <utility>
@@ -25,13 +26,16 @@ class ListeningSource final : public Source {
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return poll_.get(); }
+  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override;
   [[nodiscard]] Traffic traffic() const override;
 
  private:
   struct Peer {
     std::unique_ptr<StreamSource> source;
     std::uint64_t heard = 0;  // when: the number of messages and peers that had come by then
+    bool is_ready = false;    // is in ready_
   };
+  using Peers = std::vector<std::unique_ptr<Peer>>;
 
   ListeningSource(ListeningSocket socket, Descriptor poll, Descriptor timer, LinkOptions options)
       : socket_(std::move(socket)),
@@ -39,55 +43,28 @@ class ListeningSource final : public Source {
         timer_(std::move(timer)),
         options_(std::move(options)) {}
 
-  Status watch(int descriptor);
+  Status watch(int descriptor, void* who);
   void forget(int descriptor);
+  Result<bool> poll(std::chrono::milliseconds timeout);
+  Status watch_stop(int stop);
   void accept_all();
-  Status accept_one();
   void accept_later(bool later);
   [[nodiscard]] std::size_t find_idlest() const;
-  void leave(std::size_t peer, std::string_view why);
+  void leave(const Peer& peer, std::string_view why);
+  void rest(Peer& peer);
 
   ListeningSocket socket_;
   Descriptor poll_;   // an epoll instance of the listening socket, the timer and all peers
   Descriptor timer_;  // says when to try again, while later_
+  int stop_ = -1;     // is watched too, so that one call is enough to wait
   LinkOptions options_;
-  std::vector<Peer> peers_;
+  Peers peers_;
+  std::vector<Peer*> ready_;  // those that may have messages; they take turns
+  std::size_t turn_ = 0;
+  int takes_ = 0;            // since the others were last asked
   std::uint64_t count_ = 0;  // of messages and peers that have come
   bool later_ = false;       // somebody waits who could not be let in
   Traffic left_;             // of the peers that have left
-  std::size_t turn_ = 0;     // whose messages come next, so that a busy peer cannot starve another
 };
-
-/// Puts each message to every peer that is connected. Waits for the first ones to come; peers that
-/// leave are forgotten, and those that come later hear what is sent from then on. When all have
-/// left, it waits for another, unless the readers were counted: then the link is closed.
-class ListeningSink final : public Sink {
- public:
-  /// @param readers  how many peers to wait for before the first message and before the end; 0: one
-  ///     before the first message, none before the end.
-  ListeningSink(ListeningSocket socket, std::int64_t readers, LinkOptions options)
-      : socket_(std::move(socket)), readers_(readers), options_(std::move(options)) {}
-
-  Status send(const Message& message) override;
-  Status close() override;
-  [[nodiscard]] Traffic traffic() const override { return traffic_; }
-
- private:
-  bool accept_ready();
-  Status await(std::size_t readers);
-
-  ListeningSocket socket_;
-  std::int64_t readers_;
-  bool begun_ = false;  // the readers that were to be waited for have come
-  bool later_ = false;  // somebody waits who could not be let in
-  LinkOptions options_;
-  Encoder encoder_;
-  Traffic traffic_;
-  std::vector<std::unique_ptr<StreamSink>> peers_;
-};
-
-/// A ListeningSink with the readers that the URI's option says. Errors: Usage.
-Result<std::unique_ptr<Sink>> make_listening_sink(ListeningSocket socket, const Uri& uri,
-                                                  const LinkOptions& options);
 
 }  // namespace hc::internal

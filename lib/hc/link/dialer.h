@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Connections that are made again and again, by somebody who does not wait for them. Internal.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <hc/link/descriptor.h>
+#include <hc/link/policy.h>
+#include <hc/link/socket.h>
+
+namespace hc::internal {
+
+/// Pauses between tries, so that many who lost the same peer do not come back at once: uniform
+/// between 0 and a bound that begins at kFirst and doubles up to kLongest ("full jitter").
+///
+/// Source: M. Brooker, Exponential Backoff And Jitter, AWS Architecture Blog, 2015.
+class Backoff {
+ public:
+  static constexpr std::chrono::milliseconds kFirst{100}, kLongest{5000};
+
+  explicit Backoff(std::uint32_t seed) : random_(seed) {}
+
+  std::chrono::nanoseconds next();
+  void reset() { bound_ = kFirst; }
+
+ private:
+  std::minstd_rand random_;
+  std::chrono::nanoseconds bound_ = kFirst;
+};
+
+/// Where and how to connect.
+struct Peer {
+  std::vector<Address> addresses;  ///< all are tried in turn
+  std::string name;                ///< for error lines
+  /// Whether a peer that has answered is wanted; an error says why not. May be empty.
+  std::function<Status(int socket)> admit;
+};
+
+/// Connects to a peer, and to it again when the connection is lost.
+///
+/// A try that is refused is followed by a pause, one without an answer within kAnswer by the next
+/// try at once: it was the pause. So a network that comes back is in use again soon, though the
+/// kernel's own tries are seconds apart by then. Where the network is known to be away the pauses
+/// are kAway at most, for the same reason.
+class Dialer {
+ public:
+  static constexpr std::chrono::seconds kAnswer{1}, kAway{1};
+  /// How long a connection lives that was of use.
+  static constexpr std::chrono::seconds kUseTime{1};
+
+  /// @param patience  how long to go without a connection before giving up.
+  Dialer(Peer peer, std::chrono::seconds patience, TimePoint now);
+
+  /// Does what is to be done by now; gives the connection, or none (-1) when there is none yet.
+  ///
+  /// Errors: Closed (patience is at its end).
+  Result<Descriptor> dial(TimePoint now);
+  /// The try under way, for which one waits until it can be written to; -1: none.
+  [[nodiscard]] int descriptor() const { return attempt_.get(); }
+  /// When to dial() again at the latest.
+  [[nodiscard]] TimePoint due() const;
+
+  /// Says that the connection has been lost: then the next try is made at once, but after a pause
+  /// if it was of no use, so that one which is made and lost each time costs no more than others.
+  void lost(TimePoint now, bool was_of_use);
+
+ private:
+  void try_next(TimePoint now);
+  bool is_connected(TimePoint now);
+  void fail(int number, TimePoint now);
+
+  Peer peer_;
+  std::chrono::seconds patience_;
+  Backoff backoff_;
+  TimePoint give_up_, next_try_;
+  std::size_t turn_ = 0;  // of the addresses
+  Descriptor attempt_;
+  TimePoint answer_due_;
+  std::string why_;  // the last try failed
+};
+
+}  // namespace hc::internal

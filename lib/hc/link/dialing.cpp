@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/dialing.h>
+
+#include <hc/link/dialing_source.h>
+#include <hc/link/stream_sink.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+/// None where the link is to end with its connection. Errors: Usage.
+Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
+  auto patience = number_option(uri, "reconnect", 0);
+  if (!patience) return patience.error();
+  if (*patience == 0) return std::unique_ptr<Dialer>();
+  return std::make_unique<Dialer>(peer, std::chrono::seconds(*patience),
+                                  std::chrono::steady_clock::now());
+}
+
+}  // namespace
+
+Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
+  auto wait = number_option(uri, "wait", 0);
+  if (!wait) return wait.error();
+  auto connected = connect_to(peer.addresses, peer.name, std::chrono::seconds(*wait), options.stop);
+  if (!connected || !peer.admit) return connected;
+  if (auto admitted = peer.admit(connected->get()); !admitted) return admitted.error();
+  return connected;
+}
+
+Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
+                                            const LinkOptions& options) {
+  auto dialer = dialer_for(peer, uri);
+  if (!dialer) return dialer.error();
+  if (*dialer != nullptr) return DialingSource::make(std::move(*dialer), options);
+  auto connected = connect_now(peer, uri, options);
+  if (!connected) return connected.error();
+  set_up_reader(connected->get());
+  return std::unique_ptr<Source>(new StreamSource(std::move(*connected), options));
+}
+
+Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
+                                        const LinkOptions& options) {
+  auto dialer = dialer_for(peer, uri);
+  if (!dialer) return dialer.error();
+  if (*dialer != nullptr) return StreamSink::make(Descriptor(), uri, options, std::move(*dialer));
+  auto connected = connect_now(peer, uri, options);
+  if (!connected) return connected.error();
+  return StreamSink::make(std::move(*connected), uri, options);
+}
+
+}  // namespace hc::internal

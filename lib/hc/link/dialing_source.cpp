@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/dialing_source.h>
+
+#include <sys/epoll.h>
+#include <sys/timerfd.h>
+
+#include <algorithm>
+
+#include <hc/link/socket.h>
+
+namespace hc::internal {
+
+Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer,
+                                                    const LinkOptions& options) {
+  auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+  if (!poll) return poll.error();
+  Descriptor poll_owner(*poll);
+  auto timer = system_call("timerfd_create", "", [] {
+    return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+  });
+  if (!timer) return timer.error();
+  std::unique_ptr<DialingSource> source(
+      new DialingSource(std::move(dialer), std::move(poll_owner), Descriptor(*timer), options));
+  source->watch(source->timer_.get(), EPOLLIN);
+  static_cast<void>(source->dial());  // the first take() tells if it is in vain
+  return std::unique_ptr<Source>(std::move(source));
+}
+
+Result<Got> DialingSource::take(Message& message) {
+  message = {};
+  while (!ended_) {
+    if (source_ == nullptr) {
+      if (auto dialed = dial(); !dialed) {
+        log(dialed.error().text());
+        ended_ = true;
+        break;
+      }
+      if (source_ == nullptr) return Got::Nothing;
+    }
+    auto got = source_->take(message);
+    bool is_lost = got ? *got == Got::End
+                       : got.error().code == Code::Truncated || got.error().code == Code::Closed;
+    if (!is_lost) return got;
+    lose_connection(got ? "Closed: the writer has gone" : got.error().text());
+  }
+  return Got::End;
+}
+
+/// Does what is due for a connection, and has the descriptor tell when there is more to do.
+Status DialingSource::dial() {
+  auto now = std::chrono::steady_clock::now();
+  auto connected = dialer_->dial(now);
+  if (!connected) return connected.error();
+  itimerspec when{};
+  if (*connected) {
+    set_up_reader(connected->get());
+    watch(connected->get(), EPOLLIN);
+    source_ = std::make_unique<StreamSource>(std::move(*connected), options_);
+    connected_at_ = now;
+  } else {
+    // A timer of 0 would be none.
+    auto left =
+        std::max<std::chrono::nanoseconds>(dialer_->due() - now, std::chrono::nanoseconds(1));
+    when.it_value = {left.count() / std::nano::den, left.count() % std::nano::den};
+    if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), EPOLLOUT);
+  }
+  ::timerfd_settime(timer_.get(), 0, &when, nullptr);
+  return {};
+}
+
+void DialingSource::lose_connection(const std::string& why) {
+  auto traffic = source_->traffic();
+  past_.messages += traffic.messages;
+  past_.bytes += traffic.bytes;
+  if (!source_->between_messages()) ++past_.cut;
+  source_.reset();
+  log(why + "; connecting again");
+  auto now = std::chrono::steady_clock::now();
+  dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime);
+}
+
+/// Watches a descriptor, which is forgotten when it is closed.
+void DialingSource::watch(int descriptor, std::uint32_t events) const {
+  epoll_event event{};
+  event.events = events;
+  if (::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) != 0)
+    ::epoll_ctl(poll_.get(), EPOLL_CTL_MOD, descriptor, &event);
+}
+
+void DialingSource::log(std::string_view line) const {
+  if (options_.log) options_.log(Severity::Warning, line);
+}
+
+Traffic DialingSource::traffic() const {
+  Traffic all = past_;
+  if (source_ != nullptr) {
+    all.messages += source_->traffic().messages;
+    all.bytes += source_->traffic().bytes;
+  }
+  return all;
+}
+
+}  // namespace hc::internal

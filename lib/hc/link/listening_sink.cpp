@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/listening_sink.h>
+
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+
+#include <hc/link/listening_source.h>
+#include <hc/link/stream_link.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::chrono::microseconds kFollowTime{10};
+
+/// Whether a peer has taken what was sent to it, or will.
+///
+/// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
+/// succeeds in either case; what tells is its kernel's answer, an acknowledgement or a reset.
+Result<bool> has_taken(const Outlet& peer, int stop) {
+  if (!peer.has_written_all()) return !peer.has_failed();
+  Pauses pauses;
+  while (true) {
+    pollfd polled{peer.descriptor(), POLLRDHUP, 0};
+    ::poll(&polled, 1, 0);
+    if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
+    bool shut = (polled.revents & POLLRDHUP) != 0;
+    int under_way = 0;
+    if (!shut || ::ioctl(peer.descriptor(), SIOCOUTQ, &under_way) != 0 || under_way == 0)
+      return true;
+    if (look_at_peer(peer.descriptor()).vanished) return false;
+    if (auto waited = pauses.next(stop); !waited) return waited.error();
+  }
+}
+
+void add_losses(Traffic& sum, const Traffic& losses) {
+  sum.kept_back += losses.kept_back;
+  sum.superseded += losses.superseded;
+  sum.over_rate += losses.over_rate;
+  sum.over_memory += losses.over_memory;
+  sum.cut += losses.cut;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const Uri& uri,
+                                                  const LinkOptions& options) {
+  auto readers = number_option(uri, "readers", 0);
+  if (!readers) return readers.error();
+  auto policy = parse_policy(uri);
+  if (!policy) return policy.error();
+  auto acceptor = Acceptor::make(std::move(socket), kMaxPeers);
+  if (!acceptor) return acceptor.error();
+  return std::unique_ptr<Sink>(new ListeningSink(
+      std::move(*acceptor), static_cast<std::size_t>(*readers), *policy, options));
+}
+
+std::size_t ListeningSink::most_peers() const {
+  return std::max(kMaxPeers, readers_);
+}
+
+/// Makes peers of those who have come.
+void ListeningSink::let_in() {
+  for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= most_peers();)
+    if (peers_[i]->has_failed()) leave(i);
+  for (auto& newcomer : acceptor_->take(most_peers() - peers_.size())) {
+    auto outlet = Outlet::make(std::move(newcomer), policy_, options_.stop);
+    if (outlet) peers_.push_back(std::move(*outlet));
+  }
+  for (const auto& line : acceptor_->take_remarks())
+    if (options_.log) options_.log(Severity::Warning, line);
+}
+
+Status ListeningSink::await(std::size_t readers) {
+  while (true) {
+    let_in();
+    if (peers_.size() >= readers) return {};
+    auto come = wait_for(acceptor_->descriptor(), POLLIN, options_.stop);
+    if (!come) return come.error();
+  }
+}
+
+void ListeningSink::leave(std::size_t peer) {
+  add_losses(traffic_, peers_[peer]->losses());
+  peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
+  last_send_ = {};  // there is room for who waits outside
+}
+
+Status ListeningSink::send(const Message& message) {
+  Outgoing outgoing(encoder_.encode(message), message);
+  while (true) {
+    if (begun_ && readers_ > 0 && peers_.empty())
+      return Error{Code::Closed, "all readers have gone"};
+    // Between messages that follow one another the reactor alone lets peers in.
+    bool follows = std::chrono::steady_clock::now() - last_send_ < kFollowTime;
+    if (!begun_ || peers_.empty() || !follows || acceptor_->has_news()) {
+      auto awaited = await(begun_ || readers_ == 0 ? 1 : readers_);
+      if (!awaited) return awaited;
+    }
+    begun_ = true;
+    if (auto put = put_to_all(outgoing); !put) return put;
+    auto has = has_reader();
+    if (!has) return has.error();
+    if (!*has) continue;  // the message is for the next who comes
+    last_send_ = std::chrono::steady_clock::now();
+    ++traffic_.messages;
+    traffic_.bytes += outgoing.size();
+    return {};
+  }
+}
+
+Status ListeningSink::put_to_all(Outgoing& message) {
+  for (std::size_t i = 0; i < peers_.size();) {
+    auto sent = peers_[i]->send(message);
+    if (!sent && (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated))
+      return sent;
+    if (sent)
+      ++i;
+    else
+      leave(i);
+  }
+  return {};
+}
+
+/// Whether there is a reader that has taken what was sent; one is enough.
+Result<bool> ListeningSink::has_reader() {
+  while (!peers_.empty()) {
+    auto taken = has_taken(*peers_.back(), options_.stop);
+    if (!taken) return taken.error();
+    if (*taken) return true;
+    leave(peers_.size() - 1);
+  }
+  return false;
+}
+
+Status ListeningSink::close() {
+  Status awaited;
+  if (readers_ > 0 && !begun_) awaited = await(readers_);
+  bool patient = true;
+  for (auto& peer : peers_) {
+    auto closed = peer->close(patient);
+    patient = patient && (closed || closed.error().code == Code::Closed);
+    if (awaited && !patient) awaited = closed;
+  }
+  while (!peers_.empty()) leave(peers_.size() - 1);
+  acceptor_.reset();  // who has connected and was not let in yet finds the end too
+  return awaited;
+}
+
+Traffic ListeningSink::traffic() const {
+  Traffic all = traffic_;
+  for (const auto& peer : peers_) add_losses(all, peer->losses());
+  return all;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/outlet.h>
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+
+#include <hc/link/socket.h>
+#include <hc/link/stream_link.h>
+
+namespace hc::internal {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr microseconds kRetryTime{50};      // while another thread uses the outlet
+constexpr milliseconds kLongRetryTime{20};  // while it waits
+
+TimePoint clock_now() {
+  return std::chrono::steady_clock::now();
+}
+
+bool is_tcp(int descriptor) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  return ::getsockopt(descriptor, IPPROTO_TCP, TCP_INFO, &info, &size) == 0;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Outlet>> Outlet::make(Descriptor connection, const Policy& policy, int stop,
+                                             std::unique_ptr<Dialer> dialer) {
+  std::unique_ptr<Outlet> outlet(new Outlet(policy, stop, std::move(dialer)));
+  auto timer = Watch::make(-1, [self = outlet.get()](std::uint32_t) { self->on_event(0); });
+  if (!timer) return timer.error();
+  outlet->timer_ = std::move(*timer);
+  std::lock_guard lock(outlet->mutex_);
+  auto now = clock_now();
+  if (connection)
+    outlet->connect(std::move(connection), now);
+  else
+    outlet->dial(now);
+  outlet->arm(now);
+  return outlet;
+}
+
+Outlet::~Outlet() {
+  std::unique_ptr<Watch> watch;  // ends without the lock, and waits for its callback then
+  std::lock_guard lock(mutex_);
+  if (!failed_ && connected()) static_cast<void>(writer_.write());
+  failed_ = Error{Code::Closed, "the link was closed"};
+  watch.swap(watch_);
+}
+
+void Outlet::connect(Descriptor connection, TimePoint now) {
+  is_tcp_ = is_tcp(connection.get());
+  writer_.start(std::move(connection));
+  blocked_ = false;
+  connected_at_ = now;
+  look_due_ = TimePoint::max();
+  watch(writer_.descriptor());
+}
+
+void Outlet::dial(TimePoint now) {
+  watch_.reset();  // before the dialer closes what it watches
+  auto made = dialer_->dial(now);
+  if (!made) return fail(made.error());
+  if (*made) return connect(std::move(*made), now);
+  if (dialer_->descriptor() >= 0) watch(dialer_->descriptor());
+}
+
+void Outlet::watch(int descriptor) {
+  watch_.reset();
+  missed_events_ = 0;  // of another connection
+  auto made = Watch::make(descriptor, [this](std::uint32_t events) { on_event(events); });
+  if (made) watch_ = std::move(*made);
+  wanted_ = 0;
+}
+
+Status Outlet::send(Outgoing& message) {
+  std::lock_guard lock(mutex_);
+  if (failed_) return *failed_;
+  const auto now = clock_now();
+  bool passes = connected() && !blocked_ && outbox_.pass(message.size(), now);
+  if (passes) {
+    put(message.borrowed(), now);
+  } else {
+    outbox_.push(writer_waits_ ? message.borrowed() : message.kept(), message.size(), losses_);
+    if (!writer_waits_) advance(now);
+  }
+  if (failed_) return *failed_;
+  bool under_way = blocked_ || !outbox_.empty() || !connected();
+  if (writer_waits_ && under_way) return drain(false);
+  if (writer_.borrows()) writer_.keep(message.kept().pieces, message.kept().keeper);
+  if (under_way) arm(now);
+  return {};
+}
+
+/// Begins a message, for which there is no hindrance.
+void Outlet::put(const Parcel& parcel, TimePoint now) {
+  if (writer_.has_room(parcel.size())) {
+    if (writer_.gathered() == 0) oldest_ = now;
+    bool pays = writer_.gathered() > 0 || gathering_.pays(now - last_write_ < kFollowTime);
+    writer_.gather(parcel.pieces);
+    if (pays && writer_.gathered() < kFlushBytes && now - oldest_ < kFlushAge) {
+      is_gathering_ = true;
+      // The reactor has work only when no further message comes; else they are written here.
+      if (!std::exchange(flush_is_due_, true)) timer_->call_at(now + 2 * kFlushAge);
+      return;
+    }
+  } else {
+    writer_.attach(parcel.pieces, parcel.keeper);
+  }
+  write();
+}
+
+void Outlet::write() {
+  if (std::exchange(is_gathering_, false)) gathering_.learn(writer_.messages());
+  auto written = writer_.write();
+  last_write_ = clock_now();
+  if (!written) return lose_connection(written.error(), last_write_);
+  blocked_ = !*written;
+  if (!is_tcp_ || look_due_ != TimePoint::max()) return;
+  look_due_ = last_write_ + kLookPeriod;
+  timer_->call_at(look_due_);
+}
+
+/// Does all that can be done by now without waiting.
+void Outlet::advance(TimePoint now) {
+  if (failed_) return;
+  if (look_due_ <= now) look_at_reader(now);
+  if (!failed_ && !connected()) dial(now);
+  while (!failed_ && connected()) {
+    if (!writer_.empty()) write();
+    if (blocked_ || !writer_.empty()) return;
+    while (outbox_.ready_at(now, losses_) <= now) {
+      bool fits = writer_.has_room(outbox_.front().size());
+      if (!fits && !writer_.empty()) break;
+      auto parcel = outbox_.pop(now);
+      if (fits)
+        writer_.gather(parcel.pieces);
+      else
+        writer_.attach(parcel.pieces, std::move(parcel.keeper));
+    }
+    if (writer_.empty()) return;
+  }
+}
+
+void Outlet::lose_connection(const Error& why, TimePoint now) {
+  watch_.reset();
+  look_due_ = TimePoint::max();
+  blocked_ = false;
+  if (dialer_ == nullptr) return fail(why);
+  remarks_.push_back(why.text() + "; connecting again");
+  has_remarks_ = true;
+  writer_.start(Descriptor());
+  dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime);
+}
+
+void Outlet::fail(const Error& why) {
+  failed_ = why;
+  watch_.reset();
+  // What a waiting writer has in the outbox is told to it, and is not among the lost.
+  auto waiting = outbox_.clear();
+  losses_.cut += writer_.clear() + (writer_waits_ ? 0 : waiting);
+}
+
+void Outlet::look_at_reader(TimePoint now) {
+  auto look = look_at_peer(writer_.descriptor());
+  look_due_ = look.must_answer ? now + look.next : TimePoint::max();
+  if (look.vanished) lose_connection({Code::Closed, "the reader has vanished"}, now);
+}
+
+/// Whether the connection has failed while nobody used it.
+void Outlet::check_events(std::uint32_t events, TimePoint now) {
+  if (!connected() || (events & (EPOLLERR | EPOLLHUP)) == 0) return;
+  int number = 0;
+  socklen_t size = sizeof number;
+  ::getsockopt(writer_.descriptor(), SOL_SOCKET, SO_ERROR, &number, &size);
+  lose_connection(
+      number == 0 ? Error{Code::Closed, "the reader has gone"} : system_error("write", "", number),
+      now);
+}
+
+/// The reactor calls.
+void Outlet::on_event(std::uint32_t events) {
+  missed_events_ |= events;
+  const auto now = clock_now();
+  std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) {
+    timer_->call_at(now + (waits_ ? microseconds(kLongRetryTime) : kRetryTime));
+    return;
+  }
+  flush_is_due_ = false;
+  if (events = missed_events_.exchange(0); events != 0) wanted_ = 0;
+  if (failed_) return;
+  check_events(events, now);
+  bool young = connected() && !blocked_ && outbox_.empty() && look_due_ > now &&
+               now < oldest_ + 2 * kFlushAge;
+  if (!young) advance(now);
+  arm(now);
+}
+
+/// Has the reactor call when there is something to do.
+void Outlet::arm(TimePoint now) {
+  if (failed_) return;
+  want(blocked_ || !connected() ? EPOLLOUT : EPOLLERR);
+  auto when = due(now);
+  if (when == TimePoint::max()) return;
+  flush_is_due_ = writer_.gathered() > 0;
+  timer_->call_at(when);
+}
+
+/// Has the descriptor watched for events, which are told once. A file cannot be, and need not.
+void Outlet::want(std::uint32_t events) {
+  if (watch_ == nullptr || std::exchange(wanted_, events) == events) return;
+  static_cast<void>(watch_->want(events == 0 ? 0 : events | EPOLLONESHOT));
+}
+
+/// When there is something to do next, beside what the descriptor tells.
+TimePoint Outlet::due(TimePoint now) {
+  if (failed_) return TimePoint::max();
+  if (!connected()) return dialer_->due();
+  auto when = look_due_;
+  if (blocked_) return when;
+  if (!writer_.empty()) when = std::min(when, oldest_ + 2 * kFlushAge);
+  return std::min(when, outbox_.ready_at(now, losses_));
+}
+
+/// Waits until all has been written.
+/// @param give_up  set when it is to stop inside a message.
+Status Outlet::drain(bool closing, std::optional<TimePoint> give_up) {
+  while (true) {
+    auto now = clock_now();
+    advance(now);
+    if (failed_) return *failed_;
+    if (all_written() && (connected() || closing)) break;
+    if (give_up && now >= *give_up) {
+      bool begun = writer_.inside_message();
+      fail({begun ? Code::Truncated : Code::Stopped,
+            begun ? "asked to stop, and the reader did not take the rest of a message"
+                  : "asked to stop, and the reader did not take all messages"});
+      return *failed_;
+    }
+    auto waited = wait(give_up, now);
+    if (waited) continue;
+    if (waited.error().code != Code::Stopped) return waited.error();
+    if (!closing && !outbox_.empty()) {
+      outbox_.take_back();
+      arm(now);
+      return waited.error();
+    }
+    if (!closing && writer_.take_back()) {
+      arm(now);
+      return waited.error();
+    }
+    give_up = clock_now() + kGrace;
+  }
+  arm(clock_now());
+  return {};
+}
+
+/// Waits for room, a connection, or the time when something is to be done.
+Result<bool> Outlet::wait(std::optional<TimePoint> give_up, TimePoint now) {
+  int descriptor = connected() ? writer_.descriptor() : dialer_->descriptor();
+  if (connected() && !blocked_) descriptor = -1;
+  if (wanted_ == EPOLLOUT) want(0);  // this thread sees to it
+  waits_ = true;
+  auto waited = wait_for(descriptor, POLLOUT, give_up ? -1 : stop_,
+                         std::min(due(now), give_up.value_or(TimePoint::max())));
+  waits_ = false;
+  return waited;
+}
+
+Status Outlet::close(bool patient) {
+  std::lock_guard lock(mutex_);
+  std::optional<TimePoint> give_up;
+  if (!patient) give_up = clock_now();
+  Status closed = failed_ ? Status(*failed_) : drain(true, give_up);
+  watch_.reset();
+  if (connected()) writer_.close();
+  if (!failed_) failed_ = Error{Code::Closed, "the link was closed"};
+  return closed;
+}
+
+Traffic Outlet::losses() const {
+  std::lock_guard lock(mutex_);
+  return losses_;
+}
+
+bool Outlet::has_written_all() const {
+  std::lock_guard lock(mutex_);
+  return all_written();
+}
+
+bool Outlet::has_failed() const {
+  std::lock_guard lock(mutex_);
+  return failed_.has_value();
+}
+
+std::vector<std::string> Outlet::take_remarks() {
+  std::lock_guard lock(mutex_);
+  has_remarks_ = false;
+  return std::exchange(remarks_, {});
+}
+
+}  // namespace hc::internal
