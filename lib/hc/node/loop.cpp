@@ -165,14 +165,19 @@ void Module::Loop::report() {
 }
 
 void Module::Loop::close() {
+  const LinkedSink* failed = nullptr;
+  Status failure;  // the first; the other links are closed all the same
   for (auto& link : sinks_) {
     if (link->sink == nullptr) continue;
     auto closed = link->sink->close();
     link->traffic = link->sink->traffic();
-    if (!closed && closed.error().code != Code::Closed) fail(link->uri, closed.error());
+    if (closed || closed.error().code == Code::Closed || failed != nullptr) continue;
+    failed = link.get();
+    failure = closed;
   }
   reported_ = MonotonicTime(0);
   report();
+  if (failed != nullptr) fail(failed->uri, failure.error());
 }
 
 }  // namespace hc
