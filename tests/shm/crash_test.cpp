@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -83,11 +84,11 @@ struct Host {
     return host;
   }
   /// Others use it too: some more is nobody's fault, and what is much more may go yet.
-  void await_as_before() const {
+  [[nodiscard]] bool is_as_before() const {
     constexpr std::int64_t kSlack = 16 << 10;
-    for (Host host = now(); host.files != files || host.kibibytes > kibibytes + kSlack;
-         host = now())
-      std::this_thread::yield();
+    Host host = now();
+    return host.kibibytes <= kibibytes + kSlack &&
+           std::includes(files.begin(), files.end(), host.files.begin(), host.files.end());
   }
 };
 
@@ -97,7 +98,7 @@ class ShmCrash : public ::testing::TestWithParam<Point> {
     publisher_ = Child();
     steady_ = Child();
     latest_ = Child();
-    host_.await_as_before();
+    while (!host_.is_as_before()) std::this_thread::yield();
   }
 
   Child make_publisher(const std::string& options, const std::string& crash_at = "", int count = 0,

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <numeric>
+#include <random>
 #include <vector>
 
 #include <hc/link/shm_layout.h>
@@ -67,6 +67,29 @@ TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
     }
   }
   publisher.join();
+}
+
+/// Those it waits for leave while it looks for room, with messages that they hold.
+TEST(ShmSlow, ReadersComeAndGoWhileThePublisherWaits) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?memory=2M");
+  std::atomic<bool> done{false};
+  std::vector<std::thread> readers;
+  for (unsigned seed = 0; seed < 3; ++seed)
+    readers.emplace_back([&, seed] {
+      std::mt19937 random(seed);
+      while (!done) {
+        auto source = open_source(*parse_uri(name));
+        if (!source) continue;  // just when the publisher ends
+        std::vector<Message> held(random() % 18);
+        for (auto& message : held) ASSERT_TRUE((*source)->take(message));
+        if (random() % 2 == 0) source->reset();
+      }
+    });
+  Message message = numbered(0, kLarge);
+  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(sink->send(message)) << i;
+  done = true;
+  for (auto& reader : readers) reader.join();
 }
 
 }  // namespace
