@@ -56,8 +56,9 @@ class Reactor {
   }
 
   void remove(std::uint64_t id) {
+    std::shared_ptr<Entry> entry;  // goes without the lock: it may hold watches of its own
     std::unique_lock lock(mutex_);
-    auto entry = std::move(entries_.at(id));  // lives on while its own callback runs
+    entry = std::move(entries_.at(id));  // lives on while its own callback runs
     entries_.erase(id);
     due_.erase({entry->due, id});
     if (entry->wanted != 0) static_cast<void>(control(EPOLL_CTL_DEL, entry->descriptor, 0, id));

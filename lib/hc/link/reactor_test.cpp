@@ -153,6 +153,13 @@ TEST(Watch, ACallbackMayUseAndEndOthers) {
   done.get_future().wait();
 }
 
+TEST(Watch, ItsCallbackMayHoldAnother) {
+  std::shared_ptr<Watch> inner = watch_of(-1, [](std::uint32_t) {});
+  auto outer = watch_of(-1, [inner](std::uint32_t) {});
+  inner.reset();
+  outer.reset();
+}
+
 TEST(Watch, ManyThreadsMayAskAtOnce) {
   std::atomic<int> count = 0;
   std::promise<void> all;
