@@ -36,6 +36,7 @@ std::vector<Descriptor> Acceptor::take(std::size_t room) {
   eventfd_t count = 0;
   if (!newcomers_.empty()) ::eventfd_read(arrived_.get(), &count);
   has_news_ = !remarks_.empty();
+  room_ -= newcomers_.size();  // which the caller has from now on
   return std::exchange(newcomers_, {});
 }
 
