@@ -84,6 +84,7 @@ Traffic traffic_of(const Counters& counters) {
 
 std::vector<std::string_view> transports() {
   std::vector<std::string_view> schemes;
+  schemes.reserve(kTransports.size());
   for (const Transport& transport : kTransports) schemes.push_back(transport.scheme);
   return schemes;
 }
