@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <hc/link/descriptor.h>
+#include <hc/link/dialing.h>
 #include <hc/link/link.h>
 #include <hc/link/shm_greeting.h>
 #include <hc/link/shm_layout.h>
@@ -163,7 +164,7 @@ inline std::int64_t rounds(std::int64_t otherwise) {
 inline internal::Descriptor connect_to_publisher(const std::string& name) {
   auto place = internal::meeting_place(*parse_uri(name));
   place.options.emplace_back("wait", "20");  // many at once do not fit into its backlog
-  auto socket = internal::connect_unix(place, {});
+  auto socket = internal::connect_now(*internal::unix_peer(place), place, {});
   EXPECT_TRUE(socket) << socket.error().text();
   return std::move(*socket);
 }

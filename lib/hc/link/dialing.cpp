@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/dialing.h>
 
-#include <hc/link/dialing_source.h>
+#include <hc/link/stream_link.h>
 #include <hc/link/stream_sink.h>
 #include <hc/link/transports.h>
 
@@ -30,13 +30,21 @@ Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptio
 
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options) {
+  return dial_source(peer, uri, options, [options](Descriptor connection) {
+    set_up_reader(connection.get());
+    return Result<std::unique_ptr<Source>>(
+        std::make_unique<StreamSource>(std::move(connection), options));
+  });
+}
+
+Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
+                                            const LinkOptions& options, DialingSource::Open open) {
   auto dialer = dialer_for(peer, uri);
   if (!dialer) return dialer.error();
-  if (*dialer != nullptr) return DialingSource::make(std::move(*dialer), options);
+  if (*dialer != nullptr) return DialingSource::make(std::move(*dialer), std::move(open), options);
   auto connected = connect_now(peer, uri, options);
   if (!connected) return connected.error();
-  set_up_reader(connected->get());
-  return std::unique_ptr<Source>(new StreamSource(std::move(*connected), options));
+  return open(std::move(*connected));
 }
 
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,

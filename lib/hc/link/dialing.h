@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <hc/link/dialer.h>
+#include <hc/link/dialing_source.h>
 #include <hc/link/link.h>
 
 namespace hc::internal {
@@ -18,6 +19,9 @@ Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptio
 /// connection when it can be had; else they have it from connect_now(). Errors: the same.
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options);
+/// The same, of what `open` makes of a connection.
+Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
+                                            const LinkOptions& options, DialingSource::Open open);
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
                                         const LinkOptions& options);
 

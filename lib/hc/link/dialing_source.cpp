@@ -6,11 +6,11 @@
 
 #include <algorithm>
 
-#include <hc/link/socket.h>
+#include <hc/link/descriptor.h>
 
 namespace hc::internal {
 
-Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer,
+Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer, Open open,
                                                     const LinkOptions& options) {
   auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
   if (!poll) return poll.error();
@@ -19,8 +19,8 @@ Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dial
     return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
   });
   if (!timer) return timer.error();
-  std::unique_ptr<DialingSource> source(
-      new DialingSource(std::move(dialer), std::move(poll_owner), Descriptor(*timer), options));
+  std::unique_ptr<DialingSource> source(new DialingSource(
+      std::move(dialer), std::move(open), std::move(poll_owner), Descriptor(*timer), options));
   source->watch(source->timer_.get(), EPOLLIN);
   static_cast<void>(source->dial());  // the first take() tells if it is in vain
   return std::unique_ptr<Source>(std::move(source));
@@ -41,6 +41,7 @@ Result<Got> DialingSource::take(Message& message) {
     bool is_lost = got ? *got == Got::End
                        : got.error().code == Code::Truncated || got.error().code == Code::Closed;
     if (!is_lost) return got;
+    if (!got) ++past_.cut;  // inside a message
     lose_connection(got ? "Closed: the writer has gone" : got.error().text());
   }
   return Got::End;
@@ -53,11 +54,18 @@ Status DialingSource::dial() {
   if (!connected) return connected.error();
   itimerspec when{};
   if (*connected) {
-    set_up_reader(connected->get());
-    watch(connected->get(), EPOLLIN);
-    source_ = std::make_unique<StreamSource>(std::move(*connected), options_);
-    connected_at_ = now;
-  } else {
+    auto source = open_(std::move(*connected));
+    if (!source) {
+      if (source.error().code == Code::Stopped) return source.error();
+      log(source.error().text() + "; connecting again");
+      dialer_->lost(now, false);
+    } else {
+      source_ = std::move(*source);
+      watch(source_->descriptor(), EPOLLIN);
+      connected_at_ = now;
+    }
+  }
+  if (source_ == nullptr) {
     // A timer of 0 would be none.
     auto left =
         std::max<std::chrono::nanoseconds>(dialer_->due() - now, std::chrono::nanoseconds(1));
@@ -69,10 +77,7 @@ Status DialingSource::dial() {
 }
 
 void DialingSource::lose_connection(const std::string& why) {
-  auto traffic = source_->traffic();
-  past_.messages += traffic.messages;
-  past_.bytes += traffic.bytes;
-  if (!source_->between_messages()) ++past_.cut;
+  past_ += source_->traffic();
   source_.reset();
   log(why + "; connecting again");
   auto now = std::chrono::steady_clock::now();
@@ -93,10 +98,7 @@ void DialingSource::log(std::string_view line) const {
 
 Traffic DialingSource::traffic() const {
   Traffic all = past_;
-  if (source_ != nullptr) {
-    all.messages += source_->traffic().messages;
-    all.bytes += source_->traffic().bytes;
-  }
+  if (source_ != nullptr) all += source_->traffic();
   return all;
 }
 

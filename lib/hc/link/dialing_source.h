@@ -2,10 +2,11 @@
 #pragma once
 // A source that outlives its connection. Internal.
 
+#include <functional>
 #include <memory>
 
 #include <hc/link/dialer.h>
-#include <hc/link/stream_link.h>
+#include <hc/link/link.h>
 
 namespace hc::internal {
 
@@ -17,18 +18,26 @@ namespace hc::internal {
 /// trying again.
 class DialingSource final : public Source {
  public:
+  /// Makes the source of a connection; one that it cannot be made of counts as lost.
+  using Open = std::function<Result<std::unique_ptr<Source>>(Descriptor connection)>;
+
   /// Errors: System.
-  static Result<std::unique_ptr<Source>> make(std::unique_ptr<Dialer> dialer,
+  static Result<std::unique_ptr<Source>> make(std::unique_ptr<Dialer> dialer, Open open,
                                               const LinkOptions& options);
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return poll_.get(); }
+  bool prepare_wait() override { return source_ == nullptr || source_->prepare_wait(); }
+  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override {
+    return source_ == nullptr ? Source::wait(stop, timeout) : source_->wait(stop, timeout);
+  }
   [[nodiscard]] Traffic traffic() const override;
 
  private:
-  DialingSource(std::unique_ptr<Dialer> dialer, Descriptor poll, Descriptor timer,
+  DialingSource(std::unique_ptr<Dialer> dialer, Open open, Descriptor poll, Descriptor timer,
                 LinkOptions options)
       : dialer_(std::move(dialer)),
+        open_(std::move(open)),
         poll_(std::move(poll)),
         timer_(std::move(timer)),
         options_(std::move(options)) {}
@@ -39,10 +48,11 @@ class DialingSource final : public Source {
   void log(std::string_view line) const;
 
   std::unique_ptr<Dialer> dialer_;
+  Open open_;
   Descriptor poll_;   // an epoll instance of the connection, or the try at one, and the timer
   Descriptor timer_;  // says when to try again
   LinkOptions options_;
-  std::unique_ptr<StreamSource> source_;  // null: there is no connection
+  std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;
   bool ended_ = false;
   Traffic past_;  // of connections that were lost

@@ -28,7 +28,8 @@ constexpr std::array<Transport, 8> kTransports = {{
      internal::open_unix_sink},
     {"unix-listen", "", "readers", internal::listen_unix_source, internal::listen_unix_sink},
     {"inproc", "", "", internal::open_inproc_source, internal::open_inproc_sink},
-    {"shm", "keep spin wait", "readers", internal::open_shm_source, internal::open_shm_sink},
+    {"shm", "keep spin wait reconnect", "readers", internal::open_shm_source,
+     internal::open_shm_sink},
 }};
 
 /// The words of a text, as `"wait", "reconnect"`; empty where there are none.
@@ -67,6 +68,11 @@ constexpr std::array kMembers = {&Traffic::messages,   &Traffic::bytes,     &Tra
 static_assert(kMembers.size() == std::tuple_size_v<Counters>);
 
 }  // namespace
+
+Traffic& Traffic::operator+=(const Traffic& other) {
+  for (auto member : kMembers) this->*member += other.*member;
+  return *this;
+}
 
 Counters counters_of(const Traffic& traffic) {
   Counters counters{};

@@ -42,6 +42,7 @@ struct Traffic {
   /// … because the connection was lost when they were on their way (`reconnect`).
   std::uint64_t cut = 0;
 
+  Traffic& operator+=(const Traffic& other);
   [[nodiscard]] std::uint64_t lost() const { return superseded + over_rate + over_memory + cut; }
 };
 
@@ -122,17 +123,23 @@ struct LinkOptions {
 ///
 /// `-` is standard input or output, `file:PATH` a file, `tcp:HOST:PORT` and `unix:PATH` a peer that
 /// listens (`unix:@NAME` in the abstract namespace, which leaves no file), `tcp-listen:[HOST:]PORT`
-/// and `unix-listen:PATH` wait for peers, `inproc:NAME` another thread of this process.
+/// and `unix-listen:PATH` wait for peers, `shm:NAME` memory that the sink's process shares with any
+/// number of sources of this host and user, `inproc:NAME` another thread of this process.
 /// Listening is on loopback unless a host is given. Options in the URI:
-/// - `wait=SECONDS` (tcp, unix): how long to try while nobody listens yet; default 0, which gives a
+/// - `wait=SECONDS` (tcp, unix, shm source): how long to try while nobody listens yet; default 0,
+/// which gives a
 ///   host that does not answer 4 s.
-/// - `reconnect=SECONDS` (tcp, unix): the link is there at once, outlives its connection, and ends
+/// - `reconnect=SECONDS` (tcp, unix, shm source): the link is there at once, outlives its
+/// connection, and ends
 ///   when it has had none for so long; default 0: it ends with its connection. A message that a
 ///   sink has begun on a lost connection is sent anew, whole; whether those that the kernel had
 ///   taken have arrived is unknown. A source cannot tell a peer's end from its death, so both lead
 ///   to trying again. A name's addresses are looked up once.
-/// - `readers=N` (listening sinks): how many readers to wait for before the first message and
+/// - `readers=N` (listening sinks, shm sink): how many readers to wait for before the first message
+/// and
 ///   before the end; default 1 before the first message, and none before the end.
+///
+/// - `spin=MICROSECONDS` (shm source; default 20): how long wait() looks before it sleeps.
 ///
 /// And of every sink; one that listens has them for each reader:
 /// - `keep=all|latest|N`: what to do while the reader is slow: wait for it (default), or keep the
@@ -143,7 +150,8 @@ struct LinkOptions {
 /// - `byte_rate=N` [byte/s], `byte_burst=N` (default: of 1 s): the same in bytes. A message that is
 ///   larger goes when all of the burst is there, and leaves a debt.
 /// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be
-///   larger.
+///   larger, but not with shm, where it is all the memory that is shared.
+/// A source of shm has a `keep` of its own, as long as the sink's is all or more.
 /// Bytes may be written with K, M or G (of 1024).
 ///
 /// Errors: Unsupported (no such scheme; an option that it does not have), Usage, NotFound (no such

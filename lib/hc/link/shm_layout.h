@@ -30,7 +30,7 @@ static_assert(SharedWord<std::uint64_t>::is_always_lock_free);
 static_assert(SharedWord<std::uint32_t>::is_always_lock_free);
 
 constexpr std::size_t kLine = 64;  ///< what caches exchange [byte]; also the alignment of elements
-constexpr std::uint64_t kCells = 1024;
+constexpr std::uint64_t kCells = 2048;
 constexpr std::size_t kCellBytes = 256;
 constexpr std::uint64_t kPageBytes = 4096;  ///< of a reader's page, and of the publisher's head
 /// Both sides fetch the start of a cell so many messages ahead: it comes from the other's cache,

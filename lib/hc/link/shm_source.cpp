@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include <hc/link/crash_point.h>
+#include <hc/link/dialing.h>
 #include <hc/link/shm_greeting.h>
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
@@ -372,22 +373,11 @@ Result<bool> ShmSource::wait(int stop, std::chrono::milliseconds timeout) {
   return *ready == 0;
 }
 
-}  // namespace
-
-Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOptions& options) {
-  auto wait = number_option(uri, "wait", 0);
-  if (!wait) return wait.error();
-  auto spin = number_option(uri, "spin", kDefaultSpin);
-  if (!spin) return spin.error();
-  auto keep = uri.option("keep", "");
-  if (!keep.empty())
-    if (auto valid = parse_keep(keep); !valid) return valid.error();
-  Uri place = meeting_place(uri);
-  place.options.emplace_back("wait", std::to_string(*wait));
-  auto socket = connect_unix(place, options);
-  if (!socket) return socket.error();
+/// Makes the reader of a publisher that has been connected to. Errors: as greet().
+Result<std::unique_ptr<Source>> attach(Descriptor socket, std::string_view keep,
+                                       std::chrono::microseconds spin, const LinkOptions& options) {
   auto attachment = std::make_shared<Attachment>();
-  attachment->socket = std::move(*socket);
+  attachment->socket = std::move(socket);
   auto page = SharedMemory::make(kPageBytes, kPageBytes);
   if (!page) return page.error();
   attachment->page = std::move(*page);
@@ -396,8 +386,24 @@ Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOption
   if (!offer) return offer.error();
   attachment->memory = std::move(offer->memory);
   attachment->own().cursor.store(offer->begin, memory_order_release);
-  return std::unique_ptr<Source>(std::make_unique<ShmSource>(
-      std::move(attachment), *offer, std::chrono::microseconds(*spin), options));
+  return std::unique_ptr<Source>(
+      std::make_unique<ShmSource>(std::move(attachment), *offer, spin, options));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOptions& options) {
+  auto spin = number_option(uri, "spin", kDefaultSpin);
+  if (!spin) return spin.error();
+  std::string keep(uri.option("keep", ""));
+  if (!keep.empty())
+    if (auto valid = parse_keep(keep); !valid) return valid.error();
+  Uri place = meeting_place(uri);
+  auto peer = unix_peer(place);
+  if (!peer) return peer.error();
+  return dial_source(*peer, uri, options, [keep, spin = *spin, options](Descriptor socket) {
+    return attach(std::move(socket), keep, std::chrono::microseconds(spin), options);
+  });
 }
 
 }  // namespace hc::internal

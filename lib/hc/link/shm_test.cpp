@@ -265,6 +265,27 @@ TEST(Shm, ANameIsFreeAgainAsSoonAsItsPublisherHasGone) {
   EXPECT_TRUE(open_sink(*parse_uri(name)));
 }
 
+TEST(Shm, AReaderThatReconnectsFindsTheNextPublisher) {
+  auto name = fresh_name();
+  auto source = source_of(name + "?reconnect=60&keep=all");  // nobody is there yet
+  Message message;
+  for (int life = 0; life < 3; ++life) {
+    auto sink = sink_of(name + "?readers=1");
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 2 ? kSmall : kLarge)));
+    if (life % 2 == 0) {
+      ASSERT_TRUE(sink->close());
+    }
+    sink.reset();
+    for (int i = 0; i < 10; ++i) {
+      ASSERT_TRUE(*receive(*source, message));
+      ASSERT_EQ(message.header.seq, i);
+    }
+  }
+  EXPECT_EQ(source->traffic().messages, 30U);
+  auto impatient = source_of(fresh_name() + "?reconnect=1");
+  EXPECT_FALSE(*receive(*impatient, message));
+}
+
 TEST(Shm, NobodyThereIsSaid) {
   auto source = open_source(*parse_uri(fresh_name()));
   ASSERT_FALSE(source);

@@ -54,16 +54,6 @@ Status admit_same_user(int peer) {
                                  std::to_string(credentials.uid)};
 }
 
-Result<Peer> peer_of(const Uri& uri) {
-  auto address = address_of(uri);
-  if (!address) return address.error();
-  Peer peer;
-  peer.name = uri.rest;
-  peer.addresses.emplace_back(&address->address, address->size);
-  if (is_abstract(uri)) peer.admit = admit_same_user;
-  return peer;
-}
-
 /// Whether a socket's file was left behind by a process that was killed: nobody has it bound.
 ///
 /// Asked with a socket of the other kind, which a listener is never told of; a connection would
@@ -78,10 +68,14 @@ bool is_left_behind(const UnixAddress& address) {
 
 }  // namespace
 
-Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options) {
-  auto peer = peer_of(uri);
-  if (!peer) return peer.error();
-  return connect_now(*peer, uri, options);
+Result<Peer> unix_peer(const Uri& uri) {
+  auto address = address_of(uri);
+  if (!address) return address.error();
+  Peer peer;
+  peer.name = uri.rest;
+  peer.addresses.emplace_back(&address->address, address->size);
+  if (is_abstract(uri)) peer.admit = admit_same_user;
+  return peer;
 }
 
 Result<ListeningSocket> listen_unix(const Uri& uri) {
@@ -100,13 +94,13 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
 }
 
 Result<std::unique_ptr<Source>> open_unix_source(const Uri& uri, const LinkOptions& options) {
-  auto peer = peer_of(uri);
+  auto peer = unix_peer(uri);
   if (!peer) return peer.error();
   return dial_source(*peer, uri, options);
 }
 
 Result<std::unique_ptr<Sink>> open_unix_sink(const Uri& uri, const LinkOptions& options) {
-  auto peer = peer_of(uri);
+  auto peer = unix_peer(uri);
   if (!peer) return peer.error();
   return dial_sink(*peer, uri, options);
 }

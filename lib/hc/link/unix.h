@@ -3,6 +3,7 @@
 // Unix sockets by URI, for the transports that are made of them. Internal.
 
 #include <hc/base/uri.h>
+#include <hc/link/dialer.h>
 #include <hc/link/socket.h>
 
 namespace hc::internal {
@@ -11,7 +12,7 @@ namespace hc::internal {
 /// processes of this user are let in. Errors: Usage, System.
 Result<ListeningSocket> listen_unix(const Uri& uri);
 
-/// A connection to who listens there. Errors: Usage, and as connect_to().
-Result<Descriptor> connect_unix(const Uri& uri, const LinkOptions& options);
+/// Who listens there, to be connected to. Errors: Usage.
+Result<Peer> unix_peer(const Uri& uri);
 
 }  // namespace hc::internal
