@@ -46,7 +46,7 @@ struct Plan {
 /// What a process has to say at its end.
 struct Report {
   std::uint64_t sent = 0, received = 0, superseded = 0, lost = 0;
-  std::array<std::array<double, 4>, 2> latencies{};  // each half: p50, p99, p99.9, most [µs]
+  std::array<std::array<double, 4>, 2> latencies{};  // of each half, see summary() [µs]
   std::int64_t woken = 0;                            // of the first message after the longest gap
   double age_us = 0;                                 // of that message then
 };
@@ -82,19 +82,28 @@ Report publish(const Plan& plan) {
   return report;
 }
 
-std::array<double, 4> summary(std::vector<double>& values) {
-  if (values.empty()) return {};
+double part_of(std::vector<double>& values, double part) {
+  if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
-  auto at = [&](double part) {
-    return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
-  };
-  return {at(0.5), at(0.99), at(0.999), values.back()};
+  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+}
+
+/// Medians over the seconds, which what else the host does disturbs least; and all together.
+std::array<double, 4> summary(std::vector<std::vector<double>> seconds_of_values) {
+  std::vector<double> medians, tails, all;
+  for (auto& values : seconds_of_values) {
+    medians.push_back(part_of(values, 0.5));
+    tails.push_back(part_of(values, 0.99));
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return {part_of(medians, 0.5), part_of(tails, 0.5), part_of(all, 0.99), part_of(all, 1)};
 }
 
 Report read(const Plan& plan, const std::string& keep) {
   auto source = hc::open_source(*hc::parse_uri(plan.name + "?wait=10&keep=" + keep));
   if (!source) fail(source.error().text());
-  std::array<std::vector<double>, 2> latencies;
+  const auto count = static_cast<std::size_t>(plan.half.count());
+  std::vector<std::vector<double>> latencies(2 * count);  // of each second
   Report report;
   hc::Message message;
   auto last = Clock::now();
@@ -111,9 +120,11 @@ Report read(const Plan& plan, const std::string& keep) {
       report.age_us = age;
     }
     last = now;
-    if (now >= plan.begin && now < plan.resume()) latencies.at(now >= plan.stop()).push_back(age);
+    if (now >= plan.begin && now < plan.resume())
+      latencies.at(static_cast<std::size_t>((now - plan.begin) / seconds(1))).push_back(age);
   }
-  for (std::size_t half = 0; half < 2; ++half) report.latencies[half] = summary(latencies[half]);
+  auto middle = latencies.begin() + static_cast<std::ptrdiff_t>(count);
+  report.latencies = {summary({latencies.begin(), middle}), summary({middle, latencies.end()})};
   report.received = (*source)->traffic().messages;
   report.superseded = (*source)->traffic().superseded;
   return report;
@@ -184,17 +195,18 @@ int main(int argc, char** argv) {
     resident_most = std::max(resident_most, resident(publisher.pid));
   }
   std::this_thread::sleep_until(plan.resume());
-  ::kill(stopped.pid, SIGCONT);
   auto resumed = number(Clock::now());
+  ::kill(stopped.pid, SIGCONT);
   auto sent = publisher.end(), all = steady.end(), some = stopped.end();
   std::printf("%llu messages of %d bytes, %lld a second; a reader stopped for %lld s\n",
               static_cast<unsigned long long>(sent.sent), plan.bytes,
               static_cast<long long>(plan.rate), static_cast<long long>(plan.half.count()));
-  std::printf("latency of the other reader [us]     p50     p99   p99.9    most\n");
+  std::printf("latency of the other reader [us]   p50, p99 of a second  p99 of all  most\n");
   for (std::size_t half = 0; half < 2; ++half) {
     const auto& values = all.latencies.at(half);
-    std::printf("  %-30s %8.1f%8.1f%8.1f%8.0f\n", half == 0 ? "before" : "while the one is stopped",
-                values[0], values[1], values[2], values[3]);
+    std::printf("  %-30s %8.1f%15.1f%12.1f%6.0f\n",
+                half == 0 ? "before" : "while the one is stopped", values[0], values[1], values[2],
+                values[3]);
   }
   std::printf(
       "publisher's memory: %.1f MiB shared at most, %.1f MiB resident before, %.1f at most\n",

@@ -39,8 +39,8 @@ TEST_P(ShmStopped, DisturbsNobodyAndLosesWhatIsCounted) {
   // A message may have been on its way to it; one that far behind was not.
   const auto behind = steady.first_behind(0) + 2000;
   std::int64_t newest = 0;
-  for (int i = 1; i <= 10; ++i) {
-    newest = steady.first_behind(behind + i * 1000);
+  for (std::int64_t more = 1000; more <= 10'000; more += 1000) {
+    newest = steady.first_behind(behind + more);
     EXPECT_LE(publisher.memory_made(), kMemory);
   }
   EXPECT_GT(publisher.memory_made(), 0);

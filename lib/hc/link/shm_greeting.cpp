@@ -121,7 +121,7 @@ Result<std::uint64_t> parse_keep(std::string_view text) {
   if (text == "latest") return std::uint64_t{1};
   auto count = number(text);
   if (!count || *count == 0)
-    return Error{Code::Usage, "keep is \"all\", \"latest\" or a number from 1 on, not \"" +
+    return Error{Code::Usage, R"(keep is "all", "latest" or a number from 1 on, not ")" +
                                   std::string(text) + "\""};
   return *count;
 }
