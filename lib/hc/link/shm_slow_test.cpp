@@ -69,6 +69,31 @@ TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
   publisher.join();
 }
 
+/// A slot is not written anew while somebody reads it, however late he came to hold it.
+TEST(ShmSlow, WhatIsTakenBackJustThenIsWholeOrLost) {
+  constexpr std::int32_t kBytes = 4096;
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?keep=latest&readers=1&memory=2M");
+  auto source = source_of(name + "?keep=" + std::to_string(internal::kCells));
+  std::atomic<bool> done{false};
+  std::thread publisher([&] {
+    for (int i = 0; i < 1'000'000; ++i) ASSERT_TRUE(sink->send(numbered(i, kBytes)));
+    done = true;
+  });
+  Message message;
+  std::uint64_t wrong = 0;
+  while (!done) {
+    auto got = source->take(message);
+    ASSERT_TRUE(got) << got.error().text();
+    if (*got != Got::Message) continue;
+    auto right = static_cast<std::byte>(message.header.seq * 7 + kBytes);
+    for (std::size_t at = 0; at < message.elements.size(); at += 64)
+      if (message.elements[at] != right) ++wrong;
+  }
+  publisher.join();
+  EXPECT_EQ(wrong, 0U);
+}
+
 /// Those it waits for leave while it looks for room, with messages that they hold.
 TEST(ShmSlow, ReadersComeAndGoWhileThePublisherWaits) {
   auto name = fresh_name();
