@@ -151,7 +151,7 @@ struct LinkOptions {
 ///   larger goes when all of the burst is there, and leaves a debt.
 /// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be
 ///   larger, but not with shm, where it is all the memory that is shared.
-/// A source of shm has a `keep` of its own, as long as the sink's is all or more.
+/// A source of shm may have a `keep` of its own; `all` makes no sink wait that drops.
 /// Bytes may be written with K, M or G (of 1024).
 ///
 /// Errors: Unsupported (no such scheme; an option that it does not have), Usage, NotFound (no such

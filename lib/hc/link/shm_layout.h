@@ -58,7 +58,8 @@ struct Head {
   SharedWord<std::uint32_t> signal;  ///< futex: differs after each message and after the end
   /// Positions below have been withdrawn: their cells and slots may be used again.
   alignas(kLine) SharedWord<std::uint64_t> oldest;
-  /// What the publisher waits for: 0 nothing, kAnyRoom, else a reader's cursor at least here.
+  /// What the publisher waits for: 0 nothing, a reader's cursor at least here, or kAnyRoom: a slot
+  /// that is let go of too.
   alignas(kLine) SharedWord<std::uint64_t> wanted;
   alignas(kLine) SharedWord<std::uint32_t> closed;  ///< 1: nothing more comes
   /// 1: nobody has slept for a while, and the publisher leaves the fence of "wake" out; who goes to

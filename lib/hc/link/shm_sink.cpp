@@ -288,7 +288,13 @@ Status ShmSink::send(const Message& message) {
     text_bytes += bytes;
   } else {
     if (is_too_far_ahead(bytes)) {
-      auto room = wait_for_room(Head::kAnyRoom, [&] { return !is_too_far_ahead(bytes); });
+      // Half of it at once, since to wake is dear.
+      auto wanted = taken_ + 1;
+      while (wanted + 1 < published_ &&
+             slot_bytes_ + bytes - ahead_[wanted % kCells] > kAheadBytes / 2)
+        ++wanted;
+      auto room =
+          wait_for_room(wanted, [&] { return readers_->taken_by_all(published_) >= wanted; });
       if (!room) return room;
     }
     if (auto placed = place(message, slot); !placed) return placed;

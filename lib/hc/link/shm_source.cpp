@@ -65,20 +65,24 @@ struct Attachment {
     return reinterpret_cast<const Cell*>(memory.data() + kRingBegin)[position % kCells];
   }
 
-  /// Wakes the publisher if it waits for the room that has been given. A fence stands before.
-  void offer_room() {
+  /// Wakes the publisher if it waits for what this reader has just taken. A fence stands before.
+  void offer_cells() {
     auto wanted = head().wanted.load(memory_order_relaxed);
-    if (wanted == 0 || own().cursor.load(memory_order_relaxed) < wanted) return;
-    own().progress.fetch_add(1, memory_order_release);
-    futex_wake(own().progress);
-    HC_CRASH_POINT("reader woke publisher");
+    if (wanted != 0 && own().cursor.load(memory_order_relaxed) >= wanted) wake_publisher();
   }
 
   void let_go(std::size_t index) {
     own().held[index].store(0, memory_order_release);
     HC_CRASH_POINT("reader let go");
     std::atomic_thread_fence(memory_order_seq_cst);  // room
-    offer_room();
+    if (head().wanted.load(memory_order_relaxed) == Head::kAnyRoom) wake_publisher();
+  }
+
+ private:
+  void wake_publisher() {
+    own().progress.fetch_add(1, memory_order_release);
+    futex_wake(own().progress);
+    HC_CRASH_POINT("reader woke publisher");
   }
 };
 
@@ -297,7 +301,7 @@ void ShmSource::finish_cell(bool has_slot) {
   if (armed_) disarm();
   if (keep_ > 0 || !(has_slot || cursor_ % kLookEvery == 0)) return;
   std::atomic_thread_fence(memory_order_seq_cst);  // room
-  attachment_->offer_room();
+  attachment_->offer_cells();
 }
 
 void ShmSource::arm(bool on_socket) {
