@@ -95,6 +95,12 @@ std::vector<std::string_view> transports() {
   return schemes;
 }
 
+Draft Sink::loan(const Header& header) {
+  auto bytes = header.element_bytes();
+  if (bytes > SmallBytes::kMost) return Draft::make(header);
+  return Draft::make(header, small_.allocate(bytes));
+}
+
 Status Source::resume() {
   return Error{Code::Unsupported, "only a file can be read on after an error"};
 }

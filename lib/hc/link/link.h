@@ -103,13 +103,16 @@ class Sink {
   /// A message to be filled in place and sent: in the memory that readers will see where the
   /// transport shares any, else on the heap. Sent to another sink, it is copied there.
   /// A header that check() refuses is a bug.
-  virtual Draft loan(const Header& header) { return Draft::make(header); }
+  virtual Draft loan(const Header& header);
 
   /// Ends the link: the reader finds End behind the last message. Errors as send().
   virtual Status close() = 0;
 
   /// What send() has taken so far; a message to several readers counts once.
   [[nodiscard]] virtual Traffic traffic() const = 0;
+
+ private:
+  SmallBytes small_;  // for small loans
 };
 
 /// How a link behaves, whatever carries it.

@@ -95,7 +95,6 @@ class ShmSink final : public Sink {
   std::uint64_t slot_bytes_ = 0;               // the same of the next message
   std::uint64_t taken_ = 0;                    // by all, at the last look
   HeaderMemo memo_;
-  SmallBytes small_;
   std::size_t present_ = 0;  // readers that still take messages
   const bool ordering_ = allow_ordering();
   bool may_leave_fence_ = false;  // all readers can order the stores of both sides
@@ -367,7 +366,7 @@ Draft ShmSink::loan(const Header& header) {
   auto bytes = header.element_bytes();
   refresh();
   // What will be copied into a cell needs no slot.
-  if (bytes <= Cell::kTextBytes / 2) return Draft::make(header, small_.allocate(bytes));
+  if (bytes <= Cell::kTextBytes / 2) return Sink::loan(header);
   Slot* slot = take_slot(bytes);
   if (slot == nullptr) return Draft::make(header);
   HC_CRASH_POINT("publisher loaned");

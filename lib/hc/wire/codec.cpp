@@ -24,7 +24,8 @@ bool is_aligned(const char* at, Scalar scalar) {
 Result<std::size_t> decode(std::span<const std::byte> bytes, Message& message, const Limits& limits,
                            std::uint64_t byte) {
   std::string_view rest{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  auto line = internal::read_header_line(rest, limits, byte);
+  internal::HeaderMemo memo;  // of one line, which it cannot help
+  auto line = internal::read_header_line(rest, limits, byte, memo);
   if (!line) return line.error();
   if (line->bytes == 0) return std::size_t{0};
   const Header& header = line->header;
@@ -68,7 +69,7 @@ Pieces Encoder::encode(const Message& message) {
   HC_CHECK(!message.plain() || message.elements.size() == header.element_bytes(), text(header),
            message.elements.size());
   std::size_t size =
-      format_header(header, std::span<char, kMaxHeaderBytes>(head_.data(), kMaxHeaderBytes));
+      memo_.format(header, std::span<char, kMaxHeaderBytes>(head_.data(), kMaxHeaderBytes));
   if (internal::has_rows(header)) {
     text_.assign(head_.data(), size);
     append_text(header, message.elements, text_);

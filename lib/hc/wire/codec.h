@@ -10,6 +10,7 @@
 #include <string>
 
 #include <hc/base/result.h>
+#include <hc/wire/header_memo.h>
 #include <hc/wire/message.h>
 
 namespace hc {
@@ -45,6 +46,7 @@ class Encoder {
   Pieces encode(const Message& message);
 
  private:
+  internal::HeaderMemo memo_;
   std::string text_;
   std::array<char, kMaxHeaderBytes + 32> head_;
 };

@@ -15,8 +15,8 @@ constexpr std::size_t kMaxLengthLine = 20;  // R34: bytes before the line feed
 
 }  // namespace
 
-Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits,
-                                    std::uint64_t byte) {
+Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits, std::uint64_t byte,
+                                    HeaderMemo& memo) {
   auto line = text.substr(0, std::min(text.size(), kMaxHeaderBytes));
   auto end = line.find('\n');
   if (end == std::string_view::npos) {
@@ -26,7 +26,7 @@ Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits,
   }
   line = line.substr(0, end);
   if (line.ends_with('\r')) line.remove_suffix(1);
-  auto header = parse_header(line, limits, byte);
+  auto header = memo.parse(line, limits, byte);
   if (!header) return header.error();
   return HeaderLine{*header, end + 1};
 }

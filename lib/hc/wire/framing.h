@@ -8,6 +8,7 @@
 
 #include <hc/base/result.h>
 #include <hc/wire/header.h>
+#include <hc/wire/header_memo.h>
 
 namespace hc::internal {
 
@@ -27,8 +28,9 @@ struct HeaderLine {
 };
 
 /// Reads the header line at the start of `text` (R3 … R24).
-Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits,
-                                    std::uint64_t byte);
+/// @param memo  of the stream's headers.
+Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits, std::uint64_t byte,
+                                    HeaderMemo& memo);
 
 struct LengthLine {
   std::uint64_t length = 0;  ///< of the compressed part [byte]

@@ -41,7 +41,7 @@ class HeaderMemo {
   Digits seq_, time_;
   // The line in words, the last of which ends with it, and which bits of them are to be the same.
   std::array<std::uint64_t, kWords> words_, same_;
-  int differing_ = kPatience;
+  int differing_ = kPatience - 2;
 };
 
 }  // namespace hc::internal

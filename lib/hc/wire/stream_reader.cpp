@@ -76,7 +76,7 @@ Result<bool> StreamReader::next(Message& message) {
 Result<bool> StreamReader::read_head(Message& message) {
   message_begin_ = byte_;
   if (begin_ == end_) return false;
-  auto line = internal::read_header_line(unread(), limits_, byte_);
+  auto line = internal::read_header_line(unread(), limits_, byte_, memo_);
   if (!line) return line.error();
   if (line->bytes == 0) return false;
   header_ = line->header;
@@ -208,7 +208,7 @@ void StreamReader::search() {
       return;
     }
     // The line feed stays until the line behind it has been judged.
-    auto line = internal::read_header_line(text.substr(feed + 1), limits_, 0);
+    auto line = internal::read_header_line(text.substr(feed + 1), limits_, 0, memo_);
     if (line && line->bytes == 0) {
       consume(feed);
       return;

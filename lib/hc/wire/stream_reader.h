@@ -82,7 +82,8 @@ class StreamReader {
   Error error_;
 
   std::uint64_t elements_begin_ = 0;  // [byte]
-  Header header_;                     // of the message whose elements are being read
+  internal::HeaderMemo memo_;
+  Header header_;  // of the message whose elements are being read
   TextRows rows_;
   SharedBytes body_;
   std::uint64_t body_capacity_ = 0, body_size_ = 0, body_filled_ = 0;
