@@ -236,10 +236,14 @@ TEST_P(ShmReaderCrash, OthersGoOn) {
 class ShmPublisherCrash : public ShmCrash {};
 
 TEST_P(ShmPublisherCrash, ReadersEndAndOpenTheNext) {
+  const std::string_view point = GetParam().name;
   make_readers();
-  int count = std::string_view(GetParam().name) == "publisher closed" ? 100 : 0;
   for (int i = 0; i < point_kills(); ++i) {
-    auto victim = make_publisher("readers=2", crash_at(GetParam()), count);
+    auto at = crash_at(GetParam());
+    auto victim = point == "publisher closed" ? make_publisher("readers=2", at, 100)
+                  : point == "publisher waits for room"  // there is room for one message
+                      ? make_publisher("readers=2&memory=2M", at, 0, "1440000")
+                      : make_publisher("readers=2", at);
     expect_killed(victim);
   }
   expect_the_next_to_be_heard();
