@@ -17,6 +17,8 @@
 #include <set>
 #include <thread>
 
+#include <hc/link/shm_layout.h>
+
 #include "child.h"
 
 namespace hc::testing {
@@ -192,7 +194,7 @@ TEST_F(ShmCrash, PublishersAreKilledAtRandomMoments) {
 
 /// A publisher that cannot go on as a reader holds all of its memory goes on when that reader dies.
 TEST_F(ShmCrash, SlotsComeBack) {
-  constexpr int kSlots = 18;  // of 100,000 bytes, in 2 MiB
+  constexpr auto kSlots = ((2 << 20) - internal::kSlotsBegin) / 100'032;  // of 100,000 bytes
   publisher_ = make_publisher("readers=1&memory=2M", "", 0, "100000");
   steady_ = make_reader("gapless", 0);
   steady_.first_behind(0);

@@ -7,6 +7,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include <hc/link/shm_layout.h>
+
 #include "child.h"
 
 namespace hc::testing {
@@ -37,7 +39,7 @@ TEST_P(ShmStopped, DisturbsNobodyAndLosesWhatIsCounted) {
   stopped.first_behind(0);
   stopped.freeze();
   // A message may have been on its way to it; one that far behind was not.
-  const auto behind = steady.first_behind(0) + 2000;
+  const auto behind = steady.first_behind(0) + 2 * static_cast<std::int64_t>(internal::kCells);
   std::int64_t newest = 0;
   for (std::int64_t more = 1000; more <= 10'000; more += 1000) {
     newest = steady.first_behind(behind + more);
