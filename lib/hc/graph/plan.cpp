@@ -253,8 +253,9 @@ class Planner {
         sender.uri = shared ? "shm:" + name : "unix:@" + name;
         sender.end = {from, plan_.modules[from].inputs + outputs[from]++};
         add(from, "--out",
-            link.from.port + "=" + (shared ? "shm:" + name : "unix-listen:@" + name) + "?readers=" +
-                std::to_string(sender.readers) + (shared ? "" : keep) + pace_of(link));
+            link.from.port + "=" + (shared ? "shm:" + name : "unix-listen:@" + name) +
+                "?readers=" + std::to_string(sender.readers) +
+                (shared && pace_of(link).empty() ? "" : keep) + pace_of(link));
       }
       add(to, "--in", link.to.port + "=" + sender.uri + "?wait=60" + (shared ? keep : ""));
       plan_.links.push_back({link.from, link.to, sender.end, {to, inputs[to]++}});

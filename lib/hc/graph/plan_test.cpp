@@ -100,7 +100,7 @@ program = "seer"
   ASSERT_TRUE(planned) << planned.error().detail;
   using Words = std::vector<std::string>;
   EXPECT_EQ(values_of(planned->modules[0], "--out"),
-            (Words{"image=shm:t-0?readers=2", "image=shm:t-2?readers=1&memory=8M&rate=10",
+            (Words{"image=shm:t-0?readers=2", "image=shm:t-2?readers=1&keep=3&memory=8M&rate=10",
                    "image=unix-listen:@t-3?readers=1&keep=latest"}));
   EXPECT_EQ(values_of(planned->modules[1], "--in"),
             (Words{"in=shm:t-0?wait=60&keep=latest", "more=shm:t-2?wait=60&keep=3"}));

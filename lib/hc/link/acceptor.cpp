@@ -25,7 +25,8 @@ Result<std::unique_ptr<Acceptor>> Acceptor::make(ListeningSocket socket, std::si
   });
   if (!watch) return watch.error();
   acceptor->watch_ = std::move(*watch);
-  if (auto wanted = acceptor->watch_->want(EPOLLIN); !wanted) return wanted.error();
+  acceptor->watching_ = acceptor->watch_.get();
+  if (auto wanted = acceptor->watching_->want(EPOLLIN); !wanted) return wanted.error();
   return acceptor;
 }
 
@@ -56,8 +57,9 @@ void Acceptor::accept_all() {
   }
   if (!newcomers_.empty()) ::eventfd_write(arrived_.get(), 1);
   has_news_ = !newcomers_.empty() || !remarks_.empty();
-  if (later) watch_->call_at(std::chrono::steady_clock::now() + kRetryTime);
-  if (std::exchange(later_, later) != later) static_cast<void>(watch_->want(later ? 0U : EPOLLIN));
+  if (later) watching_->call_at(std::chrono::steady_clock::now() + kRetryTime);
+  if (std::exchange(later_, later) != later)
+    static_cast<void>(watching_->want(later ? 0U : EPOLLIN));
 }
 
 std::vector<std::string> Acceptor::take_remarks() {

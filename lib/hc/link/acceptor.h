@@ -52,6 +52,7 @@ class Acceptor {
   std::vector<std::string> remarks_;
   bool later_ = false;  // somebody waits who could not be let in
   std::atomic<bool> has_news_{false};
+  Watch* watching_ = nullptr;  // for its callback, which may run while it is being destroyed
   std::unique_ptr<Watch> watch_;
 };
 

@@ -78,6 +78,8 @@ Status DialingSource::dial() {
 
 void DialingSource::lose_connection(const std::string& why) {
   past_ += source_->traffic();
+  // Messages that are held may keep the connection open.
+  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, source_->descriptor(), nullptr);
   source_.reset();
   log(why + "; connecting again");
   auto now = std::chrono::steady_clock::now();

@@ -81,9 +81,7 @@ class PacedSink final : public Sink {
   using Clock = std::chrono::steady_clock;
 
   Status wait_until(TimePoint ready) const {
-    auto left = std::chrono::ceil<std::chrono::milliseconds>(ready - Clock::now());
-    if (left.count() <= 0) return {};
-    auto waited = wait_readable({}, stop_, left);
+    auto waited = wait_for(-1, 0, stop_, ready);
     return waited ? Status() : waited.error();
   }
 

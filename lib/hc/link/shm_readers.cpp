@@ -69,7 +69,7 @@ void ShmReaders::accept_all() {
                                       else if (each->memory.data() == nullptr)
                                         hear(*each);
                                       else
-                                        tell_change(*each);  // it has left
+                                        note_leaving(*each);
                                     })
                       : Result<std::unique_ptr<Watch>>(peer.error());
     if (!watch) {
@@ -107,7 +107,7 @@ void ShmReaders::hear(ShmReader& reader) {
     if (why.empty() && count_ == kMostReaders)
       why = "it has " + std::to_string(kMostReaders) + " readers already";
     if (why.empty()) {
-      auto owner = take_stranger(reader);
+      auto owner = take_from(strangers_, reader);
       if (owner == nullptr) return;
       reader.memory = std::move(hello->page);
       reader.keep = hello->keep;
@@ -134,6 +134,13 @@ void ShmReaders::hear(ShmReader& reader) {
   Offer offer{reader.begin, reader.keep, {}};
   if (!answer(reader.socket.get(), offer, bytes_, read_only_.get())) let_go(reader);
   HC_CRASH_POINT("publisher answered");
+  std::lock_guard lock(mutex_);
+  tell_change(reader);
+}
+
+/// A reader takes no more, but may hold messages still.
+void ShmReaders::note_leaving(const ShmReader& reader) {
+  std::lock_guard lock(mutex_);
   tell_change(reader);
 }
 
@@ -143,23 +150,27 @@ void ShmReaders::let_go(ShmReader& reader) {
   std::shared_ptr<ShmReader> owner;  // goes outside the lock
   std::lock_guard lock(mutex_);
   if (ending_) return;
-  owner = take_stranger(reader);
+  owner = take_from(strangers_, reader);
   if (owner != nullptr || reader.gone.load()) return;
   --count_;
+  // A publisher that has nothing to publish does not look who has come and gone.
+  if (owner = take_from(come_, reader); owner != nullptr) return;
   reader.gone.store(true);
   tell_change(reader);  // refresh() waits for the lock, so the reader is there still
 }
 
-/// The owner of a stranger, who is none any more; null when the reader is none.
-std::shared_ptr<ShmReader> ShmReaders::take_stranger(const ShmReader& reader) {
-  auto found = std::find_if(strangers_.begin(), strangers_.end(),
+/// Takes a reader out of a list; null when it is not there.
+std::shared_ptr<ShmReader> ShmReaders::take_from(std::vector<std::shared_ptr<ShmReader>>& list,
+                                                 const ShmReader& reader) {
+  auto found = std::find_if(list.begin(), list.end(),
                             [&](const auto& each) { return each.get() == &reader; });
-  if (found == strangers_.end()) return nullptr;
+  if (found == list.end()) return nullptr;
   auto owner = *found;
-  strangers_.erase(found);
+  list.erase(found);
   return owner;
 }
 
+/// With the lock, so that refresh() sees the flag and the event together.
 void ShmReaders::tell_change(const ShmReader& reader) {
   changed_.store(true, std::memory_order_seq_cst);
   ::eventfd_write(event_.get(), 1);

@@ -89,7 +89,9 @@ class ShmReaders {
   void accept_all();
   void hear(ShmReader& reader);
   void let_go(ShmReader& reader);
-  std::shared_ptr<ShmReader> take_stranger(const ShmReader& reader);
+  static std::shared_ptr<ShmReader> take_from(std::vector<std::shared_ptr<ShmReader>>& list,
+                                              const ShmReader& reader);
+  void note_leaving(const ShmReader& reader);
   void tell_change(const ShmReader& reader);
   void log(std::string_view line) const;
 

@@ -359,6 +359,7 @@ void ShmSink::fence_again() {
   undisturbed_ = 0;
   if (fencing_) return;
   fencing_ = true;
+  std::atomic_thread_fence(memory_order_seq_cst);  // wake: of what was published without one
   head_.unfenced.store(0, memory_order_release);
 }
 

@@ -311,7 +311,7 @@ void ShmSource::arm(bool on_socket) {
   armed_ = true;
   HC_CRASH_POINT("reader armed");
   std::atomic_thread_fence(memory_order_seq_cst);  // wake
-  if (attachment_->head().unfenced.load(memory_order_relaxed) != 0) order_everywhere();
+  if (attachment_->head().unfenced.load(memory_order_acquire) != 0) order_everywhere();
 }
 
 void ShmSource::disarm() {
