@@ -264,7 +264,7 @@ Status ShmSink::make_cell_free() {
 
 Status ShmSink::send(const Message& message) {
   refresh();
-  if (!begun_ && (keep_ == 0 || counted_ > 0)) {
+  if (!begun_) {
     auto came = await_readers(static_cast<std::size_t>(std::max<std::int64_t>(counted_, 1)));
     if (!came) return came;
   }

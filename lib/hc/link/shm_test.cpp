@@ -249,8 +249,16 @@ TEST(Shm, OneWhoComesLaterHearsWhatIsSentFromThenOn) {
   EXPECT_EQ(message.header.seq, 0);
 }
 
-TEST(Shm, WhoWaitsForNobodyPublishesToNobody) {
-  auto sink = sink_of(fresh_name() + "?keep=latest&memory=2M");
+TEST(Shm, WhoDropsWaitsForTheFirstReaderAlone) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?keep=latest&memory=2M");
+  std::thread reader([&] {
+    auto source = source_of(name);
+    Message message;
+    EXPECT_TRUE(*receive(*source, message));
+  });
+  ASSERT_TRUE(sink->send(numbered(0, kLarge)));
+  reader.join();
   for (int i = 0; i < 3000; ++i) ASSERT_TRUE(sink->send(numbered(i, kLarge)));
   EXPECT_TRUE(sink->close());
 }
