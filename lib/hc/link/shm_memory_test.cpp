@@ -116,8 +116,9 @@ bool refuse_pages() {
 
 /// Writing into a page that the host does not have would kill the publisher.
 TEST(SharedMemory, WhatTheHostHasNoPagesForIsNotWritten) {
-  auto uri = *parse_uri("shm:no-pages-" + std::to_string(::getpid()) + "?keep=latest");
-  auto sink = std::move(*open_sink(uri));
+  std::string name = "shm:no-pages-" + std::to_string(::getpid());
+  auto sink = std::move(*open_sink(*parse_uri(name + "?keep=latest")));
+  auto source = std::move(*open_source(*parse_uri(name)));
   bool refused = false;
   std::thread publisher([&] {
     refused = refuse_pages();
