@@ -96,9 +96,7 @@ std::vector<std::string_view> transports() {
 }
 
 Draft Sink::loan(const Header& header) {
-  auto bytes = header.element_bytes();
-  if (bytes > SmallBytes::kMost) return Draft::make(header);
-  return Draft::make(header, small_.allocate(bytes));
+  return Draft::make(header);
 }
 
 Status Source::resume() {

@@ -110,9 +110,6 @@ class Sink {
 
   /// What send() has taken so far; a message to several readers counts once.
   [[nodiscard]] virtual Traffic traffic() const = 0;
-
- private:
-  SmallBytes small_;  // for small loans
 };
 
 /// How a link behaves, whatever carries it.

@@ -16,26 +16,6 @@ namespace {
 
 constexpr std::chrono::microseconds kFollowTime{10};
 
-/// Whether a peer has taken what was sent to it, or will.
-///
-/// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
-/// succeeds in either case; what tells is its kernel's answer, an acknowledgement or a reset.
-Result<bool> has_taken(const Outlet& peer, int stop) {
-  if (!peer.has_written_all()) return !peer.has_failed();
-  Pauses pauses;
-  while (true) {
-    pollfd polled{peer.descriptor(), POLLRDHUP, 0};
-    ::poll(&polled, 1, 0);
-    if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
-    bool shut = (polled.revents & POLLRDHUP) != 0;
-    int under_way = 0;
-    if (!shut || ::ioctl(peer.descriptor(), SIOCOUTQ, &under_way) != 0 || under_way == 0)
-      return true;
-    if (look_at_peer(peer.descriptor()).vanished) return false;
-    if (auto waited = pauses.next(stop); !waited) return waited.error();
-  }
-}
-
 void add_losses(Traffic& sum, const Traffic& losses) {
   sum.kept_back += losses.kept_back;
   sum.superseded += losses.superseded;
@@ -95,40 +75,65 @@ Status ListeningSink::send(const Message& message) {
     if (begun_ && readers_ > 0 && peers_.empty())
       return Error{Code::Closed, "all readers have gone"};
     // Between messages that follow one another the reactor alone lets peers in.
-    bool follows = std::chrono::steady_clock::now() - last_send_ < kFollowTime;
+    auto now = std::chrono::steady_clock::now();
+    bool follows = now - last_send_ < kFollowTime;
     if (!begun_ || peers_.empty() || !follows || acceptor_->has_news()) {
       auto awaited = await(begun_ || readers_ == 0 ? 1 : readers_);
       if (!awaited) return awaited;
+      now = std::chrono::steady_clock::now();
     }
     begun_ = true;
-    if (auto put = put_to_all(outgoing); !put) return put;
-    auto has = has_reader();
+    auto has = put_to_all(outgoing, now);
+    if (has && !*has) has = has_reader();
     if (!has) return has.error();
     if (!*has) continue;  // the message is for the next who comes
-    last_send_ = std::chrono::steady_clock::now();
+    last_send_ = now;
     ++traffic_.messages;
     traffic_.bytes += outgoing.size();
     return {};
   }
 }
 
-Status ListeningSink::put_to_all(Outgoing& message) {
+/// Whether some of what a peer is to get is in memory of ours, so that nothing of it is lost.
+Result<bool> ListeningSink::put_to_all(Outgoing& message, TimePoint now) {
+  bool is_ours = false;
   for (std::size_t i = 0; i < peers_.size();) {
-    auto sent = peers_[i]->send(message);
+    auto sent = peers_[i]->send(message, now);
     if (!sent && (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated))
-      return sent;
+      return sent.error();
+    is_ours = is_ours || (sent && !*sent);
     if (sent)
       ++i;
     else
       leave(i);
   }
-  return {};
+  return is_ours;
+}
+
+/// Whether a peer has taken what was sent to it, or will.
+///
+/// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
+/// succeeds in either case; what tells is its kernel's answer, an acknowledgement or a reset.
+Result<bool> ListeningSink::has_taken(const Outlet& peer) const {
+  Pauses pauses;
+  while (true) {
+    pollfd polled{peer.descriptor(), POLLRDHUP, 0};
+    ::poll(&polled, 1, 0);
+    if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
+    bool shut = (polled.revents & POLLRDHUP) != 0;
+    int under_way = 0;
+    if (!shut || !policy_.writer_waits() || ::ioctl(peer.descriptor(), SIOCOUTQ, &under_way) != 0 ||
+        under_way == 0)
+      return true;
+    if (look_at_peer(peer.descriptor()).vanished) return false;
+    if (auto waited = pauses.next(options_.stop); !waited) return waited.error();
+  }
 }
 
 /// Whether there is a reader that has taken what was sent; one is enough.
 Result<bool> ListeningSink::has_reader() {
   while (!peers_.empty()) {
-    auto taken = has_taken(*peers_.back(), options_.stop);
+    auto taken = has_taken(*peers_.back());
     if (!taken) return taken.error();
     if (*taken) return true;
     leave(peers_.size() - 1);

@@ -39,8 +39,9 @@ class ListeningSink final : public Sink {
   void let_in();
   Status await(std::size_t readers);
   void leave(std::size_t peer);
-  Status put_to_all(Outgoing& message);
+  Result<bool> put_to_all(Outgoing& message, TimePoint now);
   Result<bool> has_reader();
+  [[nodiscard]] Result<bool> has_taken(const Outlet& peer) const;
 
   std::unique_ptr<Acceptor> acceptor_;
   std::size_t readers_;  // to wait for before the first message and before the end; 0: one, none

@@ -80,10 +80,9 @@ void Outlet::watch(int descriptor) {
   wanted_ = 0;
 }
 
-Status Outlet::send(Outgoing& message) {
+Result<bool> Outlet::send(Outgoing& message, TimePoint now) {
   std::lock_guard lock(mutex_);
   if (failed_) return *failed_;
-  const auto now = clock_now();
   bool passes = connected() && !blocked_ && outbox_.pass(message.size(), now);
   if (passes) {
     put(message.borrowed(), now);
@@ -93,10 +92,13 @@ Status Outlet::send(Outgoing& message) {
   }
   if (failed_) return *failed_;
   bool under_way = blocked_ || !outbox_.empty() || !connected();
-  if (writer_waits_ && under_way) return drain(false);
+  if (writer_waits_ && under_way) {
+    if (auto drained = drain(false); !drained) return drained.error();
+    return true;
+  }
   if (writer_.borrows()) writer_.keep(message.kept().pieces, message.kept().keeper);
   if (under_way) arm(now);
-  return {};
+  return all_written();
 }
 
 /// Begins a message, for which there is no hindrance.
@@ -289,11 +291,6 @@ Status Outlet::close(bool patient) {
 Traffic Outlet::losses() const {
   std::lock_guard lock(mutex_);
   return losses_;
-}
-
-bool Outlet::has_written_all() const {
-  std::lock_guard lock(mutex_);
-  return all_written();
 }
 
 bool Outlet::has_failed() const {

@@ -62,8 +62,8 @@ class Outlet {
   static constexpr std::chrono::seconds kLookPeriod{1};
   /// Messages follow one another when no more time has passed since the last system call.
   static constexpr std::chrono::microseconds kFollowTime{3};
-  static constexpr std::chrono::microseconds kFlushAge{50};
-  static constexpr std::size_t kFlushBytes = 48 << 10;
+  static constexpr std::chrono::microseconds kFlushAge{150};
+  static constexpr std::size_t kFlushBytes = 60 << 10;
 
   /// @param connection  may be none (-1) with a dialer.
   /// @param dialer  makes the connection anew when it is lost; without one the link ends with it.
@@ -75,16 +75,15 @@ class Outlet {
   Outlet(const Outlet&) = delete;
   Outlet& operator=(const Outlet&) = delete;
 
-  /// Takes a message. Errors: as Sink::send.
-  Status send(Outgoing& message);
+  /// Takes a message; whether all that was taken is with the kernel, and not in memory of ours.
+  /// Errors: as Sink::send.
+  Result<bool> send(Outgoing& message, TimePoint now);
   /// Waits until all has been written, unless it is not `patient`, and ends the stream.
   /// Errors: as Sink::close.
   Status close(bool patient = true);
 
   /// What was lost or kept back, and nothing of what was sent.
   [[nodiscard]] Traffic losses() const;
-  /// Whether the last send() wrote everything to the kernel, and not to memory of ours.
-  [[nodiscard]] bool has_written_all() const;
   /// Whether the connection has failed for good.
   [[nodiscard]] bool has_failed() const;
   /// What is to be told the log, by the thread that sends.

@@ -48,7 +48,14 @@ struct alignas(kLine) Cell {
   SharedWord<std::uint64_t> stamp;  ///< position + 1 of the message; 0: never used
   SharedWord<std::uint64_t> slot;  ///< where the elements begin in the memory; 0: behind the header
   SharedWord<std::uint64_t> sizes;  ///< bytes of the elements · 2^16 + bytes of the header line
-  std::array<SharedWord<std::uint64_t>, kWords> text;  ///< header line, then elements if small
+  /// The header line, and at the next word the elements if they are small.
+  std::array<SharedWord<std::uint64_t>, kWords> text;
+
+  /// Where in the text the elements begin.
+  static constexpr std::size_t behind(std::size_t header_bytes) {
+    return (header_bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t) *
+           sizeof(std::uint64_t);
+  }
 };
 static_assert(sizeof(Cell) == kCellBytes);
 

@@ -14,6 +14,7 @@
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
 #include <hc/link/unix.h>
+#include <hc/wire/digits.h>
 #include <hc/wire/header_memo.h>
 
 namespace hc::internal {
@@ -35,6 +36,22 @@ constexpr int kUndisturbed =
 constexpr std::uint64_t kBatch = 64;  // cells that are withdrawn together
 /// How often one who waits looks whether it is to stop.
 constexpr std::chrono::milliseconds kLookPeriod{20};
+
+/// Copies bytes word by word, as they were mostly written; fills the last word. A larger load finds
+/// none of the stores before it whole and waits until all of them have reached the cache, those
+/// into cells too that another processor has.
+void copy_words(std::span<const std::byte> bytes, char* to) {
+  const auto* from = reinterpret_cast<const char*>(bytes.data());
+  std::size_t i = 0;
+  for (; i + sizeof(std::uint64_t) <= bytes.size(); i += sizeof(std::uint64_t)) {
+    std::uint64_t word = load8(from + i);
+    std::memcpy(to + i, &word, sizeof word);
+  }
+  std::uint64_t rest = 0;
+  for (std::size_t end = bytes.size(); end > i; --end)
+    rest = rest << 8 | static_cast<unsigned char>(from[end - 1]);
+  std::memcpy(to + i, &rest, sizeof rest);
+}
 
 class ShmSink final : public Sink {
  public:
@@ -280,10 +297,10 @@ Status ShmSink::send(const Message& message) {
   auto header_bytes =
       memo_.format(message.header, std::span<char, kMaxHeaderBytes>(text, kMaxHeaderBytes));
   auto bytes = message.elements.size();
-  auto text_bytes = header_bytes;
+  auto text_bytes = Cell::behind(header_bytes);
   Slot* slot = nullptr;
-  if (header_bytes + bytes <= Cell::kTextBytes) {
-    if (bytes > 0) std::memcpy(text + header_bytes, message.elements.data(), bytes);
+  if (text_bytes + bytes <= Cell::kTextBytes) {
+    copy_words(message.elements, text + text_bytes);
     text_bytes += bytes;
   } else {
     if (is_too_far_ahead(bytes)) {

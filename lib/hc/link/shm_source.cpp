@@ -140,7 +140,6 @@ class ShmSource final : public Source {
   bool publisher_gone_ = false;
   bool told_ = false;  // that too many are held
   HeaderMemo memo_;
-  SmallBytes small_;
   Traffic traffic_;
 };
 
@@ -183,7 +182,7 @@ bool ShmSource::copy(Copy& cell) const {
   auto sizes = shared.sizes.load(memory_order_relaxed);
   cell.header_bytes = sizes & 0xffff;
   cell.bytes = sizes >> 16;
-  auto bytes = cell.header_bytes + (cell.slot == 0 ? cell.bytes : 0);
+  auto bytes = cell.slot == 0 ? Cell::behind(cell.header_bytes) + cell.bytes : cell.header_bytes;
   if (bytes > Cell::kTextBytes) return false;
   for (std::size_t i = 0; i * sizeof(std::uint64_t) < bytes; ++i)
     cell.words[i] = shared.text[i].load(memory_order_relaxed);
@@ -219,8 +218,8 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
   ++traffic_.messages;
   traffic_.bytes += cell.header_bytes + cell.bytes;
   if (hold == kNoHold) {
-    auto room = small_.allocate(cell.bytes);
-    std::memcpy(room.get(), cell.text() + cell.header_bytes, cell.bytes);
+    auto room = allocate_bytes(cell.bytes);
+    std::memcpy(room.get(), cell.text() + Cell::behind(cell.header_bytes), cell.bytes);
     message.elements = {room.get(), cell.bytes};
     message.owner = std::move(room);
     return {};

@@ -15,9 +15,9 @@ Result<std::unique_ptr<Sink>> StreamSink::make(Descriptor descriptor, const Uri&
 
 Status StreamSink::send(const Message& message) {
   Outgoing outgoing(encoder_.encode(message), message);
-  auto sent = outlet_->send(outgoing);
+  auto sent = outlet_->send(outgoing, std::chrono::steady_clock::now());
   if (log_) tell_log();
-  if (!sent) return sent;
+  if (!sent) return sent.error();
   ++messages_;
   bytes_ += outgoing.size();
   return {};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include <hc/wire/digits.h>
 
@@ -30,10 +31,25 @@ bool parse_number(const char* at, std::size_t size, std::int64_t& number) {
   return value <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 }
 
-std::size_t count_digits(std::uint64_t value) {
-  std::size_t count = 1;
-  for (; value >= 10'000; value /= 10'000) count += 4;
-  return count + (value >= 10 ? 1 : 0) + (value >= 100 ? 1 : 0) + (value >= 1000 ? 1 : 0);
+/// Puts up to eight characters, the first in the lowest byte, where `line` has zeros. By whole
+/// words of the line, so that who reads those next finds each in one store.
+void put_word(std::uint64_t word, char* line, std::size_t at) {
+  char* to = line + at / kWord * kWord;
+  const std::size_t shift = at % kWord * 8;
+  auto put = [](char* there, std::uint64_t part) {
+    part |= load8(there);
+    std::memcpy(there, &part, kWord);
+  };
+  put(to, word << shift);
+  if (shift > 0) put(to + kWord, word >> (64 - shift));
+}
+
+/// Puts a number of `size` digits.
+void put_number(std::uint64_t number, char* line, std::size_t begin, std::size_t size) {
+  constexpr std::uint64_t kTenTo8 = 100'000'000;
+  for (; size >= kWord; number /= kTenTo8)
+    put_word(digits_of_value(number % kTenTo8), line, begin + (size -= kWord));
+  if (size > 0) put_word(digits_of_value(number) >> 8 * (kWord - size), line, begin);
 }
 
 }  // namespace
@@ -69,21 +85,17 @@ Result<Header> HeaderMemo::parse(std::string_view line, const Limits& limits, st
 std::size_t HeaderMemo::format(const Header& header, std::span<char, kMaxHeaderBytes> line) {
   header_.seq = header.seq;
   header_.time = header.time;
-  auto put = [&](Digits digits, std::int64_t value) {
-    auto number = static_cast<std::uint64_t>(value);
-    if (value < 0 || count_digits(number) != digits.size) return false;
-    char* at = line_.data() + digits.begin + digits.size;
-    for (; digits.size >= kWord; digits.size -= kWord, number /= 100'000'000)
-      write_8_digits(at -= kWord, number % 100'000'000);
-    for (; digits.size > 0; --digits.size, number /= 10)
-      *--at = static_cast<char>('0' + number % 10);
-    return true;
+  auto fits = [](const Digits& digits, std::int64_t value) {
+    return value >= 0 && static_cast<std::uint64_t>(value) >= digits.least &&
+           static_cast<std::uint64_t>(value) <= digits.most;
   };
-  if (size_ > 0 && header == header_ && put(seq_, header.seq) && put(time_, header.time)) {
-    std::memcpy(line.data(), line_.data(), size_ + 1);
+  if (size_ > 0 && header == header_ && fits(seq_, header.seq) && fits(time_, header.time)) {
+    for (std::size_t i = 0; i <= size_; i += kWord)
+      std::memcpy(line.data() + i, frame_.data() + i, kWord);
+    for (auto [digits, value] : {std::pair(&seq_, header.seq), std::pair(&time_, header.time)})
+      put_number(static_cast<std::uint64_t>(value), line.data(), digits->begin, digits->size);
     return size_ + 1;
   }
-  size_ = 0;  // its digits may be half written
   if (++differing_ < kPatience) return format_header(header, line);
   remember(header);
   std::memcpy(line.data(), line_.data(), size_ + 1);
@@ -101,7 +113,12 @@ void HeaderMemo::remember(const Header& header) {
     auto end = static_cast<std::size_t>(
         std::find(line_.begin() + static_cast<std::ptrdiff_t>(begin), line_.end(), ' ') -
         line_.begin());
-    return Digits{begin, end - begin};
+    Digits digits{begin, end - begin, 0, 9};
+    for (std::size_t i = 1; i < digits.size; ++i) {
+      digits.least = digits.most + 1;
+      digits.most = digits.most * 10 + 9;
+    }
+    return digits;
   };
   seq_ = field(3);
   time_ = field(5);
@@ -109,6 +126,8 @@ void HeaderMemo::remember(const Header& header) {
   same.fill('\xff');
   for (auto digits : {seq_, time_})
     std::fill_n(same.begin() + static_cast<std::ptrdiff_t>(digits.begin), digits.size, '\0');
+  frame_.fill('\0');
+  for (std::size_t i = 0; i <= size_; ++i) frame_[i] = line_[i] & same[i];
   auto words = (size_ + kWord - 1) / kWord;
   for (std::size_t i = 0; i < words; ++i) {
     auto begin = std::min(i * kWord, size_ - kWord);

@@ -23,8 +23,10 @@ class HeaderMemo {
   std::size_t format(const Header& header, std::span<char, kMaxHeaderBytes> line);
 
  private:
+  /// A number in the line, and those that are spelt with as many digits.
   struct Digits {
     std::size_t begin = 0, size = 0;
+    std::uint64_t least = 0, most = 0;
   };
 
   bool matches(std::string_view line) const;
@@ -37,6 +39,7 @@ class HeaderMemo {
   Header header_;
   std::uint64_t limit_ = 0;  // that the header has been found to keep [byte]
   std::array<char, kMaxHeaderBytes> line_;
+  std::array<char, kMaxHeaderBytes> frame_;  // the line, but 0 for the digits and beyond it
   std::size_t size_ = 0;  // of the line without its line feed; 0: nothing is remembered
   Digits seq_, time_;
   // The line in words, the last of which ends with it, and which bits of them are to be the same.

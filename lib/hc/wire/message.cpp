@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/wire/message.h>
 
-#include <algorithm>
-#include <new>
+#include <cstdint>
 
 namespace hc {
 namespace {
@@ -15,22 +14,12 @@ void check_own(const Header& header) {
 }  // namespace
 
 SharedBytes allocate_bytes(std::size_t size) {
-  constexpr std::align_val_t kAlignment{64};
-  auto* bytes = static_cast<std::byte*>(::operator new(size == 0 ? 1 : size, kAlignment));
-  return {bytes, [](std::byte* freed) { ::operator delete(freed, kAlignment); }};
-}
-
-SharedBytes SmallBytes::allocate(std::size_t size) {
-  HC_CHECK(size <= kMost, size);
-  constexpr std::size_t kAlignment = alignof(std::max_align_t);
-  std::size_t rounded = (std::max<std::size_t>(size, 1) + kAlignment - 1) / kAlignment * kAlignment;
-  if (kBlock - used_ < rounded) {
-    block_ = allocate_bytes(kBlock);
-    used_ = 0;
-  }
-  SharedBytes bytes(block_, block_.get() + used_);
-  used_ += rounded;
-  return bytes;
+  constexpr std::size_t kAlignment = 64;
+  // The count of the owners and the bytes are allocated together, with room to align the latter.
+  auto room = std::make_shared_for_overwrite<std::byte[]>(size + kAlignment);
+  auto past = reinterpret_cast<std::uintptr_t>(room.get()) % kAlignment;
+  std::byte* begin = room.get() + (kAlignment - past) % kAlignment;
+  return {std::move(room), begin};
 }
 
 Message Message::keep() const {
@@ -50,16 +39,12 @@ Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
 
 Draft Draft::make(const Header& header) {
   check_own(header);  // before its size is believed
-  return make(header, allocate_bytes(header.element_bytes()));
+  return {header, allocate_bytes(header.element_bytes())};
 }
 
 Draft Draft::make(const Header& header, SharedBytes bytes) {
   check_own(header);
-  Draft draft;
-  draft.header = header;
-  draft.size_ = header.element_bytes();
-  draft.bytes_ = std::move(bytes);
-  return draft;
+  return {header, std::move(bytes)};
 }
 
 Message Draft::finish() && {

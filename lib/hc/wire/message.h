@@ -54,24 +54,9 @@ class MatrixView {
 /// Bytes that several messages and readers share; freed with the last of them.
 using SharedBytes = std::shared_ptr<std::byte[]>;
 
-/// Fresh bytes, not initialised, aligned to 64. Cost: one allocation.
+/// Fresh bytes, not initialised, aligned to 64. Cost: one allocation, and no locked instruction
+/// until they are shared.
 SharedBytes allocate_bytes(std::size_t size);
-
-/// Gives out bytes for small elements, many from one allocation, which lives as long as any of
-/// them.
-class SmallBytes {
- public:
-  static constexpr std::size_t kMost = 4096;  ///< bytes that can be had at once
-
-  /// Fresh bytes, not initialised, aligned for every scalar. Cost: no allocation, as a rule.
-  SharedBytes allocate(std::size_t size);
-
- private:
-  static constexpr std::size_t kBlock = std::size_t{64} << 10;
-
-  SharedBytes block_;
-  std::size_t used_ = kBlock;
-};
 
 /// A header and its elements.
 struct Message {
@@ -119,6 +104,7 @@ struct Message {
 ///     output.send(std::move(draft).finish());
 class Draft {
  public:
+  Draft() = default;
   /// Room for width × height elements, not initialised, with a header that says so.
   /// A header that check() refuses is a bug. Cost: one allocation.
   static Draft make(const Info& info, std::int32_t width, std::int32_t height);
@@ -143,6 +129,9 @@ class Draft {
   [[nodiscard]] Message finish() &&;
 
  private:
+  Draft(const Header& all, SharedBytes bytes)
+      : header(all), bytes_(std::move(bytes)), size_(all.element_bytes()) {}
+
   SharedBytes bytes_;
   std::size_t size_ = 0;
 };

@@ -55,14 +55,6 @@ TEST(Message, KeepOwnsWhatWasBorrowed) {
   EXPECT_NE(kept.owner, nullptr);
 }
 
-TEST(SmallBytes, NothingHasItsPlaceToo) {
-  SmallBytes room;
-  auto none = room.allocate(0), some = room.allocate(1);
-  EXPECT_NE(none.get(), nullptr);
-  EXPECT_NE(none.get(), some.get());
-  EXPECT_EQ(none.use_count(), some.use_count());  // of one block
-}
-
 TEST(Message, MemoryIsAligned) {
   for (std::size_t size : {0U, 1U, 100U, 100000U})
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(allocate_bytes(size).get()) % 64, 0U);
