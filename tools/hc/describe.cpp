@@ -2,6 +2,7 @@
 // hc describe: what a module says of itself.
 #include <nlohmann/json.hpp>
 
+#include <hc/base/suggestion.h>
 #include <hc/graph/run.h>
 
 #include "common.h"

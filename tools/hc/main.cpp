@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include <hc/graph/graph_file.h>
+#include <hc/base/suggestion.h>
 
 #include "common.h"
 #include "verbs.h"

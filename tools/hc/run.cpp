@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include <hc/base/program.h>
+#include <hc/base/suggestion.h>
 #include <hc/graph/run.h>
 
 #include "common.h"

@@ -76,7 +76,4 @@ Result<Graph> parse_graph(std::string_view text, std::string_view file,
 /// Errors: Usage (another form; no such module).
 Status set_parameter(Graph& graph, std::string_view assignment);
 
-/// ", did you mean "camera"?" where one of `known` is spelled nearly as `name`; else empty.
-std::string suggestion(std::string_view name, const std::vector<std::string>& known);
-
 }  // namespace hc

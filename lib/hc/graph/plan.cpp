@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hc/base/parameter.h>
+#include <hc/base/suggestion.h>
 
 namespace hc {
 namespace {

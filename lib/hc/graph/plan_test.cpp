@@ -159,10 +159,5 @@ TEST(Plan, AnInputThatTakesAnythingFits) {
       plan("[modules.source]\n[modules.any]\n[[links]]\nfrom=\"source.left\"\nto=\"any.in\"\n"));
 }
 
-TEST(Suggestion, IsNearOrNothing) {
-  EXPECT_EQ(suggestion("camra", {"depth", "camera"}), ", did you mean \"camera\"?");
-  EXPECT_EQ(suggestion("wheel", {"depth", "camera"}), "");
-}
-
 }  // namespace
 }  // namespace hc
