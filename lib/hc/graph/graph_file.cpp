@@ -265,11 +265,6 @@ class Reader {
     return GraphPort{text->substr(0, dot), text->substr(dot + 1)};
   }
 
-  static Status check_policy(const std::string& key, const std::string& value) {
-    auto policy = internal::parse_policy({"", "", {{key, value}}});
-    return policy ? Status() : policy.error();
-  }
-
   Status read_link(const toml::node& node) {
     if (!node.is_table()) return error(node, "a link is written as [[links]]");
     const toml::table& table = *node.as_table();
@@ -283,13 +278,16 @@ class Reader {
     auto to = read_port(table, "to");
     if (!to) return to.error();
     GraphLink link{*from, *to, {}, line_of(node)};
+    Uri policy;  // of the keys so far: each burst stands behind its rate in the list above
     for (const auto& key : policies) {
       const toml::node* value = table.get(key);
       if (value == nullptr) continue;
       auto text = value->value_exact<std::string>();
       if (auto number = value->value_exact<std::int64_t>()) text = std::to_string(*number);
       if (!text) return error(*value, key + " is a whole number or a string");
-      if (auto valid = check_policy(key, *text); !valid) return error(*value, valid.error().detail);
+      policy.options.emplace_back(key, *text);
+      auto valid = internal::parse_policy(policy);
+      if (!valid) return error(*value, valid.error().detail);
       link.policy[key] = *text;
     }
     graph_.links.push_back(std::move(link));

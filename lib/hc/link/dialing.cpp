@@ -8,9 +8,11 @@
 namespace hc::internal {
 namespace {
 
+constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
+
 /// None where the link is to end with its connection. Errors: Usage.
 Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
-  auto patience = number_option(uri, "reconnect", 0);
+  auto patience = number_option(uri, "reconnect", 0, kMostSeconds);
   if (!patience) return patience.error();
   if (*patience == 0) return std::unique_ptr<Dialer>();
   return std::make_unique<Dialer>(peer, std::chrono::seconds(*patience),
@@ -20,7 +22,7 @@ Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
 }  // namespace
 
 Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
-  auto wait = number_option(uri, "wait", 0);
+  auto wait = number_option(uri, "wait", 0, kMostSeconds);
   if (!wait) return wait.error();
   auto connected = connect_to(peer.addresses, peer.name, std::chrono::seconds(*wait), options.stop);
   if (!connected || !peer.admit) return connected;

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include <hc/base/suggestion.h>
 #include <hc/link/descriptor.h>
 #include <hc/link/policy.h>
 #include <hc/link/transports.h>
@@ -32,15 +33,23 @@ constexpr std::array<Transport, 8> kTransports = {{
      internal::open_shm_sink},
 }};
 
-/// The words of a text, as `"wait", "reconnect"`; empty where there are none.
-std::string in_quotes(std::string_view words) {
-  std::string list;
+std::vector<std::string> split(std::string_view words) {
+  std::vector<std::string> list;
   while (!words.empty()) {
     auto word = words.substr(0, words.find(' '));
     words.remove_prefix(std::min(words.size(), word.size() + 1));
-    list.append(list.empty() ? "\"" : ", \"").append(word).append("\"");
+    list.emplace_back(word);
   }
   return list;
+}
+
+/// Whether some end of some transport has an option of that name: then it is not misspelt.
+bool is_option(const std::string& key) {
+  std::string all(internal::kPolicyOptions);
+  for (const Transport& transport : kTransports)
+    all.append(" ").append(transport.source_options).append(" ").append(transport.sink_options);
+  auto words = split(all);
+  return std::find(words.begin(), words.end(), key) != words.end();
 }
 
 Result<const Transport*> find_transport(const Uri& uri) {
@@ -53,11 +62,13 @@ Result<const Transport*> find_transport(const Uri& uri) {
 }
 
 Status check_options(const Uri& uri, std::string_view allowed) {
-  const std::string list = in_quotes(allowed);
+  const auto known = split(allowed);
+  std::string list;
+  for (const auto& word : known) list.append(list.empty() ? ", only \"" : ", \"").append(word + '"');
   for (const auto& [key, value] : uri.options)
-    if (list.find('"' + key + '"') == std::string::npos)
-      return Error{Code::Unsupported, uri.scheme + " has no option \"" + key + "\" here" +
-                                          (list.empty() ? "" : ", only " + list)};
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      return Error{Code::Unsupported, uri.scheme + " has no option \"" + key + "\" here" + list +
+                                          (is_option(key) ? "" : suggestion(key, known))};
   return {};
 }
 
@@ -170,16 +181,16 @@ Result<bool> receive(Source& source, Message& message, int stop) {
 
 namespace internal {
 
-Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t otherwise) {
-  constexpr std::int64_t kMost = 1'000'000'000;
+Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t otherwise,
+                                   std::int64_t most) {
   auto text = uri.option(key, "");
   if (text.empty()) return otherwise;
   std::int64_t value = 0;
   const char* end = text.data() + text.size();
   auto [stop, status] = std::from_chars(text.data(), end, value);
-  if (stop != end || status != std::errc() || value < 0 || value > kMost)
+  if (stop != end || status != std::errc() || value < 0 || value > most)
     return Error{Code::Usage, "option " + std::string(key) + " is a whole number from 0 to " +
-                                  std::to_string(kMost)};
+                                  std::to_string(most)};
   return value;
 }
 

@@ -18,8 +18,8 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
 }
 
 TEST(Open, OptionsAreChecked) {
-  EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?weight=3")).error().detail,
-            "tcp has no option \"weight\" here, only \"wait\", \"reconnect\"");
+  EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?speed=3")).error().detail,
+            "tcp has no option \"speed\" here, only \"wait\", \"reconnect\"");
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
   EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Unsupported);
   EXPECT_EQ(open_sink(*parse_uri("-?wait=3")).error().detail,
@@ -28,6 +28,49 @@ TEST(Open, OptionsAreChecked) {
   EXPECT_EQ(open_sink(*parse_uri("-?keep=some")).error().code, Code::Usage);
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?wait=x")).error().code, Code::Usage);
   EXPECT_EQ(open_sink(*parse_uri("unix-listen:@x?readers=-1")).error().code, Code::Usage);
+}
+
+TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
+  EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?recconect=3")).error().detail,
+            "tcp has no option \"recconect\" here, only \"wait\", \"reconnect\", did you mean "
+            "\"reconnect\"?");
+  for (const char* end : {"-", "file:x", "tcp-listen:0", "unix:@x", "unix-listen:@x", "inproc:x",
+                          "shm:x"})
+    EXPECT_TRUE(open_sink(*parse_uri(std::string(end) + "?keeps=latest"))
+                    .error()
+                    .detail.ends_with(", did you mean \"keep\"?"))
+        << end;
+  // One that another end has is spelled well.
+  EXPECT_TRUE(open_sink(*parse_uri("shm:x?wait=1")).error().detail.ends_with("\"memory\""));
+}
+
+TEST(Open, NumbersHaveARange) {
+  auto source_error = [](const std::string& uri) {
+    return open_source(*parse_uri(uri)).error().text();
+  };
+  auto sink_error = [](const std::string& uri) {
+    return open_sink(*parse_uri(uri)).error().text();
+  };
+  for (const char* end : {"tcp:localhost:1", "unix:@nobody", "shm:nobody"})
+    for (std::string option : {"wait", "reconnect"})
+      EXPECT_EQ(source_error(end + ("?" + option) + "=86401"),
+                "Usage: option " + option + " is a whole number from 0 to 86400");
+  EXPECT_EQ(sink_error("tcp-listen:0?readers=257"),
+            "Usage: option readers is a whole number from 0 to 256");
+  EXPECT_EQ(sink_error("unix-listen:@x?readers=257"),
+            "Usage: option readers is a whole number from 0 to 256");
+  EXPECT_EQ(sink_error("shm:x?readers=65"), "Usage: option readers is a whole number from 0 to 64");
+  EXPECT_EQ(sink_error("-?burst=2"), "Usage: option burst wants rate beside it");
+  EXPECT_EQ(sink_error("-?byte_burst=2&rate=1"),
+            "Usage: option byte_burst wants byte_rate beside it");
+}
+
+TEST(Open, SharedMemoryHasAName) {
+  EXPECT_EQ(open_source(*parse_uri("shm:?wait=1")).error().text(),
+            "Usage: a name of shared memory has 1 to 90 bytes, not 0");
+  EXPECT_EQ(open_sink(*parse_uri("shm:")).error().code, Code::Usage);
+  EXPECT_EQ(open_sink(*parse_uri("shm:" + std::string(91, 'x'))).error().code, Code::Usage);
+  EXPECT_TRUE(open_sink(*parse_uri("shm:" + std::string(90, 'x'))));
 }
 
 TEST(Wait, GivesTheNumberOfDescriptorsWhenTimeIsUp) {

@@ -28,7 +28,7 @@ void add_losses(Traffic& sum, const Traffic& losses) {
 
 Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const Uri& uri,
                                                   const LinkOptions& options) {
-  auto readers = number_option(uri, "readers", 0);
+  auto readers = number_option(uri, "readers", 0, kMaxPeers);
   if (!readers) return readers.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
@@ -38,15 +38,11 @@ Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const 
       std::move(*acceptor), static_cast<std::size_t>(*readers), *policy, options));
 }
 
-std::size_t ListeningSink::most_peers() const {
-  return std::max(kMaxPeers, readers_);
-}
-
 /// Makes peers of those who have come.
 void ListeningSink::let_in() {
-  for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= most_peers();)
+  for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= kMaxPeers;)
     if (peers_[i]->has_failed()) leave(i);
-  for (auto& newcomer : acceptor_->take(most_peers() - peers_.size())) {
+  for (auto& newcomer : acceptor_->take(kMaxPeers - peers_.size())) {
     auto outlet = Outlet::make(std::move(newcomer), policy_, options_.stop);
     if (outlet) peers_.push_back(std::move(*outlet));
   }

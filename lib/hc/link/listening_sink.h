@@ -35,7 +35,6 @@ class ListeningSink final : public Sink {
         policy_(policy),
         options_(std::move(options)) {}
 
-  [[nodiscard]] std::size_t most_peers() const;
   void let_in();
   Status await(std::size_t readers);
   void leave(std::size_t peer);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace hc::internal {
 namespace {
@@ -48,6 +49,9 @@ Result<Policy> parse_policy(const Uri& uri) {
                                    {"byte_rate", true, &policy.byte_rate},
                                    {"memory", true, &policy.memory}})
     if (auto got = read(uri, key, units, *value); !got) return got.error();
+  for (auto [key, needed] : {std::pair{"burst", "rate"}, {"byte_burst", "byte_rate"}})
+    if (!uri.option(key, "").empty() && uri.option(needed, "").empty())
+      return Error{Code::Usage, "option " + std::string(key) + " wants " + needed + " beside it"};
   if (policy.byte_rate > 0) policy.byte_burst = policy.byte_rate;
   if (auto got = read(uri, "byte_burst", true, policy.byte_burst); !got) return got.error();
   return policy;

@@ -2,6 +2,7 @@
 #include <hc/link/shm_greeting.h>
 
 #include <sys/socket.h>
+#include <sys/un.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +17,7 @@
 namespace hc::internal {
 namespace {
 
+constexpr std::string_view kMeetingPlace = "@hypercolumn-shm-";
 constexpr std::string_view kGreeting = "MTP-SHM/1 ";
 constexpr std::size_t kMostBytes = 256;      // of a greeting
 constexpr std::size_t kMostDescriptors = 4;  // more than are wanted, so that none is overlooked
@@ -113,7 +115,14 @@ std::optional<std::uint64_t> number(std::optional<std::string_view> text) {
 }  // namespace
 
 Uri meeting_place(const Uri& uri) {
-  return {"unix", "@hypercolumn-shm-" + uri.rest, {}};
+  return {"unix", std::string(kMeetingPlace) + uri.rest, {}};
+}
+
+Status check_name(const Uri& uri) {
+  constexpr std::size_t kMost = sizeof sockaddr_un::sun_path - 1 - kMeetingPlace.size();
+  if (!uri.rest.empty() && uri.rest.size() <= kMost) return {};
+  return Error{Code::Usage, "a name of shared memory has 1 to " + std::to_string(kMost) +
+                                " bytes, not " + std::to_string(uri.rest.size())};
 }
 
 Result<std::uint64_t> parse_keep(std::string_view text) {

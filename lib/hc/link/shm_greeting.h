@@ -37,6 +37,8 @@ struct Offer {
 
 /// The Unix socket where `shm:NAME` is met: abstract, so that nothing is left of it.
 Uri meeting_place(const Uri& uri);
+/// Whether the name is one. Errors: Usage.
+Status check_name(const Uri& uri);
 
 /// The reader's side; waits for the answer, 4 s at most.
 ///

@@ -416,7 +416,8 @@ void ShmSink::end() {
 }  // namespace
 
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
-  auto counted = number_option(uri, "readers", 0);
+  if (auto named = check_name(uri); !named) return named.error();
+  auto counted = number_option(uri, "readers", 0, kMostReaders);
   if (!counted) return counted.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();

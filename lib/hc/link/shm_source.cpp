@@ -396,6 +396,7 @@ Result<std::unique_ptr<Source>> attach(Descriptor socket, std::string_view keep,
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOptions& options) {
+  if (auto named = check_name(uri); !named) return named.error();
   auto spin = number_option(uri, "spin", kDefaultSpin);
   if (!spin) return spin.error();
   std::string keep(uri.option("keep", ""));
