@@ -63,6 +63,7 @@ bool Dialer::is_connected(TimePoint now) {
   int status = 0;
   socklen_t size = sizeof status;
   ::getsockopt(attempt_.get(), SOL_SOCKET, SO_ERROR, &status, &size);
+  if (status == 0 && is_with_itself(attempt_.get())) status = ECONNREFUSED;
   auto admitted = status == 0 && peer_.admit ? peer_.admit(attempt_.get()) : Status();
   if (status == 0 && admitted) return true;
   fail(status == 0 ? EACCES : status, now);

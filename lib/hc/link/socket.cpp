@@ -24,7 +24,8 @@ Result<Descriptor> try_to_connect(const Address& address, const std::string& nam
                                   Deadline deadline, int stop) {
   auto socket = open_socket(address);
   if (!socket) return socket;
-  if (::connect(socket->get(), address.get(), address.size) == 0) return socket;
+  auto connected = [&] { return is_with_itself(socket->get()) ? Descriptor() : std::move(*socket); };
+  if (::connect(socket->get(), address.get(), address.size) == 0) return connected();
   if (errno == EINPROGRESS) {
     auto answered = wait_for(socket->get(), POLLOUT, stop, deadline);
     if (!answered) return answered.error();
@@ -32,7 +33,7 @@ Result<Descriptor> try_to_connect(const Address& address, const std::string& nam
     int status = 0;
     socklen_t status_size = sizeof status;
     ::getsockopt(socket->get(), SOL_SOCKET, SO_ERROR, &status, &status_size);
-    if (status == 0) return socket;
+    if (status == 0) return connected();
     errno = status;
   }
   // EAGAIN: the backlog of a Unix socket is full for now.
@@ -54,6 +55,20 @@ Result<Descriptor> open_socket(const Address& address) {
   });
   if (!number) return number.error();
   return Descriptor(*number);
+}
+
+bool is_with_itself(int socket) {
+  sockaddr_storage own{}, other{};
+  socklen_t size = sizeof own, other_size = sizeof other;
+  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&own), &size) != 0 ||
+      ::getpeername(socket, reinterpret_cast<sockaddr*>(&other), &other_size) != 0)
+    return false;
+  bool is_tcp = own.ss_family == AF_INET || own.ss_family == AF_INET6;
+  if (!is_tcp || size != other_size || std::memcmp(&own, &other, size) != 0) return false;
+  // Else the port would be in use for a minute once the connection has ended.
+  const linger at_once{1, 0};
+  ::setsockopt(socket, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  return true;
 }
 
 ListeningSocket::~ListeningSocket() {

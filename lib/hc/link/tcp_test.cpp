@@ -3,10 +3,28 @@
 #include <linux/filter.h>
 #include <netinet/in.h>
 
+#include <dlfcn.h>
+
 #include <array>
+#include <atomic>
 
 #include <hc/link/listening_source.h>
 #include <hc/link/reconnect_test.h>
+
+namespace {
+
+/// Whether the kernel chooses the other's port for a socket that connects, as it may.
+std::atomic<bool> chooses_the_same_port{false};
+
+}  // namespace
+
+extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
+  static auto* next = reinterpret_cast<decltype(&connect)>(::dlsym(RTLD_NEXT, "connect"));
+  if (chooses_the_same_port) {
+    EXPECT_EQ(::bind(socket, address, size), 0);
+  }
+  return next(socket, address, size);
+}
 
 namespace hc::testing {
 namespace {
@@ -143,6 +161,24 @@ TEST(Tcp, AReaderThatVanishesIsNoticedThoughItsBufferHasRoom) {
     sent = sink->send(numbered(i, 1));
   }
   EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST(Tcp, AConnectionWithItselfIsNone) {
+  std::string place = free_port();
+  chooses_the_same_port = true;
+  auto source = open_source(*parse_uri("tcp:" + place));
+  auto patient = source_of("tcp:" + place + "?reconnect=60");
+  Message message;
+  // A listener could not have its port otherwise.
+  EXPECT_EQ(*patient->take(message), Got::Nothing);
+  chooses_the_same_port = false;
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::Closed);
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1");
+  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(1, 10))); });
+  ASSERT_TRUE(*receive(*patient, message));
+  EXPECT_EQ(message.header.seq, 1);
+  sender.join();
 }
 
 TEST(Tcp, AHostWithoutAnAddressIsNotFound) {
