@@ -78,15 +78,20 @@ bool send(hc::Sink& sink, const hc::Message& message) {
   return false;
 }
 
-void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic) {
-  if (traffic.lost() == 0) return;
+std::string losses_in_words(const hc::Traffic& traffic) {
   std::string reasons;
   for (auto [count, reason] : {std::pair(traffic.superseded, "superseded"),
                                {traffic.over_rate, "over the rate"},
                                {traffic.over_memory, "over the memory"},
                                {traffic.cut, "cut off"}})
     if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
-  say(fmt::format("{}: {}: lost {} messages: {}", verb, uri, traffic.lost(), reasons));
+  return reasons;
+}
+
+void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic) {
+  if (traffic.lost() == 0) return;
+  say(fmt::format("{}: {}: lost {} messages: {}", verb, uri, traffic.lost(),
+                  losses_in_words(traffic)));
 }
 
 bool print(std::string_view text) {

@@ -68,6 +68,8 @@ class Skipper {
 /// Sends a message; false when nobody reads any more.
 bool send(hc::Sink& sink, const hc::Message& message);
 
+/// "8 superseded, 4 over the memory"; empty where none were lost.
+std::string losses_in_words(const hc::Traffic& traffic);
 /// Says how many messages a link has lost and why, if any.
 void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic);
 

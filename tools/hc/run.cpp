@@ -62,11 +62,12 @@ void print_links(const hc::Plan& plan, const hc::RunReport& report) {
   std::string text;
   for (std::size_t i = 0; i < plan.links.size(); ++i) {
     std::string name = plan.links[i].from.text() + " -> " + plan.links[i].to.text();
-    const auto& [sent, lost] = report.links[i];
+    const auto& sent = report.links[i].sent;
+    std::string lost;
+    if (sent.lost() > 0) lost = fmt::format("  {} lost ({})", sent.lost(), losses_in_words(sent));
     text +=
         fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
-                    sent.messages == 1 ? " " : "s", bytes_in_words(static_cast<double>(sent.bytes)),
-                    lost == 0 ? "" : fmt::format("  {} lost", lost));
+                    sent.messages == 1 ? " " : "s", bytes_in_words(static_cast<double>(sent.bytes)), lost);
   }
   print(text);
 }

@@ -87,8 +87,9 @@ class Runner {
     }
     if (!outcome) return outcome.error();
     for (const auto& link : plan_.links) {
-      auto sent = counters_at(link.sender);
-      report.links.push_back({sent, sent.lost() + counters_at(link.reader).lost()});
+      auto sent = counters_at(link.sender), left_out = counters_at(link.reader);
+      left_out.messages = left_out.bytes = left_out.kept_back = 0;
+      report.links.push_back({sent += left_out});
     }
     return report;
   }

@@ -16,8 +16,7 @@ namespace hc {
 
 /// What went over a link of a graph.
 struct LinkReport {
-  Traffic sent;            ///< as its sender counts
-  std::uint64_t lost = 0;  ///< messages that either end has left out, for whatever reason
+  Traffic sent;  ///< as its sender counts, and with what its reader has left out
 };
 
 /// What a graph has done.
