@@ -288,7 +288,7 @@ class Reader {
       policy.options.emplace_back(key, *text);
       auto valid = internal::parse_policy(policy);
       if (!valid) return error(*value, valid.error().detail);
-      link.policy[key] = *text;
+      link.policy[key] = {*text, line_of(*value)};
     }
     graph_.links.push_back(std::move(link));
     return {};

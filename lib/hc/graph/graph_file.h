@@ -41,7 +41,8 @@ struct GraphPort {
 /// A link, from an output to an input.
 struct GraphLink {
   GraphPort from, to;
-  std::map<std::string, std::string> policy;  ///< `keep`, `rate` and so on, as in a link's URI
+  /// `keep`, `rate` and so on, as in a link's URI.
+  std::map<std::string, Lined<std::string>> policy;
   int line = 0;
 };
 

@@ -9,6 +9,7 @@
 
 #include <hc/base/parameter.h>
 #include <hc/base/suggestion.h>
+#include <hc/link/transports.h>
 
 namespace hc {
 namespace {
@@ -187,6 +188,10 @@ class Planner {
                                        [&](const Json& type) { return type_fits(given, type); }))
       return error(link.line, link.from.text() + " gives " + in_words((*from)->at("types")) + ", " +
                                   link.to.text() + " takes " + in_words(taken));
+    if (auto memory = link.policy.find("memory"); memory != link.policy.end() && shared(link)) {
+      auto enough = internal::check_shm_memory({"shm", "", {{"memory", memory->second.value}}});
+      if (!enough) return error(memory->second.line, enough.error().detail);
+    }
     if (!linked_.insert(link.from.text() + " " + link.to.text()).second)
       return error(link.line, "the link from " + link.from.text() + " to " + link.to.text() +
                                   " is there twice");
@@ -202,10 +207,15 @@ class Planner {
     return std::find(known.begin(), known.end(), "shm") != known.end();
   }
 
+  bool shared(const GraphLink& link) const {
+    return shares_memory(link.from.module) && shares_memory(link.to.module);
+  }
+
   /// Images are as good as they are new, so that the newest alone waits for who is slow; of
   /// anything else all.
   std::string keep_of(const GraphLink& link) const {
-    if (auto given = link.policy.find("keep"); given != link.policy.end()) return given->second;
+    if (auto given = link.policy.find("keep"); given != link.policy.end())
+      return given->second.value;
     const Json* output = find_named(described_.at(link.from.module)["outputs"], link.from.port);
     const std::string type = output->at("types").at(0).at("type");
     return type == name(MatrixType::RgbImage) || type == name(MatrixType::IntensityImage) ? "latest"
@@ -217,7 +227,7 @@ class Planner {
   static std::string pace_of(const GraphLink& link) {
     std::string options;
     for (const auto& [key, value] : link.policy)
-      if (key != "keep") options.append("&").append(key).append("=").append(value);
+      if (key != "keep") options.append("&").append(key).append("=").append(value.value);
     return options;
   }
 
@@ -233,8 +243,7 @@ class Planner {
     std::map<std::string, Sender> senders;  // by output, and number of a link of its own
     auto key_of = [&](std::size_t number) {
       const GraphLink& link = graph_.links[number];
-      bool own = !pace_of(link).empty() || !shares_memory(link.to.module) ||
-                 !shares_memory(link.from.module);
+      bool own = !pace_of(link).empty() || !shared(link);
       return link.from.text() + (own ? " " + std::to_string(number) : "");
     };
     for (std::size_t i = 0; i < graph_.links.size(); ++i) ++senders[key_of(i)].readers;
@@ -246,19 +255,19 @@ class Planner {
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
       const GraphLink& link = graph_.links[i];
       std::size_t from = index_[link.from.module], to = index_[link.to.module];
-      bool shared = shares_memory(link.from.module) && shares_memory(link.to.module);
+      bool by_memory = shared(link);
       Sender& sender = senders[key_of(i)];
       std::string keep = keep_of(link) == "all" ? "" : "&keep=" + keep_of(link);
       if (sender.uri.empty()) {
         std::string name = token_ + "-" + std::to_string(i);
-        sender.uri = shared ? "shm:" + name : "unix:@" + name;
+        sender.uri = by_memory ? "shm:" + name : "unix:@" + name;
         sender.end = {from, plan_.modules[from].inputs + outputs[from]++};
         add(from, "--out",
-            link.from.port + "=" + (shared ? "shm:" + name : "unix-listen:@" + name) +
+            link.from.port + "=" + (by_memory ? "shm:" + name : "unix-listen:@" + name) +
                 "?readers=" + std::to_string(sender.readers) +
-                (shared && pace_of(link).empty() ? "" : keep) + pace_of(link));
+                (by_memory && pace_of(link).empty() ? "" : keep) + pace_of(link));
       }
-      add(to, "--in", link.to.port + "=" + sender.uri + "?wait=60" + (shared ? keep : ""));
+      add(to, "--in", link.to.port + "=" + sender.uri + "?wait=60" + (by_memory ? keep : ""));
       plan_.links.push_back({link.from, link.to, sender.end, {to, inputs[to]++}});
     }
   }

@@ -47,7 +47,7 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 ///
 /// Errors: Usage, with file and line: an unknown module, port or parameter, a value out of range,
 /// an encoding that the output's type cannot have, an input of another type than the output it is
-/// linked to, an address or a link given twice.
+/// linked to, an address or a link given twice, memory that is too small to be shared.
 Result<Plan> make_plan(Graph graph, const Describe& describe, std::string_view token);
 
 }  // namespace hc

@@ -111,6 +111,19 @@ program = "seer"
   EXPECT_EQ(planned->links[2].reader.row, 1U);
 }
 
+TEST(Plan, MemoryThatIsSharedIsEnough) {
+  auto with_reader = [](const std::string& reader) {
+    return plan("[modules.eye]\n[modules." + reader +
+                "]\n[[links]]\nfrom = \"eye.image\"\nto = \"" + reader +
+                ".in\"\n\nmemory = \"1M\"\n");
+  };
+  auto planned = with_reader("seer");
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().detail,
+            "g.toml:7: memory is at least 1576960 bytes where it is shared, not 1048576");
+  EXPECT_TRUE(with_reader("any"));  // which is linked by a socket
+}
+
 TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
   auto link = [](const std::string& from, const std::string& to) {
     return "[modules.source]\n[modules.sink]\n[modules.filter]\n[[links]]\nfrom = \"" + from +

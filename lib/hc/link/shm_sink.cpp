@@ -415,15 +415,22 @@ void ShmSink::end() {
 
 }  // namespace
 
+Status check_shm_memory(const Uri& uri) {
+  auto policy = parse_policy(uri);
+  if (!policy) return policy.error();
+  if (policy->memory >= kLeastMemory) return {};
+  return Error{Code::Usage, "memory is at least " + std::to_string(kLeastMemory) +
+                                " bytes where it is shared, not " +
+                                std::to_string(policy->memory)};
+}
+
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
   if (auto named = check_name(uri); !named) return named.error();
   auto counted = number_option(uri, "readers", 0, kMostReaders);
   if (!counted) return counted.error();
+  if (auto enough = check_shm_memory(uri); !enough) return enough.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
-  if (policy->memory < kLeastMemory)
-    return Error{Code::Usage, "shm: memory is at least " + std::to_string(kLeastMemory) +
-                                  " bytes, not " + std::to_string(policy->memory)};
   auto socket = listen_unix(meeting_place(uri));
   if (!socket) return socket.error();
   auto memory = SharedMemory::make(policy->memory / kPageBytes * kPageBytes, kSlotsBegin);
