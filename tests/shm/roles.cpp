@@ -77,7 +77,7 @@ class Reader {
       while (!held_.empty()) let_go();
       if (ended_) break;
       auto traffic = source_->traffic();
-      tell("end " + std::to_string(traffic.messages) + " " + std::to_string(traffic.superseded) +
+      tell("end " + std::to_string(traffic.messages) + " " + std::to_string(traffic.lost()) +
            " " + std::to_string(last_));
     }
     return 0;

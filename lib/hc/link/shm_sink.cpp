@@ -118,6 +118,7 @@ class ShmSink final : public Sink {
   bool fencing_ = true;           // not Head::unfenced
   int undisturbed_ = 0;           // messages published since a reader slept
   bool begun_ = false, ended_ = false;
+  Status host_;  // whether it had pages for the last slot
   Traffic traffic_;
 };
 
@@ -177,8 +178,11 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
     std::atomic_thread_fence(memory_order_seq_cst);  // room
     if (has_room()) return {};
     if (readers_->changed()) continue;
+    if (reader == nullptr && !host_)
+      return Error{Code::System,
+                   "no room left: the host has no memory to share: " + host_.error().detail};
     if (reader == nullptr)
-      return Error{Code::TooLarge, "shm: no room left: this program holds all of the memory"};
+      return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
     HC_CRASH_POINT("publisher waits for room");
     futex_wait(reader->page().progress, progress, kLookPeriod);
     auto stop = wait_readable({}, stop_, std::chrono::milliseconds(0));
@@ -213,8 +217,9 @@ void ShmSink::sweep() {
 
 /// Sees that a slot's pages are there; null when the host has no memory for them.
 Slot* ShmSink::reserve(Slot* slot) {
-  if (slot == nullptr || memory_->reserve(slot->begin + slot->bytes)) return slot;
-  return nullptr;  // the next sweep takes it back, and it is tried again
+  if (slot == nullptr) return slot;
+  host_ = memory_->reserve(slot->begin + slot->bytes);
+  return host_ ? slot : nullptr;  // the next sweep takes it back, and it is tried again
 }
 
 /// A slot, without taking from a reader what it wants; null when there is none.
@@ -230,6 +235,7 @@ Slot* ShmSink::take_slot(std::uint64_t bytes) {
 /// A slot, for which the readers that lose messages lose what they have not taken, the oldest
 /// first; null when those that lose none want or hold all the rest.
 Slot* ShmSink::clear_slot(std::uint64_t bytes) {
+  host_ = {};
   Slot* slot = take_slot(bytes);
   while (slot == nullptr && oldest_ < readers_->taken_by_all(published_)) {
     withdraw(oldest_ + 1);

@@ -42,7 +42,7 @@ TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
   while (*lagging->take(message) == Got::Message) {
   }
   EXPECT_EQ(message.header.seq, kCount - 1);
-  EXPECT_EQ(lagging->traffic().messages + lagging->traffic().superseded, std::uint64_t{kCount});
+  EXPECT_EQ(lagging->traffic().messages + lagging->traffic().over_memory, std::uint64_t{kCount});
 }
 
 /// A cell that is written anew while it is read is no damage.

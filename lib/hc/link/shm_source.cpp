@@ -119,7 +119,8 @@ class ShmSource final : public Source {
   [[nodiscard]] bool is_ready() const;
   [[nodiscard]] bool has_ended() const;
   void look_at_socket();
-  void skip_to(std::uint64_t position);
+  void skip_to(std::uint64_t position, std::uint64_t Traffic::*why);
+  void skip_withdrawn(std::uint64_t oldest);
   bool copy(Copy& cell) const;
   Status deliver(const Copy& cell, Message& message, std::size_t hold);
   std::size_t take_hold(std::uint64_t slot);
@@ -169,10 +170,18 @@ void ShmSource::look_at_socket() {
 }
 
 /// Leaves out what was not taken in time.
-void ShmSource::skip_to(std::uint64_t position) {
+void ShmSource::skip_to(std::uint64_t position, std::uint64_t Traffic::*why) {
   if (position <= cursor_) return;
-  traffic_.superseded += position - cursor_;
+  traffic_.*why += position - cursor_;
   cursor_ = position;
+}
+
+/// The same of what the publisher has taken back. What this reader wanted to keep is lost because
+/// there was no memory for it, or no cell.
+void ShmSource::skip_withdrawn(std::uint64_t oldest) {
+  auto published = attachment_->head().published.load(memory_order_acquire);
+  if (published > keep_) skip_to(std::min(oldest, published - keep_), &Traffic::superseded);
+  skip_to(oldest, &Traffic::over_memory);
 }
 
 /// Copies a cell; false when it is not one, or when another was just being written over it.
@@ -247,7 +256,8 @@ Result<Got> ShmSource::take(Message& message) {
   for (int tries = 0; tries < kMostSkips; ++tries) {
     if (keep_ > 0) {
       auto published = head.published.load(memory_order_acquire);
-      if (published > cursor_ && published - cursor_ > keep_) skip_to(published - keep_);
+      if (published > cursor_ && published - cursor_ > keep_)
+        skip_to(published - keep_, &Traffic::superseded);
     }
     auto stamp = attachment_->cell(cursor_).stamp.load(memory_order_acquire);
     if (stamp <= cursor_) return has_ended() ? Got::End : Got::Nothing;
@@ -271,7 +281,7 @@ Result<Got> ShmSource::take(Message& message) {
     }
     auto oldest = head.oldest.load(memory_order_acquire);
     if (oldest <= cursor_) return damaged("the stamp of a cell");
-    skip_to(oldest);
+    skip_withdrawn(oldest);
   }
   return Got::Nothing;  // the publisher is faster; wait() comes back at once
 }
