@@ -41,7 +41,7 @@ void run(const Options& options) {
       continue;
     }
     // In JSON the header stands as it came.
-    bool is_read = options.raw    ? send(*raw, message)
+    bool is_read = options.raw    ? send(*raw, message, "-")
                    : options.json ? print(to_json_as(expanded, message.header) + "\n")
                                   : print(to_readable(expanded));
     if (!is_read) break;

@@ -71,10 +71,10 @@ void Skipper::skip(hc::Source& source, const Failure& failure, const std::string
   if (auto resumed = source.resume(); !resumed) throw Failure(uri, resumed.error());
 }
 
-bool send(hc::Sink& sink, const hc::Message& message) {
+bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri) {
   auto sent = sink.send(message);
   if (sent) return true;
-  if (sent.error().code != hc::Code::Closed) throw Failure(sent.error());
+  if (sent.error().code != hc::Code::Closed) throw Failure(uri, sent.error());
   return false;
 }
 

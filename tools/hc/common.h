@@ -66,7 +66,7 @@ class Skipper {
 };
 
 /// Sends a message; false when nobody reads any more.
-bool send(hc::Sink& sink, const hc::Message& message);
+bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri);
 
 /// "8 superseded, 4 over the memory"; empty where none were lost.
 std::string losses_in_words(const hc::Traffic& traffic);

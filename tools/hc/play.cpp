@@ -86,7 +86,7 @@ bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& p
       if (seconds > options.to) break;
       if (!pace.wait_for(seconds)) return false;
     }
-    if (!send(sink, message)) return false;
+    if (!send(sink, message, options.out)) return false;
     any = true;
     auto traffic = source->traffic();
     double share = size > 0 && !unknown ? static_cast<double>(traffic.bytes) / size : -1;

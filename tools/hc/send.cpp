@@ -176,7 +176,7 @@ void run(const Options& options) {
   message.header.info.encoding = hc::Encoding::Binary;
   message = value_or_fail(hc::compress(message, encoding), "encoding");
   auto sink = open_sink(options.out);
-  send(*sink, message);
+  send(*sink, message, options.out);
   if (auto closed = sink->close(); !closed) throw Failure(options.out, closed.error());
 }
 

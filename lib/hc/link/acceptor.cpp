@@ -53,7 +53,7 @@ void Acceptor::accept_all() {
     if (peer)
       newcomers_.push_back(std::move(*peer));
     else if (!later_)
-      remarks_.push_back(peer.error().text());
+      remarks_.push_back("nobody is let in for now: " + peer.error().text());
   }
   if (!newcomers_.empty()) ::eventfd_write(arrived_.get(), 1);
   has_news_ = !newcomers_.empty() || !remarks_.empty();

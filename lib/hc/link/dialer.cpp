@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace hc::internal {
 
@@ -13,16 +14,19 @@ std::chrono::nanoseconds Backoff::next() {
   return chosen;
 }
 
-Dialer::Dialer(Peer peer, std::chrono::seconds patience, TimePoint now)
+Dialer::Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patience, TimePoint now)
     : peer_(std::move(peer)),
+      first_(first),
       patience_(patience),
       backoff_(std::random_device{}()),
-      give_up_(now + patience),
+      begin_(now),
+      give_up_(now + first),
       next_try_(now) {}
 
 Result<Descriptor> Dialer::dial(TimePoint now) {
   if (!attempt_ && now >= next_try_) try_next(now);
   if (attempt_ && is_connected(now)) {
+    was_there_ = true;
     set_up_connection(attempt_.get());
     return std::move(attempt_);
   }
@@ -31,9 +35,17 @@ Result<Descriptor> Dialer::dial(TimePoint now) {
     if (now < give_up_) try_next(now);
   }
   if (now >= give_up_)
-    return Error{Code::Closed, "connect(" + peer_.name + "): " + why_ + ", for " +
-                                   std::to_string(patience_.count()) + " s"};
+    return Error{was_there_ ? Code::Closed : Code::NotFound,
+                 "nobody was there for " +
+                     std::to_string((was_there_ ? patience_ : first_).count()) + " s: " + why_};
   return Descriptor();
+}
+
+std::optional<std::string> Dialer::take_remark(TimePoint now) {
+  if (was_there_ || why_.empty() || now < begin_ + kQuiet || std::exchange(told_, true))
+    return std::nullopt;
+  return "nobody is there yet: " + why_ + "; given up after " + std::to_string(first_.count()) +
+         " s";
 }
 
 TimePoint Dialer::due() const {
@@ -67,6 +79,7 @@ bool Dialer::is_connected(TimePoint now) {
   auto admitted = status == 0 && peer_.admit ? peer_.admit(attempt_.get()) : Status();
   if (status == 0 && admitted) return true;
   fail(status == 0 ? EACCES : status, now);
+  if (status == 0) why_ = admitted.error().detail;
   return false;
 }
 

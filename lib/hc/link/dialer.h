@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -33,6 +34,11 @@ class Backoff {
   std::chrono::nanoseconds bound_ = kFirst;
 };
 
+/// Why a connection was lost, in words; what is not plainly Closed has its code.
+inline std::string in_words(const Error& error) {
+  return error.code == Code::Closed ? error.detail : error.text();
+}
+
 /// Where and how to connect.
 struct Peer {
   std::vector<Address> addresses;  ///< all are tried in turn
@@ -53,17 +59,24 @@ class Dialer {
   /// How long a connection lives that was of use.
   static constexpr std::chrono::seconds kUseTime{1};
 
-  /// @param patience  how long to go without a connection before giving up.
-  Dialer(Peer peer, std::chrono::seconds patience, TimePoint now);
+  /// How long one looks for a first connection before a line says so.
+  static constexpr std::chrono::seconds kQuiet{1};
+
+  /// @param first  how long to go without a first connection before giving up,
+  /// @param patience  … and without one after that.
+  Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patience, TimePoint now);
 
   /// Does what is to be done by now; gives the connection, or none (-1) when there is none yet.
   ///
-  /// Errors: Closed (patience is at its end).
+  /// Errors: once patience is at its end, Closed, or NotFound if there never was a connection.
   Result<Descriptor> dial(TimePoint now);
   /// The try under way, for which one waits until it can be written to; -1: none.
   [[nodiscard]] int descriptor() const { return attempt_.get(); }
   /// When to dial() again at the latest.
   [[nodiscard]] TimePoint due() const;
+
+  /// A line for the log when the first connection is long in coming; once.
+  std::optional<std::string> take_remark(TimePoint now);
 
   /// Says that the connection has been lost: then the next try is made at once, but after a pause
   /// if it was of no use, so that one which is made and lost each time costs no more than others.
@@ -75,9 +88,11 @@ class Dialer {
   void fail(int number, TimePoint now);
 
   Peer peer_;
-  std::chrono::seconds patience_;
+  std::chrono::seconds first_, patience_;
+  bool was_there_ = false;  // a peer
+  bool told_ = false;
   Backoff backoff_;
-  TimePoint give_up_, next_try_;
+  TimePoint begin_, give_up_, next_try_;
   std::size_t turn_ = 0;  // of the addresses
   Descriptor attempt_;
   TimePoint answer_due_;

@@ -15,7 +15,11 @@ Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
   auto patience = number_option(uri, "reconnect", 0, kMostSeconds);
   if (!patience) return patience.error();
   if (*patience == 0) return std::unique_ptr<Dialer>();
-  return std::make_unique<Dialer>(peer, std::chrono::seconds(*patience),
+  auto first = number_option(uri, "wait", 0, kMostSeconds);
+  if (!first) return first.error();
+  if (*first == 0) first = *patience;
+  return std::make_unique<Dialer>(peer, std::chrono::seconds(*first),
+                                  std::chrono::seconds(*patience),
                                   std::chrono::steady_clock::now());
 }
 

@@ -31,8 +31,9 @@ Result<Got> DialingSource::take(Message& message) {
   while (!ended_) {
     if (source_ == nullptr) {
       if (auto dialed = dial(); !dialed) {
-        log(dialed.error().text());
         ended_ = true;
+        if (dialed.error().code == Code::NotFound) return dialed.error();
+        log(in_words(dialed.error()));
         break;
       }
       if (source_ == nullptr) return Got::Nothing;
@@ -41,8 +42,8 @@ Result<Got> DialingSource::take(Message& message) {
     bool is_lost = got ? *got == Got::End
                        : got.error().code == Code::Truncated || got.error().code == Code::Closed;
     if (!is_lost) return got;
-    if (!got) ++past_.cut;  // inside a message
-    lose_connection(got ? "Closed: the writer has gone" : got.error().text());
+    if (!got && got.error().code == Code::Truncated) ++past_.cut;
+    lose_connection(got ? "the writer has gone" : in_words(got.error()));
   }
   return Got::End;
 }
@@ -52,12 +53,13 @@ Status DialingSource::dial() {
   auto now = std::chrono::steady_clock::now();
   auto connected = dialer_->dial(now);
   if (!connected) return connected.error();
+  if (auto remark = dialer_->take_remark(now)) log(*remark);
   itimerspec when{};
   if (*connected) {
     auto source = open_(std::move(*connected));
     if (!source) {
       if (source.error().code == Code::Stopped) return source.error();
-      log(source.error().text() + "; connecting again");
+      log(in_words(source.error()) + "; connecting again");
       dialer_->lost(now, false);
     } else {
       source_ = std::move(*source);

@@ -11,8 +11,8 @@
 namespace hc::internal {
 
 /// Takes messages from a peer that it connects to, and to again when the connection is lost, until
-/// the dialer gives up; then it ends. What has come of a message by then is of no use: the peer
-/// sends it anew, or not at all.
+/// the dialer gives up; then it ends, or fails with NotFound if there never was a connection. What
+/// has come of a message by then is of no use: the peer sends it anew, or not at all.
 ///
 /// The end that a peer says cannot be told from that of a process that was killed, so both lead to
 /// trying again.

@@ -64,12 +64,23 @@ Result<const Transport*> find_transport(const Uri& uri) {
 Status check_options(const Uri& uri, std::string_view allowed) {
   const auto known = split(allowed);
   std::string list;
-  for (const auto& word : known) list.append(list.empty() ? ", only \"" : ", \"").append(word + '"');
+  for (const auto& word : known)
+    list.append(list.empty() ? ", only \"" : ", \"").append(word + '"');
   for (const auto& [key, value] : uri.options)
     if (std::find(known.begin(), known.end(), key) == known.end())
       return Error{Code::Unsupported, uri.scheme + " has no option \"" + key + "\" here" + list +
                                           (is_option(key) ? "" : suggestion(key, known))};
   return {};
+}
+
+/// The options with a log whose lines begin with the link's name.
+LinkOptions with_name(LinkOptions options, const Uri& uri) {
+  if (!options.log) return options;
+  options.log = [log = options.log, name = uri.text() + ": "](Severity severity,
+                                                              std::string_view line) {
+    log(severity, name + std::string(line));
+  };
+  return options;
 }
 
 /// A Traffic's members in the order of a report.
@@ -119,7 +130,7 @@ Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& o
   if (!transport) return transport.error();
   auto checked = check_options(uri, (*transport)->source_options);
   if (!checked) return checked.error();
-  return (*transport)->open_source(uri, options);
+  return (*transport)->open_source(uri, with_name(options, uri));
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
@@ -129,7 +140,7 @@ Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& optio
   allowed.append(allowed.empty() ? "" : " ").append(internal::kPolicyOptions);
   auto checked = check_options(uri, allowed);
   if (!checked) return checked.error();
-  return (*transport)->open_sink(uri, options);
+  return (*transport)->open_sink(uri, with_name(options, uri));
 }
 
 Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,

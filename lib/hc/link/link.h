@@ -59,7 +59,8 @@ class Source {
   /// Takes the next message; never waits. `message` keeps its elements alive by itself; what it
   /// held before is let go of, whatever comes.
   ///
-  /// Errors: those of StreamReader, Truncated, System; the link is of no use afterwards. A
+  /// Errors: those of StreamReader, Truncated, Closed (the peer has died or vanished), NotFound (it
+  /// never was there), System; the link is of no use afterwards. A
   /// listening source closes the connection at fault, tells the log, and goes on with the others.
   virtual Result<Got> take(Message& message) = 0;
 
@@ -95,9 +96,9 @@ class Sink {
   /// Puts a message in, whole. Waits as long as the link is full or has no reader yet; with another
   /// `keep` than all it does not wait for a reader that is slow.
   ///
-  /// Errors: Closed (the reader has gone), Stopped (LinkOptions::stop became readable before the
-  /// first byte went), Truncated (it became so later, and the reader did not take the rest within
-  /// 2 s; the link is of no use afterwards), System.
+  /// Errors: Closed (the reader has gone), NotFound (it never was there), Stopped
+  /// (LinkOptions::stop became readable before the first byte went), Truncated (it became so later,
+  /// and the reader did not take the rest within 2 s; the link is of no use afterwards), System.
   virtual Status send(const Message& message) = 0;
 
   /// A message to be filled in place and sent: in the memory that readers will see where the
@@ -115,7 +116,9 @@ class Sink {
 /// How a link behaves, whatever carries it.
 struct LinkOptions {
   Limits limits;  ///< of what is read
-  LogSink log;    ///< hears of connections that came and failed; may be empty
+  /// Hears of connections that came and failed, each line with the URI before it, on the threads
+  /// that use the link's end; may be empty.
+  LogSink log;
   int stop = -1;  ///< descriptor that is readable when waiting is to end; -1: none
 };
 
@@ -127,18 +130,17 @@ struct LinkOptions {
 /// number of sources of this host and user, `inproc:NAME` another thread of this process.
 /// Listening is on loopback unless a host is given. Options in the URI:
 /// - `wait=SECONDS` (tcp, unix, shm source): how long to try while nobody listens yet; default 0,
-/// which gives a
-///   host that does not answer 4 s.
+///   which gives a host that does not answer 4 s. The answer of a publisher of shm that is there
+///   has 4 s in any case.
 /// - `reconnect=SECONDS` (tcp, unix, shm source): the link is there at once, outlives its
-/// connection, and ends
-///   when it has had none for so long; default 0: it ends with its connection. A message that a
-///   sink has begun on a lost connection is sent anew, whole; whether those that the kernel had
-///   taken have arrived is unknown. A source cannot tell a peer's end from its death, so both lead
-///   to trying again. A name's addresses are looked up once.
+///   connection, and ends when it has had none for so long; default 0: it ends with its connection.
+///   If there never was a connection for so long, or for `wait` where it is given beside, take()
+///   and send() fail with NotFound. A message that a sink has begun on a lost connection is sent
+///   anew, whole; whether those that the kernel had taken have arrived is unknown. A source cannot
+///   tell a peer's end from its death, so both lead to trying again. A name's addresses are looked
+///   up once.
 /// - `readers=N` (listening sinks, shm sink): how many readers to wait for before the first message
-/// and
-///   before the end; default 1 before the first message, and none before the end.
-///
+///   and before the end; default, and 0: 1 before the first message, and none before the end.
 /// - `spin=MICROSECONDS` (shm source; default 20): how long wait() looks before it sleeps.
 ///
 /// And of every sink; one that listens has them for each reader:

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 
+#include <hc/link/dialer.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
@@ -106,7 +107,8 @@ void ListeningSource::accept_all() {
     auto peer = std::make_unique<Peer>();
     auto watched = accepted ? watch(accepted->get(), peer.get()) : Status(accepted.error());
     if (!watched) {
-      if (!later_ && options_.log) options_.log(Severity::Warning, watched.error().text());
+      if (!later_ && options_.log)
+        options_.log(Severity::Warning, "nobody is let in for now: " + in_words(watched.error()));
       return accept_later(true);
     }
     if (full) leave(*peers_[idlest], "closed the peer that was silent longest, to let another in");
@@ -180,7 +182,7 @@ Result<Got> ListeningSource::take(Message& message) {
     Peer& peer = *ready_[turn_];
     auto got = peer.source->take(message);
     if (!got || *got == Got::End) {
-      leave(peer, got ? "" : got.error().text());
+      leave(peer, got ? "" : "closed a connection: " + in_words(got.error()));
     } else if (*got == Got::Nothing) {
       rest(peer);
     } else {

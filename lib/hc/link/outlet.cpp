@@ -68,6 +68,10 @@ void Outlet::dial(TimePoint now) {
   watch_.reset();  // before the dialer closes what it watches
   auto made = dialer_->dial(now);
   if (!made) return fail(made.error());
+  if (auto remark = dialer_->take_remark(now)) {
+    remarks_.push_back(*remark);
+    has_remarks_ = true;
+  }
   if (*made) return connect(std::move(*made), now);
   if (dialer_->descriptor() >= 0) watch(dialer_->descriptor());
 }
@@ -156,7 +160,7 @@ void Outlet::lose_connection(const Error& why, TimePoint now) {
   look_due_ = TimePoint::max();
   blocked_ = false;
   if (dialer_ == nullptr) return fail(why);
-  remarks_.push_back(why.text() + "; connecting again");
+  remarks_.push_back(in_words(why) + "; connecting again");
   has_remarks_ = true;
   writer_.start(Descriptor());
   dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime);

@@ -68,12 +68,59 @@ TEST_P(SocketLink, ASinkThatKeepsTheLatestWaitsForNobody) {
   EXPECT_EQ(message.header.seq, 9);
 }
 
-TEST_P(SocketLink, WhoFindsNobodyGivesUp) {
-  auto source = source_of(dial() + "?reconnect=1");
-  auto sink = sink_of(dial() + "?reconnect=1");
+TEST_P(SocketLink, WhoNeverFindsAnybodySaysSo) {
+  for (const char* options : {"?reconnect=1", "?reconnect=86400&wait=1"}) {
+    auto source = source_of(dial() + options);
+    auto sink = sink_of(dial() + options);
+    Message message;
+    auto got = receive(*source, message);
+    ASSERT_FALSE(got);
+    EXPECT_TRUE(got.error().text().starts_with("NotFound: nobody was there for 1 s: "))
+        << got.error().text();
+    EXPECT_EQ(*source->take(message), Got::End);
+    EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::NotFound);
+  }
+}
+
+TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
+  Warnings warnings;
+  std::unique_ptr<Source> source;
+  std::unique_ptr<Sink> sink;
   Message message;
+  {
+    auto writer = sink_of(listen());
+    source = source_of(dial() + "?reconnect=1", warnings.options());
+    ASSERT_TRUE(writer->send(numbered(0, 1)));
+    ASSERT_TRUE(*receive(*source, message));
+  }
   EXPECT_FALSE(*receive(*source, message));
-  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Closed);
+  ASSERT_EQ(warnings.lines.size(), 2U);
+  EXPECT_EQ(warnings.lines[0], dial() + "?reconnect=1: the writer has gone; connecting again");
+  EXPECT_TRUE(warnings.lines[1].starts_with(dial() + "?reconnect=1: nobody was there for 1 s: "));
+  {
+    auto reader = source_of(listen());
+    sink = sink_of(dial() + "?reconnect=1");
+    ASSERT_TRUE(sink->send(numbered(0, 1)));
+    ASSERT_TRUE(*receive(*reader, message));
+  }
+  Status sent;
+  while (sent) sent = sink->send(numbered(0, 1));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
+  Warnings warnings;
+  Stop stop;
+  auto options = warnings.options();
+  options.stop = stop.options().stop;
+  auto source = source_of(dial() + "?reconnect=60", options);
+  Message message;
+  while (warnings.lines.empty()) {
+    ASSERT_TRUE(source->wait());
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  EXPECT_TRUE(warnings.lines[0].starts_with(dial() + "?reconnect=60: nobody is there yet: "))
+      << warnings.lines[0];
 }
 
 TEST_P(SocketLink, ConnectingEndsWhenToldToStop) {

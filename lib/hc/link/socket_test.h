@@ -223,7 +223,10 @@ TEST_P(SocketLink, AHostilePeerDisturbsNobody) {
     EXPECT_EQ(message.header.seq, i);
   }
   ASSERT_EQ(warnings.lines.size(), 1U);
-  EXPECT_EQ(warnings.lines[0], "Malformed: R5 version: \"GET\" is not an integer, at byte 0");
+  EXPECT_EQ(warnings.lines[0],
+            listen() +
+                ": closed a connection: Malformed: R5 version: \"GET\" is not an "
+                "integer, at byte 0");
 }
 
 TEST_P(SocketLink, AMessageThatIsCutIsTold) {
@@ -242,7 +245,9 @@ TEST_P(SocketLink, AMessageThatIsCutIsTold) {
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, 3);
   while (warnings.lines.empty()) ASSERT_EQ(*source->take(message), Got::Nothing);
-  EXPECT_TRUE(warnings.lines[0].starts_with("Truncated: R2 stream: truncated after 1 messages"));
+  EXPECT_NE(
+      warnings.lines[0].find(": closed a connection: Truncated: R2 stream: truncated after 1"),
+      std::string::npos);
 }
 
 /// Leaves the process no free descriptor, or so many, for as long as it lives.
@@ -271,7 +276,9 @@ TEST_P(SocketLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
     NoDescriptors none;
     for (int i = 0; i < 3; ++i) ASSERT_EQ(*source->take(message), Got::Nothing);
   }
-  EXPECT_EQ(warnings.lines, std::vector<std::string>{"System: accept(): Too many open files"});
+  EXPECT_EQ(warnings.lines,
+            std::vector<std::string>{
+                listen() + ": nobody is let in for now: System: accept(): Too many open files"});
   EXPECT_TRUE(*receive(*source, message));
 }
 
@@ -290,7 +297,9 @@ TEST_P(SocketLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
     source = source_of(dial());  // takes the one there is
     EXPECT_EQ(sink->send(first).error().code, Code::Stopped);
   }
-  EXPECT_EQ(warnings.lines, std::vector<std::string>{"System: accept(): Too many open files"});
+  EXPECT_EQ(warnings.lines,
+            std::vector<std::string>{
+                listen() + ": nobody is let in for now: System: accept(): Too many open files"});
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   Message message;
   ASSERT_TRUE(*receive(*source, message));
@@ -317,7 +326,8 @@ TEST_P(SocketLink, WhoIsSilentLongestMakesRoom) {
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, 2);
   ASSERT_EQ(warnings.lines.size(), 1U);
-  EXPECT_EQ(warnings.lines[0], "closed the peer that was silent longest, to let another in");
+  EXPECT_EQ(warnings.lines[0],
+            listen() + ": closed the peer that was silent longest, to let another in");
   char byte = 0;
   EXPECT_EQ(::read(peers[2].get(), &byte, 1), 0);
 }
@@ -401,7 +411,8 @@ TEST_P(SocketLink, EveryStreamThatIsCutIsToldOnce) {
   take_all();
   EXPECT_EQ(warnings.lines.size(), cut);
   EXPECT_EQ(messages, expected);
-  for (const auto& line : warnings.lines) EXPECT_TRUE(line.starts_with("Truncated: R2")) << line;
+  for (const auto& line : warnings.lines)
+    EXPECT_NE(line.find("Truncated: R2"), std::string::npos) << line;
 }
 
 }  // namespace hc::testing

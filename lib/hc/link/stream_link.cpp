@@ -41,7 +41,11 @@ Result<Got> StreamSource::take(Message& message) {
     if (size < 0 && errno == EINTR) continue;
     if (size < 0 && would_wait(errno)) return Got::Nothing;
     // A peer that was killed with our bytes unread resets the connection: the end of what it said.
-    if (size < 0 && errno != ECONNRESET) return system_error("read", "");
+    if (size < 0 && errno != ECONNRESET) {
+      auto error = system_error("read", "");
+      if (error.code == Code::Closed && !between_messages()) error.code = Code::Truncated;
+      return error;
+    }
     if (size == 0 && awaits_writer()) return Got::Nothing;
     auto end = reader_.finish();
     if (!end) return end.error();

@@ -132,7 +132,8 @@ TEST(Tcp, AWriterThatVanishesIsNoticed) {
     ASSERT_TRUE(wait_readable(descriptors));
     ASSERT_EQ(*source->take(message), Got::Nothing);
   }
-  EXPECT_EQ(warnings.lines[0], "Closed: read(): Connection timed out");
+  EXPECT_EQ(warnings.lines[0],
+            "tcp-listen:" + place + ": closed a connection: read(): Connection timed out");
 }
 
 TEST(Tcp, AReaderThatVanishesIsNoticed) {

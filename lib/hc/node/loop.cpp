@@ -96,7 +96,10 @@ bool Module::Loop::take_one(LinkedSource& link) {
   if (link.source == nullptr) return false;
   Message message;
   auto got = link.source->take(message);
-  if (!got) fail(link.inputs.size() == 1 ? link.inputs[0]->name : link.uri, got.error());
+  if (!got) {
+    bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
+    fail(is_of_link || link.inputs.size() > 1 ? link.uri : link.inputs[0]->name, got.error());
+  }
   if (*got == Got::End) {
     link.traffic = link.source->traffic();
     link.source.reset();

@@ -132,7 +132,9 @@ void internal::send(OutputState& output, Message message) {
     auto sent = link->sink->send(message);
     if (!sent && sent.error().code == Code::Stopped) throw Stopped();
     if (!sent && sent.error().code != Code::Closed)
-      throw ModuleError(Error{sent.error().code, output.name + ": " + sent.error().detail});
+      throw ModuleError(
+          Error{sent.error().code, (sent.error().code == Code::NotFound ? link->uri : output.name) +
+                                       ": " + sent.error().detail});
     if (!sent) {
       link->traffic = link->sink->traffic();
       link->sink.reset();
