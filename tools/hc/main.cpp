@@ -20,7 +20,7 @@ std::string footer() {
   for (const auto& name : tool::module_names()) text += " " + name;
   return text +
          "\nA link's end is -, a file, tcp:HOST:PORT, tcp-listen:PORT, unix:PATH, "
-         "unix-listen:PATH.";
+         "unix-listen:PATH, shm:NAME.";
 }
 
 /// Becomes the module of that name; comes back when there is none.
