@@ -17,7 +17,7 @@ class FakeReader {
   FakeReader(const std::string& name, const std::string& keep)
       : socket_(connect_to_publisher(name)),
         page_(std::move(*internal::SharedMemory::make(internal::kPageBytes, 0))),
-        offer_(std::move(*internal::greet(socket_.get(), keep, page_, -1))) {}
+        offer_(greet(keep)) {}
 
   [[nodiscard]] internal::ReaderPage& page() const {
     return *reinterpret_cast<internal::ReaderPage*>(page_.data());
@@ -28,6 +28,11 @@ class FakeReader {
   [[nodiscard]] std::uint64_t keep() const { return offer_.keep; }
 
  private:
+  internal::Offer greet(const std::string& keep) const {
+    EXPECT_TRUE(internal::send_hello(socket_.get(), keep, page_));
+    return std::move(*internal::await_offer(socket_.get(), -1));
+  }
+
   internal::Descriptor socket_;
   internal::SharedMemory page_;
   internal::Offer offer_;

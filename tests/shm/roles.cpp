@@ -77,8 +77,8 @@ class Reader {
       while (!held_.empty()) let_go();
       if (ended_) break;
       auto traffic = source_->traffic();
-      tell("end " + std::to_string(traffic.messages) + " " + std::to_string(traffic.lost()) +
-           " " + std::to_string(last_));
+      tell("end " + std::to_string(traffic.messages) + " " + std::to_string(traffic.lost()) + " " +
+           std::to_string(last_));
     }
     return 0;
   }
@@ -108,6 +108,7 @@ class Reader {
     Message message;
     auto got = receive(*source_, message, Child::kSocket);
     if (!got && got.error().code == Code::Stopped) return true;
+    if (!got && got.error().code == Code::Closed) return false;  // it has died
     if (!got) throw Failed(got.error().text());
     if (!*got) return false;
     check(message);

@@ -65,9 +65,9 @@ void print_links(const hc::Plan& plan, const hc::RunReport& report) {
     const auto& sent = report.links[i].sent;
     std::string lost;
     if (sent.lost() > 0) lost = fmt::format("  {} lost ({})", sent.lost(), losses_in_words(sent));
-    text +=
-        fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
-                    sent.messages == 1 ? " " : "s", bytes_in_words(static_cast<double>(sent.bytes)), lost);
+    text += fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
+                        sent.messages == 1 ? " " : "s",
+                        bytes_in_words(static_cast<double>(sent.bytes)), lost);
   }
   print(text);
 }

@@ -34,8 +34,8 @@ TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?recconect=3")).error().detail,
             "tcp has no option \"recconect\" here, only \"wait\", \"reconnect\", did you mean "
             "\"reconnect\"?");
-  for (const char* end : {"-", "file:x", "tcp-listen:0", "unix:@x", "unix-listen:@x", "inproc:x",
-                          "shm:x"})
+  for (const char* end :
+       {"-", "file:x", "tcp-listen:0", "unix:@x", "unix-listen:@x", "inproc:x", "shm:x"})
     EXPECT_TRUE(open_sink(*parse_uri(std::string(end) + "?keeps=latest"))
                     .error()
                     .detail.ends_with(", did you mean \"keep\"?"))

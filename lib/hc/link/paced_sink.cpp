@@ -14,12 +14,15 @@ namespace {
 
 class PacedSink final : public Sink {
  public:
-  PacedSink(std::unique_ptr<Sink> sink, const Policy& policy, Descriptor changed, int stop)
-      : sink_(std::move(sink)),
+  PacedSink(std::unique_ptr<Sink> sink, const Policy& policy, Descriptor changed,
+            const LinkOptions& options, std::shared_ptr<Remarks> remarks)
+      : remarks_(std::move(remarks)),
+        log_(options.log),
+        sink_(std::move(sink)),
         writer_waits_(policy.writer_waits()),
         outbox_(policy),
         changed_(std::move(changed)),
-        stop_(stop) {}
+        stop_(options.stop) {}
 
   Status watch() {
     auto timer = Watch::make(-1, [this](std::uint32_t) { send_what_is_ready(); });
@@ -30,6 +33,37 @@ class PacedSink final : public Sink {
   }
 
   Status send(const Message& message) override {
+    auto sent = put(message);
+    remarks_->tell(log_);
+    return sent;
+  }
+
+  Draft loan(const Header& header) override {
+    std::lock_guard lock(mutex_);
+    return sink_->loan(header);
+  }
+
+  /// What is kept back goes first, at its pace.
+  Status close() override {
+    auto closed = finish();
+    remarks_->tell(log_);
+    return closed;
+  }
+
+  [[nodiscard]] Traffic traffic() const override {
+    std::lock_guard lock(mutex_);
+    Traffic traffic = sink_->traffic();
+    traffic.kept_back += lost_.kept_back;
+    traffic.superseded += lost_.superseded;
+    traffic.over_rate += lost_.over_rate;
+    traffic.over_memory += lost_.over_memory;
+    return traffic;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Status put(const Message& message) {
     auto bytes = message.elements.size();
     std::lock_guard lock(mutex_);
     if (!outcome_) return outcome_;
@@ -48,13 +82,7 @@ class PacedSink final : public Sink {
     return sink_->send(outbox_.pop(Clock::now()));
   }
 
-  Draft loan(const Header& header) override {
-    std::lock_guard lock(mutex_);
-    return sink_->loan(header);
-  }
-
-  /// What is kept back goes first, at its pace.
-  Status close() override {
+  Status finish() {
     while (true) {
       {
         std::lock_guard lock(mutex_);
@@ -66,19 +94,6 @@ class PacedSink final : public Sink {
       if (auto waited = wait_for(changed_.get(), POLLIN, stop_); !waited) return waited.error();
     }
   }
-
-  [[nodiscard]] Traffic traffic() const override {
-    std::lock_guard lock(mutex_);
-    Traffic traffic = sink_->traffic();
-    traffic.kept_back += lost_.kept_back;
-    traffic.superseded += lost_.superseded;
-    traffic.over_rate += lost_.over_rate;
-    traffic.over_memory += lost_.over_memory;
-    return traffic;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
 
   Status wait_until(TimePoint ready) const {
     auto waited = wait_for(-1, 0, stop_, ready);
@@ -98,6 +113,8 @@ class PacedSink final : public Sink {
     ::eventfd_write(changed_.get(), 1);
   }
 
+  std::shared_ptr<Remarks> remarks_;  // of sink_, which may be used on another thread
+  LogSink log_;
   mutable std::mutex mutex_;  // of what follows
   std::unique_ptr<Sink> sink_;
   bool writer_waits_;
@@ -113,13 +130,14 @@ class PacedSink final : public Sink {
 }  // namespace
 
 Result<std::unique_ptr<Sink>> make_paced(std::unique_ptr<Sink> sink, const Policy& policy,
-                                         const LinkOptions& options) {
+                                         const LinkOptions& options,
+                                         std::shared_ptr<Remarks> remarks) {
   if (policy.rate == 0 && policy.byte_rate == 0) return sink;
   auto changed =
       system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
   if (!changed) return changed.error();
-  auto paced =
-      std::make_unique<PacedSink>(std::move(sink), policy, Descriptor(*changed), options.stop);
+  auto paced = std::make_unique<PacedSink>(std::move(sink), policy, Descriptor(*changed), options,
+                                           std::move(remarks));
   if (auto watched = paced->watch(); !watched) return watched.error();
   return std::unique_ptr<Sink>(std::move(paced));
 }

@@ -6,6 +6,7 @@
 
 #include <hc/link/link.h>
 #include <hc/link/policy.h>
+#include <hc/link/remarks.h>
 
 namespace hc::internal {
 
@@ -14,8 +15,10 @@ namespace hc::internal {
 /// for its turn here; else `keep` messages wait, and the oldest make room.
 ///
 /// @param sink  does not wait itself, but for its first readers, unless the writer is to wait.
+/// @param remarks  of `sink`, which are told the log on the caller's thread.
 /// @returns  `sink` itself where the policy has no pace. Errors: System.
 Result<std::unique_ptr<Sink>> make_paced(std::unique_ptr<Sink> sink, const Policy& policy,
-                                         const LinkOptions& options);
+                                         const LinkOptions& options,
+                                         std::shared_ptr<Remarks> remarks);
 
 }  // namespace hc::internal

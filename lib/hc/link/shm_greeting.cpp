@@ -29,7 +29,7 @@ struct Greeting {
 };
 
 Error malformed(std::string what) {
-  return {Code::Malformed, "shm: " + std::move(what)};
+  return {Code::Malformed, std::move(what)};
 }
 
 /// Sends one greeting, whole or not at all.
@@ -81,7 +81,7 @@ Result<Greeting> take_greeting(int socket) {
     }
   }
   std::string_view text(bytes.data(), static_cast<std::size_t>(*size));
-  if (text.empty()) return Error{Code::Closed, "shm: the other side has gone"};
+  if (text.empty()) return Error{Code::Closed, "the other side has gone"};
   // Its words are shown to people, so they are printable.
   auto end = std::find_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; });
   if (!text.starts_with(kGreeting) || end != text.end() - 1 || *end != '\n')
@@ -135,23 +135,28 @@ Result<std::uint64_t> parse_keep(std::string_view text) {
   return *count;
 }
 
-Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page, int stop) {
+Status send_hello(int socket, std::string_view keep, const SharedMemory& page) {
   auto page_descriptor = page.read_only();
   if (!page_descriptor) return page_descriptor.error();
   std::string words = keep.empty() ? "" : "keep=" + std::string(keep) + " ";
   words += can_order_everywhere() ? "orders=1" : "orders=0";
-  if (auto sent = send_greeting(socket, words, page_descriptor->get()); !sent) return sent.error();
+  auto sent = send_greeting(socket, words, page_descriptor->get());
+  // Who has refused us before we said anything has told why.
+  if (!sent && sent.error().code != Code::Closed) return sent;
   HC_CRASH_POINT("reader greeted");
-  auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
-  auto answered = wait_for(socket, POLLIN, stop, deadline);
-  if (!answered) return answered.error();
-  if (!*answered) return Error{Code::Closed, "shm: the publisher does not answer"};
+  return {};
+}
+
+Result<std::optional<Offer>> take_offer(int socket) {
+  pollfd polled{socket, POLLIN, 0};
+  if (::poll(&polled, 1, 0) == 0) return std::optional<Offer>();
   auto greeting = take_greeting(socket);
+  if (!greeting && greeting.error().code == Code::Closed)
+    return Error{Code::Closed, "the publisher has gone before it answered"};
   if (!greeting) return greeting.error();
   constexpr std::string_view kRefused = "refused: ";
   if (greeting->text.starts_with(kRefused))
-    return Error{Code::Closed,
-                 "shm: the publisher refused: " + greeting->text.substr(kRefused.size())};
+    return Error{Code::Closed, "the publisher refuses: " + greeting->text.substr(kRefused.size())};
   auto bytes = number(word(greeting->text, "bytes")), begin = number(word(greeting->text, "begin"));
   auto kept = number(word(greeting->text, "keep"));
   if (!bytes || !begin || !kept || *bytes < kLeastMemory || *bytes > kMostMemory)
@@ -159,7 +164,16 @@ Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page,
   auto memory = SharedMemory::map(std::move(greeting->memory), *bytes);
   if (!memory) return malformed(memory.error().detail);
   HC_CRASH_POINT("reader has memory");
-  return Offer{*begin, *kept, std::move(*memory)};
+  return std::optional<Offer>(Offer{*begin, *kept, std::move(*memory)});
+}
+
+Result<Offer> await_offer(int socket, int stop) {
+  auto answered = wait_for(socket, POLLIN, stop, std::chrono::steady_clock::now() + kAnswerTime);
+  if (!answered) return answered.error();
+  auto offer = *answered ? take_offer(socket) : Result<std::optional<Offer>>(std::nullopt);
+  if (!offer) return offer.error();
+  if (!offer->has_value()) return Error{Code::Closed, "the publisher does not answer"};
+  return std::move(**offer);
 }
 
 Result<Hello> take_hello(int socket, std::uint64_t otherwise) {

@@ -13,6 +13,7 @@
 // From then on the publisher says a byte when the reader has asked to be woken so; the reader ends
 // its own direction when it takes no more, and the connection when it holds no more.
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -40,12 +41,20 @@ Uri meeting_place(const Uri& uri);
 /// Whether the name is one. Errors: Usage.
 Status check_name(const Uri& uri);
 
-/// The reader's side; waits for the answer, 4 s at most.
+/// The reader's side: says what it wants; never waits.
 ///
 /// @param keep  nothing: as the publisher wants it.
+/// Errors: Closed, System.
+Status send_hello(int socket, std::string_view keep, const SharedMemory& page);
+
+/// What the publisher has answered; never waits, and gives nothing when there is no answer yet.
+///
 /// Errors: Malformed (no such peer, or what it hands over is not as it should be), Closed (it has
-/// refused or gone), Stopped, System.
-Result<Offer> greet(int socket, std::string_view keep, const SharedMemory& page, int stop);
+/// refused or gone).
+Result<std::optional<Offer>> take_offer(int socket);
+
+/// Waits for the answer, 4 s at most. Errors: as take_offer(), Stopped, System.
+Result<Offer> await_offer(int socket, int stop);
 
 /// The publisher's side: what a reader has said; never waits.
 ///

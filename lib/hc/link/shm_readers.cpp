@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include <hc/link/crash_point.h>
+#include <hc/link/unix.h>
 
 namespace hc::internal {
 namespace {
@@ -16,17 +17,23 @@ constexpr std::chrono::milliseconds kRetry{200};  // until one is let in again w
 }  // namespace
 
 Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
-                                                     const SharedMemory& memory, std::uint64_t keep,
-                                                     LinkOptions options) {
+                                                     const SharedMemory& memory,
+                                                     std::uint64_t keep) {
   auto event = system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
   if (!event) return event.error();
   auto read_only = memory.read_only();
   if (!read_only) return read_only.error();
-  std::unique_ptr<ShmReaders> readers(new ShmReaders(std::move(socket), Descriptor(*event),
-                                                     std::move(*read_only), std::move(options)));
+  std::unique_ptr<ShmReaders> readers(
+      new ShmReaders(std::move(socket), Descriptor(*event), std::move(*read_only)));
   readers->head_ = reinterpret_cast<const Head*>(memory.data());
   readers->bytes_ = memory.size();
   readers->keep_ = keep;
+  readers->socket_.admit = [](int peer) -> Status {
+    auto who = foreigner(peer);
+    if (who.empty()) return {};
+    refuse(peer, "another user");
+    return Error{Code::Closed, "refused a reader of " + who};
+  };
   auto watch = Watch::make(readers->socket_.descriptor.get(),
                            [all = readers.get()](std::uint32_t) { all->accept_all(); });
   if (!watch) return watch.error();
@@ -50,13 +57,18 @@ ShmReaders::~ShmReaders() {
   }
 }
 
-void ShmReaders::log(std::string_view line) const {
-  if (options_.log) options_.log(Severity::Warning, line);
+/// On the thread that serves links: the publisher's tells the log.
+void ShmReaders::remark(std::string line) {
+  remarks_.add(std::move(line));
+  std::lock_guard lock(mutex_);
+  changed_.store(true, std::memory_order_seq_cst);
+  ::eventfd_write(event_.get(), 1);
 }
 
 void ShmReaders::accept_all() {
   while (true) {
-    auto peer = accept_peer(socket_, options_.log);
+    auto peer = accept_peer(socket_,
+                            [this](Severity, std::string_view line) { remark(std::string(line)); });
     if (peer && !*peer) {
       static_cast<void>(watching_->want(EPOLLIN));
       return;
@@ -74,7 +86,7 @@ void ShmReaders::accept_all() {
                       : Result<std::unique_ptr<Watch>>(peer.error());
     if (!watch) {
       // No descriptor or memory is to be had now: who waits is overlooked for a while.
-      log(watch.error().text());
+      remark("nobody is let in for now: " + watch.error().text());
       static_cast<void>(watching_->want(0));
       watching_->call_at(std::chrono::steady_clock::now() + kRetry);
       return;
@@ -123,7 +135,7 @@ void ShmReaders::hear(ShmReader& reader) {
     }
   }
   if (!why.empty()) {
-    log("shm: refused a reader: " + why);
+    remark("refused a reader: " + why);
     refuse(reader.socket.get(), why);
     let_go(reader);
     return;

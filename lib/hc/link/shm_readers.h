@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <hc/link/reactor.h>
+#include <hc/link/remarks.h>
 #include <hc/link/shm_greeting.h>
 #include <hc/link/shm_memory.h>
 #include <hc/link/socket.h>
@@ -48,8 +49,7 @@ class ShmReaders {
   /// @param head  of `memory`; says where a reader that comes begins.
   /// @param keep  for readers that do not say.
   static Result<std::unique_ptr<ShmReaders>> make(ListeningSocket socket,
-                                                  const SharedMemory& memory, std::uint64_t keep,
-                                                  LinkOptions options);
+                                                  const SharedMemory& memory, std::uint64_t keep);
   ~ShmReaders();
   ShmReaders(const ShmReaders&) = delete;
   ShmReaders& operator=(const ShmReaders&) = delete;
@@ -57,12 +57,14 @@ class ShmReaders {
   /// Those there are, as of the last refresh(). On the publisher's thread.
   [[nodiscard]] std::vector<std::shared_ptr<ShmReader>>& current() { return current_; }
 
-  /// Whether some have come or gone since.
+  /// Whether some have come or gone since, or something is to be told.
   ///
   /// A reader that can hold a slot by now has come before the caller's last fence ("hold"), and is
   /// seen here.
   [[nodiscard]] bool changed() const { return changed_.load(std::memory_order_relaxed); }
   void refresh();
+  /// What is to be told the log, since it was last told.
+  [[nodiscard]] Remarks& remarks() { return remarks_; }
 
   // Of those there are, on the publisher's thread; `published` is the position it publishes next.
 
@@ -76,15 +78,12 @@ class ShmReaders {
   /// Wakes those who sleep, on `signal` or their sockets; whether there were any.
   bool wake(const SharedWord<std::uint32_t>& signal);
 
-  /// Readable when some have come or gone since refresh().
+  /// Readable when some have come or gone, or something is to be told, since refresh().
   [[nodiscard]] int event() const { return event_.get(); }
 
  private:
-  ShmReaders(ListeningSocket socket, Descriptor event, Descriptor read_only, LinkOptions options)
-      : socket_(std::move(socket)),
-        event_(std::move(event)),
-        read_only_(std::move(read_only)),
-        options_(std::move(options)) {}
+  ShmReaders(ListeningSocket socket, Descriptor event, Descriptor read_only)
+      : socket_(std::move(socket)), event_(std::move(event)), read_only_(std::move(read_only)) {}
 
   void accept_all();
   void hear(ShmReader& reader);
@@ -93,11 +92,11 @@ class ShmReaders {
                                               const ShmReader& reader);
   void note_leaving(const ShmReader& reader);
   void tell_change(const ShmReader& reader);
-  void log(std::string_view line) const;
+  void remark(std::string line);
 
   ListeningSocket socket_;
   Descriptor event_, read_only_;
-  LinkOptions options_;
+  Remarks remarks_;
   const Head* head_ = nullptr;
   std::uint64_t bytes_ = 0, keep_ = 0;
   std::vector<std::shared_ptr<ShmReader>> current_;

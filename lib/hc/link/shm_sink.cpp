@@ -55,18 +55,19 @@ void copy_words(std::span<const std::byte> bytes, char* to) {
 
 class ShmSink final : public Sink {
  public:
-  ShmSink(SharedMemory memory, std::int64_t counted, std::uint64_t keep, int stop)
+  ShmSink(SharedMemory memory, std::int64_t counted, std::uint64_t keep, LinkOptions options)
       : memory_(std::make_shared<SharedMemory>(std::move(memory))),
         head_(*reinterpret_cast<Head*>(memory_->data())),
         cells_(reinterpret_cast<Cell*>(memory_->data() + kRingBegin)),
         slots_(std::make_shared<SlotPool>(kSlotsBegin, memory_->size())),
         counted_(counted),
         keep_(keep),
-        stop_(stop) {}
+        log_(std::move(options.log)),
+        stop_(options.stop) {}
   ~ShmSink() override { end(); }
 
-  Status begin(ListeningSocket socket, const LinkOptions& options) {
-    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_, options);
+  Status begin(ListeningSocket socket) {
+    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_);
     if (!readers) return readers.error();
     readers_ = std::move(*readers);
     return {};
@@ -104,6 +105,7 @@ class ShmSink final : public Sink {
   std::unique_ptr<ShmReaders> readers_;
   std::int64_t counted_;
   std::uint64_t keep_;
+  LogSink log_;
   int stop_;
 
   std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
@@ -126,6 +128,7 @@ class ShmSink final : public Sink {
 void ShmSink::refresh() {
   if (!readers_->changed()) return;
   readers_->refresh();
+  readers_->remarks().tell(log_);
   const auto& readers = readers_->current();
   present_ = static_cast<std::size_t>(std::count_if(
       readers.begin(), readers.end(), [](const auto& reader) { return !reader->left(); }));
@@ -256,7 +259,7 @@ Status ShmSink::place(const Message& message, Slot*& slot) {
   if (slot != nullptr && bytes <= slot->bytes) return {};
   if (bytes > memory_->size() - kSlotsBegin)
     return Error{Code::TooLarge,
-                 "shm: a message of " + std::to_string(bytes) +
+                 "a message of " + std::to_string(bytes) +
                      " bytes does not fit memory=" + std::to_string(memory_->size())};
   slot = clear_slot(bytes);
   if (slot == nullptr && keep_ == 0) {
@@ -293,7 +296,7 @@ Status ShmSink::send(const Message& message) {
   }
   begun_ = true;
   if (present_ == 0) {
-    if (counted_ > 0) return Error{Code::Closed, "shm: the readers have gone"};
+    if (counted_ > 0) return Error{Code::Closed, "the readers have gone"};
     if (keep_ == 0)
       if (auto came = await_readers(1); !came) return came;
   }
@@ -404,6 +407,7 @@ Draft ShmSink::loan(const Header& header) {
 Status ShmSink::close() {
   Status awaited;
   if (!begun_ && counted_ > 0) awaited = await_readers(static_cast<std::size_t>(counted_));
+  if (readers_ != nullptr) refresh();  // which tells the log
   end();
   return awaited;
 }
@@ -426,8 +430,7 @@ Status check_shm_memory(const Uri& uri) {
   if (!policy) return policy.error();
   if (policy->memory >= kLeastMemory) return {};
   return Error{Code::Usage, "memory is at least " + std::to_string(kLeastMemory) +
-                                " bytes where it is shared, not " +
-                                std::to_string(policy->memory)};
+                                " bytes where it is shared, not " + std::to_string(policy->memory)};
 }
 
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
@@ -441,10 +444,14 @@ Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& o
   if (!socket) return socket.error();
   auto memory = SharedMemory::make(policy->memory / kPageBytes * kPageBytes, kSlotsBegin);
   if (!memory) return memory.error();
+  auto remarks = std::make_shared<Remarks>();
+  LinkOptions own = options;
+  if (policy->is_paced())  // it sends on the thread that serves links too
+    own.log = [remarks](Severity, std::string_view line) { remarks->add(std::string(line)); };
   auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted,
-                                        policy->writer_waits() ? 0 : policy->keep, options.stop);
-  if (auto begun = sink->begin(std::move(*socket), options); !begun) return begun.error();
-  return make_paced(std::move(sink), *policy, options);
+                                        policy->writer_waits() ? 0 : policy->keep, std::move(own));
+  if (auto begun = sink->begin(std::move(*socket)); !begun) return begun.error();
+  return make_paced(std::move(sink), *policy, options, std::move(remarks));
 }
 
 }  // namespace hc::internal

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include <hc/link/awaiting_source.h>
 #include <hc/link/crash_point.h>
 #include <hc/link/dialing.h>
 #include <hc/link/shm_greeting.h>
@@ -50,7 +51,7 @@ void relax() {
 }
 
 Error damaged(const std::string& what) {
-  return {Code::Malformed, "shm: the publisher's memory is damaged: " + what};
+  return {Code::Malformed, "the publisher's memory is damaged: " + what};
 }
 
 /// A connection to a publisher. Messages that view its memory keep it, also when the source is
@@ -163,9 +164,6 @@ void ShmSource::look_at_socket() {
   while ((size = ::recv(attachment_->socket.get(), bytes.data(), bytes.size(), MSG_DONTWAIT)) > 0) {
   }
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  if (!publisher_gone_ && attachment_->head().closed.load(memory_order_acquire) == 0 &&
-      options_.log)
-    options_.log(Severity::Warning, "shm: the publisher has died");
   publisher_gone_ = true;
 }
 
@@ -241,7 +239,7 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
     return {};
   }
   if (!told_ && options_.log)
-    options_.log(Severity::Warning, "shm: " + std::to_string(kCopyHold) +
+    options_.log(Severity::Warning, "" + std::to_string(kCopyHold) +
                                         " messages are held; while it is so, others are copied");
   told_ = true;
   message = message.keep();
@@ -260,7 +258,10 @@ Result<Got> ShmSource::take(Message& message) {
         skip_to(published - keep_, &Traffic::superseded);
     }
     auto stamp = attachment_->cell(cursor_).stamp.load(memory_order_acquire);
-    if (stamp <= cursor_) return has_ended() ? Got::End : Got::Nothing;
+    if (stamp <= cursor_ && !has_ended()) return Got::Nothing;
+    if (stamp <= cursor_ && head.closed.load(memory_order_acquire) == 0)
+      return Error{Code::Closed, "the publisher has died"};
+    if (stamp <= cursor_) return Got::End;
     if (stamp == cursor_ + 1) {
       fetch_ahead();
       Copy cell;
@@ -386,21 +387,39 @@ Result<bool> ShmSource::wait(int stop, std::chrono::milliseconds timeout) {
   return *ready == 0;
 }
 
-/// Makes the reader of a publisher that has been connected to. Errors: as greet().
-Result<std::unique_ptr<Source>> attach(Descriptor socket, std::string_view keep,
-                                       std::chrono::microseconds spin, const LinkOptions& options) {
+/// How a reader attaches.
+struct Wishes {
+  std::string keep;  ///< empty: as the publisher wants it
+  std::chrono::microseconds spin;
+  bool waits;  ///< for the publisher's answer, or else take() does without
+};
+
+/// Makes the reader of a publisher that has been connected to. Errors: as await_offer().
+Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
+                                       const LinkOptions& options) {
   auto attachment = std::make_shared<Attachment>();
   attachment->socket = std::move(socket);
   auto page = SharedMemory::make(kPageBytes, kPageBytes);
   if (!page) return page.error();
   attachment->page = std::move(*page);
   HC_CRASH_POINT("reader made page");
-  auto offer = greet(attachment->socket.get(), keep, attachment->page, options.stop);
+  const int connection = attachment->socket.get();
+  if (auto sent = send_hello(connection, wishes.keep, attachment->page); !sent) return sent.error();
+  auto begin = [attachment, spin = wishes.spin, options](Offer offer) -> std::unique_ptr<Source> {
+    attachment->memory = std::move(offer.memory);
+    attachment->own().cursor.store(offer.begin, memory_order_release);
+    return std::make_unique<ShmSource>(attachment, offer, spin, options);
+  };
+  if (!wishes.waits)
+    return std::unique_ptr<Source>(std::make_unique<AwaitingSource>(
+        connection, [connection, begin]() -> Result<std::unique_ptr<Source>> {
+          auto offer = take_offer(connection);
+          if (!offer) return offer.error();
+          return offer->has_value() ? begin(std::move(**offer)) : nullptr;
+        }));
+  auto offer = await_offer(connection, options.stop);
   if (!offer) return offer.error();
-  attachment->memory = std::move(offer->memory);
-  attachment->own().cursor.store(offer->begin, memory_order_release);
-  return std::unique_ptr<Source>(
-      std::make_unique<ShmSource>(std::move(attachment), *offer, spin, options));
+  return begin(std::move(*offer));
 }
 
 }  // namespace
@@ -409,14 +428,18 @@ Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOption
   if (auto named = check_name(uri); !named) return named.error();
   auto spin = number_option(uri, "spin", kDefaultSpin);
   if (!spin) return spin.error();
-  std::string keep(uri.option("keep", ""));
-  if (!keep.empty())
-    if (auto valid = parse_keep(keep); !valid) return valid.error();
+  auto reconnect = number_option(uri, "reconnect", 0);
+  if (!reconnect) return reconnect.error();
+  Wishes wishes{std::string(uri.option("keep", "")), std::chrono::microseconds(*spin),
+                *reconnect == 0};
+  if (!wishes.keep.empty())
+    if (auto valid = parse_keep(wishes.keep); !valid) return valid.error();
   Uri place = meeting_place(uri);
   auto peer = unix_peer(place);
   if (!peer) return peer.error();
-  return dial_source(*peer, uri, options, [keep, spin = *spin, options](Descriptor socket) {
-    return attach(std::move(socket), keep, std::chrono::microseconds(spin), options);
+  peer->name = uri.rest;
+  return dial_source(*peer, uri, options, [wishes, options](Descriptor socket) {
+    return attach(std::move(socket), wishes, options);
   });
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/link_conformance.h>
+#include <hc/link/shm_greeting.h>
+#include <hc/link/socket_test.h>
+#include <hc/link/unix.h>
 #include <unistd.h>
 
 #include <array>
@@ -295,7 +297,48 @@ TEST(Shm, AReaderThatReconnectsFindsTheNextPublisher) {
   publisher.join();
   EXPECT_EQ(source->traffic().messages, 30U);
   auto impatient = source_of(fresh_name() + "?reconnect=1");
-  EXPECT_FALSE(*receive(*impatient, message));
+  EXPECT_EQ(receive(*impatient, message).error().code, Code::NotFound);
+}
+
+/// Listens at the name as a publisher that is stopped does: nobody answers.
+class StoppedPublisher {
+ public:
+  explicit StoppedPublisher(const std::string& name)
+      : listening_(std::move(*internal::listen_unix(internal::meeting_place(*parse_uri(name))))) {}
+  /// What the next reader has said, and nothing is answered.
+  internal::Descriptor await_reader() {
+    pollfd polled{listening_.descriptor.get(), POLLIN, 0};
+    EXPECT_EQ(::poll(&polled, 1, -1), 1);
+    return internal::Descriptor(
+        ::accept4(listening_.descriptor.get(), nullptr, nullptr, SOCK_CLOEXEC));
+  }
+
+ private:
+  internal::ListeningSocket listening_;
+};
+
+TEST(Shm, AReaderThatReconnectsDoesNotWaitForAPublisherThatIsStopped) {
+  auto name = fresh_name();
+  auto stopped = std::make_unique<StoppedPublisher>(name);
+  Warnings warnings;
+  auto source = source_of(name + "?reconnect=60", warnings.options());
+  auto reader = stopped->await_reader();
+  Message message;
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+  EXPECT_TRUE(source->prepare_wait());
+  // Who waits 4 s for an answer would have given up by itself, and said so.
+  EXPECT_TRUE(warnings.lines.empty());
+  stopped.reset();
+  reader.reset();
+  auto sink = sink_of(name);
+  std::thread publisher([&] { ASSERT_TRUE(sink->send(numbered(1, kSmall))); });
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
+  publisher.join();
+  ASSERT_EQ(warnings.lines.size(), 1U);
+  EXPECT_EQ(warnings.lines[0], name +
+                                   "?reconnect=60: the publisher has gone before it answered; "
+                                   "connecting again");
 }
 
 TEST(Shm, NobodyThereIsSaid) {
@@ -324,8 +367,7 @@ TEST(Shm, AProgramThatKeepsAllLoansIsToldSo) {
   for (int i = 0; i < 30; ++i) loans.push_back(sink->loan(numbered(i, kLarge).header));
   auto sent = sink->send(numbered(0, kLarge));
   ASSERT_FALSE(sent);
-  EXPECT_EQ(sent.error().text(),
-            "TooLarge: no room left: this program holds all of the memory");
+  EXPECT_EQ(sent.error().text(), "TooLarge: no room left: this program holds all of the memory");
 }
 
 TEST(Shm, TextTravelsWithItsHeaderAndWithoutBeingWritten) {

@@ -24,7 +24,9 @@ Result<Descriptor> try_to_connect(const Address& address, const std::string& nam
                                   Deadline deadline, int stop) {
   auto socket = open_socket(address);
   if (!socket) return socket;
-  auto connected = [&] { return is_with_itself(socket->get()) ? Descriptor() : std::move(*socket); };
+  auto connected = [&] {
+    return is_with_itself(socket->get()) ? Descriptor() : std::move(*socket);
+  };
   if (::connect(socket->get(), address.get(), address.size) == 0) return connected();
   if (errno == EINPROGRESS) {
     auto answered = wait_for(socket->get(), POLLOUT, stop, deadline);
@@ -125,7 +127,7 @@ Result<Descriptor> accept_peer(const ListeningSocket& socket, const LogSink& log
       Descriptor peer(number);
       auto admitted = socket.admit ? socket.admit(number) : Status();
       if (!admitted) {
-        if (log) log(Severity::Warning, admitted.error().text());
+        if (log) log(Severity::Warning, admitted.error().detail);
         continue;
       }
       set_up_connection(number);

@@ -45,8 +45,8 @@ struct Address {
 /// A fresh socket for an address, whose calls do not wait. Errors: System.
 Result<Descriptor> open_socket(const Address& address);
 
-/// Whether a TCP connection is one with itself. The kernel makes such a one where nobody listens and
-/// the port that it chose for this end happens to be the other's; it counts as refused.
+/// Whether a TCP connection is one with itself. The kernel makes such a one where nobody listens
+/// and the port that it chose for this end happens to be the other's; it counts as refused.
 bool is_with_itself(int socket);
 
 /// How long a peer may take to answer when one does not wait for it to begin listening.

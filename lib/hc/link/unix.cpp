@@ -41,19 +41,6 @@ Result<UnixAddress> address_of(const Uri& uri) {
   return result;
 }
 
-/// An abstract name has no permissions of its own.
-Status admit_same_user(int peer) {
-  ucred credentials{};
-  socklen_t size = sizeof credentials;
-  auto asked = system_call("getsockopt", "SO_PEERCRED", [&] {
-    return ::getsockopt(peer, SOL_SOCKET, SO_PEERCRED, &credentials, &size);
-  });
-  if (!asked) return asked.error();
-  if (credentials.uid == ::geteuid() || credentials.uid == 0) return {};
-  return Error{Code::Closed, "refused process " + std::to_string(credentials.pid) + " of user " +
-                                 std::to_string(credentials.uid)};
-}
-
 /// Whether a socket's file was left behind by a process that was killed: nobody has it bound.
 ///
 /// Asked with a socket of the other kind, which a listener is never told of; a connection would
@@ -68,13 +55,36 @@ bool is_left_behind(const UnixAddress& address) {
 
 }  // namespace
 
+// An abstract name has no permissions of its own.
+std::string foreigner(int socket) {
+  ucred credentials{};
+  socklen_t size = sizeof credentials;
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0)
+    return "a user that the kernel does not tell";
+  if (credentials.uid == ::geteuid() || credentials.uid == 0) return "";
+  return "another user (uid " + std::to_string(credentials.uid) + ")";
+}
+
+namespace {
+
+/// What lets this user in alone, and says so of others.
+std::function<Status(int)> refuser(std::string_view what) {
+  return [what](int socket) -> Status {
+    auto who = foreigner(socket);
+    if (who.empty()) return {};
+    return Error{Code::Closed, std::string(what) + who};
+  };
+}
+
+}  // namespace
+
 Result<Peer> unix_peer(const Uri& uri) {
   auto address = address_of(uri);
   if (!address) return address.error();
   Peer peer;
   peer.name = uri.rest;
   peer.addresses.emplace_back(&address->address, address->size);
-  if (is_abstract(uri)) peer.admit = admit_same_user;
+  if (is_abstract(uri)) peer.admit = refuser("who listens there is of ");
   return peer;
 }
 
@@ -83,7 +93,7 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
   if (!address) return address.error();
   ListeningSocket socket;
   if (is_abstract(uri))
-    socket.admit = admit_same_user;
+    socket.admit = refuser("refused a peer of ");
   else if (is_left_behind(*address))
     ::unlink(uri.rest.c_str());
   auto descriptor = listen_on({&address->address, address->size}, uri.rest);

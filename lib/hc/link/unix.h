@@ -8,6 +8,10 @@
 
 namespace hc::internal {
 
+/// "another user (uid 1000)" where a connection's other side is of another user, but for root, who
+/// may do all; empty where it is not.
+std::string foreigner(int socket);
+
 /// A socket that listens at `unix:PATH` or `unix:@NAME`; of those that connect to a @NAME only
 /// processes of this user are let in. Errors: Usage, System.
 Result<ListeningSocket> listen_unix(const Uri& uri);
