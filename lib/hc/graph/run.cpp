@@ -22,6 +22,7 @@ constexpr std::size_t kMaxDescription = std::size_t{1} << 20;
 constexpr std::size_t kMaxLine = 4096;
 constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;    // a pipe can be made to hold a MiB; source: man 7 pipe
+constexpr int kSignal = 128;       // the status of who was killed by one is above
 constexpr int kMaxReports = 1024;  // of counters, in one turn
 
 /// A module that runs, or has.
@@ -38,7 +39,7 @@ struct Running {
 /// How a process has ended, by its status.
 std::string end_in_words(int status) {
   if (status == 0) return "ended";
-  if (status > 128) return "killed by signal " + std::to_string(status - 128);
+  if (status > kSignal) return "killed by signal " + std::to_string(status - kSignal);
   return "failed with status " + std::to_string(status);
 }
 
@@ -74,11 +75,13 @@ class Runner {
         say("graph: stopping");
         end_all();
       }
+      const bool is_ending = kill_at.has_value();
       for (auto& module : running_) {
         read_lines(module);
         read_counters(module);
         bool failed = note_end(module);
-        if (failed && !kill_at) {
+        // Who was killed is the cause of what others say of their links.
+        if (failed && !is_ending && (outcome || *module.status > kSignal)) {
           outcome = Error{Code::Closed,
                           "module " + module.module->name + ": " + end_in_words(*module.status)};
           end_all();
