@@ -72,6 +72,26 @@ to = "brightness.image"
         path = pathlib.Path("/proc/%d/task/%d/children" % (pid, pid))
         return [int(word) for word in path.read_text().split()] if path.exists() else []
 
+    def test_what_was_lost_is_told_with_its_reason(self):
+        self.write(
+            "slow.toml",
+            """
+[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true, count = 30, rate = 200, width = 80, height = 60 }
+[modules.brightness]
+[[links]]
+from = "camera.left"
+to = "brightness.image"
+keep = "latest"
+rate = 2
+"""
+            % DATA,
+        )
+        out = self.shell("hc run --quiet slow.toml")
+        self.assertRegex(
+            out, r"camera\.left -> brightness\.image .* (\d+) lost \(\1 over the rate\)"
+        )
+
     def test_interrupt_ends_a_graph_cleanly(self):
         process = self.run_live()
         children = self.children(process.pid)

@@ -46,11 +46,28 @@ class SharedMemory(harness.Pipes):
         wait_until(lambda: got.exists() and got.stat().st_size > 100_000)
         os.kill(publisher.pid, signal.SIGKILL)
         _, err = reader.communicate(timeout=WATCHDOG)
-        self.assertEqual(reader.returncode, 0)
-        self.assertIn(b"the publisher has died", err)
+        self.assertEqual(reader.returncode, 1)  # its stream was cut
+        line = "hc record: Closed: %s?wait=60: the publisher has died\n" % self.uri
+        self.assertEqual(err.decode(), line)
         self.assertIn(" messages, ", self.shell("hc info got.mtp"))  # all of them are whole
         self.assertFalse(listens_at(self.name))
         self.test_two_readers_get_the_same_bytes()
+
+    def test_who_reconnects_finds_the_next_publisher(self):
+        self.many(50)
+        uri = self.uri + "?reconnect=60"
+        reader = self.start("exec hc record got.mtp --in '%s' 2>said" % uri)
+        publisher = self.start("exec hc play --loop --speed max many.mtp --out %s" % self.uri)
+        got, said = (pathlib.Path(self.path(name)) for name in ("got.mtp", "said"))
+        wait_until(lambda: got.exists() and got.stat().st_size > 100_000)
+        os.kill(publisher.pid, signal.SIGKILL)
+        line = uri + ": the publisher has died; connecting again\n"
+        wait_until(lambda: line in said.read_text())
+        before = got.stat().st_size
+        self.shell("hc play --speed max many.mtp --out '%s?readers=1'" % self.uri)
+        wait_until(lambda: got.stat().st_size >= before + 50 * 20000)
+        reader.terminate()
+        self.assertEqual(reader.wait(WATCHDOG), 0)
 
     def test_a_killed_reader_does_not_hold_up_the_publisher(self):
         self.many(50)

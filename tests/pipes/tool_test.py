@@ -51,6 +51,25 @@ class Tool(Pipes):
                 self.assertTrue(self.err.startswith(line), self.err)
                 self.assertEqual(self.err.count("\n"), 1, self.err)
 
+    def test_a_peer_that_never_was_there_is_named(self):
+        uri = "tcp:%d?reconnect=1" % free_port()
+        for command, who in (
+            ("hc cat '%s'", "hc cat"),
+            ("hc send 1 --out '%s'", "hc send"),
+            ("hc brightness --in '%s'", "brightness"),
+            ("hc camera %s/aloeL.jpg --out '%%s'" % DATA, "camera"),
+        ):
+            with self.subTest(command):
+                self.shell(command % uri, 1)
+                line = "%s: NotFound: %s: nobody was there for 1 s: Connection refused\n" % (
+                    who,
+                    uri,
+                )
+                self.assertEqual(self.err, line)
+
+    def test_help_lists_all_links(self):
+        self.assertIn("shm:NAME", self.shell("hc --help"))
+
     def test_send_makes_what_it_is_told(self):
         out = self.shell(
             "hc send --src 3 --dst -1 --seq 9 --ttl 2 --time 5 --mode 4 --coord 1003 --encoding zstd"
