@@ -387,7 +387,7 @@ TEST_P(SocketLink, OneSlowReaderHoldsUpNoOther) {
 }
 
 TEST_P(SocketLink, EveryStreamThatIsCutIsToldOnce) {
-  constexpr int kCount = 2000;
+  constexpr int kCount = 10'000;
   std::minstd_rand random(1);
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());
