@@ -53,10 +53,8 @@ class PacedSink final : public Sink {
   [[nodiscard]] Traffic traffic() const override {
     std::lock_guard lock(mutex_);
     Traffic traffic = sink_->traffic();
-    traffic.kept_back += lost_.kept_back;
-    traffic.superseded += lost_.superseded;
-    traffic.over_rate += lost_.over_rate;
-    traffic.over_memory += lost_.over_memory;
+    traffic += lost_;
+    traffic.messages += lost_.lost() + outbox_.size();
     return traffic;
   }
 

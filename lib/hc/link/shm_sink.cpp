@@ -324,6 +324,7 @@ Status ShmSink::send(const Message& message) {
     }
     if (auto placed = place(message, slot); !placed) return placed;
     if (slot == nullptr) {
+      ++traffic_.messages;
       ++traffic_.over_memory;
       return {};
     }
