@@ -2,8 +2,6 @@
 #pragma once
 // What tcp and unix links do beyond the conformance of all: they listen, refuse, and meet again.
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -17,28 +15,11 @@
 #include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
 #include <hc/link/listening_source.h>
+#include <hc/link/loopback_test.h>
 #include <hc/link/stream_link.h>
 #include <hc/wire/codec.h>
 
 namespace hc::testing {
-
-inline sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
-}
-
-/// A port that the kernel has just found free.
-inline std::string free_port() {
-  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size), 0);
-  EXPECT_EQ(::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
-  return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-}
 
 /// A scheme whose links are sockets.
 struct SocketScheme {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <arpa/inet.h>
 #include <linux/filter.h>
-#include <netinet/in.h>
 
 #include <dlfcn.h>
 
@@ -58,29 +56,10 @@ TEST(Tcp, ListensOnLoopbackUnlessAskedOtherwise) {
   EXPECT_EQ(std::to_string(ntohs(address.sin_port)), port);
 }
 
-/// A port of 127.0.0.1 that answers nobody: it has no room for another connection.
-class SilentPort {
- public:
-  SilentPort() {
-    sockaddr_in address = loopback(0);
-    socklen_t size = sizeof address;
-    auto* place = reinterpret_cast<sockaddr*>(&address);
-    EXPECT_EQ(::bind(listening_.get(), place, size), 0);
-    EXPECT_EQ(::getsockname(listening_.get(), place, &size), 0);
-    EXPECT_EQ(::listen(listening_.get(), 0), 0);
-    port_ = ntohs(address.sin_port);
-    for (auto& socket : waiting_) {
-      socket = internal::Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
-      ::connect(socket.get(), place, size);
-    }
-  }
-  [[nodiscard]] std::uint16_t port() const { return port_; }
-
- private:
-  internal::Descriptor listening_{::socket(AF_INET, SOCK_STREAM, 0)};
-  std::array<internal::Descriptor, 4> waiting_;
-  std::uint16_t port_ = 0;
-};
+/// A name that stands for two ports of 127.0.0.1.
+std::array<internal::Address, 2> both(std::uint16_t first, std::uint16_t second) {
+  return {loopback_address(first), loopback_address(second)};
+}
 
 TEST(Tcp, WaitingEndsThoughNobodyAnswers) {
   SilentPort silent;
@@ -96,19 +75,16 @@ TEST(Tcp, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
   SilentPort silent;
   std::string place = free_port();
   auto source = source_of("tcp-listen:" + place);
-  sockaddr_in first = loopback(silent.port()), second = loopback(parse_host_port(place)->port);
-  std::array<internal::Address, 2> both = {{{&first, sizeof first}, {&second, sizeof second}}};
-  EXPECT_TRUE(internal::connect_to(both, "both", std::chrono::seconds(1), -1));
+  auto addresses = both(silent.port(), parse_host_port(place)->port);
+  EXPECT_TRUE(internal::connect_to(addresses, "both", std::chrono::seconds(1), -1));
 }
 
 TEST(Tcp, EveryAddressIsTriedAgain) {
-  std::string place = free_port(), other = free_port();
-  sockaddr_in first = loopback(parse_host_port(place)->port);
-  sockaddr_in second = loopback(parse_host_port(other)->port);
-  std::array<internal::Address, 2> both = {{{&first, sizeof first}, {&second, sizeof second}}};
+  std::string place = free_port();
+  auto addresses = both(parse_host_port(place)->port, parse_host_port(free_port())->port);
   std::unique_ptr<Source> source;
   std::thread late([&] { source = source_of("tcp-listen:" + place); });
-  EXPECT_TRUE(internal::connect_to(both, "both", std::chrono::seconds(60), -1));
+  EXPECT_TRUE(internal::connect_to(addresses, "both", std::chrono::seconds(60), -1));
   late.join();
 }
 
