@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/dialing_source.h>
 
-#include <sys/epoll.h>
-#include <sys/timerfd.h>
-
 #include <algorithm>
 
-#include <hc/link/descriptor.h>
+#include <hc/link/epoll.h>
 
 namespace hc::internal {
 
 Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer, Open open,
                                                     const LinkOptions& options) {
-  auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+  auto poll = make_epoll();
   if (!poll) return poll.error();
-  Descriptor poll_owner(*poll);
-  auto timer = system_call("timerfd_create", "", [] {
-    return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-  });
+  auto timer = make_timer();
   if (!timer) return timer.error();
   std::unique_ptr<DialingSource> source(new DialingSource(
-      std::move(dialer), std::move(open), std::move(poll_owner), Descriptor(*timer), options));
+      std::move(dialer), std::move(open), std::move(*poll), std::move(*timer), options));
   source->watch(source->timer_.get(), EPOLLIN);
   static_cast<void>(source->dial());  // the first take() tells if it is in vain
   return std::unique_ptr<Source>(std::move(source));
@@ -54,7 +48,6 @@ Status DialingSource::dial() {
   auto connected = dialer_->dial(now);
   if (!connected) return connected.error();
   if (auto remark = dialer_->take_remark(now)) log(*remark);
-  itimerspec when{};
   if (*connected) {
     auto source = open_(std::move(*connected));
     if (!source) {
@@ -67,21 +60,19 @@ Status DialingSource::dial() {
       connected_at_ = now;
     }
   }
+  std::chrono::nanoseconds left(0);
   if (source_ == nullptr) {
-    // A timer of 0 would be none.
-    auto left =
-        std::max<std::chrono::nanoseconds>(dialer_->due() - now, std::chrono::nanoseconds(1));
-    when.it_value = {left.count() / std::nano::den, left.count() % std::nano::den};
+    left = std::max(dialer_->due() - now, std::chrono::nanoseconds(1));
     if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), EPOLLOUT);
   }
-  ::timerfd_settime(timer_.get(), 0, &when, nullptr);
+  set_timer(timer_, left);
   return {};
 }
 
 void DialingSource::lose_connection(const std::string& why) {
   past_ += source_->traffic();
   // Messages that are held may keep the connection open.
-  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, source_->descriptor(), nullptr);
+  static_cast<void>(control(poll_, EPOLL_CTL_DEL, source_->descriptor()));
   source_.reset();
   log(why + "; connecting again");
   auto now = std::chrono::steady_clock::now();
@@ -90,10 +81,8 @@ void DialingSource::lose_connection(const std::string& why) {
 
 /// Watches a descriptor, which is forgotten when it is closed.
 void DialingSource::watch(int descriptor, std::uint32_t events) const {
-  epoll_event event{};
-  event.events = events;
-  if (::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) != 0)
-    ::epoll_ctl(poll_.get(), EPOLL_CTL_MOD, descriptor, &event);
+  if (!control(poll_, EPOLL_CTL_ADD, descriptor, events))
+    static_cast<void>(control(poll_, EPOLL_CTL_MOD, descriptor, events));
 }
 
 void DialingSource::log(std::string_view line) const {

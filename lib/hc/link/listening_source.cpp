@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/listening_source.h>
 
-#include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <sys/timerfd.h>
 
 #include <algorithm>
 #include <array>
 
 #include <hc/link/dialer.h>
+#include <hc/link/epoll.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
 namespace {
 
-constexpr long kRetryNanoseconds = 200'000'000;  // until one is let in again who could not be
+constexpr std::chrono::milliseconds kRetryTime{200};  // until one is let in who could not be
 
 bool is_readable(int descriptor) {
   pollfd polled{descriptor, POLLIN, 0};
@@ -26,15 +25,12 @@ bool is_readable(int descriptor) {
 
 Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
                                                       const LinkOptions& options) {
-  auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+  auto poll = make_epoll();
   if (!poll) return poll.error();
-  Descriptor poll_owner(*poll);
-  auto timer = system_call("timerfd_create", "", [] {
-    return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-  });
+  auto timer = make_timer();
   if (!timer) return timer.error();
   std::unique_ptr<ListeningSource> source(
-      new ListeningSource(std::move(socket), std::move(poll_owner), Descriptor(*timer), options));
+      new ListeningSource(std::move(socket), std::move(*poll), std::move(*timer), options));
   auto& self = *source;
   for (Descriptor* descriptor : {&self.socket_.descriptor, &self.timer_})
     if (auto watched = self.watch(descriptor->get(), descriptor); !watched) return watched.error();
@@ -42,17 +38,11 @@ Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
 }
 
 Status ListeningSource::watch(int descriptor, void* who) {
-  epoll_event event{};
-  event.events = EPOLLIN;
-  event.data.ptr = who;
-  auto added = system_call(
-      "epoll_ctl", "", [&] { return ::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event); });
-  if (!added) return added.error();
-  return {};
+  return control(poll_, EPOLL_CTL_ADD, descriptor, EPOLLIN, {.ptr = who});
 }
 
 void ListeningSource::forget(int descriptor) {
-  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, descriptor, nullptr);
+  static_cast<void>(control(poll_, EPOLL_CTL_DEL, descriptor));
 }
 
 /// Asks who has something; gives whether there was anything before the time was up.
@@ -123,9 +113,7 @@ void ListeningSource::accept_all() {
 /// readable, is overlooked, and a timer tells when to try again.
 void ListeningSource::accept_later(bool later) {
   if (!later && !later_) return;
-  itimerspec when{};
-  if (later) when.it_value.tv_nsec = kRetryNanoseconds;
-  ::timerfd_settime(timer_.get(), 0, &when, nullptr);
+  set_timer(timer_, later ? kRetryTime : std::chrono::milliseconds(0));
   if (later)
     forget(socket_.descriptor.get());
   else

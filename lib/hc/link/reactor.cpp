@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include <hc/link/descriptor.h>
+#include <hc/link/epoll.h>
 
 namespace hc::internal {
 namespace {
@@ -35,13 +35,14 @@ class Reactor {
   Status start() {
     std::lock_guard lock(mutex_);
     if (started_) return {};
-    auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+    auto poll = make_epoll();
     if (!poll) return poll.error();
-    poll_ = Descriptor(*poll);
+    poll_ = std::move(*poll);
     auto wake = system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
     if (!wake) return wake.error();
     wake_ = Descriptor(*wake);
-    if (auto watched = control(EPOLL_CTL_ADD, wake_.get(), EPOLLIN, kWakeId); !watched)
+    if (auto watched = control(poll_, EPOLL_CTL_ADD, wake_.get(), EPOLLIN, {.u64 = kWakeId});
+        !watched)
       return watched;
     return start_thread();
   }
@@ -61,7 +62,7 @@ class Reactor {
     entry = std::move(entries_.at(id));  // lives on while its own callback runs
     entries_.erase(id);
     due_.erase({entry->due, id});
-    if (entry->wanted != 0) static_cast<void>(control(EPOLL_CTL_DEL, entry->descriptor, 0, id));
+    if (entry->wanted != 0) static_cast<void>(control(poll_, EPOLL_CTL_DEL, entry->descriptor));
     if (std::this_thread::get_id() == thread_) return;
     returned_.wait(lock, [&] { return running_ != id; });
   }
@@ -73,7 +74,7 @@ class Reactor {
     Entry& entry = *found->second;
     if (events == entry.wanted && (events & EPOLLONESHOT) == 0) return {};
     int operation = events == 0 ? EPOLL_CTL_DEL : entry.wanted == 0 ? EPOLL_CTL_ADD : EPOLL_CTL_MOD;
-    auto done = control(operation, entry.descriptor, events, id);
+    auto done = control(poll_, operation, entry.descriptor, events, {.u64 = id});
     if (done) entry.wanted = events;
     return done;
   }
@@ -91,16 +92,6 @@ class Reactor {
   }
 
  private:
-  Status control(int operation, int descriptor, std::uint32_t events, std::uint64_t id) const {
-    epoll_event event{};
-    event.events = events;
-    event.data.u64 = id;
-    auto done = system_call(
-        "epoll_ctl", "", [&] { return ::epoll_ctl(poll_.get(), operation, descriptor, &event); });
-    if (!done) return done.error();
-    return {};
-  }
-
   Status start_thread() {
     // A signal is for the threads that know what to do about it.
     sigset_t all, before;
