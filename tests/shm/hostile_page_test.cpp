@@ -73,6 +73,18 @@ void disturb(const FakeReader& reader, const std::atomic<bool>& done) {
   words.cursor.store(internal::ReaderPage::kLeft);
 }
 
+/// Takes so many messages, of which every one comes whole.
+void take_all(Source& source, std::int64_t count) {
+  Message message;
+  for (std::int64_t i = 0; i < count; ++i) {
+    auto got = receive(source, message);
+    ASSERT_TRUE(got) << got.error().text();
+    ASSERT_TRUE(*got);
+    ASSERT_EQ(message.header.seq, i);
+    ASSERT_TRUE(is_whole(message));
+  }
+}
+
 /// The other reader gets every message, whole.
 TEST(HostileReaderPage, WordsChangeWhileTheyAreUsed) {
   for (const char* keep : {"all", "latest", "700"}) {
@@ -93,14 +105,7 @@ TEST(HostileReaderPage, WordsChangeWhileTheyAreUsed) {
       }
       ASSERT_TRUE(sink->close());
     });
-    Message message;
-    for (std::int64_t i = 0; i < count; ++i) {
-      auto got = receive(*source, message);
-      ASSERT_TRUE(got) << got.error().text();
-      ASSERT_TRUE(*got);
-      ASSERT_EQ(message.header.seq, i);
-      ASSERT_TRUE(is_whole(message));
-    }
+    take_all(*source, count);
     publisher.join();
     done = true;
     writer.join();
@@ -128,21 +133,13 @@ TEST(HostileReaderPage, TheCursorGoesBackwards) {
   });
   const auto count = rounds(300'000);
   std::thread publisher([&] {
-    Message message = make_checked(nullptr, 1, 0, 24);
-    for (; message.header.seq < count; ++message.header.seq) {
-      auto sent = sink->send(message);
+    for (std::int64_t i = 0; i < count; ++i) {
+      auto sent = sink->send(make_checked(nullptr, 1, i, 24));
       ASSERT_TRUE(sent) << sent.error().text();
     }
     ASSERT_TRUE(sink->close());
   });
-  Message message;
-  for (std::int64_t i = 0; i < count; ++i) {
-    auto got = receive(*source, message);
-    ASSERT_TRUE(got) << got.error().text();
-    ASSERT_TRUE(*got);
-    ASSERT_EQ(message.header.seq, i);
-    if (i % 1000 == 0) std::this_thread::yield();
-  }
+  take_all(*source, count);
   publisher.join();
   done = true;
   writer.join();
