@@ -55,6 +55,28 @@ TEST(Shm, LargeElementsAreReadWhereTheyWereWritten) {
   EXPECT_EQ(sent.elements.data(), written);
 }
 
+/// Elements of every size about that of a cell, with headers of several lengths; in memory that
+/// begins anywhere and ends with them, so that what is read beyond it is noticed (ASan).
+TEST(Shm, EverySizeArrivesWhole) {
+  auto name = fresh_name();
+  auto sink = sink_of(name);
+  auto source = source_of(name);
+  for (std::size_t shift = 0; shift < 9; ++shift)
+    for (std::int32_t size = 0; size <= 260; ++size) {
+      std::vector<std::byte> memory(shift + static_cast<std::size_t>(size));
+      for (std::size_t i = 0; i < memory.size(); ++i)
+        memory[i] = static_cast<std::byte>(i * 37 + 1);
+      Message sent;
+      sent.header = numbered(size % 3 == 0 ? 1'234'567'890 : size, size).header;
+      sent.elements = std::span(memory).subspan(shift);
+      ASSERT_TRUE(sink->send(sent));
+      Message message;
+      ASSERT_TRUE(*receive(*source, message));
+      ASSERT_EQ(message.header, sent.header);
+      ASSERT_EQ(message.characters(), sent.characters()) << size;
+    }
+}
+
 TEST(Shm, ASlotIsUsedAgainOnlyWhenNobodyHoldsIt) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?memory=2M");

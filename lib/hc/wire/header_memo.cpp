@@ -96,10 +96,10 @@ std::size_t HeaderMemo::format(const Header& header, std::span<char, kMaxHeaderB
       put_number(static_cast<std::uint64_t>(value), line.data(), digits->begin, digits->size);
     return size_ + 1;
   }
-  if (++differing_ < kPatience) return format_header(header, line);
-  remember(header);
-  std::memcpy(line.data(), line_.data(), size_ + 1);
-  return size_ + 1;
+  auto size = format_header(header, line);
+  std::memset(line.data() + size, 0, (kWord - size % kWord) % kWord);
+  if (++differing_ >= kPatience) remember(header);
+  return size;
 }
 
 void HeaderMemo::remember(const Header& header) {

@@ -13,13 +13,14 @@
 
 namespace hc::internal {
 
-/// A canonical header line, and where in it seq and time stand.
+/// A canonical header line, and where in it seq and time stand. Each is for one direction: parse()
+/// takes what it remembers for checked, which format() does not do.
 class HeaderMemo {
  public:
   /// parse_header(), to the letter. Cost: less than half of it where the memo helps.
   Result<Header> parse(std::string_view line, const Limits& limits, std::uint64_t byte);
 
-  /// format_header(), to the byte.
+  /// format_header(), to the byte; with zeros behind it to the end of the last word.
   std::size_t format(const Header& header, std::span<char, kMaxHeaderBytes> line);
 
  private:
