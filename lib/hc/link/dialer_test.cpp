@@ -22,8 +22,9 @@ using std::chrono::seconds;
 
 // The first pauses are within 100, 200, 400, 800, 1600 and 3200 ms, and all others within 5 s.
 constexpr std::array<milliseconds, 9> kBounds = {
-    milliseconds(100),  milliseconds(200),  milliseconds(400),  milliseconds(800), milliseconds(1600),
-    milliseconds(3200), milliseconds(5000), milliseconds(5000), milliseconds(5000)};
+    milliseconds(100),  milliseconds(200),  milliseconds(400),
+    milliseconds(800),  milliseconds(1600), milliseconds(3200),
+    milliseconds(5000), milliseconds(5000), milliseconds(5000)};
 
 TEST(Backoff, APauseIsAnywhereBelowABoundThatDoublesUpTo5Seconds) {
   constexpr int kSeeds = 2000, kParts = 10;

@@ -46,8 +46,8 @@ inline Status control(const Descriptor& epoll, int operation, int descriptor,
   epoll_event event{};
   event.events = events;
   event.data = data;
-  auto done = system_call(
-      "epoll_ctl", "", [&] { return ::epoll_ctl(epoll.get(), operation, descriptor, &event); });
+  auto done = system_call("epoll_ctl", "",
+                          [&] { return ::epoll_ctl(epoll.get(), operation, descriptor, &event); });
   if (!done) return done.error();
   return {};
 }

@@ -107,18 +107,16 @@ Result<bool> Outlet::send(Outgoing& message, TimePoint now) {
 
 /// Begins a message, for which there is no hindrance.
 void Outlet::put(const Parcel& parcel, TimePoint now) {
-  if (writer_.has_room(parcel.size())) {
-    if (writer_.gathered() == 0) oldest_ = now;
-    bool pays = writer_.gathered() > 0 || gathering_.pays(now - last_write_ < kFollowTime);
-    writer_.gather(parcel.pieces);
+  const bool is_first = writer_.gathered() == 0;
+  if (writer_.add(parcel.pieces, parcel.keeper)) {
+    if (is_first) oldest_ = now;
+    bool pays = !is_first || gathering_.pays(now - last_write_ < kFollowTime);
     if (pays && writer_.gathered() < kFlushBytes && now - oldest_ < kFlushAge) {
       is_gathering_ = true;
       // The reactor has work only when no further message comes; else they are written here.
-      if (!std::exchange(flush_is_due_, true)) timer_->call_at(now + 2 * kFlushAge);
+      if (!std::exchange(flush_is_due_, true)) timer_->call_at(flush_due());
       return;
     }
-  } else {
-    writer_.attach(parcel.pieces, parcel.keeper);
   }
   write();
 }
@@ -143,13 +141,9 @@ void Outlet::advance(TimePoint now) {
     if (!writer_.empty()) write();
     if (blocked_ || !writer_.empty()) return;
     while (outbox_.ready_at(now, losses_) <= now) {
-      bool fits = writer_.has_room(outbox_.front().size());
-      if (!fits && !writer_.empty()) break;
+      if (!writer_.empty() && !writer_.has_room(outbox_.front().size())) break;
       auto parcel = outbox_.pop(now);
-      if (fits)
-        writer_.gather(parcel.pieces);
-      else
-        writer_.attach(parcel.pieces, std::move(parcel.keeper));
+      writer_.add(parcel.pieces, parcel.keeper);
     }
     if (writer_.empty()) return;
   }
@@ -204,9 +198,7 @@ void Outlet::on_event(std::uint32_t events) {
   if (events = missed_events_.exchange(0); events != 0) wanted_ = 0;
   if (failed_) return;
   check_events(events, now);
-  bool young = connected() && !blocked_ && outbox_.empty() && look_due_ > now &&
-               now < oldest_ + 2 * kFlushAge;
-  if (!young) advance(now);
+  if (!connected() || blocked_ || due(now) <= now) advance(now);
   arm(now);
 }
 
@@ -232,7 +224,7 @@ TimePoint Outlet::due(TimePoint now) {
   if (!connected()) return dialer_->due();
   auto when = look_due_;
   if (blocked_) return when;
-  if (!writer_.empty()) when = std::min(when, oldest_ + 2 * kFlushAge);
+  if (!writer_.empty()) when = std::min(when, flush_due());
   return std::min(when, outbox_.ready_at(now, losses_));
 }
 
@@ -254,12 +246,7 @@ Status Outlet::drain(bool closing, std::optional<TimePoint> give_up) {
     auto waited = wait(give_up, now);
     if (waited) continue;
     if (waited.error().code != Code::Stopped) return waited.error();
-    if (!closing && !outbox_.empty()) {
-      outbox_.take_back();
-      arm(now);
-      return waited.error();
-    }
-    if (!closing && writer_.take_back()) {
+    if (!closing && take_back()) {
       arm(now);
       return waited.error();
     }
@@ -269,10 +256,16 @@ Status Outlet::drain(bool closing, std::optional<TimePoint> give_up) {
   return {};
 }
 
+/// Takes back the message that a thread waits with; false when it was begun.
+bool Outlet::take_back() {
+  if (outbox_.empty()) return writer_.take_back();
+  outbox_.take_back();
+  return true;
+}
+
 /// Waits for room, a connection, or the time when something is to be done.
 Result<bool> Outlet::wait(std::optional<TimePoint> give_up, TimePoint now) {
-  int descriptor = connected() ? writer_.descriptor() : dialer_->descriptor();
-  if (connected() && !blocked_) descriptor = -1;
+  int descriptor = !connected() ? dialer_->descriptor() : blocked_ ? writer_.descriptor() : -1;
   if (wanted_ == EPOLLOUT) want(0);  // this thread sees to it
   waits_ = true;
   auto waited = wait_for(descriptor, POLLOUT, give_up ? -1 : stop_,

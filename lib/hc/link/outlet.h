@@ -114,6 +114,8 @@ class Outlet {
   void arm(TimePoint now);
   void want(std::uint32_t events);
   [[nodiscard]] TimePoint due(TimePoint now);
+  [[nodiscard]] TimePoint flush_due() const { return oldest_ + 2 * kFlushAge; }
+  bool take_back();
   Status drain(bool closing, std::optional<TimePoint> give_up = std::nullopt);
   Result<bool> wait(std::optional<TimePoint> give_up, TimePoint now);
 

@@ -63,16 +63,22 @@ bool is_socket(int descriptor) {
 
 }  // namespace
 
+bool StreamWriter::add(const Pieces& pieces, const std::shared_ptr<const void>& keeper) {
+  const auto size = size_of(pieces);
+  if (has_room(size)) {
+    gather(pieces);
+    return true;
+  }
+  HC_CHECK(large_left_ == 0, large_left_);
+  large_left_ = size;
+  keep(pieces, keeper);
+  return false;
+}
+
 void StreamWriter::gather(const Pieces& pieces) {
   if (bytes_.capacity() == 0) bytes_.reserve(kMostGathered + kMostCopied);
   for (auto piece : pieces) bytes_.insert(bytes_.end(), piece.begin(), piece.end());
   ends_.push_back(bytes_.size());
-}
-
-void StreamWriter::attach(const Pieces& pieces, std::shared_ptr<const void> keeper) {
-  HC_CHECK(large_left_ == 0, large_left_);
-  large_left_ = size_of(pieces);
-  keep(pieces, std::move(keeper));
 }
 
 void StreamWriter::keep(const Pieces& pieces, std::shared_ptr<const void> keeper) {

@@ -43,12 +43,11 @@ class StreamWriter {
   [[nodiscard]] bool has_room(std::size_t size) const {
     return large_left_ == 0 && size <= kMostCopied && gathered() + size <= kMostGathered;
   }
-  /// Copies a message behind what is gathered; there is room.
-  void gather(const Pieces& pieces);
-  /// Has a large message written behind what is gathered; there is none yet.
+  /// Begins a message: gathers it where there is room, else has it written from where it is, for
+  /// which no other large one may be there. Whether it has been gathered.
   /// @param keeper  keeps the pieces alive; null: the caller does, until they are written, kept by
   ///     keep(), or forgotten.
-  void attach(const Pieces& pieces, std::shared_ptr<const void> keeper);
+  bool add(const Pieces& pieces, const std::shared_ptr<const void>& keeper);
   /// Whether there is a large message that its caller keeps alive.
   [[nodiscard]] bool borrows() const { return large_left_ > 0 && keeper_ == nullptr; }
   /// Has a copy stand for the large message, with pieces of the same sizes.
@@ -69,6 +68,7 @@ class StreamWriter {
   void close();
 
  private:
+  void gather(const Pieces& pieces);
   void advance(std::size_t size);
   void forget_written();
 

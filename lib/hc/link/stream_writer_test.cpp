@@ -59,11 +59,11 @@ class StreamWriterTest : public ::testing::Test {
  protected:
   StreamWriterTest() { writer_.start(std::move(connection_.writing)); }
 
-  void gather(const std::string& text) {
-    ASSERT_TRUE(writer_.has_room(text.size()));
-    writer_.gather(pieces_of(text));
+  void add_small(const std::string& text) {
+    EXPECT_TRUE(writer_.add(pieces_of(text), nullptr));
+    EXPECT_FALSE(writer_.borrows());
   }
-  void attach(const std::string& text) { writer_.attach(pieces_of(text), keeper_); }
+  void add_large(const std::string& text) { EXPECT_FALSE(writer_.add(pieces_of(text), keeper_)); }
   /// Goes over to another connection; what had come over the last one is forgotten.
   void reconnect() {
     connection_ = Connection();
@@ -90,8 +90,8 @@ class StreamWriterTest : public ::testing::Test {
 TEST_F(StreamWriterTest, WhatIsGatheredGoesInOneCall) {
   EXPECT_TRUE(writer_.empty());
   const std::string few = text_of(50, 3);
-  gather(small_);
-  gather(few);
+  add_small(small_);
+  add_small(few);
   EXPECT_EQ(writer_.gathered(), small_.size() + few.size());
   EXPECT_EQ(writer_.messages(), 2U);
   EXPECT_EQ(connection_.read(), "");
@@ -105,15 +105,15 @@ TEST_F(StreamWriterTest, GathersAsMuchAsItSays) {
   EXPECT_FALSE(writer_.has_room(StreamWriter::kMostCopied + 1));
   const std::string text = text_of(StreamWriter::kMostCopied, 1);
   std::string all;
-  for (; writer_.has_room(text.size()); all += text) gather(text);
+  for (; writer_.has_room(text.size()); all += text) add_small(text);
   EXPECT_EQ(all.size(), StreamWriter::kMostGathered);
   EXPECT_FALSE(writer_.has_room(1));
   EXPECT_EQ(transfer(), all);
 }
 
 TEST_F(StreamWriterTest, ALargeMessageGoesBehindWhatIsGathered) {
-  gather(small_);
-  attach(large_);
+  add_small(small_);
+  add_large(large_);
   EXPECT_FALSE(writer_.has_room(1));
   EXPECT_FALSE(*writer_.write());
   EXPECT_EQ(writer_.gathered(), 0U);
@@ -126,7 +126,7 @@ TEST_F(StreamWriterTest, ALargeMessageGoesBehindWhatIsGathered) {
 
 TEST_F(StreamWriterTest, KeepsALargeMessageAliveUntilItIsWritten) {
   std::weak_ptr<const void> alive = keeper_;
-  attach(large_);
+  add_large(large_);
   keeper_.reset();
   EXPECT_FALSE(writer_.borrows());
   EXPECT_FALSE(*writer_.write());
@@ -138,7 +138,7 @@ TEST_F(StreamWriterTest, KeepsALargeMessageAliveUntilItIsWritten) {
 TEST_F(StreamWriterTest, ACopyMayStandForABorrowedMessageThatWasBegun) {
   {
     std::string borrowed = large_;
-    writer_.attach(pieces_of(borrowed), nullptr);
+    EXPECT_FALSE(writer_.add(pieces_of(borrowed), nullptr));
     EXPECT_TRUE(writer_.borrows());
     EXPECT_FALSE(*writer_.write());
     EXPECT_TRUE(writer_.borrows());
@@ -165,9 +165,9 @@ TEST_F(StreamWriterTest, WritesInPartWhatThereIsRoomFor) {
     while (!writer_.has_room(is_large ? 0 : text.size())) step();
     sent += text;
     if (is_large)
-      attach(large = text);
+      add_large(large = text);
     else
-      gather(text);
+      add_small(text);
     if (random() % 2 == 0) step();
   }
   received += transfer();
@@ -176,7 +176,7 @@ TEST_F(StreamWriterTest, WritesInPartWhatThereIsRoomFor) {
 
 TEST_F(StreamWriterTest, WhatIsWrittenWholeIsCountedNoMore) {
   const std::string text = text_of(8000, 1);
-  for (int i = 0; i < 8; ++i) gather(text);
+  for (int i = 0; i < 8; ++i) add_small(text);
   EXPECT_FALSE(*writer_.write());
   auto come = connection_.read();
   EXPECT_EQ(writer_.messages(), 8 - come.size() / text.size());
@@ -186,19 +186,19 @@ TEST_F(StreamWriterTest, WhatIsWrittenWholeIsCountedNoMore) {
 
 TEST_F(StreamWriterTest, TakesBackWhatHasNotBegun) {
   EXPECT_FALSE(writer_.take_back());
-  gather(small_);
-  gather(other_);
+  add_small(small_);
+  add_small(other_);
   EXPECT_TRUE(writer_.take_back());
   EXPECT_EQ(writer_.messages(), 1U);
-  attach(large_);
+  add_large(large_);
   EXPECT_TRUE(writer_.take_back());
   EXPECT_FALSE(writer_.inside_message());
-  gather(other_);
+  add_small(other_);
   EXPECT_EQ(transfer(), small_ + other_);
 }
 
 TEST_F(StreamWriterTest, TakesNothingBackThatHasBegun) {
-  attach(large_);
+  add_large(large_);
   EXPECT_FALSE(*writer_.write());
   EXPECT_FALSE(writer_.take_back());
   EXPECT_EQ(transfer(), large_);
@@ -206,21 +206,21 @@ TEST_F(StreamWriterTest, TakesNothingBackThatHasBegun) {
   std::string sent, received;
   while (!writer_.inside_message()) {
     if (writer_.empty()) {
-      gather(other_);
+      add_small(other_);
       sent += other_;
     }
     if (!*writer_.write()) received += connection_.read(100);
   }
   EXPECT_EQ(writer_.messages(), 1U);
   EXPECT_FALSE(writer_.take_back());
-  gather(small_);
+  add_small(small_);
   EXPECT_TRUE(writer_.take_back());
   EXPECT_EQ(received + transfer(), sent);
 }
 
 TEST_F(StreamWriterTest, ANewConnectionGetsTheMessageThatWasBegunWhole) {
-  gather(small_);
-  attach(large_);
+  add_small(small_);
+  add_large(large_);
   EXPECT_FALSE(*writer_.write());
   ASSERT_GT(connection_.read().size(), small_.size());
   reconnect();
@@ -232,10 +232,10 @@ TEST_F(StreamWriterTest, ANewConnectionGetsTheSmallOneThatWasBegunAndThoseBehind
   const std::string text = text_of(5000, 1);
   std::string all;
   for (int i = 0; i < 10; ++i) {
-    gather(text);
+    add_small(text);
     all += text;
   }
-  attach(large_);
+  add_large(large_);
   EXPECT_FALSE(*writer_.write());
   auto whole = connection_.read().size() / text.size();
   ASSERT_LT(whole, 10U);
@@ -252,10 +252,10 @@ TEST_F(StreamWriterTest, ANewConnectionGetsTheSmallOneThatWasBegunAndThoseBehind
 }
 
 TEST_F(StreamWriterTest, WithoutAConnectionItKeepsWhatThereIs) {
-  gather(small_);
+  add_small(small_);
   writer_.start(Descriptor());
   EXPECT_EQ(writer_.descriptor(), -1);
-  gather(other_);
+  add_small(other_);
   reconnect();
   EXPECT_EQ(transfer(), small_ + other_);
 }
@@ -263,24 +263,24 @@ TEST_F(StreamWriterTest, WithoutAConnectionItKeepsWhatThereIs) {
 TEST_F(StreamWriterTest, ForgetsAndCountsWhatIsNotWrittenWhole) {
   EXPECT_EQ(writer_.clear(), 0U);
   std::weak_ptr<const void> alive = keeper_;
-  gather(small_);
-  gather(other_);
-  attach(large_);
+  add_small(small_);
+  add_small(other_);
+  add_large(large_);
   keeper_.reset();
   EXPECT_EQ(writer_.clear(), 3U);
   EXPECT_TRUE(alive.expired());
   EXPECT_TRUE(writer_.empty());
   EXPECT_FALSE(writer_.inside_message());
 
-  gather(small_);
-  attach(large_);
+  add_small(small_);
+  add_large(large_);
   EXPECT_FALSE(*writer_.write());
   EXPECT_EQ(writer_.clear(), 1U);
 }
 
 TEST_F(StreamWriterTest, AReaderThatHasGoneIsAnError) {
   connection_.reading.reset();
-  gather(small_);
+  add_small(small_);
   auto written = writer_.write();
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Code::Closed);
@@ -295,10 +295,10 @@ TEST_F(StreamWriterTest, APipeWithoutAReaderRaisesNoSignal) {
   Descriptor reading(ends[0]);
   writer_.start(Descriptor(ends[1]));
   EXPECT_FALSE(writer_.is_socket());
-  gather(small_);
+  add_small(small_);
   EXPECT_TRUE(*writer_.write());
   reading.reset();
-  gather(small_);
+  add_small(small_);
   EXPECT_EQ(writer_.write().error().code, Code::Closed);
   sigset_t pending;
   ::sigpending(&pending);
@@ -306,7 +306,7 @@ TEST_F(StreamWriterTest, APipeWithoutAReaderRaisesNoSignal) {
 }
 
 TEST_F(StreamWriterTest, TheEndIsFoundBehindWhatWasWritten) {
-  gather(small_);
+  add_small(small_);
   EXPECT_TRUE(*writer_.write());
   writer_.close();
   EXPECT_EQ(writer_.descriptor(), -1);
