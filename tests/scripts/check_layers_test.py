@@ -35,6 +35,8 @@ class Layers(unittest.TestCase):
             "lib/hc/graph/a.cpp": "#include <hc/node/module.h>",
             "lib/hc/link/a.h": "#include <fmt/format.h>",
             "lib/vision/a.cpp": "#include <hc/wire/codec.h>",
+            "lib/frames/a.cpp": "#include <hc/wire/codec.h>",
+            "lib/hc/wire/c.h": "#include <frames/tree.h>",
             "modules/a/main.cpp": '#include "../b/b.h"',
             "modules/b/main.cpp": "#include <hc/graph/plan.h>",
             "modules/c/main.cpp": 'std::cout << "hello";',

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <frames/track.h>
+
+#include <algorithm>
+
+namespace hc::frames {
+
+std::deque<Track::Sample>::const_iterator Track::first_from(std::int64_t time) const {
+  return std::lower_bound(samples_.begin(), samples_.end(), time,
+                          [](const Sample& sample, std::int64_t t) { return sample.time < t; });
+}
+
+Fed Track::add(std::int64_t time, const Pose& pose) {
+  HC_CHECK(time > 0, time);
+  if (samples_.empty() || time > samples_.back().time) {
+    samples_.push_back({time, pose});
+  } else {
+    if (samples_.back().time - time > memory_.span.count()) return Fed::TooOld;
+    auto next = first_from(time);
+    if (next->time == time) {
+      samples_[static_cast<std::size_t>(next - samples_.cbegin())].pose = pose;
+      return Fed::Replaced;
+    }
+    if (next == samples_.cbegin() && samples_.size() == memory_.poses) return Fed::TooOld;
+    samples_.insert(next, {time, pose});
+  }
+  while (samples_.size() > memory_.poses ||
+         samples_.back().time - samples_.front().time > memory_.span.count())
+    samples_.pop_front();
+  return Fed::Added;
+}
+
+TimeSpan Track::known() const {
+  HC_CHECK(!samples_.empty());
+  return {samples_.front().time, samples_.back().time};
+}
+
+Pose Track::at(std::int64_t time) const {
+  auto next = first_from(time);
+  HC_CHECK(next != samples_.end(), time);
+  if (next->time == time) return next->pose;
+  HC_CHECK(next != samples_.begin(), time);
+  auto before = std::prev(next);
+  return between(
+      before->pose, next->pose,
+      static_cast<double>(time - before->time) / static_cast<double>(next->time - before->time));
+}
+
+}  // namespace hc::frames

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <frames/tree.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include <hc/base/json_string.h>
+#include <hc/base/suggestion.h>
+
+namespace hc::frames {
+namespace {
+
+Error error(Code code, const std::string& what) {
+  return Error{code, "frames: " + what};
+}
+
+/// "12.3 ms": a difference of times as people say it.
+std::string duration(std::uint64_t ns) {
+  if (ns < 1000) return std::to_string(ns) + " ns";
+  double value = static_cast<double>(ns) / 1e3;
+  const char* unit = " µs";
+  for (const char* next : {" ms", " s"}) {
+    if (value < 999.95) break;  // what is more would be shown as 1000.0
+    value /= 1e3;
+    unit = next;
+  }
+  std::array<char, 32> digits{};
+  auto end = std::to_chars(digits.begin(), digits.end(), value, std::chars_format::fixed, 1).ptr;
+  return std::string(digits.begin(), end) + unit;
+}
+
+/// ", asked for 25 ns: 5 ns too late", of a time outside the span.
+std::string outside(std::int64_t time, TimeSpan span) {
+  if (time == 0) return ", asked for time 0, which is none";
+  // Unsigned, so that no difference overflows.
+  auto since = [](std::int64_t later, std::int64_t earlier) {
+    return duration(static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier));
+  };
+  return ", asked for " + std::to_string(time) + " ns: " +
+         (time < span.first ? since(span.first, time) + " too early"
+                            : since(time, span.last) + " too late");
+}
+
+}  // namespace
+
+Tree Tree::standard() {
+  // The metric frames of the table in spec/mtp-1.md, R44.
+  constexpr std::pair<std::int32_t, std::string_view> kFrames[] = {
+      {1, "world"},     {2, "robot"},         {3, "head"},       {4, "left_eye"},
+      {5, "right_eye"}, {6, "cyclopean_eye"}, {14, "supervisor"}};
+  Tree tree;
+  for (auto [number, name] : kFrames) {
+    auto added = tree.add(number, name);
+    HC_CHECK(added.has_value());
+  }
+  return tree;
+}
+
+Status Tree::add(std::int32_t number, std::string_view name) {
+  std::string which = "frame " + std::to_string(number);
+  if (number < 1 || number >= kFrameNumbers)
+    return error(Code::Usage, which + " is not within 1 … " + std::to_string(kFrameNumbers - 1));
+  if (name.empty()) return error(Code::Usage, which + " has no name");
+  if (std::any_of(name.begin(), name.end(), [](char c) { return c >= 0 && c <= ' '; }))
+    return error(Code::Usage, which + " has a name with a blank");
+  if (auto taken = by_number_.find(number); taken != by_number_.end())
+    return error(Code::Usage, which + " is " + nodes_[taken->second].name + " already");
+  if (by_name_.contains(name))
+    return error(Code::Usage, "there is a frame " + std::string(name) + " already");
+  by_number_.emplace(number, nodes_.size());
+  by_name_.emplace(name, nodes_.size());
+  nodes_.emplace_back().name = name;
+  return {};
+}
+
+Result<std::size_t> Tree::find(const Frame& frame) const {
+  if (const auto* number = std::get_if<std::int32_t>(&frame)) {
+    auto found = by_number_.find(*number);
+    if (found != by_number_.end()) return found->second;
+    return error(Code::NotFound, "there is no frame " + std::to_string(*number));
+  }
+  std::string_view name = std::get<std::string_view>(frame);
+  auto found = by_name_.find(name);
+  if (found != by_name_.end()) return found->second;
+  std::string what = "there is no frame ";
+  append_json_string(name, what);
+  std::vector<std::string> known;
+  for (const auto& [each, node] : by_name_) known.push_back(each);
+  return error(Code::NotFound, what + suggestion(name, known));
+}
+
+std::size_t Tree::depth(std::size_t node) const {
+  std::size_t steps = 0;
+  while ((node = nodes_[node].parent) != kNone) ++steps;
+  return steps;
+}
+
+std::size_t Tree::root(std::size_t node) const {
+  while (nodes_[node].parent != kNone) node = nodes_[node].parent;
+  return node;
+}
+
+std::string Tree::joint_name(std::size_t child) const {
+  return nodes_[child].name + " in " + nodes_[nodes_[child].parent].name;
+}
+
+Status Tree::attach(const Frame& parent, const Frame& child,
+                    std::variant<Eigen::Isometry3d, Track> joint) {
+  auto p = find(parent), c = find(child);
+  if (!p) return p.error();
+  if (!c) return c.error();
+  Node& node = nodes_[*c];
+  const std::string wanted = node.name + " in " + nodes_[*p].name;
+  if (node.parent == *p) return error(Code::Usage, wanted + " is given twice");
+  if (node.parent != kNone)
+    return error(Code::Usage, wanted + " would be a second parent: there is " + joint_name(*c));
+  if (root(*p) == *c) return error(Code::Usage, wanted + " would close a cycle");
+  node.parent = *p;
+  node.joint = std::move(joint);
+  return {};
+}
+
+Status Tree::fix(const Frame& parent, const Frame& child, const Eigen::Isometry3d& T_parent_child) {
+  auto checked = rigid(T_parent_child.matrix());
+  if (!checked) return checked.error();
+  return attach(parent, child, *checked);
+}
+
+Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory) {
+  if (memory.span.count() <= 0 || memory.poses == 0)
+    return error(Code::Usage, "a memory of " + std::to_string(memory.poses) + " poses over " +
+                                  std::to_string(memory.span.count()) + " ns keeps nothing");
+  return attach(parent, child, Track(memory));
+}
+
+Result<Fed> Tree::feed(const Frame& parent, const Frame& child, std::int64_t time,
+                       const Eigen::Isometry3d& T_parent_child) {
+  auto p = find(parent), c = find(child);
+  if (!p) return p.error();
+  if (!c) return c.error();
+  Node& node = nodes_[*c];
+  if (node.parent != *p)
+    return error(Code::Usage,
+                 node.name + " in " + nodes_[*p].name + " is fed, but these are not joined so");
+  auto* track = std::get_if<Track>(&node.joint);
+  if (track == nullptr) return error(Code::Usage, joint_name(*c) + " is fed, but fixed");
+  if (time <= 0) return error(Code::Malformed, joint_name(*c) + " is fed without a time");
+  auto checked = rigid(T_parent_child.matrix());
+  if (!checked) return checked.error();
+  return track->add(time, Pose(*checked));
+}
+
+/// The nearest frame that is above both, or one of them.
+Result<std::size_t> Tree::find_common(std::size_t a, std::size_t b) const {
+  const std::size_t asked[] = {a, b};
+  std::size_t depth_a = depth(a), depth_b = depth(b);
+  for (; depth_a > depth_b; --depth_a) a = nodes_[a].parent;
+  for (; depth_b > depth_a; --depth_b) b = nodes_[b].parent;
+  while (a != b && a != kNone) {
+    a = nodes_[a].parent;
+    b = nodes_[b].parent;
+  }
+  if (a != kNone) return a;
+  return error(Code::NotFound, nodes_[asked[0]].name + " and " + nodes_[asked[1]].name +
+                                   " are not joined: above them are " +
+                                   nodes_[root(asked[0])].name + " and " +
+                                   nodes_[root(asked[1])].name);
+}
+
+Result<TimeSpan> Tree::joint_known(std::size_t child) const {
+  const auto* track = std::get_if<Track>(&nodes_[child].joint);
+  if (track == nullptr) return TimeSpan();
+  if (track->empty())
+    return error(Code::NotFound, joint_name(child) + " is not known yet: it was not fed");
+  return track->known();
+}
+
+/// T_to_from of a frame and one above it.
+Result<Eigen::Isometry3d> Tree::climb(std::size_t from, std::size_t to, std::int64_t time) const {
+  Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();
+  for (; from != to; from = nodes_[from].parent) {
+    const auto& joint = nodes_[from].joint;
+    if (const auto* fixed = std::get_if<Eigen::Isometry3d>(&joint)) {
+      T_to_from = *fixed * T_to_from;
+      continue;
+    }
+    auto span = joint_known(from);
+    if (!span) return span.error();
+    if (time < span->first || time > span->last)
+      return error(Code::NotFound, joint_name(from) + " is known from " +
+                                       std::to_string(span->first) + " to " +
+                                       std::to_string(span->last) + " ns" + outside(time, *span));
+    T_to_from = std::get<Track>(joint).at(time).transformation() * T_to_from;
+  }
+  return T_to_from;
+}
+
+Result<Eigen::Isometry3d> Tree::lookup(const Frame& target, const Frame& source,
+                                       std::int64_t time) const {
+  auto t = find(target), s = find(source);
+  if (!t) return t.error();
+  if (!s) return s.error();
+  auto common = find_common(*t, *s);
+  if (!common) return common.error();
+  auto T_common_source = climb(*s, *common, time);
+  if (!T_common_source) return T_common_source.error();
+  auto T_common_target = climb(*t, *common, time);
+  if (!T_common_target) return T_common_target.error();
+  Eigen::Isometry3d T_target_source = T_common_target->inverse() * *T_common_source;
+  return T_target_source;
+}
+
+Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
+  auto t = find(target), s = find(source);
+  if (!t) return t.error();
+  if (!s) return s.error();
+  auto common = find_common(*t, *s);
+  if (!common) return common.error();
+  TimeSpan both;
+  std::size_t latest = kNone, earliest = kNone;  // the joints that bound the span
+  for (std::size_t end : {*s, *t}) {
+    for (std::size_t at = end; at != *common; at = nodes_[at].parent) {
+      auto span = joint_known(at);
+      if (!span) return span.error();
+      if (span->first > both.first) {
+        both.first = span->first;
+        latest = at;
+      }
+      if (span->last < both.last) {
+        both.last = span->last;
+        earliest = at;
+      }
+    }
+  }
+  if (both.first <= both.last) return both;
+  return error(Code::NotFound, joint_name(earliest) + " is known to " + std::to_string(both.last) +
+                                   " ns and " + joint_name(latest) + " from " +
+                                   std::to_string(both.first) + " ns: at no time both");
+}
+
+void Tree::forget() {
+  for (Node& node : nodes_)
+    if (auto* track = std::get_if<Track>(&node.joint)) track->clear();
+}
+
+}  // namespace hc::frames

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Where things are: coordinate systems joined to a tree, and the way from one to another at the
+// time of a picture. No messages, no clock; hc/adapter/pose.h makes transformations of messages.
+// Not safe for several threads at once; const calls alone are.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <frames/rigid.h>
+#include <frames/track.h>
+
+namespace hc::frames {
+
+/// A coordinate system, by its number (`coord` in a header: spec/mtp-1.md, R44) or by its name.
+using Frame = std::variant<std::int32_t, std::string_view>;
+
+/// Numbers of frames are below this, so that a message can hold two of them (R44).
+inline constexpr std::int32_t kFrameNumbers = 1000;
+
+/// A tree (or several) of frames, each joined to its parent by a transformation that is fixed, or
+/// that moves and is fed with poses as they are measured.
+///
+///     Tree tree = Tree::standard();
+///     tree.fix("world", "robot", T_world_robot);            // each gives a Status to look at
+///     tree.join("robot", "head");
+///     tree.fix("head", "left_eye", T_head_left_eye);
+///     …
+///     tree.feed("robot", "head", report.header.time, T_robot_head);
+///     …
+///     auto T_world_left_eye = tree.lookup("world", "left_eye", picture.header.time);
+///     if (!T_world_left_eye) return T_world_left_eye.error();
+///     Eigen::Vector3d p_world = *T_world_left_eye * p_left_eye;
+///
+/// Every T_parent_child, (4, 4) f64, takes points in the child's frame to points in the parent's,
+/// translations in metres; times are nanoseconds since the Unix epoch, as in a header.
+/// Error details begin with "frames: " and are one line.
+class Tree {
+ public:
+  /// A tree without frames.
+  Tree() = default;
+  /// The metric frames of the specification, not joined yet: world, robot, head, left_eye,
+  /// right_eye, cyclopean_eye, supervisor.
+  static Tree standard();
+
+  /// Makes a frame known.
+  ///
+  /// @param number  1 … 999.
+  /// Errors: Usage (a number out of range; a number or a name that is taken; a name that is
+  /// empty or has a blank or control byte).
+  Status add(std::int32_t number, std::string_view name);
+
+  /// Joins `child` to `parent` for good.
+  ///
+  /// Errors: NotFound (no such frame); Malformed (rigid() refuses it); Usage (the child has a
+  /// parent; a cycle).
+  Status fix(const Frame& parent, const Frame& child, const Eigen::Isometry3d& T_parent_child);
+
+  /// Joins `child` to `parent` by a transformation that moves; it is known from the first feed()
+  /// on.
+  ///
+  /// Errors: NotFound (no such frame); Usage (the child has a parent; a cycle; a memory for
+  /// nothing).
+  Status join(const Frame& parent, const Frame& child, const Memory& memory = {});
+
+  /// Tells where `child`, which join() joined, was at a time. Poses may come in any order. One of a
+  /// time that is known already replaces it. One that is further back than the joint's memory is
+  /// left out, which is no error but is told: a source whose clock went back needs forget().
+  ///
+  /// @param time  [ns], over 0.
+  /// Errors: NotFound (no such frame); Malformed (rigid() refuses it; a time of 0 or below); Usage
+  /// (these two are not joined so, or fixed). Nothing changes then.
+  /// Cost: constant, for the latest time; see Track::add().
+  Result<Fed> feed(const Frame& parent, const Frame& child, std::int64_t time,
+                   const Eigen::Isometry3d& T_parent_child);
+
+  /// T_target_source, which takes points in `source` to points in `target`, both at `time`. Between
+  /// two poses of a joint it is interpolated as between() does, in the parent's frame; outside them
+  /// nothing is known. What is above the frames' nearest common one is not asked.
+  ///
+  /// @param time  [ns]; of no importance where all that lies between is fixed.
+  /// Errors: NotFound (no such frame; frames that are not joined; a joint on the way that is not
+  /// known at that time: "frames: head in robot is known from 10 to 20 ns, asked for 25 ns: 5 ns
+  /// too late").
+  /// Cost: a product for each joint on the way; logarithmic in the poses of a moving one and in the
+  /// number of frames. No allocation unless it fails.
+  [[nodiscard]] Result<Eigen::Isometry3d> lookup(const Frame& target, const Frame& source,
+                                                 std::int64_t time) const;
+
+  /// When lookup() of these two succeeds; `last` is their latest common time. A default TimeSpan,
+  /// hence always, where all that lies between is fixed.
+  ///
+  /// Errors: NotFound (no such frame; not joined; a joint that was not fed; no time in common).
+  [[nodiscard]] Result<TimeSpan> known(const Frame& target, const Frame& source) const;
+
+  /// Forgets every pose that was fed: for a simulation or a recording that begins anew.
+  void forget();
+
+ private:
+  struct Node {
+    std::string name;
+    std::size_t parent = kNone;
+    std::variant<Eigen::Isometry3d, Track> joint = Eigen::Isometry3d::Identity();
+  };
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  [[nodiscard]] Result<std::size_t> find(const Frame& frame) const;
+  [[nodiscard]] Result<std::size_t> find_common(std::size_t a, std::size_t b) const;
+  [[nodiscard]] std::size_t depth(std::size_t node) const;
+  [[nodiscard]] std::size_t root(std::size_t node) const;
+  [[nodiscard]] std::string joint_name(std::size_t child) const;
+  [[nodiscard]] Result<TimeSpan> joint_known(std::size_t child) const;
+  [[nodiscard]] Result<Eigen::Isometry3d> climb(std::size_t from, std::size_t to,
+                                                std::int64_t time) const;
+  Status attach(const Frame& parent, const Frame& child,
+                std::variant<Eigen::Isometry3d, Track> joint);
+
+  std::vector<Node> nodes_;
+  std::map<std::int32_t, std::size_t> by_number_;
+  std::map<std::string, std::size_t, std::less<>> by_name_;
+};
+
+}  // namespace hc::frames
