@@ -16,7 +16,7 @@ ALLOWED = {
     "link": {"base", "wire"},
     "node": {"base", "wire", "compress", "link"},
     "graph": {"base", "wire", "link"},
-    "adapter": {"base", "wire"},
+    "adapter": {"base", "wire", "frames"},
     "frames": {"base"},
     "vision": {"base"},
     "graphics": {"base"},

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Rigid transformations out of messages. Header only; a target of its own, hc::pose. Pure.
+
+#include <cstdint>
+#include <string>
+
+#include <frames/rigid.h>
+#include <hc/adapter/eigen.h>
+
+namespace hc {
+
+/// A rigid transformation as a message tells it: a joint of frames::Tree takes all four.
+struct TimedPose {
+  std::int32_t to = 0;    ///< frame into which it takes points, the parent of a joint; 1 … 999
+  std::int32_t from = 0;  ///< frame out of which it takes them, the child; 1 … 999
+  std::int64_t time = 0;  ///< when it was so [ns since the Unix epoch]; 0: unknown
+  Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();  ///< translation [m]
+};
+
+namespace internal {
+
+template <ScalarType T>
+Result<TimedPose> pose_of(const Message& message) {
+  auto matrix = as_eigen<T>(message);
+  if (!matrix) return matrix.error();
+  auto T_to_from = frames::rigid(matrix->template cast<double>());
+  if (!T_to_from) return T_to_from.error();
+  const Header& header = message.header;
+  return TimedPose{header.coord / 1000, header.coord % 1000, header.time, *T_to_from};
+}
+
+}  // namespace internal
+
+/// The pose that a `transformation` carries: 4 rows of 4 numbers of f32 or f64, for column vectors,
+/// p_to = T_to_from · (x y z 1)ᵀ, lengths in metres, frames in `coord` = 1000 · to + from
+/// (spec/mtp-1.md, R44). It is the one matrix type that holds a pose: a `position` is a point, and
+/// a `rotation` (see rotation_of) angles alone; neither says what it is that is there.
+///
+/// Errors: Unsupported (another matrix type or shape; compressed); Malformed (a coord that does not
+/// name two frames; what frames::rigid() refuses).
+/// Cost: no allocation unless it fails.
+inline Result<TimedPose> pose_of(const Message& message) {
+  const Header& header = message.header;
+  if (header.info.type != MatrixType::Transformation || header.width != 4 || header.height != 4)
+    return Error{Code::Unsupported, "a pose is a transformation of 4 x 4, not a " +
+                                        std::string(name(header.info.type)) + " of " +
+                                        std::to_string(header.width) + " x " +
+                                        std::to_string(header.height)};
+  if (header.coord / 1000 < 1 || header.coord / 1000 > 999 || header.coord % 1000 == 0)
+    return Error{Code::Malformed,
+                 "a pose's coord is 1000 x to + from, not " + std::to_string(header.coord)};
+  return header.info.scalar == Scalar::F32 ? internal::pose_of<float>(message)
+                                           : internal::pose_of<double>(message);
+}
+
+/// The rotation that a `rotation` of one element tells: roll φ, pitch θ, yaw ψ [rad], right-handed,
+/// R = Rz(ψ) Ry(θ) Rx(φ) (see frames::rotation); rates and accelerations are left out. Of the gaze
+/// (coord 13), which is roll, tilt and pan, it turns vectors of the head into the pan-tilt unit's
+/// frame: pan > 0 looks to the left, tilt > 0 looks down.
+///
+/// Errors: Unsupported (another matrix type or more than one element; compressed); Malformed (not
+/// finite).
+inline Result<Eigen::Quaterniond> rotation_of(const Message& message) {
+  const Header& header = message.header;
+  if (header.info.type != MatrixType::Rotation || header.width != 1 || header.height != 1)
+    return Error{Code::Unsupported,
+                 "one rotation is asked for, not a " + std::string(name(header.info.type)) +
+                     " of " + std::to_string(header.width) + " x " + std::to_string(header.height)};
+  Eigen::Vector3d angles;
+  if (header.info.scalar == Scalar::F32) {
+    auto row = as_eigen<float>(message);
+    if (!row) return row.error();
+    angles = row->template leftCols<3>().transpose().template cast<double>();
+  } else {
+    auto row = as_eigen<double>(message);
+    if (!row) return row.error();
+    angles = row->template leftCols<3>().transpose();
+  }
+  if (!angles.allFinite()) return Error{Code::Malformed, "a rotation's angle is not finite"};
+  return frames::rotation(angles.x(), angles.y(), angles.z());
+}
+
+}  // namespace hc

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/adapter/pose.h>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include <frames/tree.h>
+#include <hc/wire/codec.h>
+
+namespace hc {
+namespace {
+
+Message message_of(std::string_view bytes) {
+  Message message;
+  auto used = decode(std::as_bytes(std::span(bytes)), message);
+  EXPECT_TRUE(used && *used == bytes.size()) << bytes;
+  return message.keep();
+}
+
+// A head turned to the left by a right angle, 0.3 m above its robot, as one would type it.
+constexpr std::string_view kHead =
+    "1 7 0 0 8 1763683200123456789 70190 1 2003 4 4\n"
+    "0 -1 0 0\n1 0 0 0\n0 0 1 0.3\n0 0 0 1\n";
+
+std::string refusal(std::string_view from, std::string_view to) {
+  std::string bytes(kHead);
+  bytes.replace(bytes.find(from), from.size(), to);
+  auto pose = pose_of(message_of(bytes));
+  return pose ? "" : pose.error().text();
+}
+
+TEST(Pose, IsATransformationOfFourByFour) {
+  for (std::string_view info : {"70190", "70180"}) {
+    std::string bytes(kHead);
+    bytes.replace(bytes.find("70190"), 5, info);
+    auto pose = pose_of(message_of(bytes));
+    ASSERT_TRUE(pose) << pose.error().text();
+    EXPECT_EQ(pose->to, 2);
+    EXPECT_EQ(pose->from, 3);
+    EXPECT_EQ(pose->time, 1763683200123456789);
+    Eigen::Vector3d p_robot = pose->T_to_from * Eigen::Vector3d(1, 0, 0);
+    EXPECT_LT((p_robot - Eigen::Vector3d(0, 1, 0.3)).norm(), 1e-7);
+  }
+}
+
+TEST(Pose, FeedsATree) {
+  auto tree = frames::Tree::standard();
+  ASSERT_TRUE(tree.join("robot", "head"));
+  auto pose = *pose_of(message_of(kHead));
+  ASSERT_TRUE(tree.feed(pose.to, pose.from, pose.time, pose.T_to_from));
+  auto T_robot_head = tree.lookup("robot", "head", pose.time);
+  EXPECT_EQ(T_robot_head->matrix(), pose.T_to_from.matrix());
+}
+
+TEST(Pose, RefusesWhatIsNone) {
+  EXPECT_EQ(refusal("4 4\n0 -1 0 0\n1 0 0 0\n0 0 1 0.3\n", "4 1\n"),
+            "Unsupported: a pose is a transformation of 4 x 4, not a transformation of 4 x 1");
+  EXPECT_EQ(refusal("70190", "120190"),
+            "Unsupported: a pose is a transformation of 4 x 4, not a table of 4 x 4");
+  for (std::string_view coord : {"0", "3", "2000", "1000003", "2147483647"})
+    EXPECT_EQ(refusal("2003", coord),
+              "Malformed: a pose's coord is 1000 x to + from, not " + std::string(coord));
+  EXPECT_EQ(refusal("0.3", "nan"),
+            "Malformed: frames: the transformation has a number that is not finite");
+  EXPECT_EQ(refusal("0 0 0 1", "0 0 0 2"),
+            "Malformed: frames: the transformation has no last row 0 0 0 1");
+  EXPECT_EQ(refusal("-1", "1"), "Malformed: frames: the transformation is not rigid: it mirrors");
+  Message packed = message_of(kHead);
+  packed.header.info.encoding = Encoding::Zstd;
+  EXPECT_EQ(pose_of(packed).error().code, Code::Unsupported);
+}
+
+TEST(Rotation, IsRollPitchYaw) {
+  for (std::string_view info : {"20390", "20380", "20690"}) {
+    std::string rates = info == "20690" ? " 9 9 9" : "";
+    auto q = rotation_of(
+        message_of("1 7 0 0 8 1 " + std::string(info) + " 1 13 1 1\n0 0.25 1.5" + rates + "\n"));
+    ASSERT_TRUE(q) << q.error().text();
+    Eigen::Vector3d looks = *q * Eigen::Vector3d(1, 0, 0);  // left, and down
+    Eigen::Vector3d expected(std::cos(0.25) * std::cos(1.5), std::cos(0.25) * std::sin(1.5),
+                             -std::sin(0.25));
+    EXPECT_LT((looks - expected).norm(), 1e-15);
+  }
+}
+
+TEST(Rotation, RefusesWhatIsNone) {
+  auto refused = [](std::string_view bytes) {
+    return rotation_of(message_of(bytes)).error().text();
+  };
+  EXPECT_EQ(refused("1 7 0 0 8 1 10390 1 13 1 1\n0 0 0\n"),
+            "Unsupported: one rotation is asked for, not a position of 1 x 1");
+  EXPECT_EQ(refused("1 7 0 0 8 1 20390 1 13 1 0\n\n"),
+            "Unsupported: one rotation is asked for, not a rotation of 1 x 0");
+  EXPECT_EQ(refused("1 7 0 0 8 1 20390 1 13 1 1\n0 inf 0\n"),
+            "Malformed: a rotation's angle is not finite");
+}
+
+}  // namespace
+}  // namespace hc
