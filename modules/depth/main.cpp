@@ -43,31 +43,31 @@ int main(int argc, char** argv) {
     matcher.emplace(
         hc::vision::StereoOptions{static_cast<int>(*disparities), static_cast<int>(*block_size)});
   });
-  module.on_both(
-      left, right, [&](const hc::Message& left_picture, const hc::Message& right_picture) {
-        const auto& size = left_picture.header;
-        if (size.width != right_picture.header.width || size.height != right_picture.header.height)
-          throw hc::ModuleError("the left picture is " + std::to_string(size.width) + " x " +
-                                std::to_string(size.height) + ", the right one " +
-                                std::to_string(right_picture.header.width) + " x " +
-                                std::to_string(right_picture.header.height));
-        if (!matcher->takes({size.width, size.height}))
-          throw hc::ModuleError("pictures of " + std::to_string(size.width) + " x " +
-                                std::to_string(size.height) + " are not wider than " +
-                                std::to_string(*disparities) + " disparities");
-        auto found = disparity.loan(size.width, size.height);
-        cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
-        matcher->match(hc::value_or_end(hc::as_mat(left_picture)),
-                       hc::value_or_end(hc::as_mat(right_picture)), found_mat);
-        if (depth.linked()) {
-          auto metres = depth.loan(size.width, size.height);
-          cv::Mat metres_mat = hc::value_or_end(hc::as_mat(metres));
-          hc::vision::depth_of(found_mat, {*focal, *baseline, *offset}, metres_mat);
-          disparity.send(std::move(found));
-          depth.send(std::move(metres));
-        } else {
-          disparity.send(std::move(found));
-        }
-      });
+  module.on(hc::together(left, right), [&](const hc::Message& left_picture,
+                                           const hc::Message& right_picture) {
+    const auto& size = left_picture.header;
+    if (size.width != right_picture.header.width || size.height != right_picture.header.height)
+      throw hc::ModuleError("the left picture is " + std::to_string(size.width) + " x " +
+                            std::to_string(size.height) + ", the right one " +
+                            std::to_string(right_picture.header.width) + " x " +
+                            std::to_string(right_picture.header.height));
+    if (!matcher->takes({size.width, size.height}))
+      throw hc::ModuleError("pictures of " + std::to_string(size.width) + " x " +
+                            std::to_string(size.height) + " are not wider than " +
+                            std::to_string(*disparities) + " disparities");
+    auto found = disparity.loan(size.width, size.height);
+    cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
+    matcher->match(hc::value_or_end(hc::as_mat(left_picture)),
+                   hc::value_or_end(hc::as_mat(right_picture)), found_mat);
+    if (depth.linked()) {
+      auto metres = depth.loan(size.width, size.height);
+      cv::Mat metres_mat = hc::value_or_end(hc::as_mat(metres));
+      hc::vision::depth_of(found_mat, {*focal, *baseline, *offset}, metres_mat);
+      disparity.send(std::move(found));
+      depth.send(std::move(metres));
+    } else {
+      disparity.send(std::move(found));
+    }
+  });
   return module.run(argc, argv);
 }

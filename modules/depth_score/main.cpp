@@ -22,22 +22,23 @@ int main(int argc, char** argv) {
   auto threshold =
       module.parameter("threshold", 2.0, "px", "an error above this is bad", {.least = 0});
 
-  module.on_both(disparity, truth, [&](const hc::Message& found, const hc::Message& known) {
-    cv::Mat levels = hc::value_or_end(hc::as_mat(known));
-    if (levels.channels() > 1) cv::extractChannel(levels.clone(), levels, 0);
-    cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
-    if (found_mat.size() != levels.size())
-      throw hc::ModuleError("the disparities and the truth have different sizes");
-    auto score = hc::vision::score(found_mat, levels, *truth_scale, *threshold);
-    result.send(hc::table({score.bad_share(), score.hole_share(), score.wrong_share(),
-                           static_cast<double>(score.truth)}));
-    char line[160];
-    std::snprintf(line, sizeof line,
-                  "bad pixels %.2f %% of valid ones (error over %g px), holes %.2f %%, "
-                  "bad or hole %.2f %%, of %lld pixels with known truth",
-                  100 * score.bad_share(), *threshold, 100 * score.hole_share(),
-                  100 * score.wrong_share(), static_cast<long long>(score.truth));
-    module.log(line);
-  });
+  module.on(hc::together(disparity, truth),
+            [&](const hc::Message& found, const hc::Message& known) {
+              cv::Mat levels = hc::value_or_end(hc::as_mat(known));
+              if (levels.channels() > 1) cv::extractChannel(levels.clone(), levels, 0);
+              cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
+              if (found_mat.size() != levels.size())
+                throw hc::ModuleError("the disparities and the truth have different sizes");
+              auto score = hc::vision::score(found_mat, levels, *truth_scale, *threshold);
+              result.send(hc::table({score.bad_share(), score.hole_share(), score.wrong_share(),
+                                     static_cast<double>(score.truth)}));
+              char line[160];
+              std::snprintf(line, sizeof line,
+                            "bad pixels %.2f %% of valid ones (error over %g px), holes %.2f %%, "
+                            "bad or hole %.2f %%, of %lld pixels with known truth",
+                            100 * score.bad_share(), *threshold, 100 * score.hole_share(),
+                            100 * score.wrong_share(), static_cast<long long>(score.truth));
+              module.log(line);
+            });
   return module.run(argc, argv);
 }

@@ -111,10 +111,14 @@ std::string describe(const Module& module) {
         .text();
   };
   auto parameter = [](const auto& state) { return describe_parameter(*state); };
+  auto together = [](const auto& state) {
+    return array(state->inputs, [](const auto& port) { return in_quotes(port->name); });
+  };
   return Object()
              .add_text("name", module.name())
              .add_text("summary", module.summary())
              .add("inputs", array(module.inputs(), input))
+             .add("together", array(module.together(), together))
              .add("outputs", array(module.outputs(), output))
              .add("parameters", array(module.parameters(), parameter))
              .add("transports", array(transports(), in_quotes))
@@ -127,6 +131,11 @@ std::string help(const Module& module) {
   if (!module.inputs().empty()) text += "\nInputs:\n";
   for (const auto& port : module.inputs())
     text += line(port->name, port->doc + " (" + in_words(port->types) + ")");
+  for (const auto& together : module.together()) {
+    std::string names;
+    for (const auto& port : together->inputs) names += (names.empty() ? "" : ", ") + port->name;
+    text += "  Taken together, by their times: " + names + "\n";
+  }
   if (!module.outputs().empty()) text += "\nOutputs:\n";
   for (const auto& port : module.outputs())
     text += line(port->name, port->doc + " (" + in_words(port->type) + ")");

@@ -69,12 +69,14 @@ void Module::Loop::open_inputs(const internal::Arguments& arguments) {
 }
 
 void Module::Loop::run() {
+  end_unlinked();
+  end_unneeded();
   if (module_.start_) module_.start_();
   auto has_ended = [](const LinkedSource& link) { return link.source == nullptr; };
   while (true) {
     if (stop_requested()) throw Stopped();
-    bool any = false;
-    for (auto& link : sources_) any = take_one(link) || any;
+    const bool any = take_each();
+    end_unneeded();
     report();
     if (any) continue;
     if (module_.generate_) {
@@ -85,28 +87,89 @@ void Module::Loop::run() {
       wait();
     }
   }
+  for (const auto& together : module_.together_)
+    for (const auto& input : together->inputs) together->matcher.end(input->place);
   module_.handled_time_ = 0;
-  for (const auto& input : module_.inputs_)
-    if (auto left = input->waiting.size() + input->alone; left > 0)
-      module_.log(input->name + ": left without a partner: " + std::to_string(left));
   if (module_.end_) module_.end_();
 }
 
+/// Takes a message from each link, but from those with too many that wait for others' only when
+/// nothing else has any.
+bool Module::Loop::take_each() {
+  auto is_crowded = [](const LinkedSource& link) {
+    return std::any_of(link.inputs.begin(), link.inputs.end(), [](const auto* input) {
+      return input->matcher != nullptr && input->matcher->crowded(input->place);
+    });
+  };
+  bool any = false;
+  for (bool crowded : {false, true}) {
+    for (auto& link : sources_)
+      if (link.source != nullptr && is_crowded(link) == crowded) any = take_one(link) || any;
+    if (any) break;
+  }
+  return any;
+}
+
 bool Module::Loop::take_one(LinkedSource& link) {
-  if (link.source == nullptr) return false;
   Message message;
   auto got = link.source->take(message);
   if (!got) {
     bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
     fail(is_of_link || link.inputs.size() > 1 ? link.uri : link.inputs[0]->name, got.error());
   }
-  if (*got == Got::End) {
-    link.traffic = link.source->traffic();
-    link.source.reset();
-  }
+  if (*got == Got::End) end(link);
   if (*got != Got::Message) return false;
   deliver(link, message);
   return true;
+}
+
+bool Module::Loop::is_linked(const internal::InputState& input) const {
+  return std::any_of(sources_.begin(), sources_.end(), [&](const LinkedSource& link) {
+    return link.source != nullptr &&
+           std::find(link.inputs.begin(), link.inputs.end(), &input) != link.inputs.end();
+  });
+}
+
+void Module::Loop::end(LinkedSource& link) {
+  link.traffic = link.source->traffic();
+  link.source.reset();
+  for (auto* input : link.inputs)
+    if (input->matcher != nullptr && !is_linked(*input)) input->matcher->end(input->place);
+}
+
+void Module::Loop::end_unlinked() {
+  for (const auto& together : module_.together_) {
+    std::string unlinked;
+    for (const auto& input : together->inputs) {
+      if (is_linked(*input)) continue;
+      unlinked = input->name;
+      together->matcher.end(input->place);
+    }
+    for (const auto& input : together->inputs)
+      if (!unlinked.empty() && is_linked(*input))
+        module_.log(input->name + ": not read, since " + unlinked + " has no link");
+  }
+}
+
+/// Ends the links whose messages can have no partners any more.
+void Module::Loop::end_unneeded() {
+  if (module_.together_.empty()) return;
+  auto is_settled = [](const auto* input) {
+    return input->matcher != nullptr && input->matcher->done();
+  };
+  for (auto& link : sources_)
+    if (link.source != nullptr && std::all_of(link.inputs.begin(), link.inputs.end(), is_settled))
+      end(link);
+}
+
+void Module::Loop::tell_left_out() {
+  for (const auto& together : module_.together_)
+    for (const auto& input : together->inputs) {
+      const auto& left_out = together->matcher.left_out(input->place);
+      if (left_out.total() == 0) continue;
+      module_.log(input->name + ": left out: " + std::to_string(left_out.unmatched) +
+                  " unmatched, " + std::to_string(left_out.crowded) + " crowded out");
+    }
 }
 
 void Module::Loop::deliver(LinkedSource& link, const Message& message) {
@@ -168,6 +231,7 @@ void Module::Loop::report() {
 }
 
 void Module::Loop::close() {
+  tell_left_out();
   const LinkedSink* failed = nullptr;
   Status failure;  // the first; the other links are closed all the same
   for (auto& link : sinks_) {

@@ -38,7 +38,13 @@ struct Module::Loop {
  private:
   void open_outputs(const internal::Arguments& arguments);
   void open_inputs(const internal::Arguments& arguments);
+  bool take_each();
   bool take_one(internal::LinkedSource& link);
+  [[nodiscard]] bool is_linked(const internal::InputState& input) const;
+  void end(internal::LinkedSource& link);
+  void end_unlinked();
+  void end_unneeded();
+  void tell_left_out();
   void deliver(internal::LinkedSource& link, const Message& message);
   void wait();
   void report();

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include <hc/base/program.h>
 #include <hc/compress/compress.h>
@@ -56,42 +55,39 @@ std::shared_ptr<ParameterState> Module::add_parameter(std::string name,
   return state;
 }
 
-void Module::add_pair(const std::shared_ptr<internal::InputState>& first,
-                      const std::shared_ptr<internal::InputState>& second,
-                      std::function<void(const Message&, const Message&)> handler) {
-  auto leave_alone = [this](internal::InputState& input) {
-    input.waiting.pop_front();
-    if (input.alone++ == 0)
-      log(input.name + ": a message has no partner of its time and is left out, as will others be");
+void Module::add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
+                          const Matching& how, Matcher::Take handler) {
+  auto take = [this, handler = std::move(handler)](std::span<const Message> set) {
+    const Header& latest =
+        std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
+          return a.header.time < b.header.time;
+        })->header;
+    handled_time_ = latest.time;
+    handled_mode_ = latest.mode;
+    handler(set);
+    handled_time_ = 0;
   };
-  auto match = [this, a = first.get(), b = second.get(), leave_alone,
-                handler = std::move(handler)] {
-    while (!a->waiting.empty() && !b->waiting.empty()) {
-      const Header &left = a->waiting.front().header, &right = b->waiting.front().header;
-      if (left.time == right.time || left.time == 0 || right.time == 0) {
-        handled_time_ = std::max(left.time, right.time);
-        handler(a->waiting.front(), b->waiting.front());
-        a->waiting.pop_front();
-        b->waiting.pop_front();
-      } else {
-        leave_alone(left.time < right.time ? *a : *b);
-      }
-    }
-  };
-  for (auto* input : {first.get(), second.get()}) {
-    input->handler = [input, match, leave_alone](const Message& message) {
-      input->waiting.push_back(message.keep());
-      auto bytes = [&] {
-        return std::accumulate(
-            input->waiting.begin(), input->waiting.end(), std::uint64_t{0},
-            [](std::uint64_t sum, const Message& held) { return sum + held.elements.size(); });
-      };
-      while (input->waiting.size() > kMostWaiting ||
-             (input->waiting.size() > 1 && bytes() > kMostWaitingBytes))
-        leave_alone(*input);
-      match();
+  together_.push_back(std::make_unique<internal::TogetherState>(
+      internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take))}));
+  internal::TogetherState& state = *together_.back();
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    internal::InputState& input = *inputs[i];
+    HC_CHECK(!input.handler, input.name);
+    input.matcher = &state.matcher;
+    input.place = i;
+    input.handler = [this, &state, i](const Message& message) {
+      state.matcher.push(i, message.keep());
+      tell_left_out(state);
     };
   }
+}
+
+void Module::tell_left_out(const internal::TogetherState& together) const {
+  for (const auto& input : together.inputs)
+    if (!input->told && together.matcher.left_out(input->place).total() > 0) {
+      input->told = true;
+      log(input->name + ": a message has no partner and is left out, as others may be");
+    }
 }
 
 void Module::log(std::string_view line) const {

@@ -15,9 +15,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -88,20 +90,28 @@ class Module {
     };
   }
 
-  /// At most so many messages of an input, and bytes of elements, wait for their partners.
-  static constexpr std::size_t kMostWaiting = 64;
-  static constexpr std::uint64_t kMostWaitingBytes = std::uint64_t{256} << 20;
-
-  /// Takes the messages of two inputs together, those of the same time; what the handler sends has
-  /// the later of their times. One that has no partner is left out, which the log says once, when a
-  /// later one comes to the other input or more than kMostWaiting wait. Messages without a time are
-  /// taken in the order in which they come.
-  template <typename A, typename B, typename Handler>
-  void on_both(const Input<A>& first, const Input<B>& second, Handler handler) {
-    add_pair(first.state, second.state,
-             [handler = std::move(handler)](const Message& a, const Message& b) {
-               handler(MessageOf<A>{a}, MessageOf<B>{b});
-             });
+  /// Says what is done with messages that belong together, one of each input, by their times: equal
+  /// ones, or those nearest to one another within a bound (Matcher has the rules).
+  ///
+  ///     module.on(hc::together(left, right), [&](const auto& l, const auto& r) { … });
+  ///     module.on(hc::together(left, right, gaze).within(std::chrono::milliseconds(10)),
+  ///               [&](const auto& l, const auto& r, const auto& g) { … });
+  ///
+  /// What the handler sends has the latest of their times (R43). The log says when the first
+  /// message of an input is left out because its partners did not come, and at the end how many
+  /// were. When an input has ended and its last message is settled, the others are read no more.
+  /// An input that has a handler already is a bug.
+  template <typename... Kinds, typename Handler>
+  void on(const Together<Kinds...>& inputs, Handler handler) {
+    static_assert(std::is_invocable_v<Handler&, const MessageOf<Kinds>&...>,
+                  "the handler takes one message of each input");
+    add_together(inputs.inputs, inputs.how,
+                 [handler = std::move(handler)](std::span<const Message> set) mutable {
+                   auto message = set.begin();
+                   // In braces, arguments are evaluated from left to right.
+                   const std::tuple messages{MessageOf<Kinds>{*message++}...};
+                   std::apply(handler, messages);
+                 });
   }
 
   /// Called once, when parameters are set and links are open.
@@ -133,6 +143,7 @@ class Module {
   [[nodiscard]] const auto& inputs() const { return inputs_; }
   [[nodiscard]] const auto& outputs() const { return outputs_; }
   [[nodiscard]] const auto& parameters() const { return parameters_; }
+  [[nodiscard]] const auto& together() const { return together_; }
 
  private:
   friend void internal::send(internal::OutputState&, Message);
@@ -148,15 +159,17 @@ class Module {
   std::shared_ptr<ParameterState> add_parameter(std::string name, const ParameterValue& otherwise,
                                                 std::string unit, std::string doc,
                                                 ParameterOptions options);
-  void add_pair(const std::shared_ptr<internal::InputState>& first,
-                const std::shared_ptr<internal::InputState>& second,
-                std::function<void(const Message&, const Message&)> handler);
+  void add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
+                    const Matching& how, Matcher::Take handler);
+  /// Tells the log once for each input of which messages are left out.
+  void tell_left_out(const internal::TogetherState& together) const;
 
   std::string name_, summary_;
   std::string instance_;  // its name in the graph
   std::vector<std::shared_ptr<internal::InputState>> inputs_;
   std::vector<std::shared_ptr<internal::OutputState>> outputs_;
   std::vector<std::shared_ptr<ParameterState>> parameters_;
+  std::vector<std::unique_ptr<internal::TogetherState>> together_;
   std::function<void()> start_, end_;
   std::function<bool()> generate_;
   SystemClock clock_;

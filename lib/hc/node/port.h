@@ -3,7 +3,6 @@
 // Ports: where a module's messages come in and go out.
 
 #include <algorithm>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <hc/base/clock.h>
 #include <hc/link/link.h>
 #include <hc/node/kind.h>
+#include <hc/node/matcher.h>
 
 namespace hc {
 
@@ -32,8 +32,15 @@ struct InputState {
   std::string name, doc;
   std::vector<PortType> types;  ///< what it takes; empty: anything
   std::function<void(const Message&)> handler;
-  std::deque<Message> waiting;  ///< for their partners, at inputs that are taken together
-  std::uint64_t alone = 0;      ///< messages that found none
+  Matcher* matcher = nullptr;  ///< of the inputs that are taken together with this one
+  std::size_t place = 0;       ///< of this one among them
+  bool told = false;           ///< that messages are left out
+};
+
+/// Inputs that are taken together.
+struct TogetherState {
+  std::vector<std::shared_ptr<InputState>> inputs;
+  Matcher matcher;
 };
 
 struct OutputState {
@@ -56,6 +63,28 @@ template <typename K>
 struct Input {
   std::shared_ptr<internal::InputState> state;
 };
+
+/// Inputs whose messages are taken together, by their times; see Matcher for the rules.
+template <typename... Kinds>
+struct Together {
+  std::vector<std::shared_ptr<internal::InputState>> inputs;
+  Matching how;
+
+  /// The same with times that may differ by so much; otherwise they are equal.
+  [[nodiscard]] Together within(std::chrono::nanoseconds difference) const {
+    return {inputs, {difference, how.most_waiting}};
+  }
+  /// The same with so many messages of each input that may wait for others, 1 … 32; otherwise 16.
+  [[nodiscard]] Together most_waiting(std::size_t messages) const {
+    return {inputs, {how.within, messages}};
+  }
+};
+
+/// Two inputs or more, of any kinds, for Module::on().
+template <typename... Kinds>
+requires(sizeof...(Kinds) >= 2) Together<Kinds...> together(const Input<Kinds>&... inputs) {
+  return {{inputs.state...}, {}};
+}
 
 /// An output port of kind K.
 template <typename K>
