@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// A module for together_test.py: three inputs of different kinds, taken together within 10 ns.
+#include <hc/node/module.h>
+
+int main(int argc, char** argv) {
+  hc::Module module{"trio", "Tells the times of three inputs that are taken together."};
+  auto place = module.input("place", hc::position<double>(), "a position");
+  auto score = module.input("score", hc::table<double>(), "a table");
+  auto words = module.input("words", hc::string(), "a text");
+  auto times = module.output("times", hc::table<std::int64_t>(), "times of a set [ns]");
+  module.on(hc::together(place, score, words).within(std::chrono::nanoseconds(10)),
+            [&](const auto& a, const auto& b, const auto& c) {
+              times.send(hc::table({a.header.time, b.header.time, c.header.time}));
+            });
+  return module.run(argc, argv);
+}
