@@ -84,9 +84,9 @@ class Runner {
         if (failed && !is_ending && (outcome || *module.status > kSignal)) {
           outcome = Error{Code::Closed,
                           "module " + module.module->name + ": " + end_in_words(*module.status)};
-          end_all();
         }
       }
+      if (!outcome) end_all();  // behind the others: none is blamed for our own signal
     }
     if (!outcome) return outcome.error();
     for (const auto& link : plan_.links) {

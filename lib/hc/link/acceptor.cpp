@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/acceptor.h>
 
+#include <hc/link/remarks.h>
+
 #include <sys/eventfd.h>
 
 #include <algorithm>
@@ -46,14 +48,17 @@ void Acceptor::accept_all() {
   while (!later) {
     if (newcomers_.size() >= room_) std::erase_if(newcomers_, has_left);
     if (later = newcomers_.size() >= room_; later) break;
-    auto peer = accept_peer(
-        socket_, [this](Severity, std::string_view line) { remarks_.emplace_back(line); });
+    // No more than anybody wants to read: others may have us say much.
+    auto remark = [this](Severity, std::string_view line) {
+      if (remarks_.size() < Remarks::kMost) remarks_.emplace_back(line);
+    };
+    auto peer = accept_peer(socket_, remark);
     if (peer && !*peer) break;
     later = !peer;
     if (peer)
       newcomers_.push_back(std::move(*peer));
     else if (!later_)
-      remarks_.push_back("nobody is let in for now: " + peer.error().text());
+      remark(Severity::Warning, "nobody is let in for now: " + peer.error().text());
   }
   if (!newcomers_.empty()) ::eventfd_write(arrived_.get(), 1);
   has_news_ = !newcomers_.empty() || !remarks_.empty();

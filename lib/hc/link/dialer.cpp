@@ -52,10 +52,11 @@ TimePoint Dialer::due() const {
   return std::min(give_up_, attempt_ ? answer_due_ : next_try_);
 }
 
-void Dialer::lost(TimePoint now, bool was_of_use) {
+void Dialer::lost(TimePoint now, bool was_of_use, std::string why) {
+  why_ = std::move(why);
   give_up_ = now + patience_;
   if (was_of_use) backoff_.reset();
-  next_try_ = was_of_use ? now : now + backoff_.next();
+  next_try_ = was_of_use ? now : std::min(now + backoff_.next(), give_up_);
 }
 
 void Dialer::try_next(TimePoint now) {

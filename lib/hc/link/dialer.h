@@ -79,8 +79,9 @@ class Dialer {
   std::optional<std::string> take_remark(TimePoint now);
 
   /// Says that the connection has been lost: then the next try is made at once, but after a pause
-  /// if it was of no use, so that one which is made and lost each time costs no more than others.
-  void lost(TimePoint now, bool was_of_use);
+  /// if it was of no use (`why`, in words, for the error once patience is at its end), so that one
+  /// which is made and lost each time costs no more than others.
+  void lost(TimePoint now, bool was_of_use, std::string why);
 
  private:
   void try_next(TimePoint now);

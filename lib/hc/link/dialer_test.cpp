@@ -2,8 +2,10 @@
 #include <hc/link/dialer.h>
 
 #include <gtest/gtest.h>
+
 #include <sys/socket.h>
 #include <unistd.h>
+#include <array>
 
 #include <algorithm>
 
@@ -126,7 +128,7 @@ TEST_F(DialerTest, GivesUpWhenNobodyComesBack) {
   auto dialer = this->dialer(seconds(60), seconds(10));
   EXPECT_TRUE(connects(dialer));
   listening_ = {};
-  dialer.lost(now_, true);
+  dialer.lost(now_, true, "it has gone");
   const auto end = now_ + seconds(10);
   for (; now_ < end; now_ = dialer.due()) EXPECT_FALSE(connects(dialer));
   EXPECT_EQ(now_, end);
@@ -150,7 +152,7 @@ TEST_F(DialerTest, AfterAConnectionOfUseItTriesAtOnceAndWithShortPauses) {
   listen();
   EXPECT_TRUE(connects(dialer));
   listening_ = {};
-  dialer.lost(now_, true);
+  dialer.lost(now_, true, "it has gone");
   EXPECT_EQ(dialer.due(), now_);
   tire(dialer);  // checks the bounds
 }
@@ -162,7 +164,7 @@ TEST_F(DialerTest, AfterOneOfNoUseItGoesOnWithItsPauses) {
     tire(dialer);
     listen();
     EXPECT_TRUE(connects(dialer));
-    dialer.lost(now_, false);
+    dialer.lost(now_, false, "it has gone");
     EXPECT_LE(dialer.due() - now_, Backoff::kLongest);
     longest = std::max(longest, nanoseconds(dialer.due() - now_));
     listening_ = {};
@@ -175,8 +177,23 @@ TEST_F(DialerTest, PatienceBeginsAnewWithEachLoss) {
   auto dialer = this->dialer(seconds(10), seconds(10));
   EXPECT_TRUE(connects(dialer));
   now_ += seconds(100);
-  dialer.lost(now_, true);
+  listening_ = {};
+  dialer.lost(now_, true, "it has gone");
+  EXPECT_FALSE(connects(dialer));
+  listen();
+  now_ = dialer.due();
   EXPECT_TRUE(connects(dialer));
+}
+
+TEST_F(DialerTest, WhoIsOfNoUseIsTriedOnceMoreBeforeItIsGivenUp) {
+  listen();
+  auto dialer = this->dialer(seconds(1), seconds(1));
+  EXPECT_TRUE(connects(dialer));
+  for (int i = 0; i < 100; ++i) {  // the pauses become longer than the patience
+    dialer.lost(now_, false, "it refuses us");
+    now_ = dialer.due();
+    ASSERT_TRUE(connects(dialer)) << i;
+  }
 }
 
 TEST_F(DialerTest, APeerThatIsNotWantedIsNoConnection) {

@@ -53,7 +53,7 @@ Status DialingSource::dial() {
     if (!source) {
       if (source.error().code == Code::Stopped) return source.error();
       log(in_words(source.error()) + "; connecting again");
-      dialer_->lost(now, false);
+      dialer_->lost(now, false, in_words(source.error()));
     } else {
       source_ = std::move(*source);
       watch(source_->descriptor(), EPOLLIN);
@@ -70,13 +70,14 @@ Status DialingSource::dial() {
 }
 
 void DialingSource::lose_connection(const std::string& why) {
+  const bool was_heard = source_->traffic().messages > 0;
   past_ += source_->traffic();
   // Messages that are held may keep the connection open.
   static_cast<void>(control(poll_, EPOLL_CTL_DEL, source_->descriptor()));
   source_.reset();
   log(why + "; connecting again");
   auto now = std::chrono::steady_clock::now();
-  dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime);
+  dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime, why);
 }
 
 /// Watches a descriptor, which is forgotten when it is closed.

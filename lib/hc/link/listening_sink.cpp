@@ -43,7 +43,7 @@ void ListeningSink::let_in() {
   for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= kMaxPeers;)
     if (peers_[i]->has_failed()) leave(i);
   for (auto& newcomer : acceptor_->take(kMaxPeers - peers_.size())) {
-    auto outlet = Outlet::make(std::move(newcomer), policy_, options_.stop);
+    auto outlet = Outlet::make(std::move(newcomer), policy_, options_);
     if (outlet) peers_.push_back(std::move(*outlet));
   }
   for (const auto& line : acceptor_->take_remarks())
@@ -90,7 +90,8 @@ Status ListeningSink::send(const Message& message) {
   }
 }
 
-/// Whether some of what a peer is to get is in memory of ours, so that nothing of it is lost.
+/// Whether some of what a peer is to get is in memory of ours still, so that it is no use to ask
+/// whether it has been taken.
 Result<bool> ListeningSink::put_to_all(Outgoing& message, TimePoint now) {
   bool is_ours = false;
   for (std::size_t i = 0; i < peers_.size();) {

@@ -31,9 +31,10 @@ bool is_tcp(int descriptor) {
 
 }  // namespace
 
-Result<std::unique_ptr<Outlet>> Outlet::make(Descriptor connection, const Policy& policy, int stop,
+Result<std::unique_ptr<Outlet>> Outlet::make(Descriptor connection, const Policy& policy,
+                                             const LinkOptions& options,
                                              std::unique_ptr<Dialer> dialer) {
-  std::unique_ptr<Outlet> outlet(new Outlet(policy, stop, std::move(dialer)));
+  std::unique_ptr<Outlet> outlet(new Outlet(policy, options, std::move(dialer)));
   auto timer = Watch::make(-1, [self = outlet.get()](std::uint32_t) { self->on_event(0); });
   if (!timer) return timer.error();
   outlet->timer_ = std::move(*timer);
@@ -68,10 +69,7 @@ void Outlet::dial(TimePoint now) {
   watch_.reset();  // before the dialer closes what it watches
   auto made = dialer_->dial(now);
   if (!made) return fail(made.error());
-  if (auto remark = dialer_->take_remark(now)) {
-    remarks_.push_back(*remark);
-    has_remarks_ = true;
-  }
+  if (auto remark = dialer_->take_remark(now)) remarks_.add(*remark);
   if (*made) return connect(std::move(*made), now);
   if (dialer_->descriptor() >= 0) watch(dialer_->descriptor());
 }
@@ -154,10 +152,9 @@ void Outlet::lose_connection(const Error& why, TimePoint now) {
   look_due_ = TimePoint::max();
   blocked_ = false;
   if (dialer_ == nullptr) return fail(why);
-  remarks_.push_back(in_words(why) + "; connecting again");
-  has_remarks_ = true;
+  remarks_.add(in_words(why) + "; connecting again");
   writer_.start(Descriptor());
-  dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime);
+  dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime, in_words(why));
 }
 
 void Outlet::fail(const Error& why) {
@@ -243,6 +240,7 @@ Status Outlet::drain(bool closing, std::optional<TimePoint> give_up) {
                   : "asked to stop, and the reader did not take all messages"});
       return *failed_;
     }
+    tell_log();
     auto waited = wait(give_up, now);
     if (waited) continue;
     if (waited.error().code != Code::Stopped) return waited.error();
@@ -293,12 +291,6 @@ Traffic Outlet::losses() const {
 bool Outlet::has_failed() const {
   std::lock_guard lock(mutex_);
   return failed_.has_value();
-}
-
-std::vector<std::string> Outlet::take_remarks() {
-  std::lock_guard lock(mutex_);
-  has_remarks_ = false;
-  return std::exchange(remarks_, {});
 }
 
 }  // namespace hc::internal

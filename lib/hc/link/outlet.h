@@ -17,6 +17,7 @@
 #include <hc/link/parcel.h>
 #include <hc/link/policy.h>
 #include <hc/link/reactor.h>
+#include <hc/link/remarks.h>
 #include <hc/link/stream_writer.h>
 
 namespace hc::internal {
@@ -69,7 +70,8 @@ class Outlet {
   /// @param dialer  makes the connection anew when it is lost; without one the link ends with it.
   ///
   /// Errors: System.
-  static Result<std::unique_ptr<Outlet>> make(Descriptor connection, const Policy& policy, int stop,
+  static Result<std::unique_ptr<Outlet>> make(Descriptor connection, const Policy& policy,
+                                              const LinkOptions& options,
                                               std::unique_ptr<Dialer> dialer = nullptr);
   ~Outlet();
   Outlet(const Outlet&) = delete;
@@ -86,15 +88,16 @@ class Outlet {
   [[nodiscard]] Traffic losses() const;
   /// Whether the connection has failed for good.
   [[nodiscard]] bool has_failed() const;
-  /// What is to be told the log, by the thread that sends.
-  [[nodiscard]] bool has_remarks() const { return has_remarks_.load(std::memory_order_relaxed); }
-  std::vector<std::string> take_remarks();
+  /// Tells the log what has happened to the connection; on the thread that sends, which also hears
+  /// of it while it waits in send() or close().
+  void tell_log() { remarks_.tell(log_); }
   [[nodiscard]] int descriptor() const { return writer_.descriptor(); }
 
  private:
-  Outlet(const Policy& policy, int stop, std::unique_ptr<Dialer> dialer)
+  Outlet(const Policy& policy, const LinkOptions& options, std::unique_ptr<Dialer> dialer)
       : writer_waits_(policy.writer_waits()),
-        stop_(stop),
+        stop_(options.stop),
+        log_(options.log),
         dialer_(std::move(dialer)),
         outbox_(policy) {}
 
@@ -122,6 +125,7 @@ class Outlet {
   mutable std::mutex mutex_;
   const bool writer_waits_;
   const int stop_;
+  const LogSink log_;
   std::unique_ptr<Dialer> dialer_;
   Outbox<Parcel> outbox_;  // not begun
   StreamWriter writer_;    // begun
@@ -134,8 +138,7 @@ class Outlet {
   bool flush_is_due_ = false;  // the reactor will look at what is gathered
   std::optional<Error> failed_;
   Traffic losses_;
-  std::vector<std::string> remarks_;
-  std::atomic<bool> has_remarks_{false};
+  Remarks remarks_;
   std::uint32_t wanted_ = 0;        // of watch_
   std::unique_ptr<Watch> watch_;    // of the connection, or the dialer's try
   std::atomic<bool> waits_{false};  // a thread does, and holds the lock

@@ -110,17 +110,30 @@ TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
 
 TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
   Warnings warnings;
-  Stop stop;
-  auto options = warnings.options();
-  options.stop = stop.options().stop;
-  auto source = source_of(dial() + "?reconnect=60", options);
+  auto source = source_of(dial() + "?reconnect=60", warnings.options());
   Message message;
-  while (warnings.lines.empty()) {
+  auto wait = [&] {
     ASSERT_TRUE(source->wait());
     ASSERT_EQ(*source->take(message), Got::Nothing);
-  }
+  };
+  while (warnings.lines.empty()) wait();
+  for (int i = 0; i < 3; ++i) wait();
+  EXPECT_EQ(warnings.lines.size(), 1U);
   EXPECT_TRUE(warnings.lines[0].starts_with(dial() + "?reconnect=60: nobody is there yet: "))
       << warnings.lines[0];
+}
+
+TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {
+  Stop stop;
+  auto options = stop.options();
+  int lines = 0;
+  options.log = [&](Severity, std::string_view) {
+    ++lines;
+    stop.raise();
+  };
+  auto sink = sink_of(dial() + "?reconnect=60", options);
+  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
+  EXPECT_EQ(lines, 1);
 }
 
 TEST_P(SocketLink, ConnectingEndsWhenToldToStop) {

@@ -393,8 +393,8 @@ void ShmSink::fence_again() {
 Draft ShmSink::loan(const Header& header) {
   auto bytes = header.element_bytes();
   refresh();
-  // What will be copied into a cell needs no slot.
-  if (bytes <= Cell::kTextBytes / 2) return Sink::loan(header);
+  // What will be copied into a cell, behind a header line as most are, needs no slot.
+  if (bytes <= Cell::kTextBytes - kLine) return Sink::loan(header);
   Slot* slot = take_slot(bytes);
   if (slot == nullptr) return Draft::make(header);
   HC_CRASH_POINT("publisher loaned");

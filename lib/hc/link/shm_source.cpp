@@ -239,7 +239,7 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
     return {};
   }
   if (!told_ && options_.log)
-    options_.log(Severity::Warning, "" + std::to_string(kCopyHold) +
+    options_.log(Severity::Warning, std::to_string(kCopyHold) +
                                         " messages are held; while it is so, others are copied");
   told_ = true;
   message = message.keep();

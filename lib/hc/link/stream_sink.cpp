@@ -8,15 +8,15 @@ Result<std::unique_ptr<Sink>> StreamSink::make(Descriptor descriptor, const Uri&
                                                std::unique_ptr<Dialer> dialer) {
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
-  auto outlet = Outlet::make(std::move(descriptor), *policy, options.stop, std::move(dialer));
+  auto outlet = Outlet::make(std::move(descriptor), *policy, options, std::move(dialer));
   if (!outlet) return outlet.error();
-  return std::unique_ptr<Sink>(new StreamSink(std::move(*outlet), options.log));
+  return std::unique_ptr<Sink>(new StreamSink(std::move(*outlet)));
 }
 
 Status StreamSink::send(const Message& message) {
   Outgoing outgoing(encoder_.encode(message), message);
   auto sent = outlet_->send(outgoing, std::chrono::steady_clock::now());
-  if (log_) tell_log();
+  outlet_->tell_log();
   if (!sent) return sent.error();
   ++messages_;
   bytes_ += outgoing.size();
@@ -25,13 +25,8 @@ Status StreamSink::send(const Message& message) {
 
 Status StreamSink::close() {
   auto closed = outlet_->close();
-  tell_log();
+  outlet_->tell_log();
   return closed;
-}
-
-void StreamSink::tell_log() {
-  if (!outlet_->has_remarks() || !log_) return;
-  for (const auto& line : outlet_->take_remarks()) log_(Severity::Warning, line);
 }
 
 Traffic StreamSink::traffic() const {

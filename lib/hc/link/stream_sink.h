@@ -31,13 +31,9 @@ class StreamSink final : public Sink {
   [[nodiscard]] Traffic traffic() const override;
 
  private:
-  StreamSink(std::unique_ptr<Outlet> outlet, LogSink log)
-      : outlet_(std::move(outlet)), log_(std::move(log)) {}
-
-  void tell_log();
+  explicit StreamSink(std::unique_ptr<Outlet> outlet) : outlet_(std::move(outlet)) {}
 
   std::unique_ptr<Outlet> outlet_;
-  LogSink log_;
   Encoder encoder_;
   std::uint64_t messages_ = 0, bytes_ = 0;
 };
