@@ -44,8 +44,8 @@ Result<Descriptor> Dialer::dial(TimePoint now) {
 std::optional<std::string> Dialer::take_remark(TimePoint now) {
   if (was_there_ || why_.empty() || now < begin_ + kQuiet || std::exchange(told_, true))
     return std::nullopt;
-  return "nobody is there yet: " + why_ + "; given up after " + std::to_string(first_.count()) +
-         " s";
+  return "nobody is there yet: " + why_ + "; it is given up after " +
+         std::to_string(first_.count()) + " s";
 }
 
 TimePoint Dialer::due() const {
@@ -94,6 +94,7 @@ void Dialer::fail(int number, TimePoint now) {
   auto pause = backoff_.next();
   bool away = number == ENETUNREACH || number == EHOSTUNREACH || number == ENETDOWN;
   next_try_ += away ? std::min<std::chrono::nanoseconds>(pause, kAway) : pause;
+  next_try_ = std::max(std::min(next_try_, give_up_), now);  // once more at the very end
 }
 
 }  // namespace hc::internal

@@ -142,7 +142,7 @@ TEST_F(DialerTest, SaysOnceThatItsFirstConnectionIsLongInComing) {
   EXPECT_FALSE(connects(dialer));
   EXPECT_FALSE(dialer.take_remark(now_ + Dialer::kQuiet - nanoseconds(1)));
   EXPECT_EQ(dialer.take_remark(now_ + Dialer::kQuiet),
-            "nobody is there yet: Connection refused; given up after 60 s");
+            "nobody is there yet: Connection refused; it is given up after 60 s");
   EXPECT_FALSE(dialer.take_remark(now_ + 2 * Dialer::kQuiet));
 }
 
@@ -192,6 +192,21 @@ TEST_F(DialerTest, WhoIsOfNoUseIsTriedOnceMoreBeforeItIsGivenUp) {
   for (int i = 0; i < 100; ++i) {  // the pauses become longer than the patience
     dialer.lost(now_, false, "it refuses us");
     now_ = dialer.due();
+    ASSERT_TRUE(connects(dialer)) << i;
+  }
+}
+
+TEST_F(DialerTest, WhoComesShortlyBeforeTheEndIsStillMet) {
+  for (int i = 0; i < 30; ++i) {
+    listening_ = {};
+    auto dialer = this->dialer(seconds(2));
+    const auto end = now_ + seconds(2);
+    while (dialer.due() < end) {
+      now_ = dialer.due();
+      ASSERT_FALSE(connects(dialer));
+    }
+    listen();
+    now_ = end;
     ASSERT_TRUE(connects(dialer)) << i;
   }
 }

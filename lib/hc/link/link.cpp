@@ -58,7 +58,7 @@ Result<const Transport*> find_transport(const Uri& uri) {
     if (transport.scheme == uri.scheme) return &transport;
     known.append(known.empty() ? "" : ", ").append(transport.scheme);
   }
-  return Error{Code::Unsupported, "no transport \"" + uri.scheme + "\"; there are " + known};
+  return Error{Code::Usage, "no transport \"" + uri.scheme + "\"; there are " + known};
 }
 
 Status check_options(const Uri& uri, std::string_view allowed) {
@@ -66,10 +66,12 @@ Status check_options(const Uri& uri, std::string_view allowed) {
   std::string list;
   for (const auto& word : known)
     list.append(list.empty() ? ", only \"" : ", \"").append(word + '"');
-  for (const auto& [key, value] : uri.options)
+  for (const auto& [key, value] : uri.options) {
     if (std::find(known.begin(), known.end(), key) == known.end())
-      return Error{Code::Unsupported, uri.scheme + " has no option \"" + key + "\" here" + list +
-                                          (is_option(key) ? "" : suggestion(key, known))};
+      return Error{Code::Usage, uri.scheme + " has no option \"" + key + "\" here" + list +
+                                    (is_option(key) ? "" : suggestion(key, known))};
+    if (value.empty()) return Error{Code::Usage, "option " + key + " has no value"};
+  }
   return {};
 }
 

@@ -156,8 +156,8 @@ struct LinkOptions {
 /// A source of shm may have a `keep` of its own; `all` makes no sink wait that drops.
 /// Bytes may be written with K, M or G (of 1024).
 ///
-/// Errors: Unsupported (no such scheme; an option that it does not have), Usage, NotFound (no such
-/// file or host), Closed (nobody listens), Stopped, System (name in use, …).
+/// Errors: Usage (no such scheme; an option that it does not have, or not with that value),
+/// NotFound (no such file or host), Closed (nobody listens), Stopped, System (name in use, …).
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
 

@@ -9,7 +9,7 @@ namespace {
 TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
   auto source = open_source(*parse_uri("pigeon:home"));
   ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, Code::Unsupported);
+  EXPECT_EQ(source.error().code, Code::Usage);
   EXPECT_EQ(
       source.error().detail,
       "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, unix, unix-listen, inproc, "
@@ -20,8 +20,10 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
 TEST(Open, OptionsAreChecked) {
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?speed=3")).error().detail,
             "tcp has no option \"speed\" here, only \"wait\", \"reconnect\"");
+  EXPECT_EQ(open_source(*parse_uri("tcp:h:1?wait=")).error().text(),
+            "Usage: tcp:h:1?wait=: option wait has no value");
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
-  EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Unsupported);
+  EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Usage);
   EXPECT_EQ(open_sink(*parse_uri("-?wait=3")).error().detail,
             "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"byte_rate\", "
             "\"byte_burst\", \"memory\"");
