@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text: a graph, or one line that says what is wrong with it; and any graph: a plan, or one
-// line.
+// Any text: a graph, or lines that say what is wrong with it; and any graph: a plan, or lines.
 #include <hc/graph/plan.h>
 
 namespace {
@@ -14,16 +13,13 @@ constexpr const char* kDescription =
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view text{reinterpret_cast<const char*>(data), size};
-  auto graph = hc::parse_graph(text, "fuzz.toml", [](const char*) { return "value"; });
-  if (!graph) {
-    HC_CHECK(graph.error().code == hc::Code::Usage);
-    HC_CHECK(graph.error().detail.starts_with("fuzz.toml:"), graph.error().detail);
-    return 0;
-  }
+  hc::Problems problems("fuzz.toml");
+  auto graph = hc::parse_graph(text, [](const char*) { return "value"; }, problems);
   auto describe = [](const std::string&) -> hc::Result<std::string> {
     return std::string(kDescription);
   };
-  auto plan = hc::make_plan(*graph, describe, "fuzz");
-  if (plan) HC_CHECK(plan->links.size() == graph->links.size());
+  auto plan = hc::make_plan(graph, describe, "fuzz", problems);
+  for (const auto& line : problems.lines()) HC_CHECK(line.starts_with("fuzz.toml:"), line);
+  if (problems.empty()) HC_CHECK(plan.links.size() == graph.links.size());
   return 0;
 }

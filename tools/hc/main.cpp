@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(footer);
   tool::add_run(app);
+  tool::add_check(app);
   tool::add_cat(app);
   tool::add_info(app);
   tool::add_send(app);

@@ -108,28 +108,27 @@ std::string original(std::string_view text) {
   return result;
 }
 
-/// Walks through the tables of one file.
+/// Walks through the tables of one file, and goes on behind what is wrong.
 class Reader {
  public:
-  Reader(std::string_view file, const Environment& environment) : environment_(environment) {
-    graph_.file = file;
+  Reader(const Environment& environment, Problems& problems)
+      : environment_(environment), problems_(problems) {
+    graph_.file = problems.file();
   }
 
-  Result<Graph> read(const toml::table& root) {
-    auto known = check_keys(root, {"modules", "links"}, "at the top of a graph");
-    if (!known) return known.error();
+  Graph read(const toml::table& root) {
+    check_keys(root, {"modules", "links"}, "at the top of a graph");
     const toml::node* modules = root.get("modules");
-    if (modules == nullptr || !modules->is_table())
-      return error(root, "a graph has a table [modules.NAME] for each module");
-    for (const auto& [key, node] : *modules->as_table()) {
-      auto read = read_module(original(key.str()), node);
-      if (!read) return read.error();
+    if (modules != nullptr && modules->is_table()) {
+      for (const auto& [key, node] : *modules->as_table()) read_module(original(key.str()), node);
+    } else if (modules != nullptr || !root.contains("module")) {
+      add(root, "a graph has a table [modules.NAME] for each module");
     }
     if (const toml::node* links = root.get("links")) {
-      if (!links->is_array()) return error(*links, "links are written as [[links]]");
-      for (const auto& node : *links->as_array()) {
-        auto read = read_link(node);
-        if (!read) return read.error();
+      if (!links->is_array()) {
+        add(*links, "links are written as [[links]]");
+      } else {
+        for (const auto& node : *links->as_array()) read_link(node);
       }
     }
     // toml++ sorts its keys; people expect their modules in the order in which they wrote them.
@@ -139,85 +138,72 @@ class Reader {
   }
 
  private:
-  static int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
-
-  Error error(const toml::node& node, const std::string& what) const {
-    return {Code::Usage,
-            graph_.file + ":" + std::to_string(std::max(line_of(node), 1)) + ": " + what};
+  static int line_of(const toml::node& node) {
+    return std::max(static_cast<int>(node.source().begin.line), 1);
   }
 
-  Status check_keys(const toml::table& table, const std::vector<std::string>& known,
-                    const std::string& where) const {
+  void add(const toml::node& node, std::string what) const {
+    problems_.add(line_of(node), std::move(what));
+  }
+
+  void check_keys(const toml::table& table, const std::vector<std::string>& known,
+                  const std::string& where) const {
     for (const auto& [key, node] : table)
       if (std::find(known.begin(), known.end(), key.str()) == known.end())
-        return error(
-            node, "no key \"" + original(key.str()) + "\" " + where + suggestion(key.str(), known));
-    return {};
+        add(node,
+            "no key \"" + original(key.str()) + "\" " + where + suggestion(key.str(), known));
   }
 
-  Result<std::string> read_string(const toml::table& table, std::string_view key) const {
+  std::optional<std::string> read_string(const toml::table& table, std::string_view key) const {
     const toml::node* node = table.get(key);
-    if (node == nullptr) return error(table, "\"" + std::string(key) + "\" is missing");
-    if (!node->is_string()) return error(*node, "\"" + std::string(key) + "\" is a string");
-    return original(node->value<std::string>().value_or(""));
+    if (node != nullptr && node->is_string())
+      return original(node->value<std::string>().value_or(""));
+    if (node == nullptr)
+      add(table, "\"" + std::string(key) + "\" is missing");
+    else
+      add(*node, "\"" + std::string(key) + "\" is a string");
+    return std::nullopt;
   }
 
-  Status read_module(std::string_view name, const toml::node& node) {
-    GraphModule module;
+  void read_module(std::string_view name, const toml::node& node) {
+    GraphModule& module = graph_.modules.emplace_back();
     module.name = name;
     module.program = name;
     module.line = line_of(node);
     if (!is_name(name))
-      return error(node, "a module's name is snake_case, not \"" + module.name + "\"");
-    if (!node.is_table()) return error(node, "a module is a table [modules." + module.name + "]");
+      add(node, "a module's name is snake_case, not \"" + module.name + "\"");
+    if (!node.is_table()) return add(node, "a module is a table [modules." + module.name + "]");
     const toml::table& table = *node.as_table();
-    auto known = check_keys(table, {"program", "parameters", "addresses", "encodings"},
-                            "in module " + module.name);
-    if (!known) return known;
-    if (table.contains("program")) {
-      auto program = read_string(table, "program");
-      if (!program) return program.error();
-      module.program = *program;
-    }
-    auto read =
-        read_values(table, "parameters", [&](const std::string& key, const toml::node& value) {
-          auto text = parameter_text(value);
-          if (!text) return Status(text.error());
-          module.parameters[key] = {*text, line_of(value)};
-          return Status();
-        });
-    if (!read) return read;
-    read = read_values(table, "addresses", [&](const std::string& key, const toml::node& value) {
+    check_keys(table, {"program", "parameters", "addresses", "encodings"},
+               "in module " + module.name);
+    if (table.contains("program"))
+      module.program = read_string(table, "program").value_or(module.program);
+    read_values(table, "parameters", [&](const std::string& key, const toml::node& value) {
+      if (auto text = parameter_text(value)) module.parameters[key] = {*text, line_of(value)};
+    });
+    read_values(table, "addresses", [&](const std::string& key, const toml::node& value) {
       auto address = value.value_exact<std::int64_t>().value_or(-1);
       if (address < 0 || address > 2147483647)
-        return Status(error(value, "an address is a whole number from 0 to 2147483647"));
+        return add(value, "an address is a whole number from 0 to 2147483647");
       module.addresses[key] = {address, line_of(value)};
-      return Status();
     });
-    if (!read) return read;
-    read = read_values(table, "encodings", [&](const std::string& key, const toml::node& value) {
+    read_values(table, "encodings", [&](const std::string& key, const toml::node& value) {
       auto encoding = encoding_of(value.value<std::string>().value_or(""));
       if (!encoding)
-        return Status(error(value, R"(an encoding is "text", "binary", "zstd" or "jpeg")"));
+        return add(value, R"(an encoding is "text", "binary", "zstd" or "jpeg")");
       module.encodings[key] = {*encoding, line_of(value)};
-      return Status();
     });
-    if (!read) return read;
-    graph_.modules.push_back(std::move(module));
-    return {};
   }
 
   template <typename Take>
-  Status read_values(const toml::table& table, std::string_view key, Take take) {
+  void read_values(const toml::table& table, std::string_view key, Take take) {
     const toml::node* node = table.get(key);
-    if (node == nullptr) return {};
-    if (!node->is_table()) return error(*node, "\"" + std::string(key) + "\" is a table");
-    for (const auto& [name, value] : *node->as_table())
-      if (auto taken = take(original(name.str()), value); !taken) return taken;
-    return {};
+    if (node == nullptr) return;
+    if (!node->is_table()) return add(*node, "\"" + std::string(key) + "\" is a table");
+    for (const auto& [name, value] : *node->as_table()) take(original(name.str()), value);
   }
 
-  Result<std::string> parameter_text(const toml::node& node) const {
+  std::optional<std::string> parameter_text(const toml::node& node) const {
     if (auto string = node.value_exact<std::string>()) return expand(node, original(*string));
     if (auto flag = node.value_exact<bool>()) return std::string(*flag ? "true" : "false");
     if (node.is_integer() || node.is_floating_point()) {
@@ -228,18 +214,22 @@ class Reader {
         text << node.value<std::int64_t>().value_or(0);
       return text.str();
     }
-    return error(node, "a parameter is a string, a number, true or false");
+    add(node, "a parameter is a string, a number, true or false");
+    return std::nullopt;
   }
 
   /// Puts variables of the environment in.
-  Result<std::string> expand(const toml::node& node, std::string_view text) const {
+  std::optional<std::string> expand(const toml::node& node, std::string_view text) const {
     std::string result;
     while (true) {
       auto begin = text.find("${");
       result += text.substr(0, begin);
       if (begin == std::string_view::npos) return result;
       auto end = text.find('}', begin);
-      if (end == std::string_view::npos) return error(node, "no } after ${");
+      if (end == std::string_view::npos) {
+        add(node, "no } after ${");
+        return std::nullopt;
+      }
       std::string variable{text.substr(begin + 2, end - begin - 2)};
       text.remove_prefix(end + 1);
       std::optional<std::string> otherwise;
@@ -249,52 +239,55 @@ class Reader {
       }
       const char* value = environment_(variable.c_str());
       if (value == nullptr && !otherwise)
-        return error(node, "the environment has no variable " + variable + "; ${" + variable +
-                               ":-VALUE} gives a default");
+        add(node, "the environment has no variable " + variable + "; ${" + variable +
+                      ":-VALUE} gives a default");
       result += value != nullptr && *value != '\0' ? value : otherwise.value_or("");
     }
   }
 
-  Result<GraphPort> read_port(const toml::table& table, std::string_view key) const {
+  std::optional<GraphPort> read_port(const toml::table& table, std::string_view key) const {
     auto text = read_string(table, key);
-    if (!text) return text.error();
+    if (!text) return std::nullopt;
     auto dot = text->find('.');
-    if (dot == std::string::npos || !is_name(text->substr(0, dot)) ||
-        !is_name(text->substr(dot + 1)))
-      return error(*table.get(key), "\"" + *text + "\" is not MODULE.PORT");
-    return GraphPort{text->substr(0, dot), text->substr(dot + 1)};
+    if (dot != std::string::npos && is_name(text->substr(0, dot)) &&
+        is_name(text->substr(dot + 1)))
+      return GraphPort{text->substr(0, dot), text->substr(dot + 1)};
+    add(*table.get(key), "\"" + *text + "\" is not MODULE.PORT");
+    return std::nullopt;
   }
 
-  Status read_link(const toml::node& node) {
-    if (!node.is_table()) return error(node, "a link is written as [[links]]");
+  void read_link(const toml::node& node) {
+    if (!node.is_table()) return add(node, "a link is written as [[links]]");
     const toml::table& table = *node.as_table();
     const std::vector<std::string> policies = {"keep",      "rate",       "burst",
                                                "byte_rate", "byte_burst", "memory"};
     std::vector<std::string> keys = {"from", "to"};
     keys.insert(keys.end(), policies.begin(), policies.end());
-    if (auto known = check_keys(table, keys, "in a link"); !known) return known;
-    auto from = read_port(table, "from");
-    if (!from) return from.error();
-    auto to = read_port(table, "to");
-    if (!to) return to.error();
-    GraphLink link{*from, *to, {}, line_of(node)};
+    check_keys(table, keys, "in a link");
+    auto from = read_port(table, "from"), to = read_port(table, "to");
+    GraphLink link{from.value_or(GraphPort()), to.value_or(GraphPort()), {}, line_of(node)};
     Uri policy;  // of the keys so far: each burst stands behind its rate in the list above
     for (const auto& key : policies) {
       const toml::node* value = table.get(key);
       if (value == nullptr) continue;
       auto text = value->value_exact<std::string>();
       if (auto number = value->value_exact<std::int64_t>()) text = std::to_string(*number);
-      if (!text) return error(*value, key + " is a whole number or a string");
+      if (!text) {
+        add(*value, key + " is a whole number or a string");
+        continue;
+      }
       policy.options.emplace_back(key, *text);
-      auto valid = internal::parse_policy(policy);
-      if (!valid) return error(*value, valid.error().detail);
+      if (auto valid = internal::parse_policy(policy); !valid) {
+        add(*value, valid.error().detail);
+        policy.options.pop_back();
+      }
       link.policy[key] = {*text, line_of(*value)};
     }
-    graph_.links.push_back(std::move(link));
-    return {};
+    if (from && to) graph_.links.push_back(std::move(link));
   }
 
   const Environment& environment_;
+  Problems& problems_;
   Graph graph_;
 };
 
@@ -306,45 +299,43 @@ GraphModule* Graph::find(std::string_view name) {
   return found == modules.end() ? nullptr : &*found;
 }
 
-Result<Graph> parse_graph(std::string_view text, std::string_view file,
-                          const Environment& environment) {
-  if (text.size() > kMaxGraphBytes)
-    return Error{Code::Usage, std::string(file) + ": a graph file has at most 1048576 bytes"};
+Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  auto error_at = [&](std::size_t at, const std::string& what) {
-    auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    return Error{Code::Usage, std::string(file) + ":" + std::to_string(line) + ": " + what};
+  auto refuse_at = [&](std::size_t at, const std::string& what) {
+    auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    problems.add(static_cast<int>(lines) + 1, what);
+    return Graph{problems.file(), {}, {}};
   };
+  if (text.size() > kMaxGraphBytes)
+    return refuse_at(0, "a graph file has at most 1048576 bytes");
   if (auto escape = find_escaped_tilde(text); escape != std::string_view::npos)
-    return error_at(escape, "write ~ itself, not its \\u escape");
+    return refuse_at(escape, "write ~ itself, not its \\u escape");
   if (auto deep = find_too_deep(text); deep != std::string_view::npos)
-    return error_at(deep, "a key has at most " + std::to_string(kMaxGraphDepth) +
-                              " dots, and as many brackets may stand in one another");
+    return refuse_at(deep, "a key has at most " + std::to_string(kMaxGraphDepth) +
+                               " dots, and as many brackets may stand in one another");
   try {
-    toml::table root = toml::parse(ascii_only(text), file);
-    return Reader(file, environment).read(root);
+    toml::table root = toml::parse(ascii_only(text), problems.file());
+    return Reader(environment, problems).read(root);
   } catch (const toml::parse_error& error) {
-    return Error{Code::Usage, std::string(file) + ":" + std::to_string(error.source().begin.line) +
-                                  ": " + original(error.description())};
+    problems.add(static_cast<int>(error.source().begin.line), original(error.description()));
+    return {problems.file(), {}, {}};
   }
 }
 
-Status set_parameter(Graph& graph, std::string_view assignment) {
+void set_parameter(Graph& graph, std::string_view assignment, Problems& problems) {
   auto dot = assignment.find('.'), equals = assignment.find('=');
   if (dot == std::string_view::npos || equals == std::string_view::npos || dot > equals)
-    return Error{Code::Usage, "\"" + std::string(assignment) + "\" is not MODULE.PARAMETER=VALUE"};
+    return problems.add(0, "\"" + std::string(assignment) + "\" is not MODULE.PARAMETER=VALUE");
   std::string name{assignment.substr(0, dot)};
   GraphModule* module = graph.find(name);
   if (module == nullptr) {
     std::vector<std::string> known;
     for (const auto& each : graph.modules) known.push_back(each.name);
-    return Error{Code::Usage,
-                 "no module \"" + name + "\" in " + graph.file + suggestion(name, known)};
+    return problems.add(0, "no module \"" + name + "\" in " + graph.file + suggestion(name, known));
   }
   module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] = {
       std::string(assignment.substr(equals + 1)), 0};
-  return {};
 }
 
 }  // namespace hc

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <hc/base/result.h>
+#include <hc/graph/problems.h>
 #include <hc/wire/element.h>
 
 namespace hc {
@@ -66,15 +66,10 @@ inline constexpr std::size_t kMaxGraphBytes = std::size_t{1} << 20;
 inline constexpr int kMaxGraphDepth = 16;
 
 /// Reads a graph file's text. `${NAME:-otherwise}` in a parameter stands for a variable of the
-/// environment.
-///
-/// Errors: Usage; "depth.toml:12: …" with what is wrong and what would be right.
-Result<Graph> parse_graph(std::string_view text, std::string_view file,
-                          const Environment& environment);
+/// environment. Where there are problems, the graph has what can be made out of the rest.
+Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems);
 
 /// Sets a parameter, from "MODULE.PARAMETER=VALUE".
-///
-/// Errors: Usage (another form; no such module).
-Status set_parameter(Graph& graph, std::string_view assignment);
+void set_parameter(Graph& graph, std::string_view assignment, Problems& problems);
 
 }  // namespace hc

@@ -12,8 +12,14 @@ const char* environment(const char* name) {
   return std::strcmp(name, "HOME") == 0 ? "/home/eve" : nullptr;
 }
 
+/// A graph, or else all that is wrong, a line each.
 Result<Graph> parse(std::string_view text) {
-  return parse_graph(text, "g.toml", environment);
+  Problems problems("g.toml");
+  Graph graph = parse_graph(text, environment, problems);
+  if (problems.empty()) return graph;
+  std::string all;
+  for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
+  return Error{Code::Usage, all};
 }
 
 TEST(GraphFile, HasModulesInTheirOrderAndLinks) {
@@ -87,9 +93,10 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.a]\nencodings.o = 1",
        "g.toml:2: an encoding is \"text\", \"binary\", \"zstd\" or \"jpeg\""},
       {"links = 1\n[modules.a]", "g.toml:1: links are written as [[links]]"},
-      {"[modules.a]\n[[links]]\nfrom = \"a\"", "g.toml:3: \"a\" is not MODULE.PORT"},
+      {"[modules.a]\n[[links]]\nfrom = \"a\"\nto = \"a.b\"",
+       "g.toml:3: \"a\" is not MODULE.PORT"},
       {"[modules.a]\n[[links]]\nfrom = \"a.b\"", "g.toml:2: \"to\" is missing"},
-      {"[modules.a]\n[[links]]\nfrom = \"a.b\"\nvia = \"x\"", "g.toml:4: no key \"via\" in a link"},
+      {"[modules.a]\n[[links]]\nfrom = \"a.b\"\nto = \"a.b\"\nvia = \"x\"", "g.toml:5: no key \"via\" in a link"},
       {"[module.a]\n",
        "g.toml:1: no key \"module\" at the top of a graph, did you mean \"modules\"?"},
       {"[modules.a\n", "g.toml:1: "},
@@ -159,12 +166,43 @@ TEST(GraphFile, DotsAndBracketsInStringsAndCommentsAreFree) {
 
 TEST(GraphFile, ParametersAreSetFromOutside) {
   auto graph = parse("[modules.camera]\nparameters.rate = 1\n");
-  EXPECT_TRUE(set_parameter(*graph, "camera.rate=5=6"));
+  Problems problems("g.toml");
+  set_parameter(*graph, "camera.rate=5=6", problems);
+  EXPECT_TRUE(problems.empty());
   EXPECT_EQ(graph->modules[0].parameters.at("rate").value, "5=6");
-  EXPECT_EQ(set_parameter(*graph, "camra.rate=5").error().detail,
-            "no module \"camra\" in g.toml, did you mean \"camera\"?");
-  EXPECT_FALSE(set_parameter(*graph, "rate=5"));
-  EXPECT_FALSE(set_parameter(*graph, "camera.rate"));
+  for (const char* wrong : {"camra.rate=5", "rate=5", "camera.rate"})
+    set_parameter(*graph, wrong, problems);
+  EXPECT_EQ(problems.lines(),
+            (std::vector<std::string>{
+                "--set: no module \"camra\" in g.toml, did you mean \"camera\"?",
+                "--set: \"rate=5\" is not MODULE.PARAMETER=VALUE",
+                "--set: \"camera.rate\" is not MODULE.PARAMETER=VALUE"}));
+}
+
+TEST(GraphFile, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {
+  auto graph = parse(R"(speed = 3
+[modules.Eye]
+program = 3
+parameters = { a = [], b = "${NO}" }
+addresses.left = -1
+encodings.left = "gif"
+[[links]]
+from = "eye"
+keep = "some"
+burst = 4
+)");
+  ASSERT_FALSE(graph);
+  EXPECT_EQ(graph.error().detail, R"(g.toml:1: no key "speed" at the top of a graph
+g.toml:2: a module's name is snake_case, not "Eye"
+g.toml:3: "program" is a string
+g.toml:4: a parameter is a string, a number, true or false
+g.toml:4: the environment has no variable NO; ${NO:-VALUE} gives a default
+g.toml:5: an address is a whole number from 0 to 2147483647
+g.toml:6: an encoding is "text", "binary", "zstd" or "jpeg"
+g.toml:7: "to" is missing
+g.toml:8: "eye" is not MODULE.PORT
+g.toml:9: option keep is all, latest, or how many messages
+g.toml:10: )" + std::string("option burst wants rate beside it"));
 }
 
 }  // namespace

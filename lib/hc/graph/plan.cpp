@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -26,6 +27,39 @@ const Json* find_named(const Json& list, const std::string& name) {
   for (const auto& each : list)
     if (each.at("name") == name) return &each;
   return nullptr;
+}
+
+/// Whether a program has said of itself what is needed of it here.
+bool is_description(const Json& json) {
+  auto all = [](const Json& list, auto is_right) {
+    return list.is_array() && std::all_of(list.begin(), list.end(), is_right);
+  };
+  auto has = [](const Json& object, const char* key, auto is_right) {
+    return object.is_object() && object.contains(key) && is_right(object[key]);
+  };
+  auto is_text = [](const Json& value) { return value.is_string(); };
+  auto is_number = [](const Json& value) { return value.is_number(); };
+  auto is_type = [&](const Json& type) {
+    return has(type, "type", is_text) && has(type, "scalar", is_text) &&
+           has(type, "components", is_number) && has(type, "width", is_number) &&
+           has(type, "height", is_number) && has(type, "coord", is_number);
+  };
+  auto is_port = [&](const Json& port) {
+    return has(port, "name", is_text) &&
+           has(port, "types", [&](const Json& types) { return all(types, is_type); });
+  };
+  auto is_output = [&](const Json& port) { return is_port(port) && !port["types"].empty(); };
+  auto is_parameter = [&](const Json& parameter) {
+    auto fits = [&](const char* key, auto is_right) {
+      return !parameter.contains(key) || is_right(parameter[key]);
+    };
+    return has(parameter, "name", is_text) && has(parameter, "type", is_text) &&
+           fits("least", is_number) && fits("most", is_number) &&
+           fits("choices", [&](const Json& list) { return all(list, is_text); });
+  };
+  return has(json, "inputs", [&](const Json& list) { return all(list, is_port); }) &&
+         has(json, "outputs", [&](const Json& list) { return all(list, is_output); }) &&
+         has(json, "parameters", [&](const Json& list) { return all(list, is_parameter); });
 }
 
 /// Whether what one port gives is what another takes; 0 and an empty list fit everything.
@@ -72,43 +106,45 @@ std::string in_words(const Json& types) {
 
 class Planner {
  public:
-  Planner(Graph graph, const Describe& describe, std::string_view token)
-      : graph_(std::move(graph)), describe_(describe), token_(token) {}
+  Planner(Graph graph, const Describe& describe, std::string_view token, Problems& problems)
+      : graph_(std::move(graph)), describe_(describe), token_(token), problems_(problems) {}
 
-  Result<Plan> plan() {
+  Plan plan() {
     for (const auto& module : graph_.modules)
       for (const auto& [port, address] : module.addresses)
         if (address.value != 0 && !addresses_.insert(address.value).second)
-          return error(address.line,
-                       "address " + std::to_string(address.value) + " is given twice");
-    for (const auto& module : graph_.modules) {
-      auto planned = plan_module(module);
-      if (!planned) return planned.error();
-    }
+          problems_.add(address.line,
+                        "address " + std::to_string(address.value) + " is given twice");
+    for (const auto& module : graph_.modules) plan_module(module);
     // The counters of a module have its inputs first, so these are all counted before.
     for (const auto& link : graph_.links) {
-      auto checked = check_link(link);
-      if (!checked) return checked.error();
-      ++plan_.modules[index_[link.to.module]].inputs;
+      check_link(link);
+      if (auto to = index_.find(link.to.module); to != index_.end())
+        ++plan_.modules[to->second].inputs;
     }
-    add_links();
+    check_loops();
+    if (problems_.empty()) add_links();
     return std::move(plan_);
   }
 
  private:
-  Error error(int line, const std::string& what) const {
-    return {Code::Usage,
-            line == 0 ? "--set: " + what : graph_.file + ":" + std::to_string(line) + ": " + what};
-  }
-
-  Status plan_module(const GraphModule& module) {
-    auto text = describe_(module.program);
-    if (!text) return error(module.line, "module " + module.name + ": " + text.error().detail);
-    Json description = Json::parse(*text, nullptr, false);
-    if (!description.is_object() || !description.contains("inputs") ||
-        !description.contains("outputs") || !description.contains("parameters"))
-      return error(module.line, "module " + module.name + ": " + module.program +
-                                    " --describe prints no description of a module");
+  void plan_module(const GraphModule& module) {
+    if (module.program.empty()) return;
+    auto describe = [&]() -> std::optional<Json> {
+      auto text = describe_(module.program);
+      if (!text) {
+        problems_.add(module.line, "module " + module.name + ": " + text.error().detail);
+        return std::nullopt;
+      }
+      Json description = Json::parse(*text, nullptr, false);
+      if (is_description(description)) return description;
+      problems_.add(module.line, "module " + module.name + ": " + module.program +
+                                     " --describe prints no description of a module");
+      return std::nullopt;
+    };
+    auto described = describe();
+    if (!described) return;
+    Json& description = *described;
     PlannedModule planned;
     planned.name = module.name;
     planned.command = {module.program, "--name", module.name};
@@ -118,17 +154,19 @@ class Planner {
     };
     for (const auto& [name, value] : module.parameters) {
       const Json* parameter = find_named(description["parameters"], name);
-      if (parameter == nullptr)
-        return error(value.line, "module " + module.name + " has no parameter \"" + name + "\"" +
-                                     suggestion(name, names_of(description["parameters"])));
-      auto set = parameter_from(*parameter).set(value.value);
-      if (!set) return error(value.line, "module " + module.name + ": " + set.error().detail);
+      if (parameter == nullptr) {
+        problems_.add(value.line, "module " + module.name + " has no parameter \"" + name + "\"" +
+                                      suggestion(name, names_of(description["parameters"])));
+        continue;
+      }
+      if (auto set = parameter_from(*parameter).set(value.value); !set)
+        problems_.add(value.line, "module " + module.name + ": " + set.error().detail);
       planned.command.push_back("--" + name + "=" + value.value);
     }
     const Json& outputs = description["outputs"];
     for (const auto& [port, address] : module.addresses)
       if (find_named(outputs, port) == nullptr)
-        return no_port(module.name, address.line, "output", port, outputs);
+        add_no_port(module.name, address.line, "output", port, outputs);
     for (const auto& port : names_of(outputs)) {
       auto given = module.addresses.find(port);
       add("--address", port + "=" +
@@ -137,10 +175,14 @@ class Planner {
     }
     for (const auto& [port, encoding] : module.encodings) {
       const Json* output = find_named(outputs, port);
-      if (output == nullptr) return no_port(module.name, encoding.line, "output", port, outputs);
+      if (output == nullptr) {
+        add_no_port(module.name, encoding.line, "output", port, outputs);
+        continue;
+      }
       if (auto broken = find_error(info_from(output->at("types").at(0), encoding.value)))
-        return error(encoding.line, "module " + module.name + ": R" + std::to_string(broken->rule) +
-                                        " " + port + ": " + broken->what);
+        problems_.add(encoding.line, "module " + module.name + ": R" +
+                                         std::to_string(broken->rule) + " " + port + ": " +
+                                         broken->what);
       add("--encoding", port + "=" + std::string(name(encoding.value)));
     }
     planned.manage_uri = "unix-listen:@" + token_ + "-" + module.name;
@@ -148,7 +190,6 @@ class Planner {
     index_[module.name] = plan_.modules.size();
     plan_.modules.push_back(std::move(planned));
     described_[module.name] = std::move(description);
-    return {};
   }
 
   /// The least address that nobody has, taken.
@@ -157,45 +198,93 @@ class Planner {
     return next_address_;
   }
 
-  Error no_port(const std::string& module, int line, const std::string& kind,
-                const std::string& port, const Json& ports) const {
-    return error(line, "module " + module + " has no " + kind + " \"" + port + "\"" +
-                           suggestion(port, names_of(ports)));
+  void add_no_port(const std::string& module, int line, const std::string& kind,
+                   const std::string& port, const Json& ports) const {
+    problems_.add(line, "module " + module + " has no " + kind + " \"" + port + "\"" +
+                            suggestion(port, names_of(ports)));
   }
 
-  Result<const Json*> find_port(const GraphPort& port, int line, const char* list,
-                                const std::string& kind) const {
-    auto found = described_.find(port.module);
-    if (found == described_.end()) {
+  /// Null where there is none, or where nobody knows since the module is not described.
+  const Json* find_port(const GraphPort& port, int line, const char* list,
+                        const std::string& kind) {
+    if (graph_.find(port.module) == nullptr) {
       std::vector<std::string> known;
       for (const auto& module : graph_.modules) known.push_back(module.name);
-      return error(line, "no module \"" + port.module + "\"" + suggestion(port.module, known));
+      problems_.add(line, "no module \"" + port.module + "\"" + suggestion(port.module, known));
     }
+    auto found = described_.find(port.module);
+    if (found == described_.end()) return nullptr;
     const Json& ports = found->second.at(list);
     const Json* json = find_named(ports, port.port);
-    if (json == nullptr) return no_port(port.module, line, kind, port.port, ports);
+    if (json == nullptr) add_no_port(port.module, line, kind, port.port, ports);
     return json;
   }
 
-  Status check_link(const GraphLink& link) {
-    auto from = find_port(link.from, link.line, "outputs", "output");
-    if (!from) return from.error();
-    auto to = find_port(link.to, link.line, "inputs", "input");
-    if (!to) return to.error();
-    const Json& taken = (*to)->at("types");
-    const Json& given = (*from)->at("types").at(0);
+  void check_link(const GraphLink& link) {
+    if (!linked_.insert(link.from.text() + " " + link.to.text()).second)
+      problems_.add(link.line, "the link from " + link.from.text() + " to " + link.to.text() +
+                                   " is there twice");
+    const Json* from = find_port(link.from, link.line, "outputs", "output");
+    const Json* to = find_port(link.to, link.line, "inputs", "input");
+    if (from == nullptr || to == nullptr) return;
+    const Json& taken = to->at("types");
+    const Json& given = from->at("types").at(0);
     if (!taken.empty() && std::none_of(taken.begin(), taken.end(),
                                        [&](const Json& type) { return type_fits(given, type); }))
-      return error(link.line, link.from.text() + " gives " + in_words((*from)->at("types")) + ", " +
-                                  link.to.text() + " takes " + in_words(taken));
+      problems_.add(link.line, link.from.text() + " gives " + in_words(from->at("types")) + ", " +
+                                   link.to.text() + " takes " + in_words(taken));
     if (auto memory = link.policy.find("memory"); memory != link.policy.end() && shared(link)) {
       auto enough = internal::check_shm_memory({"shm", "", {{"memory", memory->second.value}}});
-      if (!enough) return error(memory->second.line, enough.error().detail);
+      if (!enough) problems_.add(memory->second.line, enough.error().detail);
     }
-    if (!linked_.insert(link.from.text() + " " + link.to.text()).second)
-      return error(link.line, "the link from " + link.from.text() + " to " + link.to.text() +
-                                  " is there twice");
-    return {};
+  }
+
+  /// A message that comes back to where it came from, and makes another, does so as fast as the
+  /// machine can, unless a link on its way has a rate.
+  void check_loops() const {
+    std::map<std::string, std::vector<const GraphLink*>> leaving;
+    for (const auto& link : graph_.links)
+      if (!link.policy.contains("rate") && !link.policy.contains("byte_rate"))
+        leaving[link.from.module].push_back(&link);
+    enum class Visit { Begun = 1, Done };
+    std::map<std::string, Visit> visits;
+    std::vector<const GraphLink*> way;
+    // Depth first, without recursion: each step of the way, and which of its links is next.
+    for (const auto& module : graph_.modules) {
+      if (visits.contains(module.name)) continue;
+      std::vector<std::pair<std::string, std::size_t>> steps = {{module.name, 0}};
+      visits[module.name] = Visit::Begun;
+      while (!steps.empty()) {
+        auto& [name, next] = steps.back();
+        const auto& links = leaving[name];
+        if (next == links.size()) {
+          visits[name] = Visit::Done;
+          steps.pop_back();
+          if (!way.empty()) way.pop_back();
+          continue;
+        }
+        const GraphLink* link = links[next++];
+        auto visit = visits.find(link->to.module);
+        if (visit == visits.end()) {
+          visits[link->to.module] = Visit::Begun;
+          way.push_back(link);
+          steps.emplace_back(link->to.module, 0);
+        } else if (visit->second == Visit::Begun) {
+          add_loop(way, *link);
+        }
+      }
+    }
+  }
+
+  void add_loop(const std::vector<const GraphLink*>& way, const GraphLink& last) const {
+    std::string text = last.to.module;
+    auto begin = std::find_if(way.begin(), way.end(), [&](const GraphLink* link) {
+      return link->from.module == last.to.module;
+    });
+    for (auto link = begin; link != way.end(); ++link) text += " -> " + (*link)->to.module;
+    problems_.add(last.line,
+                  "a loop without a rate: " + text + " -> " + last.to.module +
+                      "; give one of its links a rate, as rate = 30");
   }
 
   /// Whether a module can be linked by shared memory; what is no program of ours may know only
@@ -203,7 +292,7 @@ class Planner {
   bool shares_memory(const std::string& module) const {
     const Json& description = described_.at(module);
     if (!description.contains("transports")) return false;
-    const Json& known = description["transports"];
+    const Json& known = description["transports"];  // whatever it is, one may look for it there
     return std::find(known.begin(), known.end(), "shm") != known.end();
   }
 
@@ -275,6 +364,7 @@ class Planner {
   Graph graph_;
   const Describe& describe_;
   std::string token_;
+  Problems& problems_;
   Plan plan_;
   std::map<std::string, Json> described_;  // what the programs of modules say of themselves
   std::map<std::string, std::size_t> index_;
@@ -285,13 +375,8 @@ class Planner {
 
 }  // namespace
 
-Result<Plan> make_plan(Graph graph, const Describe& describe, std::string_view token) {
-  try {
-    return Planner(std::move(graph), describe, token).plan();
-  } catch (const Json::exception& error) {
-    return Error{Code::Usage,
-                 std::string("--describe prints no description of a module: ") + error.what()};
-  }
+Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems) {
+  return Planner(std::move(graph), describe, token, problems).plan();
 }
 
 }  // namespace hc

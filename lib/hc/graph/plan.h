@@ -45,9 +45,11 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 ///
 /// Outputs without an address get the least ones that are free, in the order of the file.
 ///
-/// Errors: Usage, with file and line: an unknown module, port or parameter, a value out of range,
-/// an encoding that the output's type cannot have, an input of another type than the output it is
-/// linked to, an address or a link given twice, memory that is too small to be shared.
-Result<Plan> make_plan(Graph graph, const Describe& describe, std::string_view token);
+/// Problems: an unknown module, port or parameter, a value out of range, an encoding that the
+/// output's type cannot have, an input of another type than the output it is linked to, an address
+/// or a link given twice, memory that is too small to be shared, a loop without a rate. Of a module
+/// without a program (empty), whose problem has been told, nothing more is said. The plan is of no
+/// use where there are problems.
+Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems);
 
 }  // namespace hc

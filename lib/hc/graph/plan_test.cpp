@@ -34,10 +34,16 @@ Result<std::string> describe(const std::string& program) {
   return Error{Code::NotFound, "no such program"};
 }
 
+/// A plan, or else all that is wrong, a line each.
 Result<Plan> plan(const std::string& text) {
-  auto graph = parse_graph(text, "g.toml", [](const char*) -> const char* { return nullptr; });
-  EXPECT_TRUE(graph) << graph.error().detail;
-  return make_plan(*graph, describe, "t");
+  Problems problems("g.toml");
+  auto graph = parse_graph(text, [](const char*) -> const char* { return nullptr; }, problems);
+  EXPECT_TRUE(problems.empty());
+  Plan plan = make_plan(graph, describe, "t", problems);
+  if (problems.empty()) return plan;
+  std::string all;
+  for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
+  return Error{Code::Usage, all};
 }
 
 TEST(Plan, GivesEveryLinkTwoEnds) {
@@ -133,7 +139,8 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.x]\n", "g.toml:1: module x: no such program"},
       {"[modules.dumb]\n",
        "g.toml:1: module dumb: dumb --describe prints no description of a module"},
-      {"[modules.odd]\nparameters.rate=1", "--describe prints no description of a module: "},
+      {"[modules.odd]\nparameters.rate=1",
+       "g.toml:1: module odd: odd --describe prints no description of a module"},
       {"[modules.source]\nparameters.rat = 3",
        "g.toml:2: module source has no parameter \"rat\", did you mean \"rate\"?"},
       {"[modules.source]\naddresses.lft = 3",
@@ -170,6 +177,56 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
 TEST(Plan, AnInputThatTakesAnythingFits) {
   EXPECT_TRUE(
       plan("[modules.source]\n[modules.any]\n[[links]]\nfrom=\"source.left\"\nto=\"any.in\"\n"));
+}
+
+TEST(Plan, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {
+  auto planned = plan(R"([modules.source]
+parameters = { rat = 3, rate = 10 }
+addresses.lft = 1
+[modules.x]
+[modules.sink]
+[[links]]
+from = "x.out"
+to = "sink.inn"
+[[links]]
+from = "source.left"
+to = "sink.in"
+[[links]]
+from = "source.left"
+to = "snk.in"
+)");
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().detail,
+            R"(g.toml:2: module source has no parameter "rat", did you mean "rate"?
+g.toml:2: module source: parameter rate: "10" is not from 0 to 9
+g.toml:3: module source has no output "lft", did you mean "left"?
+g.toml:4: module x: no such program
+g.toml:6: module sink has no input "inn", did you mean "in"?
+g.toml:9: source.left gives map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 in )"
+            "coordinate system 8\ng.toml:12: no module \"snk\", did you mean \"sink\"?");
+}
+
+TEST(Plan, ALoopHasARate) {
+  auto loop = [](const std::string& more) {
+    return plan("[modules.source]\n[modules.a]\nprogram = \"filter\"\n[modules.b]\n"
+                "program = \"filter\"\n"
+                "[[links]]\nfrom = \"source.left\"\nto = \"a.in\"\n"
+                "[[links]]\nfrom = \"a.out\"\nto = \"b.in\"\n"
+                "[[links]]\nfrom = \"b.out\"\nto = \"a.in\"\n" +
+                more);
+  };
+  auto planned = loop("");
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().detail,
+            "g.toml:12: a loop without a rate: a -> b -> a; give one of its links a rate, as rate "
+            "= 30");
+  EXPECT_TRUE(loop("rate = 30\n"));
+  EXPECT_TRUE(loop("byte_rate = \"1M\"\n"));
+  auto to_itself = plan(
+      "[modules.filter]\n[[links]]\nfrom = \"filter.out\"\nto = \"filter.in\"\n");
+  ASSERT_FALSE(to_itself);
+  EXPECT_TRUE(to_itself.error().detail.starts_with(
+      "g.toml:2: a loop without a rate: filter -> filter;"));
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc check: says all that is wrong with a graph, without starting it.
+#include <fmt/format.h>
+
+#include "common.h"
+#include "graph.h"
+#include "verbs.h"
+
+namespace tool {
+
+void add_check(CLI::App& app) {
+  auto options = std::make_shared<GraphOptions>();
+  auto* verb = app.add_subcommand("check", "Check a graph file, without starting anything");
+  add_graph_options(*verb, *options);
+  verb->callback([options] {
+    auto plan = make_plan("check", *options);
+    auto counted = [](std::size_t count, std::string_view what) {
+      return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+    };
+    print(fmt::format("{}: {}, {}: nothing is wrong\n", options->file,
+                      counted(plan.modules.size(), "module"), counted(plan.links.size(), "link")));
+  });
+}
+
+}  // namespace tool
