@@ -14,7 +14,8 @@ constexpr const char* kDescription =
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view text{reinterpret_cast<const char*>(data), size};
   hc::Problems problems("fuzz.toml");
-  auto graph = hc::parse_graph(text, [](const char*) { return "value"; }, problems);
+  auto graph = hc::parse_graph(
+      text, [](const char*) { return "value"; }, problems);
   auto describe = [](const std::string&) -> hc::Result<std::string> {
     return std::string(kDescription);
   };

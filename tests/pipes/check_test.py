@@ -21,22 +21,22 @@ BROKEN = [
     " stand in one another\n",
     '[modules.camera]\nparameters.source = "\\u007e" #! write ~ itself, not its \\u escape\n',
     'module = 1 #! no key "module" at the top of a graph, did you mean "modules"?\n',
-    "[modules.camera]\n[graph] #! no key \"graph\" at the top of a graph\n",
+    '[modules.camera]\n[graph] #! no key "graph" at the top of a graph\n',
     "modules = 3 #! a graph has a table [modules.NAME] for each module\n",
     # Modules.
-    "[modules.Camera] #! a module's name is snake_case, not \"Camera\"\nprogram = \"camera\"\n",
+    '[modules.Camera] #! a module\'s name is snake_case, not "Camera"\nprogram = "camera"\n',
     '[modules."two words"] #! a module\'s name is snake_case, not "two words"\nprogram = "camera"\n',
     "[modules]\ncamera = 3 #! a module is a table [modules.camera]\n",
     '[modules.camera]\nprogramme = "x" #! no key "programme" in module camera, did you mean'
     ' "program"?\n',
     '[modules.a] #! no program "camra", did you mean "camera"?\nprogram = "camra"\n',
-    '[modules.a]\nprogram = 3 #! "program" is a string\n[modules.b] #! no program "b"\n',
+    '[modules.camera]\nprogram = 3 #! "program" is a string\n[modules.b] #! no program "b"\n',
     '[modules.a] #! no program "./nowhere"\nprogram = "./nowhere"\n',
-    '[modules.a] #! plain may not be executed\nprogram = "./plain"\n',
-    '[modules.a] #! module a: /bin/true --describe prints no description of a module\n'
+    '[modules.a] #! ./plain may not be executed\nprogram = "./plain"\n',
+    "[modules.a] #! module a: /bin/true --describe prints no description of a module\n"
     'program = "/bin/true"\n',
     '[modules.a] #! module a: /bin/false --describe failed with status 1\nprogram = "/bin/false"\n',
-    '[modules.a] #! module a: ./liar --describe prints no description of a module\n'
+    "[modules.a] #! module a: ./liar --describe prints no description of a module\n"
     'program = "./liar"\n',
     # Parameters.
     '[modules.camera]\nparameters = 3 #! "parameters" is a table\n',
@@ -83,13 +83,14 @@ BROKEN = [
     LINKED + "keep = 1.5 #! keep is a whole number or a string\n",
     LINKED + "burst = 3 #! option burst wants rate beside it\n",
     LINKED + 'memory = "1M" #! memory is at least 1576960 bytes where it is shared, not 1048576\n',
-    '[modules.a]\nprogram = "brightness"\n[modules.b]\nprogram = "depth_score"\n'
-    '[[links]] #! a.mean gives table 1 x f64, b.depth takes map 1 x f32\n'
-    'from = "a.mean"\nto = "b.depth"\n',
+    '[modules.a]\nprogram = "brightness"\n[modules.view]\n'
+    "[[links]] #! a.mean gives table 1 x f64, view.image takes rgb_image 3 x u8 or intensity_image 1"
+    " x u8\n"
+    'from = "a.mean"\nto = "view.image"\n',
     # Several at once, and a loop.
-    '[modules.camera]\nparameters = { width = -1, hight = 3 } #! module camera has no parameter'
+    "[modules.camera]\nparameters = { width = -1, hight = 3 } #! module camera has no parameter"
     ' "hight", did you mean "height"? #! module camera: parameter width: "-1" is not from 0 to 65535'
-    "\n[[links]] #! no module \"view\"\nfrom = \"camera.left\"\nto = \"view.image\"\n",
+    '\n[[links]] #! no module "view"\nfrom = "camera.left"\nto = "view.image"\n',
     '[modules.relay]\nprogram = "./relay"\n[[links]] #! a loop without a rate: relay -> relay; give'
     ' one of its links a rate, as rate = 30\nfrom = "relay.out"\nto = "relay.in"\n',
 ]

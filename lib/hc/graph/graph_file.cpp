@@ -150,8 +150,7 @@ class Reader {
                   const std::string& where) const {
     for (const auto& [key, node] : table)
       if (std::find(known.begin(), known.end(), key.str()) == known.end())
-        add(node,
-            "no key \"" + original(key.str()) + "\" " + where + suggestion(key.str(), known));
+        add(node, "no key \"" + original(key.str()) + "\" " + where + suggestion(key.str(), known));
   }
 
   std::optional<std::string> read_string(const toml::table& table, std::string_view key) const {
@@ -170,8 +169,7 @@ class Reader {
     module.name = name;
     module.program = name;
     module.line = line_of(node);
-    if (!is_name(name))
-      add(node, "a module's name is snake_case, not \"" + module.name + "\"");
+    if (!is_name(name)) add(node, "a module's name is snake_case, not \"" + module.name + "\"");
     if (!node.is_table()) return add(node, "a module is a table [modules." + module.name + "]");
     const toml::table& table = *node.as_table();
     check_keys(table, {"program", "parameters", "addresses", "encodings"},
@@ -189,8 +187,7 @@ class Reader {
     });
     read_values(table, "encodings", [&](const std::string& key, const toml::node& value) {
       auto encoding = encoding_of(value.value<std::string>().value_or(""));
-      if (!encoding)
-        return add(value, R"(an encoding is "text", "binary", "zstd" or "jpeg")");
+      if (!encoding) return add(value, R"(an encoding is "text", "binary", "zstd" or "jpeg")");
       module.encodings[key] = {*encoding, line_of(value)};
     });
   }
@@ -249,8 +246,7 @@ class Reader {
     auto text = read_string(table, key);
     if (!text) return std::nullopt;
     auto dot = text->find('.');
-    if (dot != std::string::npos && is_name(text->substr(0, dot)) &&
-        is_name(text->substr(dot + 1)))
+    if (dot != std::string::npos && is_name(text->substr(0, dot)) && is_name(text->substr(dot + 1)))
       return GraphPort{text->substr(0, dot), text->substr(dot + 1)};
     add(*table.get(key), "\"" + *text + "\" is not MODULE.PORT");
     return std::nullopt;
@@ -307,8 +303,7 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
     problems.add(static_cast<int>(lines) + 1, what);
     return Graph{problems.file(), {}, {}};
   };
-  if (text.size() > kMaxGraphBytes)
-    return refuse_at(0, "a graph file has at most 1048576 bytes");
+  if (text.size() > kMaxGraphBytes) return refuse_at(0, "a graph file has at most 1048576 bytes");
   if (auto escape = find_escaped_tilde(text); escape != std::string_view::npos)
     return refuse_at(escape, "write ~ itself, not its \\u escape");
   if (auto deep = find_too_deep(text); deep != std::string_view::npos)

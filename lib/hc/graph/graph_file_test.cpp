@@ -93,10 +93,10 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.a]\nencodings.o = 1",
        "g.toml:2: an encoding is \"text\", \"binary\", \"zstd\" or \"jpeg\""},
       {"links = 1\n[modules.a]", "g.toml:1: links are written as [[links]]"},
-      {"[modules.a]\n[[links]]\nfrom = \"a\"\nto = \"a.b\"",
-       "g.toml:3: \"a\" is not MODULE.PORT"},
+      {"[modules.a]\n[[links]]\nfrom = \"a\"\nto = \"a.b\"", "g.toml:3: \"a\" is not MODULE.PORT"},
       {"[modules.a]\n[[links]]\nfrom = \"a.b\"", "g.toml:2: \"to\" is missing"},
-      {"[modules.a]\n[[links]]\nfrom = \"a.b\"\nto = \"a.b\"\nvia = \"x\"", "g.toml:5: no key \"via\" in a link"},
+      {"[modules.a]\n[[links]]\nfrom = \"a.b\"\nto = \"a.b\"\nvia = \"x\"",
+       "g.toml:5: no key \"via\" in a link"},
       {"[module.a]\n",
        "g.toml:1: no key \"module\" at the top of a graph, did you mean \"modules\"?"},
       {"[modules.a\n", "g.toml:1: "},
@@ -172,11 +172,10 @@ TEST(GraphFile, ParametersAreSetFromOutside) {
   EXPECT_EQ(graph->modules[0].parameters.at("rate").value, "5=6");
   for (const char* wrong : {"camra.rate=5", "rate=5", "camera.rate"})
     set_parameter(*graph, wrong, problems);
-  EXPECT_EQ(problems.lines(),
-            (std::vector<std::string>{
-                "--set: no module \"camra\" in g.toml, did you mean \"camera\"?",
-                "--set: \"rate=5\" is not MODULE.PARAMETER=VALUE",
-                "--set: \"camera.rate\" is not MODULE.PARAMETER=VALUE"}));
+  EXPECT_EQ(problems.lines(), (std::vector<std::string>{
+                                  "--set: no module \"camra\" in g.toml, did you mean \"camera\"?",
+                                  "--set: \"rate=5\" is not MODULE.PARAMETER=VALUE",
+                                  "--set: \"camera.rate\" is not MODULE.PARAMETER=VALUE"}));
 }
 
 TEST(GraphFile, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {

@@ -282,9 +282,8 @@ class Planner {
       return link->from.module == last.to.module;
     });
     for (auto link = begin; link != way.end(); ++link) text += " -> " + (*link)->to.module;
-    problems_.add(last.line,
-                  "a loop without a rate: " + text + " -> " + last.to.module +
-                      "; give one of its links a rate, as rate = 30");
+    problems_.add(last.line, "a loop without a rate: " + text + " -> " + last.to.module +
+                                 "; give one of its links a rate, as rate = 30");
   }
 
   /// Whether a module can be linked by shared memory; what is no program of ours may know only

@@ -37,7 +37,8 @@ Result<std::string> describe(const std::string& program) {
 /// A plan, or else all that is wrong, a line each.
 Result<Plan> plan(const std::string& text) {
   Problems problems("g.toml");
-  auto graph = parse_graph(text, [](const char*) -> const char* { return nullptr; }, problems);
+  auto graph = parse_graph(
+      text, [](const char*) -> const char* { return nullptr; }, problems);
   EXPECT_TRUE(problems.empty());
   Plan plan = make_plan(graph, describe, "t", problems);
   if (problems.empty()) return plan;
@@ -208,12 +209,13 @@ g.toml:9: source.left gives map 1 x f32 in coordinate system 7, sink.in takes ma
 
 TEST(Plan, ALoopHasARate) {
   auto loop = [](const std::string& more) {
-    return plan("[modules.source]\n[modules.a]\nprogram = \"filter\"\n[modules.b]\n"
-                "program = \"filter\"\n"
-                "[[links]]\nfrom = \"source.left\"\nto = \"a.in\"\n"
-                "[[links]]\nfrom = \"a.out\"\nto = \"b.in\"\n"
-                "[[links]]\nfrom = \"b.out\"\nto = \"a.in\"\n" +
-                more);
+    return plan(
+        "[modules.source]\n[modules.a]\nprogram = \"filter\"\n[modules.b]\n"
+        "program = \"filter\"\n"
+        "[[links]]\nfrom = \"source.left\"\nto = \"a.in\"\n"
+        "[[links]]\nfrom = \"a.out\"\nto = \"b.in\"\n"
+        "[[links]]\nfrom = \"b.out\"\nto = \"a.in\"\n" +
+        more);
   };
   auto planned = loop("");
   ASSERT_FALSE(planned);
@@ -222,11 +224,10 @@ TEST(Plan, ALoopHasARate) {
             "= 30");
   EXPECT_TRUE(loop("rate = 30\n"));
   EXPECT_TRUE(loop("byte_rate = \"1M\"\n"));
-  auto to_itself = plan(
-      "[modules.filter]\n[[links]]\nfrom = \"filter.out\"\nto = \"filter.in\"\n");
+  auto to_itself = plan("[modules.filter]\n[[links]]\nfrom = \"filter.out\"\nto = \"filter.in\"\n");
   ASSERT_FALSE(to_itself);
-  EXPECT_TRUE(to_itself.error().detail.starts_with(
-      "g.toml:2: a loop without a rate: filter -> filter;"));
+  EXPECT_TRUE(
+      to_itself.error().detail.starts_with("g.toml:2: a loop without a rate: filter -> filter;"));
 }
 
 }  // namespace
