@@ -96,7 +96,7 @@ class SharedMemory(harness.Pipes):
         for command, status, words in (
             ("hc cat '%s?spin=often'", 2, "option spin is a whole number"),
             ("hc cat '%s?keep=none'", 2, "keep is"),
-            ("hc cat '%s?readers=1'", 1, 'no option "readers"'),
+            ("hc cat '%s?readers=1'", 2, 'no option "readers"'),
             ("hc cat '%s'", 1, "nobody listens there"),
             ("hc send 1 --out '%s?memory=1K'", 2, "memory is at least"),
         ):
