@@ -25,7 +25,7 @@ Result<Got> StreamSource::take(Message& message) {
     if (!got) return got.error();
     if (*got) return Got::Message;
     // Who asked and got an answer waits for the next one now: to read once more would be in vain.
-    if (std::exchange(is_dry_, false) && between_messages()) return Got::Nothing;
+    if (std::exchange(is_dry_, false) && between_messages()) return nothing();
     auto space = reader_.space();
     ssize_t size = is_socket_ ? ::recv(descriptor_.get(), space.data(), space.size(), MSG_DONTWAIT)
                               : ::read(descriptor_.get(), space.data(), space.size());
@@ -39,7 +39,7 @@ Result<Got> StreamSource::take(Message& message) {
       continue;
     }
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0 && would_wait(errno)) return Got::Nothing;
+    if (size < 0 && would_wait(errno)) return nothing();
     // A peer that was killed with our bytes unread resets the connection: the end of what it said.
     if (size < 0 && errno != ECONNRESET) {
       auto error = system_error("read", "");
@@ -51,6 +51,16 @@ Result<Got> StreamSource::take(Message& message) {
     if (!end) return end.error();
     return Got::End;
   }
+}
+
+/// Nothing more for now. Who waits inside a large message is woken for a good part of it (by TCP;
+/// Unix sockets wake for every piece): each wake keeps the writer from its work.
+Got StreamSource::nothing() {
+  constexpr std::uint64_t kGoodPart = std::uint64_t{128} << 10;
+  int bytes = static_cast<int>(std::clamp<std::uint64_t>(reader_.missing(), 1, kGoodPart));
+  if (is_socket_ && std::exchange(wakes_at_, bytes) != bytes)
+    ::setsockopt(descriptor_.get(), SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
+  return Got::Nothing;
 }
 
 Result<bool> StreamSource::wait(int stop, std::chrono::milliseconds timeout) {

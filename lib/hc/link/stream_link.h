@@ -35,12 +35,14 @@ class StreamSource final : public Source {
 
  private:
   [[nodiscard]] bool awaits_writer() const;
+  Got nothing();
 
   Descriptor descriptor_;
   bool may_await_writer_;
   off_t begin_;            // where in a file the stream begins, -1 in what is none [byte]
   bool is_socket_ = true;  // until a first read says otherwise
   bool is_dry_ = false;    // the last read gave all there was, which has been taken
+  int wakes_at_ = 1;       // bytes, in what is a socket
   StreamReader reader_;
 };
 

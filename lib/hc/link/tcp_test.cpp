@@ -158,6 +158,58 @@ TEST(Tcp, AConnectionWithItselfIsNone) {
   sender.join();
 }
 
+TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
+  auto listening = *internal::listen_on(loopback_address(0), "any");
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+  auto peer = connect("127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
+  internal::Descriptor accepted(::accept(listening.get(), nullptr, nullptr));
+  const int reading = accepted.get();
+  internal::StreamSource source(std::move(accepted), {});
+  auto wakes_at = [&] {
+    int bytes = 0;
+    socklen_t length = sizeof bytes;
+    EXPECT_EQ(::getsockopt(reading, SOL_SOCKET, SO_RCVLOWAT, &bytes, &length), 0);
+    return bytes;
+  };
+  std::string_view rest;
+  auto send = [&](std::size_t bytes) {
+    for (; bytes > 0;) {
+      auto sent = ::send(peer.get(), rest.data(), bytes, 0);
+      ASSERT_GT(sent, 0);
+      bytes -= static_cast<std::size_t>(sent);
+      rest.remove_prefix(static_cast<std::size_t>(sent));
+    }
+  };
+  Message message;
+  const auto take = [&] {
+    auto got = *source.take(message);
+    // Bytes on their way wake, or have been taken with those before.
+    while (got == Got::Nothing && *source.wait(-1, std::chrono::milliseconds(0)))
+      got = *source.take(message);
+    return got;
+  };
+  const std::string large = encode(numbered(7, 200'000)), small = encode(numbered(8, 1));
+  rest = large;
+  send(large.size() - 150'000);
+  EXPECT_EQ(take(), Got::Nothing);
+  EXPECT_EQ(wakes_at(), 128 << 10);
+  send(20'000);
+  EXPECT_FALSE(*source.wait(-1, std::chrono::milliseconds(0)));
+  EXPECT_EQ(*source.take(message), Got::Nothing);
+  EXPECT_LE(wakes_at(), 130'000);
+  send(rest.size());
+  ASSERT_TRUE(*receive(source, message));
+  EXPECT_EQ(message.header.seq, 7);
+  EXPECT_EQ(take(), Got::Nothing);
+  EXPECT_EQ(wakes_at(), 1);
+  rest = small;
+  send(small.size());
+  ASSERT_TRUE(*receive(source, message));
+  EXPECT_EQ(message.header.seq, 8);
+}
+
 TEST(Tcp, AHostWithoutAnAddressIsNotFound) {
   auto source = open_source(*parse_uri("tcp:no.such.host.invalid:80"));
   ASSERT_FALSE(source);

@@ -42,7 +42,9 @@ std::span<std::byte> StreamReader::space() {
     begin_ = 0;
     block_ = std::move(target);
   }
-  return {block_.get() + end_, kBlockBytes - end_};
+  // Of a message that is as large as the one before only the head; the elements go to their place.
+  bool only_head = state_ == State::Head && begin_ == end_ && expects_body_;
+  return {block_.get() + end_, only_head ? kLeastSpace : kBlockBytes - end_};
 }
 
 void StreamReader::commit(std::size_t size) {
@@ -155,6 +157,7 @@ Result<bool> StreamReader::read_body(Message& message) {
 
 bool StreamReader::deliver(Message& message, std::span<const std::byte> elements,
                            const SharedBytes& owner) {
+  expects_body_ = owner == body_;
   message.header = header_;
   message.elements = elements;
   message.owner = owner;

@@ -37,6 +37,12 @@ class StreamReader {
   /// Says that `size` bytes have been put at the start of space().
   void commit(std::size_t size);
 
+  /// How many bytes of the stream are sure to come before next() has a message: 0 until the head of
+  /// a large one is known. [byte]
+  [[nodiscard]] std::uint64_t missing() const {
+    return state_ == State::Body ? body_size_ - body_filled_ : 0;
+  }
+
   /// Takes the next whole message; false when more bytes are needed first.
   ///
   /// Errors: Malformed, Unsupported, TooLarge, with rule, field and byte; the same again from then
@@ -87,6 +93,7 @@ class StreamReader {
   TextRows rows_;
   SharedBytes body_;
   std::uint64_t body_capacity_ = 0, body_size_ = 0, body_filled_ = 0;
+  bool expects_body_ = false;                            // as the last message had one
   std::uint64_t trusted_size_ = std::uint64_t{1} << 20;  // of a body that one allocates at once
 };
 

@@ -192,6 +192,32 @@ TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
   EXPECT_EQ(allocated, after_first);
 }
 
+TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
+  const Message sent = filled(kRgb, 800, 600);
+  const std::string bytes = encode(sent);
+  StreamReader reader;
+  for (bool is_first : {true, false}) {
+    std::size_t in_place = 0;
+    std::string_view rest = bytes;
+    Message message;
+    while (!*reader.next(message)) {
+      auto missing = reader.missing();
+      auto space = reader.space();
+      if (missing > 0) {
+        EXPECT_TRUE(is_first || space.size() == missing);
+        in_place += std::min(space.size(), rest.size());
+      }
+      std::size_t size = std::min(space.size(), rest.size());
+      std::memcpy(space.data(), rest.data(), size);
+      reader.commit(size);
+      rest.remove_prefix(size);
+    }
+    EXPECT_EQ(message.characters(), sent.characters());
+    EXPECT_EQ(reader.missing(), 0U);
+    EXPECT_GE(in_place, sent.elements.size() - (is_first ? 65536 : 4096));
+  }
+}
+
 TEST(StreamReader, R24_PromisesCostNothing) {
   std::string nines(10000, '9');
   const std::string hostile[] = {
