@@ -17,7 +17,7 @@
 #include <set>
 #include <thread>
 
-#include <hc/link/shm_layout.h>
+#include <hc/link/shm/layout.h>
 
 #include "child.h"
 

@@ -17,8 +17,8 @@
 #include <hc/link/descriptor.h>
 #include <hc/link/dialing.h>
 #include <hc/link/link.h>
-#include <hc/link/shm_greeting.h>
-#include <hc/link/shm_layout.h>
+#include <hc/link/shm/greeting.h>
+#include <hc/link/shm/layout.h>
 #include <hc/link/unix.h>
 
 namespace hc::testing {

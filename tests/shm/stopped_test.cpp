@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include <hc/link/shm_layout.h>
+#include <hc/link/shm/layout.h>
 
 #include "child.h"
 

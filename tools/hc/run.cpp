@@ -26,7 +26,7 @@ void print_links(const hc::Plan& plan, const hc::RunReport& report) {
   std::string text;
   for (std::size_t i = 0; i < plan.links.size(); ++i) {
     std::string name = plan.links[i].from.text() + " -> " + plan.links[i].to.text();
-    const auto& sent = report.links[i].sent;
+    const auto& sent = report.links[i];
     std::string lost;
     if (sent.lost() > 0) lost = fmt::format("  {} lost ({})", sent.lost(), losses_in_words(sent));
     text += fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,

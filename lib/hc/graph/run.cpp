@@ -92,7 +92,7 @@ class Runner {
     for (const auto& link : plan_.links) {
       auto sent = counters_at(link.sender), left_out = counters_at(link.reader);
       left_out.messages = left_out.bytes = left_out.kept_back = 0;
-      report.links.push_back({sent += left_out});
+      report.links.push_back(sent += left_out);
     }
     return report;
   }

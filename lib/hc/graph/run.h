@@ -14,15 +14,12 @@
 
 namespace hc {
 
-/// What went over a link of a graph.
-struct LinkReport {
-  Traffic sent;  ///< as its sender counts, and with what its reader has left out
-};
-
 /// What a graph has done.
 struct RunReport {
-  std::vector<LinkReport> links;  ///< in the order of Plan::links
-  bool stopped = false;           ///< ended because it was told to
+  /// Of each link, in the order of Plan::links: as its sender counts, and with what its reader has
+  /// left out.
+  std::vector<Traffic> links;
+  bool stopped = false;  ///< ended because it was told to
 };
 
 struct RunOptions {

@@ -11,8 +11,8 @@
 
 #include <hc/link/reactor.h>
 #include <hc/link/remarks.h>
-#include <hc/link/shm_greeting.h>
-#include <hc/link/shm_memory.h>
+#include <hc/link/shm/greeting.h>
+#include <hc/link/shm/memory.h>
 #include <hc/link/socket.h>
 
 namespace hc::internal {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/shm_greeting.h>
+#include <hc/link/shm/greeting.h>
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -10,7 +10,7 @@
 #include <cstring>
 #include <optional>
 
-#include <hc/link/crash_point.h>
+#include <hc/link/shm/crash_point.h>
 #include <hc/link/socket.h>
 #include <hc/link/stream_link.h>
 

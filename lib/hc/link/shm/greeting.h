@@ -18,7 +18,7 @@
 #include <string_view>
 
 #include <hc/base/uri.h>
-#include <hc/link/shm_memory.h>
+#include <hc/link/shm/memory.h>
 
 namespace hc::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/shm_greeting.h>
+#include <hc/link/shm/greeting.h>
 #include <hc/link/socket_test.h>
 #include <hc/link/unix.h>
 #include <unistd.h>

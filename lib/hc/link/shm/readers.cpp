@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/shm_readers.h>
+#include <hc/link/shm/readers.h>
 
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 
-#include <hc/link/crash_point.h>
+#include <hc/link/shm/crash_point.h>
 #include <hc/link/unix.h>
 
 namespace hc::internal {

@@ -7,10 +7,11 @@
 #include <cstring>
 #include <functional>
 
-#include <hc/link/crash_point.h>
 #include <hc/link/paced_sink.h>
-#include <hc/link/shm_readers.h>
-#include <hc/link/shm_slots.h>
+#include <hc/link/shm/crash_point.h>
+#include <hc/link/shm/readers.h>
+#include <hc/link/shm/slots.h>
+#include <hc/link/shm/waker.h>
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
 #include <hc/link/unix.h>
@@ -31,9 +32,7 @@ using std::memory_order_seq_cst;
 /// in the caches still when it is read.
 constexpr std::uint64_t kAheadBytes = std::uint64_t{8} << 20;
 constexpr std::uint64_t kAheadMessages = 2;  // at least, however large
-constexpr int kUndisturbed =
-    64;  // messages published while nobody slept, until the fence is left out
-constexpr std::uint64_t kBatch = 64;  // cells that are withdrawn together
+constexpr std::uint64_t kBatch = 64;         // cells that are withdrawn together
 /// How often one who waits looks whether it is to stop.
 constexpr std::chrono::milliseconds kLookPeriod{20};
 
@@ -91,8 +90,6 @@ class ShmSink final : public Sink {
   void withdraw(std::uint64_t end);
   void sweep();
   void publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot);
-  void wake_readers();
-  void fence_again();
   void end();
 
   [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes);
@@ -114,11 +111,8 @@ class ShmSink final : public Sink {
   std::uint64_t slot_bytes_ = 0;               // the same of the next message
   std::uint64_t taken_ = 0;                    // by all, at the last look
   HeaderMemo memo_;
+  Waker waker_{head_};
   std::size_t present_ = 0;  // readers that still take messages
-  const bool ordering_ = allow_ordering();
-  bool may_leave_fence_ = false;  // all readers can order the stores of both sides
-  bool fencing_ = true;           // not Head::unfenced
-  int undisturbed_ = 0;           // messages published since a reader slept
   bool begun_ = false, ended_ = false;
   Status host_;  // whether it had pages for the last slot
   Traffic traffic_;
@@ -132,9 +126,7 @@ void ShmSink::refresh() {
   const auto& readers = readers_->current();
   present_ = static_cast<std::size_t>(std::count_if(
       readers.begin(), readers.end(), [](const auto& reader) { return !reader->left(); }));
-  may_leave_fence_ = ordering_ && std::all_of(readers.begin(), readers.end(),
-                                              [](const auto& reader) { return reader->orders; });
-  fence_again();
+  waker_.meet(readers);
 }
 
 /// The same for sure, of all who could have been told where they begin; before one takes back what
@@ -362,32 +354,11 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
   head_.published.store(published_, memory_order_release);
   head_.signal.store(static_cast<std::uint32_t>(published_), memory_order_release);
   HC_CRASH_POINT("publisher published");
-  wake_readers();
-  HC_CRASH_POINT("publisher woke readers");
-}
-
-/// Wakes those who sleep, and leaves out the fence when nobody has for a while: it takes longer
-/// than all the rest where many small messages are published.
-void ShmSink::wake_readers() {
-  if (fencing_) std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  if (waker_.must_fence()) std::atomic_thread_fence(memory_order_seq_cst);  // wake
   std::atomic_signal_fence(memory_order_seq_cst);
   refresh();
-  if (readers_->wake(head_.signal)) {
-    fence_again();
-  } else if (fencing_ && may_leave_fence_ && ++undisturbed_ >= kUndisturbed) {
-    fencing_ = false;
-    head_.unfenced.store(1, memory_order_relaxed);
-    std::atomic_thread_fence(memory_order_seq_cst);  // wake: who has not seen that yet is seen here
-    if (readers_->wake(head_.signal)) fence_again();
-  }
-}
-
-void ShmSink::fence_again() {
-  undisturbed_ = 0;
-  if (fencing_) return;
-  fencing_ = true;
-  std::atomic_thread_fence(memory_order_seq_cst);  // wake: of what was published without one
-  head_.unfenced.store(0, memory_order_release);
+  waker_.wake(*readers_);
+  HC_CRASH_POINT("publisher woke readers");
 }
 
 Draft ShmSink::loan(const Header& header) {

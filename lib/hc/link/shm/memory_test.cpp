@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/shm_memory.h>
+#include <hc/link/shm/memory.h>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <hc/link/descriptor.h>
-#include <hc/link/shm_layout.h>
+#include <hc/link/shm/layout.h>
 
 namespace hc::internal {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/shm_slots.h>
+#include <hc/link/shm/slots.h>
 
 #include <algorithm>
 
-#include <hc/link/shm_layout.h>
+#include <hc/link/shm/layout.h>
 
 namespace hc::internal {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include <hc/link/shm_layout.h>
+#include <hc/link/shm/layout.h>
 
 namespace hc::testing {
 namespace {

@@ -7,9 +7,10 @@
 #include <cstring>
 
 #include <hc/link/awaiting_source.h>
-#include <hc/link/crash_point.h>
 #include <hc/link/dialing.h>
-#include <hc/link/shm_greeting.h>
+#include <hc/link/shm/attachment.h>
+#include <hc/link/shm/crash_point.h>
+#include <hc/link/shm/greeting.h>
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
 #include <hc/link/unix.h>
@@ -53,39 +54,6 @@ void relax() {
 Error damaged(const std::string& what) {
   return {Code::Malformed, "the publisher's memory is damaged: " + what};
 }
-
-/// A connection to a publisher. Messages that view its memory keep it, also when the source is
-/// gone.
-struct Attachment {
-  Descriptor socket;
-  SharedMemory page, memory;
-
-  [[nodiscard]] ReaderPage& own() { return *reinterpret_cast<ReaderPage*>(page.data()); }
-  [[nodiscard]] const Head& head() const { return *reinterpret_cast<const Head*>(memory.data()); }
-  [[nodiscard]] const Cell& cell(std::uint64_t position) const {
-    return reinterpret_cast<const Cell*>(memory.data() + kRingBegin)[position % kCells];
-  }
-
-  /// Wakes the publisher if it waits for what this reader has just taken. A fence stands before.
-  void offer_cells() {
-    auto wanted = head().wanted.load(memory_order_relaxed);
-    if (wanted != 0 && own().cursor.load(memory_order_relaxed) >= wanted) wake_publisher();
-  }
-
-  void let_go(std::size_t index) {
-    own().held[index].store(0, memory_order_release);
-    HC_CRASH_POINT("reader let go");
-    std::atomic_thread_fence(memory_order_seq_cst);  // room
-    if (head().wanted.load(memory_order_relaxed) == Head::kAnyRoom) wake_publisher();
-  }
-
- private:
-  void wake_publisher() {
-    own().progress.fetch_add(1, memory_order_release);
-    futex_wake(own().progress);
-    HC_CRASH_POINT("reader woke publisher");
-  }
-};
 
 class ShmSource final : public Source {
  public:
