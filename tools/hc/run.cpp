@@ -22,10 +22,10 @@ struct Options {
 void print_links(const hc::Plan& plan, const hc::RunReport& report) {
   std::size_t widest = 0;
   for (const auto& link : plan.links)
-    widest = std::max(widest, link.from.text().size() + link.to.text().size() + 4);
+    widest = std::max(widest, link.from.size() + link.to.size() + 4);
   std::string text;
   for (std::size_t i = 0; i < plan.links.size(); ++i) {
-    std::string name = plan.links[i].from.text() + " -> " + plan.links[i].to.text();
+    std::string name = plan.links[i].from + " -> " + plan.links[i].to;
     const auto& sent = report.links[i];
     std::string lost;
     if (sent.lost() > 0) lost = fmt::format("  {} lost ({})", sent.lost(), losses_in_words(sent));

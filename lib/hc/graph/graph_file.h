@@ -22,6 +22,13 @@ struct Lined {
   int line = 0;
 };
 
+/// When a module that has ended is started again.
+enum class Restart {
+  Never,    ///< and one that has failed ends the graph
+  Failure,  ///< when it ended with a status that is neither 0 nor 2
+  Always,
+};
+
 /// A module of a graph.
 struct GraphModule {
   std::string name;                                      ///< snake_case

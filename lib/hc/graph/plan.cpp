@@ -17,6 +17,23 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Whether links outlive the processes at their ends. Neither the runner nor modules can do that
+/// yet, so every link is one that ends with them.
+constexpr bool kLinksLast = false;
+
+/// Longest name of a link: a socket's has 107 bytes, of which shared memory takes 17.
+constexpr std::size_t kMaxLinkName = 90;
+
+/// 64 bits of a text, as 16 hexadecimal digits. Source: FNV-1a,
+/// https://datatracker.ietf.org/doc/html/draft-eastlake-fnv
+std::string digest(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  std::string digits;
+  for (int shift = 60; shift >= 0; shift -= 4) digits += "0123456789abcdef"[hash >> shift & 15];
+  return digits;
+}
+
 std::vector<std::string> names_of(const Json& list) {
   std::vector<std::string> names;
   for (const auto& each : list) names.push_back(each.at("name"));
@@ -107,7 +124,9 @@ std::string in_words(const Json& types) {
 class Planner {
  public:
   Planner(Graph graph, const Describe& describe, std::string_view token, Problems& problems)
-      : graph_(std::move(graph)), describe_(describe), token_(token), problems_(problems) {}
+      : graph_(std::move(graph)), describe_(describe), problems_(problems) {
+    plan_.token = token;
+  }
 
   Plan plan() {
     for (const auto& module : graph_.modules)
@@ -116,12 +135,7 @@ class Planner {
           problems_.add(address.line,
                         "address " + std::to_string(address.value) + " is given twice");
     for (const auto& module : graph_.modules) plan_module(module);
-    // The counters of a module have its inputs first, so these are all counted before.
-    for (const auto& link : graph_.links) {
-      check_link(link);
-      if (auto to = index_.find(link.to.module); to != index_.end())
-        ++plan_.modules[to->second].inputs;
-    }
+    for (const auto& link : graph_.links) check_link(link);
     check_loops();
     if (problems_.empty()) add_links();
     return std::move(plan_);
@@ -147,10 +161,11 @@ class Planner {
     Json& description = *described;
     PlannedModule planned;
     planned.name = module.name;
-    planned.command = {module.program, "--name", module.name};
+    planned.program = module.program;
+    planned.options = {"--name", module.name};
     auto add = [&](std::string option, std::string value) {
-      planned.command.push_back(std::move(option));
-      planned.command.push_back(std::move(value));
+      planned.options.push_back(std::move(option));
+      planned.options.push_back(std::move(value));
     };
     for (const auto& [name, value] : module.parameters) {
       const Json* parameter = find_named(description["parameters"], name);
@@ -161,7 +176,7 @@ class Planner {
       }
       if (auto set = parameter_from(*parameter).set(value.value); !set)
         problems_.add(value.line, "module " + module.name + ": " + set.error().detail);
-      planned.command.push_back("--" + name + "=" + value.value);
+      planned.parameters[name] = value.value;
     }
     const Json& outputs = description["outputs"];
     for (const auto& [port, address] : module.addresses)
@@ -185,8 +200,7 @@ class Planner {
                                          broken->what);
       add("--encoding", port + "=" + std::string(name(encoding.value)));
     }
-    planned.manage_uri = "unix-listen:@" + token_ + "-" + module.name;
-    add("--manage", "unix:@" + token_ + "-" + module.name);
+    planned.manage_uri = "unix-listen:@" + link_name({module.name, "manage"});
     index_[module.name] = plan_.modules.size();
     plan_.modules.push_back(std::move(planned));
     described_[module.name] = std::move(description);
@@ -319,50 +333,71 @@ class Planner {
     return options;
   }
 
+  /// A link's name: the same in every plan of this graph, and no other's.
+  [[nodiscard]] std::string link_name(std::initializer_list<std::string> words) const {
+    std::string name = plan_.token;
+    for (const auto& word : words) name += "." + word;
+    if (name.size() <= kMaxLinkName) return name;
+    return plan_.token + "." + digest(name);
+  }
+
+  /// Whether a link outlives the processes at its ends.
+  [[nodiscard]] bool lasts(const GraphLink& link) const {
+    auto is_restarted = [&](const std::string& module) {
+      return plan_.modules[index_.at(module)].restart != Restart::Never;
+    };
+    return kLinksLast && (is_restarted(link.from.module) || is_restarted(link.to.module));
+  }
+
   /// Gives each link its two ends. The links of an output that share memory have one sending end in
   /// common, but for those that have a pace or bound of their own; every other link has a socket.
   /// Senders wait for their readers, so that it does not matter who starts first.
   void add_links() {
     struct Sender {
       std::size_t readers = 0;
+      bool lasts = false;
       std::string uri;
-      PlannedLink::End end;
     };
-    std::map<std::string, Sender> senders;  // by output, and number of a link of its own
-    auto key_of = [&](std::size_t number) {
-      const GraphLink& link = graph_.links[number];
+    std::map<std::string, Sender> senders;  // by name
+    auto name_of = [&](const GraphLink& link) {
       bool own = !pace_of(link).empty() || !shared(link);
-      return link.from.text() + (own ? " " + std::to_string(number) : "");
+      return own ? link_name({link.from.module, link.from.port, link.to.module, link.to.port})
+                 : link_name({link.from.module, link.from.port});
     };
-    for (std::size_t i = 0; i < graph_.links.size(); ++i) ++senders[key_of(i)].readers;
-    std::vector<std::size_t> inputs(plan_.modules.size()), outputs(plan_.modules.size());
-    auto add = [&](std::size_t module, std::string option, std::string value) {
-      plan_.modules[module].command.push_back(std::move(option));
-      plan_.modules[module].command.push_back(std::move(value));
-    };
-    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
-      const GraphLink& link = graph_.links[i];
-      std::size_t from = index_[link.from.module], to = index_[link.to.module];
+    for (const auto& link : graph_.links) {
+      Sender& sender = senders[name_of(link)];
+      ++sender.readers;
+      sender.lasts = sender.lasts || lasts(link);
+    }
+    for (const auto& link : graph_.links) {
+      auto& from = plan_.modules[index_[link.from.module]];
+      auto& to = plan_.modules[index_[link.to.module]];
       bool by_memory = shared(link);
-      Sender& sender = senders[key_of(i)];
-      std::string keep = keep_of(link) == "all" ? "" : "&keep=" + keep_of(link);
+      const std::string name = name_of(link), keep = keep_of(link);
+      const std::string and_keep = keep == "all" ? "" : "&keep=" + keep;
+      Sender& sender = senders[name];
       if (sender.uri.empty()) {
-        std::string name = token_ + "-" + std::to_string(i);
-        sender.uri = by_memory ? "shm:" + name : "unix:@" + name;
-        sender.end = {from, plan_.modules[from].inputs + outputs[from]++};
-        add(from, "--out",
-            link.from.port + "=" + (by_memory ? "shm:" + name : "unix-listen:@" + name) +
-                "?readers=" + std::to_string(sender.readers) +
-                (by_memory && pace_of(link).empty() ? "" : keep) + pace_of(link));
+        bool shares_keep = by_memory && pace_of(link).empty();
+        sender.uri = (by_memory ? "shm:" : "unix-listen:@") + name +
+                     "?readers=" + std::to_string(sender.readers) +
+                     (sender.lasts ? "&stay=1" : "") + (shares_keep ? "" : and_keep) +
+                     pace_of(link);
+        from.ends.push_back({false, link.from.port, sender.uri, {}});
       }
-      add(to, "--in", link.to.port + "=" + sender.uri + "?wait=60" + (by_memory ? keep : ""));
-      plan_.links.push_back({link.from, link.to, sender.end, {to, inputs[to]++}});
+      const std::string reader_uri = (by_memory ? "shm:" : "unix:@") + name +
+                                     (sender.lasts ? "?reconnect=86400" : "?wait=60") +
+                                     (by_memory ? and_keep : "");
+      to.ends.push_back({true, link.to.port, reader_uri, {}});
+      PlannedLink planned{link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {},
+                          sender.lasts};
+      for (const auto& [key, value] : link.policy)
+        if (key != "keep") planned.policy[key] = value.value;
+      plan_.links.push_back(std::move(planned));
     }
   }
 
   Graph graph_;
   const Describe& describe_;
-  std::string token_;
   Problems& problems_;
   Plan plan_;
   std::map<std::string, Json> described_;  // what the programs of modules say of themselves
@@ -373,6 +408,26 @@ class Planner {
 };
 
 }  // namespace
+
+std::vector<std::string> PlannedModule::command() const {
+  std::vector<std::string> words = {program};
+  words.insert(words.end(), options.begin(), options.end());
+  for (const auto& [key, value] : parameters) words.push_back("--" + key + "=" + value);
+  auto add = [&](const char* option, std::string value) {
+    words.emplace_back(option);
+    words.push_back(std::move(value));
+  };
+  auto peer_of = [](std::string_view listening) {
+    listening = listening.substr(0, listening.find('?'));
+    return "unix" + std::string(listening.substr(listening.find(':'))) + "?wait=10";
+  };
+  if (!manage_uri.empty()) add("--manage", peer_of(manage_uri));
+  if (!control_uri.empty()) add("--control", peer_of(control_uri));
+  for (const auto& end : ends) add(end.is_input ? "--in" : "--out", end.port + "=" + end.uri);
+  for (const auto& end : ends)
+    if (!end.route.empty()) add("--route", end.port + "=" + end.uri + " " + end.route);
+  return words;
+}
 
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems) {
   return Planner(std::move(graph), describe, token, problems).plan();

@@ -3,8 +3,10 @@
 // From a graph to the commands that run it: every name is checked against what the modules say of
 // themselves (--describe), and every link gets its two ends. Pure.
 
-#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,27 +15,48 @@
 
 namespace hc {
 
+/// One end of a link, as a module is told of it.
+struct PlannedEnd {
+  bool is_input = false;
+  std::string port, uri;
+  std::string route;  ///< the words of --route; empty: none
+};
+
 /// A process that is to run.
 struct PlannedModule {
   std::string name;
-  std::vector<std::string> command;  ///< program and arguments
-  std::string manage_uri;            ///< where the runner listens for its counters
-  std::size_t inputs = 0;            ///< links into it; the counters begin with these
+  std::string program;                            ///< a path, or a name that PATH has
+  std::vector<std::string> options;               ///< what is said neither below nor by links
+  std::map<std::string, std::string> parameters;  ///< as text
+  std::set<std::string> fixed;                    ///< parameters that cannot be set while it runs
+  std::vector<PlannedEnd> ends;                   ///< in the order of the file's links
+  std::string manage_uri;                         ///< where the runner listens to it
+  std::string control_uri;  ///< where it listens to the runner; empty: it does not
+  Restart restart = Restart::Failure;
+  std::string mode;                 ///< of a task; empty: none
+  std::vector<std::string> modes;   ///< it works in; empty: all
+  std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
+
+  /// Program and arguments, as it is started.
+  [[nodiscard]] std::vector<std::string> command() const;
 };
 
-/// A link, and where the counters of its ends are found.
+/// A link. Its ends stand in its modules' PlannedModule::ends, by port and URI.
 struct PlannedLink {
-  struct End {
-    std::size_t module = 0;  ///< index in Plan::modules
-    std::size_t row = 0;     ///< of that module's counters
-  };
-  GraphPort from, to;
-  End sender, reader;
+  std::string from, to;  ///< "MODULE.PORT"
+  std::string sender_uri, reader_uri;
+  std::string keep;                           ///< what it does when its reader is slow
+  std::map<std::string, std::string> policy;  ///< the rest of it: `rate` and so on
+  bool lasts = false;                         ///< outlives the processes at its ends
 };
 
 struct Plan {
   std::vector<PlannedModule> modules;
   std::vector<PlannedLink> links;
+  std::string token;                           ///< as it was given
+  std::map<std::string, std::int64_t> modes;   ///< their numbers
+  std::map<std::string, std::int64_t> groups;  ///< their addresses
+  std::string workspace;                       ///< the module that says which mode is in focus
 };
 
 /// Gives what `program --describe` prints.
@@ -41,7 +64,9 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 
 /// Checks a graph and plans it.
 ///
-/// @param token  a word that no other running graph has; the links' names begin with it.
+/// @param token  a word that no other running graph has; the names of links begin with it.
+///
+/// The names of links tell what they join, so they stay the same when a graph is planned anew.
 ///
 /// Outputs without an address get the least ones that are free, in the order of the file.
 ///

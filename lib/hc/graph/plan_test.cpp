@@ -47,6 +47,12 @@ Result<Plan> plan(const std::string& text) {
   return Error{Code::Usage, all};
 }
 
+std::string text_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
 TEST(Plan, GivesEveryLinkTwoEnds) {
   auto planned = plan(R"([modules.source]
 parameters.rate = 3
@@ -66,29 +72,41 @@ from = "a.out"
 to = "sink.in"
 )");
   ASSERT_TRUE(planned) << planned.error().detail;
-  using Words = std::vector<std::string>;
-  EXPECT_EQ(
-      planned->modules[0].command,
-      (Words{"source", "--name", "source", "--rate=3", "--address", "left=11", "--address",
-             "right=1", "--encoding", "left=zstd", "--manage", "unix:@t-source", "--out",
-             "left=unix-listen:@t-0?readers=1", "--out", "right=unix-listen:@t-1?readers=1"}));
-  EXPECT_EQ(planned->modules[1].command,
-            (Words{"filter", "--name", "a", "--address", "out=2", "--manage", "unix:@t-a", "--in",
-                   "in=unix:@t-0?wait=60", "--out", "out=unix-listen:@t-2?readers=1"}));
-  EXPECT_EQ(planned->modules[1].manage_uri, "unix-listen:@t-a");
-  // Where the counters of each link are: a's output comes behind its one input.
-  EXPECT_EQ(planned->links[1].sender.row, 1U);
-  EXPECT_EQ(planned->links[2].sender.module, 1U);
-  EXPECT_EQ(planned->links[2].sender.row, 1U);
-  EXPECT_EQ(planned->links[2].reader.module, 2U);
-  EXPECT_EQ(planned->links[2].reader.row, 1U);
+  EXPECT_EQ(text_of(planned->modules[0].command()),
+            "source --name source --address left=11 --address right=1 --encoding left=zstd "
+            "--rate=3 --manage unix:@t.source.manage?wait=10 "
+            "--out left=unix-listen:@t.source.left.a.in?readers=1 "
+            "--out right=unix-listen:@t.source.right.sink.in?readers=1");
+  EXPECT_EQ(text_of(planned->modules[1].command()),
+            "filter --name a --address out=2 --manage unix:@t.a.manage?wait=10 "
+            "--in in=unix:@t.source.left.a.in?wait=60 "
+            "--out out=unix-listen:@t.a.out.sink.in?readers=1");
+  EXPECT_EQ(planned->modules[1].manage_uri, "unix-listen:@t.a.manage");
+  const PlannedLink& link = planned->links[2];
+  EXPECT_EQ(link.from, "a.out");
+  EXPECT_EQ(link.to, "sink.in");
+  EXPECT_EQ(link.sender_uri, planned->modules[1].ends[1].uri);
+  EXPECT_EQ(link.reader_uri, planned->modules[2].ends[1].uri);
+}
+
+TEST(Plan, NamesOfLinksThatAreTooLongBecomeShort) {
+  const std::string a = "a" + std::string(62, 'b');
+  auto planned = plan("[modules." + a + "]\nprogram = \"source\"\n[modules." + a +
+                      "c]\nprogram = \"sink\"\n[[links]]\nfrom = \"" + a + ".right\"\nto = \"" + a +
+                      "c.in\"\n");
+  ASSERT_TRUE(planned) << planned.error().detail;
+  const std::string& uri = planned->links[0].sender_uri;
+  EXPECT_TRUE(uri.starts_with("unix-listen:@t.")) << uri;
+  EXPECT_EQ(uri.size(), std::string("unix-listen:@t.0123456789abcdef?readers=1").size()) << uri;
+  EXPECT_TRUE(planned->links[0].reader_uri.starts_with("unix:@" + uri.substr(13, 18)));
 }
 
 /// The values of an option in a module's command.
 std::vector<std::string> values_of(const PlannedModule& module, const std::string& option) {
   std::vector<std::string> values;
-  for (std::size_t i = 0; i + 1 < module.command.size(); ++i)
-    if (module.command[i] == option) values.push_back(module.command[i + 1]);
+  const auto command = module.command();
+  for (std::size_t i = 0; i + 1 < command.size(); ++i)
+    if (command[i] == option) values.push_back(command[i + 1]);
   return values;
 }
 
@@ -107,15 +125,18 @@ program = "seer"
   ASSERT_TRUE(planned) << planned.error().detail;
   using Words = std::vector<std::string>;
   EXPECT_EQ(values_of(planned->modules[0], "--out"),
-            (Words{"image=shm:t-0?readers=2", "image=shm:t-2?readers=1&keep=3&memory=8M&rate=10",
-                   "image=unix-listen:@t-3?readers=1&keep=latest"}));
+            (Words{"image=shm:t.eye.image?readers=2",
+                   "image=shm:t.eye.image.a.more?readers=1&keep=3&memory=8M&rate=10",
+                   "image=unix-listen:@t.eye.image.any.in?readers=1&keep=latest"}));
   EXPECT_EQ(values_of(planned->modules[1], "--in"),
-            (Words{"in=shm:t-0?wait=60&keep=latest", "more=shm:t-2?wait=60&keep=3"}));
-  EXPECT_EQ(values_of(planned->modules[2], "--in"), (Words{"in=shm:t-0?wait=60"}));
-  EXPECT_EQ(values_of(planned->modules[3], "--in"), (Words{"in=unix:@t-3?wait=60"}));
-  EXPECT_EQ(planned->links[1].sender.row, 0U);
-  EXPECT_EQ(planned->links[2].sender.row, 1U);
-  EXPECT_EQ(planned->links[2].reader.row, 1U);
+            (Words{"in=shm:t.eye.image?wait=60&keep=latest",
+                   "more=shm:t.eye.image.a.more?wait=60&keep=3"}));
+  EXPECT_EQ(values_of(planned->modules[2], "--in"), (Words{"in=shm:t.eye.image?wait=60"}));
+  EXPECT_EQ(values_of(planned->modules[3], "--in"), (Words{"in=unix:@t.eye.image.any.in?wait=60"}));
+  EXPECT_EQ(planned->links[0].sender_uri, planned->links[1].sender_uri);
+  EXPECT_EQ(planned->links[2].keep, "3");
+  EXPECT_EQ(planned->links[2].policy,
+            (std::map<std::string, std::string>{{"memory", "8M"}, {"rate", "10"}}));
 }
 
 TEST(Plan, MemoryThatIsSharedIsEnough) {

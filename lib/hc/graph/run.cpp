@@ -90,7 +90,8 @@ class Runner {
     }
     if (!outcome) return outcome.error();
     for (const auto& link : plan_.links) {
-      auto sent = counters_at(link.sender), left_out = counters_at(link.reader);
+      auto sent = counters_at(link.from, false, link.sender_uri);
+      auto left_out = counters_at(link.to, true, link.reader_uri);
       left_out.messages = left_out.bytes = left_out.kept_back = 0;
       report.links.push_back(sent += left_out);
     }
@@ -110,7 +111,7 @@ class Runner {
     auto manage = open_source(*uri);
     if (!manage) return manage.error();
     running.manage = std::move(*manage);
-    auto process = Process::start(module.command, Process::Capture::Errors);
+    auto process = Process::start(module.command(), Process::Capture::Errors);
     if (!process) return Error{process.error().code, module.name + ": " + process.error().detail};
     running.process.emplace(std::move(*process));
     running_.push_back(std::move(running));
@@ -123,9 +124,25 @@ class Runner {
                        [](const Running& module) { return module.status.has_value(); });
   }
 
-  [[nodiscard]] Traffic counters_at(const PlannedLink::End& end) const {
-    const auto& counters = running_[end.module].counters;
-    return end.row < counters.size() ? counters[end.row] : Traffic{};
+  /// Of one end of a link. A module counts its inputs first, both in the order of its command.
+  [[nodiscard]] Traffic counters_at(const std::string& place, bool is_input,
+                                    const std::string& uri) const {
+    auto dot = place.find('.');
+    auto running = std::find_if(running_.begin(), running_.end(), [&](const Running& each) {
+      return each.module->name == place.substr(0, dot);
+    });
+    if (running == running_.end()) return {};
+    const auto& ends = running->module->ends;
+    std::size_t row = 0;
+    if (!is_input)
+      row = static_cast<std::size_t>(std::count_if(
+          ends.begin(), ends.end(), [](const PlannedEnd& end) { return end.is_input; }));
+    for (const auto& end : ends) {
+      if (end.is_input != is_input) continue;
+      if (end.uri == uri && end.port == place.substr(dot + 1)) break;
+      ++row;
+    }
+    return row < running->counters.size() ? running->counters[row] : Traffic{};
   }
 
   [[nodiscard]] std::vector<int> descriptors() const {

@@ -19,8 +19,12 @@ namespace {
 class Run : public ::testing::Test {
  protected:
   void add(const std::string& name, const std::string& script) {
-    plan_.modules.push_back(
-        {name, {"/bin/sh", "-c", script}, "unix-listen:@" + token_ + "-" + name, 0});
+    PlannedModule module;
+    module.name = name;
+    module.program = "/bin/sh";
+    module.options = {"-c", script};
+    module.manage_uri = "unix-listen:@" + token_ + "." + name + ".manage";
+    plan_.modules.push_back(std::move(module));
   }
 
   Result<RunReport> run() {
@@ -77,7 +81,7 @@ TEST_F(Run, ASignalIsNamed) {
 TEST_F(Run, AMissingProgramIsNamed) {
   add("a", "exec sleep 1000");
   add("b", "");
-  plan_.modules[1].command = {"/nowhere/program"};
+  plan_.modules[1].program = "/nowhere/program";
   auto report = run();
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, Code::NotFound);
