@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Which link of a router leads where. Pure. Internal to graph.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hc::internal {
+
+/// A link between two modules, which are numbers.
+struct RoutedLink {
+  std::size_t from = 0, to = 0;
+  /// The address of its input, and those of the groups that the input is in.
+  std::vector<std::int64_t> reaches;
+  /// What the graph file says that it passes; then nothing is computed.
+  std::optional<std::vector<std::int64_t>> given;
+};
+
+/// The number of a link's end that is no module.
+inline constexpr std::size_t kOutside = static_cast<std::size_t>(-1);
+
+/// The addresses that each link passes, in the order of numbers; none for links from modules that
+/// are no routers.
+///
+/// An address is passed by one link of a router: the one that begins the way of the fewest hops to
+/// it, of several the first. Groups are passed where a member is, and they and -1 (all) to every
+/// router, as who follows such a message takes care that it goes round once.
+///
+/// @param is_router  by number of module.
+/// @param groups  all of them.
+/// Cost: the number of routers times that of links and addresses.
+std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLink>& links,
+                                                      const std::vector<bool>& is_router,
+                                                      const std::vector<std::int64_t>& groups);
+
+}  // namespace hc::internal
