@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/global_workspace.h>
+
+#include <gtest/gtest.h>
+
+namespace hc {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// A robot with two tasks: one follows what moves with its head, the other reads what is in front.
+Plan robot() {
+  Plan plan;
+  auto add = [&](const std::string& name, const std::string& mode = "",
+                 std::vector<std::string> modes = {}) {
+    PlannedModule& module = plan.modules.emplace_back();
+    module.name = name;
+    module.mode = mode;
+    module.modes = std::move(modes);
+  };
+  add("camera");
+  add("motion", "", {"track"});
+  add("text", "", {"read"});
+  add("track", "track");
+  add("read", "read");
+  add("head");
+  add("view");
+  add("workspace");
+  plan.modules[5].exclusive = {"command"};
+  plan.workspace = "workspace";
+  auto link = [&](const std::string& from, const std::string& to) {
+    PlannedLink& planned = plan.links.emplace_back();
+    planned.from = from;
+    planned.to = to;
+  };
+  link("camera.left", "motion.image");      // 0
+  link("camera.left", "text.image");        // 1
+  link("camera.left", "view.image");        // 2
+  link("motion.target", "track.target");    // 3
+  link("text.words", "read.words");         // 4
+  link("track.command", "head.command");    // 5
+  link("read.command", "head.command");     // 6
+  link("head.pose", "track.pose");          // 7
+  link("head.pose", "view.pose");           // 8
+  link("track.bid", "workspace.bids");      // 9
+  link("workspace.focus", "head.focus");    // 10
+  link("workspace.focus", "motion.focus");  // 11
+  link("tcp-listen:7000", "head.trim");     // 12
+  return plan;
+}
+
+TEST(GlobalWorkspace, IsWhatLeadsThroughTheTaskToTheActor) {
+  auto workspace = global_workspace(robot(), "track");
+  EXPECT_EQ(workspace.modules, (Names{"camera", "motion", "track", "head"}));
+  EXPECT_EQ(workspace.links, (std::set<std::size_t>{0, 3, 5, 7}));
+}
+
+TEST(GlobalWorkspace, FollowsTheFocus) {
+  auto workspace = global_workspace(robot(), "read");
+  EXPECT_EQ(workspace.modules, (Names{"camera", "text", "read", "head"}));
+  EXPECT_EQ(workspace.links, (std::set<std::size_t>{1, 4, 6}));
+}
+
+TEST(GlobalWorkspace, IsEmptyWithoutATaskThatActs) {
+  EXPECT_TRUE(global_workspace(robot(), "").modules.empty());
+  EXPECT_TRUE(global_workspace(robot(), "sleep").modules.empty());
+  Plan plan = robot();
+  plan.modules[5].exclusive.clear();  // nobody acts
+  EXPECT_TRUE(global_workspace(plan, "track").modules.empty());
+  EXPECT_TRUE(global_workspace(plan, "track").links.empty());
+}
+
+TEST(GlobalWorkspace, GoesThroughRouters) {
+  Plan plan = robot();
+  plan.modules.emplace_back().name = "router";
+  plan.links[5].to = plan.links[6].to = "router.in";
+  PlannedLink& link = plan.links.emplace_back();
+  link.from = "router.out";
+  link.to = "head.command";
+  auto workspace = global_workspace(plan, "track");
+  EXPECT_EQ(workspace.modules, (Names{"camera", "motion", "track", "router", "head"}));
+  EXPECT_EQ(workspace.links, (std::set<std::size_t>{0, 3, 5, 7, 13}));
+}
+
+}  // namespace
+}  // namespace hc
