@@ -10,6 +10,12 @@ from harness import DATA, Pipes, ROOT
 
 LINK = '[[links]]\nfrom = "camera.left"\nto = "brightness.image"\n'
 LINKED = "[modules.camera]\n[modules.brightness]\n" + LINK
+ACTOR = '[modules.actor]\nprogram = "./actor"\n'
+TRACK = '[modules.track]\nprogram = "./actor"\nmode = "track"\n[modes]\ntrack = 1\n'
+READER = '[modules.read]\nprogram = "./actor"\nmode = "read"\n'
+WORKSPACE = '[modules.judge]\nprogram = "./workspace"\n[workspace]\nmodule = "judge"\n'
+RELAYS = '[modules.a]\nprogram = "./relay"\n[modules.b]\nprogram = "./relay"\n'
+FRAME = ACTOR + '[frames.head]\nparent = "robot"\n'
 
 BROKEN = [
     # The file.
@@ -54,11 +60,109 @@ BROKEN = [
     '[modules.camera]\naddresses = 3 #! "addresses" is a table\n',
     "[modules.camera]\naddresses.left = -1 #! an address is a whole number from 0 to 2147483647\n",
     "[modules.camera]\naddresses.left = 1.5 #! an address is a whole number from 0 to 2147483647\n",
-    '[modules.camera]\naddresses.lef = 3 #! module camera has no output "lef", did you mean "left"?\n',
+    '[modules.camera]\naddresses.lef = 3 #! module camera has no port "lef", did you mean "left"?\n',
     "[modules.camera]\naddresses.left = 3\naddresses.right = 3 #! address 3 is given twice\n",
     '[modules.camera]\nencodings.left = "gif" #! an encoding is "text", "binary", "zstd" or "jpeg"\n',
     '[modules.brightness]\nencodings.mean = "jpeg" #! module brightness: R21 mean: jpeg is for images'
     " of 1 or 3 components of u8, not table 1 x f64\n",
+    # Whether modules are started again.
+    '[modules.camera]\nrestart = "alway" #! "restart" is "never", "failure" or "always", did you mean'
+    ' "always"?\n',
+    'restart = true #! "restart" is "never", "failure" or "always"\n[modules.camera]\n',
+    # Addresses of inputs, addressees, groups and routes.
+    ACTOR + "addresses = { command = 7, pose = 7 } #! address 7 is given twice\n",
+    "[modules.camera]\naddresses.left = 9\n"
+    + ACTOR
+    + "addresses.command = 9 #! address 9 is given twice\n",
+    ACTOR + 'to.pose = 0 #! "to" is an address from -2147483647 to 2147483647 without 0, or a'
+    " name\n",
+    ACTOR
+    + 'to.pose = "arm" #! no group or input "arm", did you mean "arms"?\n[groups]\narms = []\n',
+    ACTOR + 'to.pose = "actor.comand" #! no group or input "actor.comand", did you mean'
+    ' "actor.command"?\n',
+    ACTOR + 'to.pos = "all" #! module actor has no output "pos", did you mean "pose"?\n',
+    '[modules.relay]\nprogram = "./relay"\nto.out = 3 #! module relay cannot have "to": its program'
+    " knows no --control\n",
+    ACTOR + '[groups]\narms = ["actor.comand"] #! group arms: no input "actor.comand", did you mean'
+    ' "actor.command"?\n',
+    ACTOR + '[groups]\narms = 3 #! a group is a list of inputs, as "MODULE.PORT", and addresses\n',
+    ACTOR + '[groups]\nall = [] #! a group\'s name is snake_case and not "all", not "all"\n',
+    ACTOR
+    + '[[links]]\nfrom = "actor.pose"\nto = "tcp:7000"\nroute = "some" #! "route" is a list of'
+    ' addresses, or "all"\n',
+    '[modules.relay]\nprogram = "./relay"\n[[links]]\nfrom = "relay.out"\nto = "tcp:7000"\n'
+    'route = [3] #! module relay cannot have "route": its program knows no --control\n',
+    # Modes, the workspace, exclusive inputs and actors.
+    ACTOR + 'mode = "trak" #! no mode "trak", did you mean "track"?\n' + TRACK,
+    ACTOR + 'modes = ["track", "trak"] #! no mode "trak", did you mean "track"?\n' + TRACK,
+    ACTOR + 'modes = 3 #! "modes" is a list of strings\n',
+    ACTOR + "[modes]\ntrack = 0 #! a mode is a whole number from 1 to 2147483647\n",
+    ACTOR + "[modes]\ntrack = 1 #! nobody can begin or leave mode track: no module has mode ="
+    ' "track"\n',
+    TRACK + "read = 1 #! the modes track and read have the same number\n" + READER,
+    ACTOR + 'idle_rate = -1 #! "idle_rate" is a number from 0 to 1000000 [Hz]\n',
+    ACTOR
+    + 'exclusive = ["command"] #! an exclusive input wants a [workspace], which says what is in'
+    " focus\n",
+    ACTOR
+    + 'exclusive = ["comand"] #! module actor has no input "comand", did you mean "command"?\n'
+    + WORKSPACE,
+    '[modules.relay]\nprogram = "./relay"\nidle_rate = 2 #! module relay cannot have "idle_rate": its'
+    " program knows no --control\n",
+    ACTOR + '[workspace] #! "module" is missing\n',
+    ACTOR + '[workspace]\nmodule = "acto" #! no module "acto", did you mean "actor"?\n',
+    ACTOR + '[workspace]\nmodule = "actor" #! module actor has no output "focus"\n',
+    ACTOR + '[workspace]\nmodul = 3 #! no key "modul" in the workspace, did you mean "module"?'
+    '\nmodule = "actor" #! module actor has no output "focus"\n',
+    RELAYS
+    + ACTOR
+    + '[[links]]\nfrom = "a.out"\nto = "actor.command"\n'
+    + "[[links]] #! actor.command is an actor's and gets commands from a.out and b.out; make it"
+    ' exclusive, or put a router before it\nfrom = "b.out"\nto = "actor.command"\n',
+    # The world outside.
+    LINKED.replace("[[links]]", "[[links]] #! a link has a module at one of its ends")
+    .replace("camera.left", "tcp:1")
+    .replace("brightness.image", "tcp:2"),
+    LINKED.replace(
+        "[[links]]",
+        '[[links]] #! module brightness has no links of the kind "tpc", did you mean "tcp"?',
+    ).replace("camera.left", "tpc:1"),
+    LINKED.replace("camera.left", "tcp:1")
+    + "rate = 3 #! a link from outside has no rate: that is its"
+    " sender's\n",
+    LINKED
+    + '[[links]]\nfrom = "camera.left"\nto = "tcp:1?rate=2"\nrate = 3 #! tcp:1?rate=2 has rate too\n',
+    LINKED.replace("camera.left", "tcp-listen:1")
+    + "[[links]] #! tcp-listen:1 is there twice, and two cannot listen there\n"
+    'from = "camera.left"\nto = "tcp-listen:1"\n',
+    # Frames.
+    ACTOR + '[frames.a] #! "parent" is missing\n',
+    FRAME + 'speed = 3 #! no key "speed" in frame head\n',
+    FRAME + 'translation = [1, 2] #! "translation" is a list of 3 numbers\n',
+    FRAME + 'rotation = [1, 2, "x"] #! "rotation" is a list of 3 numbers\n',
+    FRAME + 'quaternion = [1, 1, 0, 0] #! "quaternion" has the length 1\n',
+    FRAME
+    + 'rotation = [0, 0, 0]\nquaternion = [1, 0, 0, 0] #! a frame has "rotation" or "quaternion",'
+    " not both\n",
+    FRAME + 'moved_by = "actor.pos" #! module actor has no output "pos", did you mean "pose"?\n',
+    FRAME + 'moved_by = "acto.pose" #! no module "acto", did you mean "actor"?\n',
+    FRAME + 'moved_by = "actor.pose"\ntranslation = [1, 2, 3] #! a frame that is moved has no'
+    ' "translation"\n',
+    FRAME
+    + '[frames.eye]\nparent = "haed" #! no frame "haed", did you mean "head"?; the root is robot\n',
+    ACTOR
+    + '[frames.a]\nparent = "b" #! frames form a circle: a in b in a\n[frames.b]\nparent = "a"\n',
+    FRAME + 'coord = 1000 #! "coord" is a whole number from 1 to 999\n',
+    FRAME + '[frames.nose]\nparent = "head"\ncoord = 3 #! coordinate system 3 is head\n',
+    # Graphs within graphs.
+    '[graphs.a]\nfile = "none.toml" #! none.toml: cannot be read\n',
+    '[graphs.a] #! "file" is missing\n',
+    '[graphs.a]\nfile = "g.toml" #! g.toml includes itself\n',
+    '[graphs.a]\nfile = "part.toml"\nparameters.relai.x = 3 #! graph a has no module "relai", did you'
+    ' mean "relay"?\n',
+    '[graphs.a]\nfile = "part.toml"\nparameters.relay.x = 3 #! module a_relay has no parameter "x"\n',
+    '[graphs.a]\nfil = "part.toml" #! no key "fil" in graph a, did you mean "file"?\n'
+    'file = "part.toml"\n',
     # Links.
     "links = 3 #! links are written as [[links]]\n[modules.camera]\n",
     '[modules.camera]\n[[links]] #! "to" is missing\nfrom = "camera.left"\n',
@@ -102,12 +206,30 @@ OTHER = {
     BROKEN[3]: "g.toml:2: Error while parsing",
 }
 TYPE = '{"type":"table","components":1,"scalar":"f64","width":0,"height":0,"coord":0}'
-RELAY = """#!/bin/sh
-echo '{"name":"relay","inputs":[{"name":"in","types":[%s]}],"outputs":[{"name":"out","types":[%s]}],"parameters":[]}'
+FOCUS = TYPE.replace("f64", "i32")
+
+
+def program(inputs, outputs, more=""):
+    """A program that does nothing but describe itself."""
+    return """#!/bin/sh
+echo '{"inputs":[%s],"outputs":[%s],"parameters":[]%s}'
 """ % (
-    TYPE,
-    TYPE,
-)
+        inputs,
+        outputs,
+        more,
+    )
+
+
+def port(name, kind=TYPE, more=""):
+    return '{"name":"%s","types":[%s]%s}' % (name, kind, more)
+
+
+CONTROL = ',"control":true'
+PROGRAMS = {
+    "relay": program(port("in"), port("out")),
+    "actor": program(port("command", more=',"actor":true'), port("pose"), CONTROL),
+    "workspace": program(port("bids"), port("focus", FOCUS), CONTROL),
+}
 LIAR = '#!/bin/sh\necho \'{"inputs":[{}],"outputs":[{"name":3,"types":[]}],"parameters":"none"}\'\n'
 
 
@@ -127,6 +249,10 @@ class Check(Pipes):
         path.write_text(text)
         path.chmod(mode)
 
+    def write_programs(self):
+        for name, text in PROGRAMS.items():
+            self.write(name, text, 0o755)
+
     def refuse(self, verb, text):
         self.write("g.toml", text)
         out = self.shell("hc %s g.toml" % verb, 2)
@@ -142,10 +268,11 @@ class Check(Pipes):
         return lines
 
     def test_every_broken_graph_is_refused_line_by_line_and_not_run(self):
-        self.write("relay", RELAY, 0o755)
+        self.write_programs()
         self.write("liar", LIAR, 0o755)
         self.write("plain", "")
-        self.assertGreaterEqual(len(set(BROKEN)), 40)
+        self.write("part.toml", '[modules.relay]\nprogram = "./relay"\n')
+        self.assertGreaterEqual(len(set(BROKEN)), 100)
         for text in BROKEN:
             said = self.refuse("check", text)
             run = self.refuse("run", text)
@@ -156,6 +283,18 @@ class Check(Pipes):
         for graph in sorted(os.listdir(ROOT / "graphs")):
             out = self.shell("hc check %s/graphs/%s" % (ROOT, graph))
             self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: nothing is wrong\n$")
+
+    def test_errors_of_an_included_file_name_it_and_programs_are_sought_beside_it(self):
+        os.mkdir(self.path("parts"))
+        self.write("parts/relay", PROGRAMS["relay"], 0o755)
+        self.write("parts/ring.toml", RELAYS + '[[links]]\nfrom = "a.out"\nto = "b.in"\n')
+        self.write("g.toml", '[graphs.x]\nfile = "parts/ring.toml"\n')
+        self.assertIn("2 modules, 1 link: nothing", self.shell("hc check g.toml"))
+        self.write("parts/ring.toml", RELAYS + '[[links]]\nfrom = "a.out"\nto = "c.in"\n')
+        self.shell("hc check g.toml", 2)
+        self.assertEqual(
+            self.err, 'hc check: Usage: parts/ring.toml:5: no module "x_c", did you mean "x_a"?\n'
+        )
 
     def test_settings_are_checked_too(self):
         self.write("g.toml", LINKED)

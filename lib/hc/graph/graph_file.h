@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The graph file: which modules run, with which parameters, and how their ports are linked
-// (spec/graph.md). Pure, but for the environment's variables that strings name.
+// The graph file: which modules run, with which parameters, how their ports are linked, and what
+// they share (spec/graph.md). Pure, but for the environment's variables that strings name and the
+// files that are included.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,11 +18,11 @@
 
 namespace hc {
 
-/// A value of a graph file, and the line where it stands; 0: it came from elsewhere.
+/// A value of a graph file, and where it stands.
 template <typename T>
 struct Lined {
-  T value;
-  int line = 0;
+  T value{};
+  Place place;
 };
 
 /// When a module that has ended is started again.
@@ -29,20 +32,33 @@ enum class Restart {
   Always,
 };
 
+/// Whom messages are for: a number, or the name of a group, of an input, or `all`.
+struct Addressee {
+  std::string name;         ///< empty: the number says it
+  std::int64_t number = 0;  ///< an address
+};
+
 /// A module of a graph.
 struct GraphModule {
   std::string name;                                      ///< snake_case
   std::string program;                                   ///< a module's name, or a path
   std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
-  std::map<std::string, Lined<std::int64_t>> addresses;  ///< of output ports
+  std::map<std::string, Lined<std::int64_t>> addresses;  ///< of ports
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports
-  int line = 0;                                          ///< of the file
+  std::map<std::string, Lined<Addressee>> to;            ///< of output ports
+  Restart restart = Restart::Failure;
+  std::optional<Lined<std::string>> mode;       ///< a task's
+  std::vector<Lined<std::string>> modes;        ///< it works in; empty: all
+  std::optional<Lined<std::string>> idle_rate;  ///< [Hz] out of focus
+  std::vector<Lined<std::string>> exclusive;    ///< inputs that take the mode in focus alone
+  Place place;
 };
 
-/// A port of a module of a graph.
+/// An end of a link: a port of a module, or the world outside.
 struct GraphPort {
   std::string module, port;
-  [[nodiscard]] std::string text() const { return module + "." + port; }
+  std::string uri;  ///< of the world outside; empty: it is a port
+  [[nodiscard]] std::string text() const { return uri.empty() ? module + "." + port : uri; }
 };
 
 /// A link, from an output to an input.
@@ -50,13 +66,45 @@ struct GraphLink {
   GraphPort from, to;
   /// `keep`, `rate` and so on, as in a link's URI.
   std::map<std::string, Lined<std::string>> policy;
-  int line = 0;
+  /// Whom messages are for that go here; nothing: as computed.
+  std::optional<Lined<std::vector<std::int64_t>>> route;
+  bool routes_all = false;  ///< all of them do
+  Place place;
+};
+
+/// Inputs that have an address in common.
+struct GraphGroup {
+  std::string name;
+  std::vector<Lined<Addressee>> members;
+  Place place;
+};
+
+/// A system mode.
+struct GraphMode {
+  std::string name;
+  std::int64_t number = 0;
+  Place place;
+};
+
+/// A coordinate system, and where it is in its parent.
+struct GraphFrame {
+  std::string name;
+  Lined<std::string> parent;
+  std::array<double, 3> translation{};            ///< [m]
+  std::array<double, 4> rotation = {0, 0, 0, 1};  ///< unit quaternion (x, y, z, w)
+  std::optional<Lined<GraphPort>> moved_by;       ///< the output that tells where it is instead
+  Lined<std::int64_t> coord;                      ///< its number in headers; 0: none
+  Place place;
 };
 
 struct Graph {
   std::string file;  ///< as it was given, for error lines
   std::vector<GraphModule> modules;
   std::vector<GraphLink> links;
+  std::vector<GraphGroup> groups;
+  std::vector<GraphMode> modes;
+  std::vector<GraphFrame> frames;
+  std::optional<Lined<std::string>> workspace;  ///< the module that says which mode is in focus
 
   /// The module of that name; null where there is none.
   [[nodiscard]] GraphModule* find(std::string_view name);
@@ -65,6 +113,9 @@ struct Graph {
 /// Looks a variable of the environment up; null where it is not set.
 using Environment = std::function<const char*(const char* name)>;
 
+/// Gives the text of a file, at most a byte more than kMaxGraphBytes of it. Errors: NotFound.
+using ReadFile = std::function<Result<std::string>(const std::string& file)>;
+
 /// Largest graph file that is read. [byte]
 inline constexpr std::size_t kMaxGraphBytes = std::size_t{1} << 20;
 
@@ -72,9 +123,15 @@ inline constexpr std::size_t kMaxGraphBytes = std::size_t{1} << 20;
 /// three.
 inline constexpr int kMaxGraphDepth = 16;
 
+/// Most files that a graph includes, each as often as it does.
+inline constexpr int kMaxIncluded = 256;
+
 /// Reads a graph file's text. `${NAME:-otherwise}` in a parameter stands for a variable of the
 /// environment. Where there are problems, the graph has what can be made out of the rest.
-Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems);
+///
+/// @param read_file  reads what it includes; none: nothing can be included.
+Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
+                  const ReadFile& read_file = {});
 
 /// Sets a parameter, from "MODULE.PARAMETER=VALUE".
 void set_parameter(Graph& graph, std::string_view assignment, Problems& problems);

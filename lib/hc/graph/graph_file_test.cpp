@@ -51,7 +51,7 @@ to = "depth.left"
   EXPECT_EQ(graph->modules[1].program, "depth");
   ASSERT_EQ(graph->links.size(), 1U);
   EXPECT_EQ(graph->links[0].from.text(), "eyes.left");
-  EXPECT_EQ(graph->links[0].line, 10);
+  EXPECT_EQ(graph->links[0].place.line, 10);
 }
 
 TEST(GraphFile, LettersOutsideAsciiAndTildesComeThrough) {

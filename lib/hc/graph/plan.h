@@ -43,8 +43,8 @@ struct PlannedModule {
 
 /// A link. Its ends stand in its modules' PlannedModule::ends, by port and URI.
 struct PlannedLink {
-  std::string from, to;  ///< "MODULE.PORT"
-  std::string sender_uri, reader_uri;
+  std::string from, to;                       ///< "MODULE.PORT", or a URI of the world outside
+  std::string sender_uri, reader_uri;         ///< empty: the end is outside
   std::string keep;                           ///< what it does when its reader is slow
   std::map<std::string, std::string> policy;  ///< the rest of it: `rate` and so on
   bool lasts = false;                         ///< outlives the processes at its ends
@@ -53,10 +53,11 @@ struct PlannedLink {
 struct Plan {
   std::vector<PlannedModule> modules;
   std::vector<PlannedLink> links;
-  std::string token;                           ///< as it was given
-  std::map<std::string, std::int64_t> modes;   ///< their numbers
-  std::map<std::string, std::int64_t> groups;  ///< their addresses
-  std::string workspace;                       ///< the module that says which mode is in focus
+  std::string token;                              ///< as it was given
+  std::map<std::string, std::int64_t> modes;      ///< their numbers
+  std::map<std::string, std::int64_t> groups;     ///< their addresses
+  std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
+  std::string workspace;                          ///< the module that says which mode is in focus
 };
 
 /// Gives what `program --describe` prints.
@@ -70,11 +71,8 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 ///
 /// Outputs without an address get the least ones that are free, in the order of the file.
 ///
-/// Problems: an unknown module, port or parameter, a value out of range, an encoding that the
-/// output's type cannot have, an input of another type than the output it is linked to, an address
-/// or a link given twice, memory that is too small to be shared, a loop without a rate. Of a module
-/// without a program (empty), whose problem has been told, nothing more is said. The plan is of no
-/// use where there are problems.
+/// Problems: what spec/graph.md says under G5 … G38. Of a module without a program (empty), whose
+/// problem has been told, nothing more is said. The plan is of no use where there are problems.
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems);
 
 }  // namespace hc

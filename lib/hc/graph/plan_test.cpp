@@ -3,55 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/graph/planning_test.h>
+
 namespace hc {
 namespace {
-
-/// What three programs say of themselves.
-Result<std::string> describe(const std::string& program) {
-  auto port = [](const std::string& name, const std::string& type, int coord) {
-    return R"({"name":")" + name + R"(","types":[{"type":")" + type +
-           R"(","components":1,"scalar":"f32","width":0,"height":0,"coord":)" +
-           std::to_string(coord) + "}]}";
-  };
-  auto module = [](const std::string& inputs, const std::string& outputs) {
-    return R"({"name":"x","inputs":[)" + inputs + R"(],"outputs":[)" + outputs +
-           R"(],"parameters":[{"name":"rate","type":"number","least":0,"most":9},)"
-           R"({"name":"mode","type":"string","choices":["fast","good"]}]})";
-  };
-  if (program == "source")
-    return module("", port("left", "map", 7) + "," + port("right", "map", 8));
-  if (program == "filter") return module(port("in", "map", 0), port("out", "map", 0));
-  if (program == "sink") return module(port("in", "map", 8) + "," + port("text", "string", 0), "");
-  if (program == "any") return module(R"({"name":"in","types":[]})", "");
-  const std::string transports = R"(,"transports":["-","unix","shm"]})";
-  auto shares = [&](std::string text) { return text.replace(text.size() - 1, 1, transports); };
-  if (program == "eye") return shares(module("", port("image", "intensity_image", 0)));
-  if (program == "seer")
-    return shares(
-        module(port("in", "intensity_image", 0) + "," + port("more", "intensity_image", 0), ""));
-  if (program == "dumb") return std::string("hello");
-  if (program == "odd") return std::string(R"({"inputs":[{}],"outputs":3,"parameters":[{"x":1}]})");
-  return Error{Code::NotFound, "no such program"};
-}
-
-/// A plan, or else all that is wrong, a line each.
-Result<Plan> plan(const std::string& text) {
-  Problems problems("g.toml");
-  auto graph = parse_graph(
-      text, [](const char*) -> const char* { return nullptr; }, problems);
-  EXPECT_TRUE(problems.empty());
-  Plan plan = make_plan(graph, describe, "t", problems);
-  if (problems.empty()) return plan;
-  std::string all;
-  for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
-  return Error{Code::Usage, all};
-}
-
-std::string text_of(const std::vector<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
 
 TEST(Plan, GivesEveryLinkTwoEnds) {
   auto planned = plan(R"([modules.source]
@@ -73,7 +28,7 @@ to = "sink.in"
 )");
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(text_of(planned->modules[0].command()),
-            "source --name source --address left=11 --address right=1 --encoding left=zstd "
+            "source --name source --encoding left=zstd --address left=11 --address right=1 "
             "--rate=3 --manage unix:@t.source.manage?wait=10 "
             "--out left=unix-listen:@t.source.left.a.in?readers=1 "
             "--out right=unix-listen:@t.source.right.sink.in?readers=1");
@@ -99,15 +54,6 @@ TEST(Plan, NamesOfLinksThatAreTooLongBecomeShort) {
   EXPECT_TRUE(uri.starts_with("unix-listen:@t.")) << uri;
   EXPECT_EQ(uri.size(), std::string("unix-listen:@t.0123456789abcdef?readers=1").size()) << uri;
   EXPECT_TRUE(planned->links[0].reader_uri.starts_with("unix:@" + uri.substr(13, 18)));
-}
-
-/// The values of an option in a module's command.
-std::vector<std::string> values_of(const PlannedModule& module, const std::string& option) {
-  std::vector<std::string> values;
-  const auto command = module.command();
-  for (std::size_t i = 0; i + 1 < command.size(); ++i)
-    if (command[i] == option) values.push_back(command[i + 1]);
-  return values;
 }
 
 TEST(Plan, LinksOfAnOutputShareItsMemory) {
@@ -166,7 +112,7 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.source]\nparameters.rat = 3",
        "g.toml:2: module source has no parameter \"rat\", did you mean \"rate\"?"},
       {"[modules.source]\naddresses.lft = 3",
-       "g.toml:2: module source has no output \"lft\", did you mean \"left\"?"},
+       "g.toml:2: module source has no port \"lft\", did you mean \"left\"?"},
       {"[modules.source]\nencodings.x = \"text\"", "g.toml:2: module source has no output \"x\""},
       {"[modules.source]\n\nencodings.left = \"jpeg\"",
        "g.toml:3: module source: R21 left: jpeg is for images of 1 or 3 components of u8, not map "
@@ -221,7 +167,7 @@ to = "snk.in"
   EXPECT_EQ(planned.error().detail,
             R"(g.toml:2: module source has no parameter "rat", did you mean "rate"?
 g.toml:2: module source: parameter rate: "10" is not from 0 to 9
-g.toml:3: module source has no output "lft", did you mean "left"?
+g.toml:3: module source has no port "lft", did you mean "left"?
 g.toml:4: module x: no such program
 g.toml:6: module sink has no input "inn", did you mean "in"?
 g.toml:9: source.left gives map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 in )"

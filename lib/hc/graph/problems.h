@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What is wrong with a graph: all of it, each with its line.
+// What is wrong with a graph: all of it, each with its file and line.
 
 #include <algorithm>
 #include <string>
@@ -11,39 +11,54 @@
 
 namespace hc {
 
-/// Collects what is wrong with one graph file.
+/// Where something stands.
+struct Place {
+  int line = 0;  ///< from 1 on; 0: it was not in a file, but set beside it
+  int file = 0;  ///< as Problems counts them; 0 is the graph's own, others are included
+};
+
+/// Collects what is wrong with one graph file, and with those that it includes.
 class Problems {
  public:
   /// @param file  as it was given, for the lines.
-  explicit Problems(std::string file) : file_(std::move(file)) {}
+  explicit Problems(std::string file) : files_{std::move(file)} {}
 
-  /// @param line  of the file, from 1 on; 0: the problem is in what was set beside the file.
-  void add(int line, std::string what) { found_.push_back({line, std::move(what)}); }
+  /// Makes a file that is included known. Gives its number, for places in it.
+  int add_file(std::string file) {
+    files_.push_back(std::move(file));
+    return static_cast<int>(files_.size()) - 1;
+  }
+
+  void add(const Place& place, std::string what) { found_.push_back({place, std::move(what)}); }
 
   [[nodiscard]] bool empty() const { return found_.empty(); }
   [[nodiscard]] std::size_t size() const { return found_.size(); }
-  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] const std::string& file(int number = 0) const {
+    return files_.at(static_cast<std::size_t>(number));
+  }
 
-  /// Each as "FILE:LINE: WHAT", or "--set: WHAT", in the order of the lines.
+  /// Each as "FILE:LINE: WHAT", or "--set: WHAT", in the order of the files and their lines.
   [[nodiscard]] std::vector<std::string> lines() const {
     auto sorted = found_;
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const auto& a, const auto& b) { return a.line < b.line; });
+    std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.place.file, a.place.line) < std::pair(b.place.file, b.place.line);
+    });
     std::vector<std::string> lines;
     lines.reserve(sorted.size());
-    for (const auto& [line, what] : sorted)
-      lines.push_back(line == 0 ? "--set: " + what
-                                : file_ + ":" + std::to_string(line) + ": " + what);
+    for (const auto& [place, what] : sorted)
+      lines.push_back(place.line == 0
+                          ? "--set: " + what
+                          : file(place.file) + ":" + std::to_string(place.line) + ": " + what);
     return lines;
   }
 
  private:
   struct Problem {
-    int line;
+    Place place;
     std::string what;
   };
 
-  std::string file_;
+  std::vector<std::string> files_;
   std::vector<Problem> found_;
 };
 

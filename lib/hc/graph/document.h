@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A TOML text as a tree of values, each with its place. Any text is read or refused: what the
+// library for TOML cannot bear is kept from it. Pure. Internal to graph.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <hc/graph/problems.h>
+
+namespace hc::internal {
+
+/// A value of a document.
+struct Node {
+  using List = std::vector<Node>;
+  /// In the order of the text, as far as lines tell it.
+  using Table = std::vector<std::pair<std::string, Node>>;
+
+  /// Dates and times, which no graph has, are monostate.
+  std::variant<std::monostate, std::string, std::int64_t, double, bool, List, Table> value;
+  Place place;
+
+  /// The value of that type; null where it is of another.
+  template <typename T>
+  [[nodiscard]] const T* as() const {
+    return std::get_if<T>(&value);
+  }
+
+  /// The value of a key; null where this is no table, or has no such key.
+  [[nodiscard]] const Node* find(std::string_view key) const;
+};
+
+/// Reads a text.
+///
+/// @param file  its number in `problems`.
+/// @returns  its table; nothing where it is no TOML, too long or too deep, which has been told.
+std::optional<Node> read_document(std::string_view text, int file, Problems& problems);
+
+}  // namespace hc::internal

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the tests of plans have in common: programs that are not there, and what they say.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <hc/graph/plan.h>
+
+namespace hc {
+
+/// What some programs say of themselves.
+inline Result<std::string> describe(const std::string& program) {
+  auto port = [](const std::string& name, const std::string& type, int coord) {
+    return R"({"name":")" + name + R"(","types":[{"type":")" + type +
+           R"(","components":1,"scalar":"f32","width":0,"height":0,"coord":)" +
+           std::to_string(coord) + "}]}";
+  };
+  auto module = [](const std::string& inputs, const std::string& outputs) {
+    return R"({"name":"x","inputs":[)" + inputs + R"(],"outputs":[)" + outputs +
+           R"(],"parameters":[{"name":"rate","type":"number","least":0,"most":9},)"
+           R"({"name":"mode","type":"string","choices":["fast","good"]}]})";
+  };
+  if (program == "source")
+    return module("", port("left", "map", 7) + "," + port("right", "map", 8));
+  if (program == "filter") return module(port("in", "map", 0), port("out", "map", 0));
+  if (program == "sink") return module(port("in", "map", 8) + "," + port("text", "string", 0), "");
+  if (program == "any") return module(R"({"name":"in","types":[]})", "");
+  const std::string transports = R"(,"transports":["-","unix","shm"]})";
+  auto shares = [&](std::string text) { return text.replace(text.size() - 1, 1, transports); };
+  if (program == "eye") return shares(module("", port("image", "intensity_image", 0)));
+  if (program == "seer")
+    return shares(
+        module(port("in", "intensity_image", 0) + "," + port("more", "intensity_image", 0), ""));
+  auto controlled = [](std::string text, const std::string& more = "") {
+    return text.replace(text.size() - 1, 1, R"(,"control":true)" + more + "}");
+  };
+  const std::string anything = R"({"name":"in","types":[]})";
+  if (program == "router")
+    return controlled(module(anything, R"({"name":"out","types":[]})"), R"(,"routes":true)");
+  if (program == "task")
+    return controlled(
+        module(port("image", "map", 0), port("command", "map", 0) + "," + port("bid", "map", 0)));
+  if (program == "actor") {
+    std::string input = port("command", "map", 0);
+    input.replace(input.size() - 1, 1, R"(,"actor":true})");
+    return controlled(module(input, port("pose", "map", 0)));
+  }
+  if (program == "workspace")
+    return controlled(
+        module(port("bids", "map", 0),
+               R"({"name":"focus","types":[{"type":"table","components":1,"scalar":"i32",)"
+               R"("width":1,"height":1,"coord":0}]})"));
+  if (program == "framed")
+    return std::string(R"({"name":"x","inputs":[],"outputs":[],"parameters":[)"
+                       R"({"name":"frames","type":"string"},)"
+                       R"({"name":"file","type":"string","fixed":true}]})");
+  if (program == "dumb") return std::string("hello");
+  if (program == "odd") return std::string(R"({"inputs":[{}],"outputs":3,"parameters":[{"x":1}]})");
+  return Error{Code::NotFound, "no such program"};
+}
+
+/// A plan, or else all that is wrong, a line each.
+///
+/// @param files  by name, what may be included.
+inline Result<Plan> plan(const std::string& text,
+                         const std::map<std::string, std::string>& files = {}) {
+  Problems problems("g.toml");
+  auto read_file = [&](const std::string& name) -> Result<std::string> {
+    auto found = files.find(name);
+    if (found != files.end()) return found->second;
+    return Error{Code::NotFound, name + ": cannot be read"};
+  };
+  auto graph = parse_graph(
+      text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
+  Plan plan = make_plan(graph, describe, "t", problems);
+  if (problems.empty()) return plan;
+  std::string all;
+  for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
+  return Error{Code::Usage, all};
+}
+
+inline std::string text_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// The values of an option in a module's command.
+inline std::vector<std::string> values_of(const PlannedModule& module, const std::string& option) {
+  std::vector<std::string> values;
+  const auto command = module.command();
+  for (std::size_t i = 0; i + 1 < command.size(); ++i)
+    if (command[i] == option) values.push_back(command[i + 1]);
+  return values;
+}
+
+/// All that is wrong with a graph, a line each; empty: nothing.
+inline std::string wrong(const std::string& text,
+                         const std::map<std::string, std::string>& files = {}) {
+  auto planned = plan(text, files);
+  return planned ? "" : planned.error().detail;
+}
+
+/// A link of a graph file.
+inline std::string link_text(const std::string& from, const std::string& to,
+                             const std::string& more = "") {
+  return "[[links]]\nfrom = \"" + from + "\"\nto = \"" + to + "\"\n" + more;
+}
+
+}  // namespace hc
