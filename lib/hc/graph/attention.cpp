@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // System modes: which there are, who works in them, and who is told which one is in focus.
-#include <algorithm>
-
 #include <hc/graph/planning.h>
 
 namespace hc::internal {
@@ -16,7 +14,9 @@ class Attention {
 
   void run() {
     take_modes();
-    bool workspace = check_workspace();
+    const bool workspace = check_workspace();
+    for (const auto& link : graph_.links)
+      if (link.to.port == kFocus) linked_.insert(link.to.text());
     for (const auto& module : graph_.modules)
       if (PlannedModule* planned = planning_.planned(module.name)) {
         tell(module, *planned);
@@ -85,7 +85,8 @@ class Attention {
   std::optional<std::int64_t> number_of(const Lined<std::string>& mode) {
     auto found = planning_.plan.modes.find(mode.value);
     if (found != planning_.plan.modes.end()) return found->second;
-    problems_.add(mode.place, "no mode \"" + mode.value + "\"" + suggest(mode.value, names_));
+    problems_.add(mode.place,
+                  "no mode \"" + mode.value + "\"" + suggest(planning_, mode.value, names_));
     return std::nullopt;
   }
 
@@ -124,6 +125,7 @@ class Attention {
   const Graph& graph_;
   Problems& problems_;
   std::vector<std::string> names_;
+  std::set<std::string> linked_;  // inputs `focus` to which the file has a link
 };
 
 }  // namespace

@@ -64,9 +64,9 @@ class Frames {
       if (root.empty()) root = parent;
       if (parent == root) continue;
       known.push_back(root);
-      planning_.problems.add(
-          frame.parent.place,
-          "no frame \"" + parent + "\"" + suggest(parent, known) + "; the root is " + root);
+      planning_.problems.add(frame.parent.place, "no frame \"" + parent + "\"" +
+                                                     suggest(planning_, parent, known) +
+                                                     "; the root is " + root);
       known.pop_back();
     }
     enum class Visit { Begun = 1, Done };

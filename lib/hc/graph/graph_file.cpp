@@ -47,6 +47,11 @@ class GraphReader {
     fields_.each(*root, "graphs",
                  [&](const std::string& name, const Node& node) { include(graph, name, node); });
     within_.pop_back();
+    if (within_.empty() && graph.modules.size() > kMaxModules)
+      problems_.add(graph.modules[kMaxModules].place,
+                    "a graph has at most " + std::to_string(kMaxModules) + " modules");
+    const std::size_t most = within_.empty() ? kMaxModules : kMaxModules + 1;
+    if (graph.modules.size() > most) graph.modules.resize(most);
     return graph;
   }
 

@@ -123,6 +123,9 @@ inline constexpr std::size_t kMaxGraphBytes = std::size_t{1} << 20;
 /// three.
 inline constexpr int kMaxGraphDepth = 16;
 
+/// Most modules of a graph, with those of the graphs that it includes.
+inline constexpr std::size_t kMaxModules = 1000;
+
 /// Most files that a graph includes, each as often as it does.
 inline constexpr int kMaxIncluded = 256;
 

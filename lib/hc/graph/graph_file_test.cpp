@@ -151,6 +151,17 @@ TEST(GraphFile, TheDeepestThatIsAllowedIsRead) {
   EXPECT_EQ(graph.error().detail, "g.toml:1: no key \"a\" in module a");
 }
 
+TEST(GraphFile, AGraphHasAThousandModules) {
+  auto modules = [](std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) text += "[modules.m" + std::to_string(i) + "]\n";
+    return text;
+  };
+  EXPECT_TRUE(parse(modules(kMaxModules)));
+  EXPECT_EQ(parse(modules(kMaxModules + 2)).error().detail,
+            "g.toml:1001: a graph has at most 1000 modules");
+}
+
 TEST(GraphFile, DotsAndBracketsInStringsAndCommentsAreFree) {
   std::string many = repeated("../[{", 1000) + repeated(".", 1000);
   auto graph = parse("[modules.a] # " + many + "\nparameters = { b = \"" + many + "\\\"\", c = '" +

@@ -71,7 +71,7 @@ class LinkCheck {
     if (uri.scheme == "-" || uri.scheme == "inproc" ||
         std::find(known.begin(), known.end(), uri.scheme) == known.end())
       problems_.add(link.place, "module " + module + " has no links of the kind \"" + uri.scheme +
-                                    "\"" + suggest(uri.scheme, known));
+                                    "\"" + suggest(planning_, uri.scheme, known));
   }
 
   /// A link from outside has its sender there; `keep` is its reader's affair in shared memory.

@@ -90,7 +90,7 @@ class LinkPlanner {
         routed.reaches.insert(routed.reaches.end(), groups->second.begin(), groups->second.end());
     }
     std::vector<std::int64_t> groups;
-    for (const auto& [name, number] : planning_.groups) groups.push_back(number);
+    for (const auto& [name, number] : planning_.plan.groups) groups.push_back(number);
     const auto passed = compute_routes(links, is_router, groups);
     for (std::size_t i = 0; i < graph_.links.size(); ++i)
       routes_.push_back(words_of(graph_.links[i], passed[i]));

@@ -16,9 +16,9 @@ class Numbering {
 
   void run() {
     for (const auto& module : graph_.modules) take_given(module);
+    if (planning_.before != nullptr) keep_numbers(*planning_.before);
     for (const auto& module : graph_.modules) number_outputs(module);
-    std::int64_t next = kFirstGroup;
-    for (const auto& group : graph_.groups) planning_.groups[group.name] = next--;
+    number_groups();
     for (const auto& link : graph_.links)
       if (link.from.uri.empty() && link.to.uri.empty() && planning_.is_router(link.from.module))
         address_of(link.to);
@@ -26,7 +26,6 @@ class Numbering {
       for (const auto& member : group.members) add_member(group, member);
     for (const auto& module : graph_.modules)
       for (const auto& [port, to] : module.to) send_to(module, port, to);
-    planning_.plan.groups = planning_.groups;
     planning_.plan.addresses = inputs_;
   }
 
@@ -50,19 +49,52 @@ class Numbering {
     }
   }
 
+  /// What was numbered before stays so, unless the file gives its number to another.
+  void keep_numbers(const Plan& before) {
+    auto keep = [&](const auto& numbers, auto& kept) {
+      for (const auto& [port, number] : numbers)
+        if (planning_.names.contains(port.substr(0, port.find('.'))) &&
+            taken_.insert(number).second)
+          kept[port] = number;
+    };
+    keep(before.sources, kept_outputs_);
+    keep(before.addresses, kept_inputs_);
+  }
+
+  void number_groups() {
+    std::set<std::int64_t> taken;
+    auto& numbers = planning_.plan.groups;
+    if (planning_.before != nullptr)
+      for (const auto& group : graph_.groups)
+        if (auto old = planning_.before->groups.find(group.name);
+            old != planning_.before->groups.end())
+          taken.insert(numbers[group.name] = old->second);
+    std::int64_t next = kFirstGroup;
+    for (const auto& group : graph_.groups) {
+      if (numbers.contains(group.name)) continue;
+      while (!taken.insert(next).second) --next;
+      numbers[group.name] = next;
+    }
+  }
+
   void number_outputs(const GraphModule& module) {
     PlannedModule* planned = planning_.planned(module.name);
     if (planned == nullptr) return;
     for (const auto& output : planning_.description_of(module.name)->outputs) {
       auto given = module.addresses.find(output.name);
-      std::int64_t address = given != module.addresses.end() ? given->second.value : free_address();
+      const std::string name = module.name + "." + output.name;
+      std::int64_t address =
+          given != module.addresses.end() ? given->second.value : free_address(kept_outputs_, name);
+      planning_.plan.sources[name] = address;
       planned->options.insert(planned->options.end(),
                               {"--address", output.name + "=" + std::to_string(address)});
     }
   }
 
-  /// The least address that nobody has, taken.
-  std::int64_t free_address() {
+  /// The address that a port had before, or else the least that nobody has, taken.
+  std::int64_t free_address(const std::map<std::string, std::int64_t>& kept,
+                            const std::string& port) {
+    if (auto old = kept.find(port); old != kept.end()) return old->second;
     while (!taken_.insert(next_).second) ++next_;
     return next_;
   }
@@ -70,7 +102,7 @@ class Numbering {
   /// Of an input, which gets one where it has none.
   std::int64_t address_of(const GraphPort& input) {
     auto [found, is_new] = inputs_.try_emplace(input.text(), 0);
-    if (is_new) found->second = free_address();
+    if (is_new) found->second = free_address(kept_inputs_, input.text());
     return found->second;
   }
 
@@ -94,7 +126,7 @@ class Numbering {
   }
 
   void add_member(const GraphGroup& group, const Lined<Addressee>& member) {
-    const std::int64_t number = planning_.groups[group.name];
+    const std::int64_t number = planning_.plan.groups[group.name];
     if (member.value.name.empty() && member.value.number > 0) {
       for (const auto& [input, address] : inputs_)
         if (address == member.value.number) planning_.groups_of[input].push_back(number);
@@ -105,7 +137,7 @@ class Numbering {
       const std::string name =
           member.value.name.empty() ? std::to_string(member.value.number) : member.value.name;
       planning_.problems.add(member.place, "group " + group.name + ": no input \"" + name + "\"" +
-                                               suggest(name, names_of_inputs()));
+                                               suggest(planning_, name, names_of_inputs()));
     }
   }
 
@@ -119,15 +151,15 @@ class Numbering {
     const std::string& name = to.value.name;
     if (name.empty()) address = to.value.number;
     if (name == "all") address = kAll;
-    if (auto group = planning_.groups.find(name); group != planning_.groups.end())
+    if (auto group = planning_.plan.groups.find(name); group != planning_.plan.groups.end())
       address = group->second;
     if (auto input = input_named(name)) address = address_of(*input);
     if (!address) {
       auto known = names_of_inputs();
       for (const auto& group : graph_.groups) known.push_back(group.name);
       known.emplace_back("all");
-      return planning_.problems.add(to.place,
-                                    "no group or input \"" + name + "\"" + suggest(name, known));
+      return planning_.problems.add(
+          to.place, "no group or input \"" + name + "\"" + suggest(planning_, name, known));
     }
     PlannedModule* planned = planning_.planned(module.name);
     planned->options.insert(planned->options.end(),
@@ -138,7 +170,7 @@ class Numbering {
   const Graph& graph_;
   std::set<std::int64_t> taken_;
   std::int64_t next_ = 1;
-  std::map<std::string, std::int64_t> inputs_;
+  std::map<std::string, std::int64_t> inputs_, kept_outputs_, kept_inputs_;
 };
 
 }  // namespace

@@ -81,6 +81,19 @@ TEST(Numbering, TheFileMaySayTheRoute) {
             "g.toml:5: module filter cannot have \"route\": its program knows no --control");
 }
 
+TEST(Numbering, NumbersStayWhenAGraphIsPlannedAnew) {
+  auto before = plan(kRouted);
+  ASSERT_TRUE(before);
+  std::string text = "[modules.first]\nprogram = \"task\"\n" + kRouted;
+  text.insert(text.find("arms = ["), "none = []\n");
+  auto planned = plan(text, {}, &*before);
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->modules[1].options, before->modules[0].options);
+  EXPECT_EQ(planned->addresses.at("actor.command"), before->addresses.at("actor.command"));
+  EXPECT_EQ(planned->groups.at("arms"), before->groups.at("arms"));
+  for (const auto& [port, source] : before->sources) EXPECT_EQ(planned->sources.at(port), source);
+}
+
 TEST(Numbering, WhatARouterPassesHasALinkOfItsOwn) {
   auto planned = plan(kRouted);
   ASSERT_TRUE(planned);

@@ -10,7 +10,7 @@ namespace hc {
 namespace internal {
 namespace {
 
-constexpr std::size_t kMostToSuggestFrom = 1000;  // each costs a comparison of all letters
+constexpr std::size_t kMostSuggestions = 100;  // each is compared with all names that are known
 
 /// Plans a module, but for what others have a part in: addresses, modes, links.
 class ModulePlanner {
@@ -41,7 +41,7 @@ class ModulePlanner {
       const auto* parameter = find_named(description.parameters, name);
       if (parameter == nullptr) {
         problems_.add(value.place, "module " + module_.name + " has no parameter \"" + name + "\"" +
-                                       suggest(name, names_of(description.parameters)));
+                                       suggest(planning_, name, names_of(description.parameters)));
         continue;
       }
       ParameterState state = parameter->state;
@@ -111,19 +111,20 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
 
 }  // namespace
 
-std::string suggest(std::string_view name, const std::vector<std::string>& known) {
-  return known.size() > kMostToSuggestFrom ? "" : suggestion(name, known);
+std::string suggest(const Planning& planning, std::string_view name,
+                    const std::vector<std::string>& known) {
+  return planning.problems.size() > kMostSuggestions ? "" : suggestion(name, known);
 }
 
 void add_no_module(Planning& planning, const Place& place, const std::string& module) {
   const std::vector<std::string> known(planning.names.begin(), planning.names.end());
-  planning.problems.add(place, "no module \"" + module + "\"" + suggest(module, known));
+  planning.problems.add(place, "no module \"" + module + "\"" + suggest(planning, module, known));
 }
 
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
                  const std::string& kind, const std::vector<DescribedPort>& ports) {
   planning.problems.add(place, "module " + port.module + " has no " + kind + " \"" + port.port +
-                                   "\"" + suggest(port.port, names_of(ports)));
+                                   "\"" + suggest(planning, port.port, names_of(ports)));
 }
 
 }  // namespace internal
@@ -148,8 +149,9 @@ std::vector<std::string> PlannedModule::command() const {
   return words;
 }
 
-Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems) {
-  internal::Planning planning{std::move(graph), problems};
+Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
+               const Plan* before) {
+  internal::Planning planning{std::move(graph), problems, before};
   planning.plan.token = token;
   for (const auto& module : planning.graph.modules)
     internal::plan_module(planning, describe, module);

@@ -56,6 +56,7 @@ struct Plan {
   std::string token;                              ///< as it was given
   std::map<std::string, std::int64_t> modes;      ///< their numbers
   std::map<std::string, std::int64_t> groups;     ///< their addresses
+  std::map<std::string, std::int64_t> sources;    ///< of outputs, "MODULE.PORT": their `src`
   std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
   std::string workspace;                          ///< the module that says which mode is in focus
 };
@@ -69,10 +70,14 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 ///
 /// The names of links tell what they join, so they stay the same when a graph is planned anew.
 ///
-/// Outputs without an address get the least ones that are free, in the order of the file.
+/// Ports without an address get the least ones that are free, in the order of the file.
+///
+/// @param before  a plan of this graph whose numbers of ports and groups stay, so that modules that
+/// have not changed are planned as they were; null: there was none.
 ///
 /// Problems: what spec/graph.md says under G5 … G38. Of a module without a program (empty), whose
 /// problem has been told, nothing more is said. The plan is of no use where there are problems.
-Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems);
+Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
+               const Plan* before = nullptr);
 
 }  // namespace hc

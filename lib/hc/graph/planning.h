@@ -16,10 +16,10 @@ namespace hc::internal {
 struct Planning {
   Graph graph;  ///< its links have modules, ports and types that fit, as far as they are described
   Problems& problems;
+  const Plan* before;  ///< of this graph, whose numbers stay; null: there was none
   Plan plan{};
-  std::map<std::string, Description> described{};  ///< by module
-  std::map<std::string, std::size_t> index{};      ///< of a module in Plan::modules
-  std::map<std::string, std::int64_t> groups{};
+  std::map<std::string, Description> described{};                ///< by module
+  std::map<std::string, std::size_t> index{};                    ///< of a module in Plan::modules
   std::map<std::string, std::vector<std::int64_t>> groups_of{};  ///< by input
   std::set<std::string> names{};                                 ///< of modules
 
@@ -38,8 +38,9 @@ struct Planning {
   }
 };
 
-/// ", did you mean "camera"?", where there are not too many names to look through.
-std::string suggest(std::string_view name, const std::vector<std::string>& known);
+/// ", did you mean "camera"?", unless too much is wrong to look for it all.
+std::string suggest(const Planning& planning, std::string_view name,
+                    const std::vector<std::string>& known);
 
 /// Says that a module, such as a link names it, is not there.
 void add_no_module(Planning& planning, const Place& place, const std::string& module);

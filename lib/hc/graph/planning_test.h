@@ -65,7 +65,8 @@ inline Result<std::string> describe(const std::string& program) {
 ///
 /// @param files  by name, what may be included.
 inline Result<Plan> plan(const std::string& text,
-                         const std::map<std::string, std::string>& files = {}) {
+                         const std::map<std::string, std::string>& files = {},
+                         const Plan* before = nullptr) {
   Problems problems("g.toml");
   auto read_file = [&](const std::string& name) -> Result<std::string> {
     auto found = files.find(name);
@@ -74,7 +75,7 @@ inline Result<Plan> plan(const std::string& text,
   };
   auto graph = parse_graph(
       text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
-  Plan plan = make_plan(graph, describe, "t", problems);
+  Plan plan = make_plan(graph, describe, "t", problems, before);
   if (problems.empty()) return plan;
   std::string all;
   for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
