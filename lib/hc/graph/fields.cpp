@@ -18,7 +18,7 @@ bool is_name(std::string_view text) {
          std::all_of(text.begin(), text.end(), is_letter);
 }
 
-std::string in_quotes(std::string_view name) {
+std::string quoted_name(std::string_view name) {
   return "\"" + std::string(name) + "\"";
 }
 
@@ -26,7 +26,7 @@ void Fields::check_keys(const Node& table, const std::vector<std::string>& known
                         const std::string& where) const {
   for (const auto& [key, node] : *table.as<Node::Table>())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      add(node, "no key " + in_quotes(key) + " " + where + suggestion(key, known));
+      add(node, "no key " + quoted_name(key) + " " + where + suggestion(key, known));
 }
 
 void Fields::each(const Node& parent, std::string_view key,
@@ -34,7 +34,7 @@ void Fields::each(const Node& parent, std::string_view key,
   const Node* node = parent.find(key);
   if (node == nullptr) return;
   const auto* table = node->as<Node::Table>();
-  if (table == nullptr) return add(*node, in_quotes(key) + " is a table");
+  if (table == nullptr) return add(*node, quoted_name(key) + " is a table");
   for (const auto& [name, value] : *table) take(name, value);
 }
 
@@ -46,11 +46,11 @@ std::optional<Lined<std::string>> Fields::text_if_there(const Node& parent,
 std::optional<Lined<std::string>> Fields::text(const Node& parent, std::string_view key) const {
   const Node* node = parent.find(key);
   if (node == nullptr) {
-    add(parent, in_quotes(key) + " is missing");
+    add(parent, quoted_name(key) + " is missing");
     return std::nullopt;
   }
   if (const auto* text = node->as<std::string>()) return Lined<std::string>{*text, node->place};
-  add(*node, in_quotes(key) + " is a string");
+  add(*node, quoted_name(key) + " is a string");
   return std::nullopt;
 }
 
@@ -62,7 +62,7 @@ std::vector<Lined<std::string>> Fields::texts(const Node& parent, std::string_vi
     if (const auto* text = each.as<std::string>())
       all.push_back({*text, each.place});
     else
-      add(each, in_quotes(key) + " is a list of strings");
+      add(each, quoted_name(key) + " is a list of strings");
   };
   if (const auto* list = node->as<Node::List>())
     std::for_each(list->begin(), list->end(), take);
@@ -85,7 +85,7 @@ std::optional<std::vector<double>> Fields::numbers(const Node& parent, std::stri
                     std::all_of(all.begin(), all.end(), [](double x) { return std::isfinite(x); });
     if (is_right) return all;
   }
-  add(*node, in_quotes(key) + " is a list of " + std::to_string(count) + " numbers");
+  add(*node, quoted_name(key) + " is a list of " + std::to_string(count) + " numbers");
   return std::nullopt;
 }
 
@@ -126,7 +126,7 @@ std::optional<GraphPort> Fields::port(const Node& node, const std::string& text,
   auto dot = text.find('.');
   if (dot != std::string::npos && is_name(text.substr(0, dot)) && is_name(text.substr(dot + 1)))
     return GraphPort{text.substr(0, dot), text.substr(dot + 1), {}};
-  add(node, in_quotes(text) + " is not MODULE.PORT");
+  add(node, quoted_name(text) + " is not MODULE.PORT");
   return std::nullopt;
 }
 

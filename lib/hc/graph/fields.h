@@ -19,7 +19,7 @@ namespace hc::internal {
 bool is_name(std::string_view text);
 
 /// `"NAME"`, for what is told.
-std::string in_quotes(std::string_view name);
+std::string quoted_name(std::string_view name);
 
 /// What the readers of all tables have in common.
 class Fields {

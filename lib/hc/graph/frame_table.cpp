@@ -38,7 +38,7 @@ void read_frame(const Fields& fields, const std::string& name, const Node& node,
   GraphFrame frame;
   frame.name = name;
   frame.place = node.place;
-  if (!is_name(name)) fields.add(node, "a frame's name is snake_case, not " + in_quotes(name));
+  if (!is_name(name)) fields.add(node, "a frame's name is snake_case, not " + quoted_name(name));
   if (node.as<Node::Table>() == nullptr)
     return fields.add(node, "a frame is a table [frames." + name + "]");
   fields.check_keys(node, {"parent", "translation", "rotation", "quaternion", "moved_by", "coord"},
@@ -47,7 +47,7 @@ void read_frame(const Fields& fields, const std::string& name, const Node& node,
     frame.parent = *parent;
     if (!is_name(parent->value))
       fields.add(*node.find("parent"),
-                 "a frame's name is snake_case, not " + in_quotes(parent->value));
+                 "a frame's name is snake_case, not " + quoted_name(parent->value));
   }
   if (auto translation = fields.numbers(node, "translation", 3))
     std::copy(translation->begin(), translation->end(), frame.translation.begin());
@@ -58,7 +58,7 @@ void read_frame(const Fields& fields, const std::string& name, const Node& node,
       frame.moved_by = Lined<GraphPort>{*port, at.place};
     for (const char* key : {"translation", "rotation", "quaternion"})
       if (const Node* also = node.find(key))
-        fields.add(*also, "a frame that is moved has no " + in_quotes(key));
+        fields.add(*also, "a frame that is moved has no " + quoted_name(key));
   }
   if (const Node* number = node.find("coord")) {
     const auto* coord = number->as<std::int64_t>();

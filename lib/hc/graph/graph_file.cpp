@@ -10,8 +10,8 @@
 namespace hc {
 namespace {
 
-using internal::in_quotes;
 using internal::Node;
+using internal::quoted_name;
 
 constexpr std::size_t kMaxIncludedDepth = 16;                  // of files that include files
 constexpr std::size_t kMaxIncludedBytes = 4 * kMaxGraphBytes;  // of all that is included
@@ -58,7 +58,7 @@ class GraphReader {
  private:
   void include(Graph& graph, const std::string& name, const Node& node) {
     if (!internal::is_name(name))
-      fields_.add(node, "a graph's name is snake_case, not " + in_quotes(name));
+      fields_.add(node, "a graph's name is snake_case, not " + quoted_name(name));
     if (node.as<Node::Table>() == nullptr)
       return fields_.add(node, "a graph is a table [graphs." + name + "]");
     fields_.check_keys(node, {"file", "parameters"}, "in graph " + name);
@@ -111,7 +111,7 @@ class GraphReader {
       if (module == nullptr) {
         auto known = names_of(included);
         for (auto& each : known) each.erase(0, prefix.size() + 1);
-        return fields_.add(values, "graph " + prefix + " has no module " + in_quotes(name) +
+        return fields_.add(values, "graph " + prefix + " has no module " + quoted_name(name) +
                                        suggestion(name, known));
       }
       fields_.each(*node.find("parameters"), name, [&](const std::string& key, const Node& value) {
@@ -144,11 +144,11 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
 void set_parameter(Graph& graph, std::string_view assignment, Problems& problems) {
   auto dot = assignment.find('.'), equals = assignment.find('=');
   if (dot == std::string_view::npos || equals == std::string_view::npos || dot > equals)
-    return problems.add({}, in_quotes(assignment) + " is not MODULE.PARAMETER=VALUE");
+    return problems.add({}, quoted_name(assignment) + " is not MODULE.PARAMETER=VALUE");
   std::string name{assignment.substr(0, dot)};
   GraphModule* module = graph.find(name);
   if (module == nullptr)
-    return problems.add({}, "no module " + in_quotes(name) + " in " + graph.file +
+    return problems.add({}, "no module " + quoted_name(name) + " in " + graph.file +
                                 suggestion(name, names_of(graph)));
   module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] = {
       std::string(assignment.substr(equals + 1)), {}};

@@ -151,6 +151,11 @@ TEST(GraphFile, TheDeepestThatIsAllowedIsRead) {
   EXPECT_EQ(graph.error().detail, "g.toml:1: no key \"a\" in module a");
 }
 
+TEST(GraphFile, AnErrorIsOneLine) {
+  EXPECT_EQ(parse("[modules.\"a\\nb\"]\n").error().detail,
+            "g.toml:1: a module's name is snake_case, not \"a\\x0ab\"");
+}
+
 TEST(GraphFile, AGraphHasAThousandModules) {
   auto modules = [](std::size_t count) {
     std::string text;

@@ -58,7 +58,7 @@ void append(Graph& graph, Graph included, Problems& problems) {
     const std::set<std::string> names = names_of(there);
     for (const auto& each : more)
       if (names.contains(each.name))
-        problems.add(each.place, what + " " + in_quotes(each.name) + " is there twice");
+        problems.add(each.place, what + " " + quoted_name(each.name) + " is there twice");
   };
   refuse_twice(graph.modules, included.modules, "module");
   refuse_twice(graph.groups, included.groups, "group");

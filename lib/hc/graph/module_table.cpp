@@ -28,7 +28,7 @@ void read_module(const Fields& fields, const std::string& name, const Node& node
   module.name = module.program = name;
   module.place = node.place;
   if (!is_name(name))
-    fields.add(node, "a module's name is snake_case, not " + in_quotes(module.name));
+    fields.add(node, "a module's name is snake_case, not " + quoted_name(module.name));
   if (node.as<Node::Table>() == nullptr)
     return fields.add(node, "a module is a table [modules." + name + "]");
   fields.check_keys(node,
@@ -52,7 +52,7 @@ void read_module(const Fields& fields, const std::string& name, const Node& node
     module.encodings[key] = {*encoding, value.place};
   });
   fields.each(node, "to", [&](const std::string& key, const Node& value) {
-    if (auto to = fields.addressee(value, in_quotes("to"))) module.to[key] = {*to, value.place};
+    if (auto to = fields.addressee(value, quoted_name("to"))) module.to[key] = {*to, value.place};
   });
   module.restart = read_restart(fields, node, restart);
   module.mode = fields.text_if_there(node, "mode");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,7 +38,8 @@ class Problems {
     return files_.at(static_cast<std::size_t>(number));
   }
 
-  /// Each as "FILE:LINE: WHAT", or "--set: WHAT", in the order of the files and their lines.
+  /// Each as "FILE:LINE: WHAT", or "--set: WHAT", in the order of the files and their lines; what
+  /// would end a line is shown as \x0a.
   [[nodiscard]] std::vector<std::string> lines() const {
     auto sorted = found_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
@@ -46,13 +48,26 @@ class Problems {
     std::vector<std::string> lines;
     lines.reserve(sorted.size());
     for (const auto& [place, what] : sorted)
-      lines.push_back(place.line == 0
-                          ? "--set: " + what
-                          : file(place.file) + ":" + std::to_string(place.line) + ": " + what);
+      lines.push_back(visible(place.line == 0 ? "--set: " + what
+                                              : file(place.file) + ":" +
+                                                    std::to_string(place.line) + ": " + what));
     return lines;
   }
 
  private:
+  static std::string visible(std::string_view text) {
+    constexpr std::string_view kHex = "0123456789abcdef";
+    std::string result;
+    for (char c : text) {
+      auto byte = static_cast<unsigned char>(c);
+      if (byte < 0x20 || byte == 0x7f)
+        result.append({'\\', 'x', kHex[byte >> 4], kHex[byte & 15]});
+      else
+        result += c;
+    }
+    return result;
+  }
+
   struct Problem {
     Place place;
     std::string what;

@@ -8,7 +8,7 @@ void read_groups(const Fields& fields, const Node& root, Graph& graph) {
   fields.each(root, "groups", [&](const std::string& name, const Node& node) {
     GraphGroup group{name, {}, node.place};
     if (!is_name(name) || name == "all")
-      fields.add(node, "a group's name is snake_case and not \"all\", not " + in_quotes(name));
+      fields.add(node, "a group's name is snake_case and not \"all\", not " + quoted_name(name));
     const auto* list = node.as<Node::List>();
     if (list == nullptr)
       fields.add(node, "a group is a list of inputs, as \"MODULE.PORT\", and addresses");
@@ -23,7 +23,7 @@ void read_groups(const Fields& fields, const Node& root, Graph& graph) {
 void read_modes(const Fields& fields, const Node& root, Graph& graph) {
   fields.each(root, "modes", [&](const std::string& name, const Node& node) {
     const auto* number = node.as<std::int64_t>();
-    if (!is_name(name)) fields.add(node, "a mode's name is snake_case, not " + in_quotes(name));
+    if (!is_name(name)) fields.add(node, "a mode's name is snake_case, not " + quoted_name(name));
     if (number == nullptr || *number < 1 || *number > 2147483647)
       return fields.add(node, "a mode is a whole number from 1 to 2147483647");
     graph.modes.push_back({name, *number, node.place});
