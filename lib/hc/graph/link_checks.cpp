@@ -121,10 +121,10 @@ void check_links(Planning& planning) {
 void check_loops(Planning& planning) {
   std::map<std::string, std::vector<const GraphLink*>> leaving;
   for (const auto& link : planning.graph.links) {
-    bool is_focus = link.to.port == focus_input().name && !planning.is_router(link.to.module) &&
-                    link.from.module == planning.plan.workspace;
+    const Description* to = planning.description_of(link.to.module);
+    const bool is_focus = to != nullptr && find_input(*to, link.to.port) == &focus_input();
     if (link.from.uri.empty() && link.to.uri.empty() && !is_paced(link) && !is_focus &&
-        !planning.is_router(link.from.module))
+        !planning.routes(link.from))
       leaving[link.from.module].push_back(&link);
   }
   enum class Visit { Begun = 1, Done };
@@ -165,7 +165,7 @@ void check_actors(Planning& planning) {
   std::map<std::string, std::string> writers;  // by input, the first
   for (const auto& link : planning.graph.links) {
     const Description* description = planning.description_of(link.to.module);
-    if (description == nullptr || planning.is_router(link.from.module)) continue;
+    if (description == nullptr || planning.routes(link.from)) continue;
     const DescribedPort* input = find_named(description->inputs, link.to.port);
     const PlannedModule* planned = planning.planned(link.to.module);
     if (input == nullptr || !input->actor || planned->exclusive.contains(link.to.port)) continue;

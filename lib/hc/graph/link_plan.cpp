@@ -80,7 +80,7 @@ class LinkPlanner {
       is_router.push_back(planning_.is_router(module.name));
     for (const auto& link : graph_.links) {
       RoutedLink& routed = links.emplace_back();
-      routed.from = number_of(link.from);
+      routed.from = planning_.routes(link.from) ? number_of(link.from) : kOutside;
       routed.to = number_of(link.to);
       if (link.route) routed.given = link.route->value;
       auto address = planning_.plan.addresses.find(link.to.text());
@@ -102,17 +102,16 @@ class LinkPlanner {
 
   [[nodiscard]] RouteWords words_of(const GraphLink& link,
                                     const std::vector<std::int64_t>& passed) const {
-    auto is_router = [&](const GraphPort& port) {
-      return port.uri.empty() && planning_.is_router(port.module);
-    };
+    const bool leaves_router = planning_.routes(link.from);
     RouteWords words;
     std::string addresses;
     for (auto address : link.route ? link.route->value : passed)
       addresses += (addresses.empty() ? "" : ",") + std::to_string(address);
     if (link.routes_all) addresses = "*";
-    if (link.route || is_router(link.from)) words.sender = "to=" + addresses;
-    if (is_router(link.from) && link.to.uri.empty()) words.sender += " peer=" + link.to.module;
-    if (is_router(link.to) && link.from.uri.empty()) words.reader = "peer=" + link.from.module;
+    if (link.route || leaves_router) words.sender = "to=" + addresses;
+    if (leaves_router && link.to.uri.empty()) words.sender += " peer=" + link.to.module;
+    if (link.from.uri.empty() && link.to.uri.empty() && planning_.is_router(link.to.module))
+      words.reader = "peer=" + link.from.module;
     return words;
   }
 

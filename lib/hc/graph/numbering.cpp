@@ -20,8 +20,7 @@ class Numbering {
     for (const auto& module : graph_.modules) number_outputs(module);
     number_groups();
     for (const auto& link : graph_.links)
-      if (link.from.uri.empty() && link.to.uri.empty() && planning_.is_router(link.from.module))
-        address_of(link.to);
+      if (link.to.uri.empty() && planning_.routes(link.from)) address_of(link.to);
     for (const auto& group : graph_.groups)
       for (const auto& member : group.members) add_member(group, member);
     for (const auto& module : graph_.modules)

@@ -27,14 +27,14 @@ TEST(Numbering, InputsGroupsAndRoutesReachTheModules) {
   auto planned = plan(kRouted);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->groups, (std::map<std::string, std::int64_t>{{"arms", -2}, {"legs", -3}}));
-  // Outputs come first: task has 1 and 2, router 3, actor 4, other 5.
+  // Outputs come first: task has 1 and 2, router 3 and 4, actor 5, other 6.
   EXPECT_EQ(planned->addresses,
-            (std::map<std::string, std::int64_t>{{"actor.command", 6}, {"other.command", 22}}));
-  EXPECT_EQ(values_of(planned->modules[0], "--to"), (Words{"bid=-2", "command=6"}));
+            (std::map<std::string, std::int64_t>{{"actor.command", 7}, {"other.command", 22}}));
+  EXPECT_EQ(values_of(planned->modules[0], "--to"), (Words{"bid=-2", "command=7"}));
   EXPECT_EQ(
       values_of(planned->modules[1], "--route"),
       (Words{"in=unix:@t.task.command.router.in?wait=60 peer=task",
-             "out=unix-listen:@t.router.out.actor.command?readers=1 to=-2,-1,6 peer=actor",
+             "out=unix-listen:@t.router.out.actor.command?readers=1 to=-2,-1,7 peer=actor",
              "out=unix-listen:@t.router.out.other.command?readers=1 to=-2,-1,22 peer=other"}));
   EXPECT_TRUE(values_of(planned->modules[2], "--route").empty());
 }
@@ -92,6 +92,14 @@ TEST(Numbering, NumbersStayWhenAGraphIsPlannedAnew) {
   EXPECT_EQ(planned->addresses.at("actor.command"), before->addresses.at("actor.command"));
   EXPECT_EQ(planned->groups.at("arms"), before->groups.at("arms"));
   for (const auto& [port, source] : before->sources) EXPECT_EQ(planned->sources.at(port), source);
+}
+
+TEST(Numbering, WhatARouterSaysOfItselfIsNotRouted) {
+  auto planned = plan("[modules.router]\n[modules.any]\n" + link_text("router.counts", "any.in") +
+                      link_text("router.counts", "file:counts.mtp"));
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_TRUE(values_of(planned->modules[0], "--route").empty());
+  EXPECT_TRUE(planned->addresses.empty());
 }
 
 TEST(Numbering, WhatARouterPassesHasALinkOfItsOwn) {

@@ -32,6 +32,12 @@ struct Planning {
     const Description* description = description_of(module);
     return description != nullptr && description->routes;
   }
+  /// Whether messages leave an output by their address: of a router, one that gives anything.
+  [[nodiscard]] bool routes(const GraphPort& output) const {
+    if (!output.uri.empty() || !is_router(output.module)) return false;
+    const DescribedPort* port = find_output(described.at(output.module), output.port);
+    return port != nullptr && port->types.empty();
+  }
   [[nodiscard]] PlannedModule* planned(const std::string& module) {
     auto found = index.find(module);
     return found == index.end() ? nullptr : &plan.modules[found->second];

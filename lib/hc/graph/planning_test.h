@@ -38,7 +38,8 @@ inline Result<std::string> describe(const std::string& program) {
   };
   const std::string anything = R"({"name":"in","types":[]})";
   if (program == "router")
-    return controlled(module(anything, R"({"name":"out","types":[]})"), R"(,"routes":true)");
+    return controlled(module(anything, R"({"name":"out","types":[]},)" + port("counts", "map", 0)),
+                      R"(,"routes":true)");
   if (program == "task")
     return controlled(
         module(port("image", "map", 0), port("command", "map", 0) + "," + port("bid", "map", 0)));
