@@ -107,8 +107,8 @@ std::optional<Description> parse_description(std::string_view text) {
 }
 
 const DescribedPort& focus_input() {
-  static const DescribedPort port{"focus", {{"table", "i32", 1, 1, 1, 0}}, false};
-  return port;
+  static const DescribedPort kFocus{"focus", {{"table", "i32", 1, 1, 1, 0}}, false};
+  return kFocus;
 }
 
 const DescribedPort* find_input(const Description& description, std::string_view port) {

@@ -98,11 +98,6 @@ std::string original(std::string_view text) {
   return result;
 }
 
-/// Where a key of a table stands: as toml++ sorts its keys, this gives their order back.
-auto order_of(const std::pair<toml::source_region, std::pair<std::string, Node>>& entry) {
-  return std::tuple(entry.first.begin.line, entry.first.begin.column);
-}
-
 Node convert(const toml::node& from, int file) {
   Node node;
   node.place = {std::max(static_cast<int>(from.source().begin.line), 1), file};
@@ -111,31 +106,33 @@ Node convert(const toml::node& from, int file) {
   if (auto number = from.value_exact<double>()) node.value = *number;
   if (auto flag = from.value_exact<bool>()) node.value = *flag;
   if (const toml::array* list = from.as_array()) {
-    Node::List nodes;
-    for (const auto& each : *list) nodes.push_back(convert(each, file));
-    node.value = std::move(nodes);
+    node.value = Node::List();
+    for (const auto& each : *list) node.nodes.push_back(convert(each, file));
   }
   if (const toml::table* table = from.as_table()) {
-    std::vector<std::pair<toml::source_region, std::pair<std::string, Node>>> entries;
-    for (const auto& [key, each] : *table)
-      entries.push_back({each.source(), {original(key.str()), convert(each, file)}});
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const auto& a, const auto& b) { return order_of(a) < order_of(b); });
-    Node::Table nodes;
-    for (auto& entry : entries) nodes.push_back(std::move(entry.second));
-    node.value = std::move(nodes);
+    node.value = Node::Table();
+    // toml++ sorts its keys; people expect things in the order in which they wrote them.
+    std::vector<std::tuple<toml::source_index, toml::source_index, Node>> entries;
+    for (const auto& [key, each] : *table) {
+      const auto& begin = each.source().begin;
+      entries.emplace_back(begin.line, begin.column, convert(each, file));
+      std::get<Node>(entries.back()).key = original(key.str());
+    }
+    std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+      return std::pair(std::get<0>(a), std::get<1>(a)) < std::pair(std::get<0>(b), std::get<1>(b));
+    });
+    for (auto& entry : entries) node.nodes.push_back(std::move(std::get<Node>(entry)));
   }
   return node;
 }
 
 }  // namespace
 
-const Node* Node::find(std::string_view key) const {
-  const auto* table = as<Table>();
-  if (table == nullptr) return nullptr;
-  auto found = std::find_if(table->begin(), table->end(),
-                            [&](const auto& entry) { return entry.first == key; });
-  return found == table->end() ? nullptr : &found->second;
+const Node* Node::find(std::string_view name) const {
+  if (table() == nullptr) return nullptr;
+  auto found =
+      std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node.key == name; });
+  return found == nodes.end() ? nullptr : &*found;
 }
 
 std::optional<Node> read_document(std::string_view text, int file, Problems& problems) {

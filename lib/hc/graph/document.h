@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,12 +16,13 @@ namespace hc::internal {
 
 /// A value of a document.
 struct Node {
-  using List = std::vector<Node>;
-  /// In the order of the text, as far as lines tell it.
-  using Table = std::vector<std::pair<std::string, Node>>;
+  struct List {};   ///< its values are in `nodes`
+  struct Table {};  ///< the same, each with its key, in the order of the text
 
   /// Dates and times, which no graph has, are monostate.
   std::variant<std::monostate, std::string, std::int64_t, double, bool, List, Table> value;
+  std::vector<Node> nodes;
+  std::string key;  ///< in its table
   Place place;
 
   /// The value of that type; null where it is of another.
@@ -30,9 +30,11 @@ struct Node {
   [[nodiscard]] const T* as() const {
     return std::get_if<T>(&value);
   }
+  [[nodiscard]] const std::vector<Node>* list() const { return as<List>() ? &nodes : nullptr; }
+  [[nodiscard]] const std::vector<Node>* table() const { return as<Table>() ? &nodes : nullptr; }
 
   /// The value of a key; null where this is no table, or has no such key.
-  [[nodiscard]] const Node* find(std::string_view key) const;
+  [[nodiscard]] const Node* find(std::string_view name) const;
 };
 
 /// Reads a text.

@@ -24,18 +24,18 @@ std::string quoted_name(std::string_view name) {
 
 void Fields::check_keys(const Node& table, const std::vector<std::string>& known,
                         const std::string& where) const {
-  for (const auto& [key, node] : *table.as<Node::Table>())
-    if (std::find(known.begin(), known.end(), key) == known.end())
-      add(node, "no key " + quoted_name(key) + " " + where + suggestion(key, known));
+  for (const Node& node : *table.table())
+    if (std::find(known.begin(), known.end(), node.key) == known.end())
+      add(node, "no key " + quoted_name(node.key) + " " + where + suggestion(node.key, known));
 }
 
 void Fields::each(const Node& parent, std::string_view key,
                   const std::function<void(const std::string&, const Node&)>& take) const {
   const Node* node = parent.find(key);
   if (node == nullptr) return;
-  const auto* table = node->as<Node::Table>();
+  const auto* table = node->table();
   if (table == nullptr) return add(*node, quoted_name(key) + " is a table");
-  for (const auto& [name, value] : *table) take(name, value);
+  for (const Node& value : *table) take(value.key, value);
 }
 
 std::optional<Lined<std::string>> Fields::text_if_there(const Node& parent,
@@ -64,7 +64,7 @@ std::vector<Lined<std::string>> Fields::texts(const Node& parent, std::string_vi
     else
       add(each, quoted_name(key) + " is a list of strings");
   };
-  if (const auto* list = node->as<Node::List>())
+  if (const auto* list = node->list())
     std::for_each(list->begin(), list->end(), take);
   else
     take(*node);
@@ -76,7 +76,7 @@ std::optional<std::vector<double>> Fields::numbers(const Node& parent, std::stri
   const Node* node = parent.find(key);
   if (node == nullptr) return std::nullopt;
   std::vector<double> all;
-  if (const auto* list = node->as<Node::List>()) {
+  if (const auto* list = node->list()) {
     for (const Node& each : *list) {
       if (const auto* number = each.as<double>()) all.push_back(*number);
       if (const auto* number = each.as<std::int64_t>()) all.push_back(static_cast<double>(*number));

@@ -39,8 +39,7 @@ void read_frame(const Fields& fields, const std::string& name, const Node& node,
   frame.name = name;
   frame.place = node.place;
   if (!is_name(name)) fields.add(node, "a frame's name is snake_case, not " + quoted_name(name));
-  if (node.as<Node::Table>() == nullptr)
-    return fields.add(node, "a frame is a table [frames." + name + "]");
+  if (node.table() == nullptr) return fields.add(node, "a frame is a table [frames." + name + "]");
   fields.check_keys(node, {"parent", "translation", "rotation", "quaternion", "moved_by", "coord"},
                     "in frame " + name);
   if (auto parent = fields.text(node, "parent")) {

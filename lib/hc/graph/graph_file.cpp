@@ -59,7 +59,7 @@ class GraphReader {
   void include(Graph& graph, const std::string& name, const Node& node) {
     if (!internal::is_name(name))
       fields_.add(node, "a graph's name is snake_case, not " + quoted_name(name));
-    if (node.as<Node::Table>() == nullptr)
+    if (node.table() == nullptr)
       return fields_.add(node, "a graph is a table [graphs." + name + "]");
     fields_.check_keys(node, {"file", "parameters"}, "in graph " + name);
     auto file = fields_.text(node, "file");

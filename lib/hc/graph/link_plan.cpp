@@ -128,7 +128,8 @@ class LinkPlanner {
     auto is_restarted = [&](const GraphPort& port) {
       return planning_.planned(port.module)->restart != Restart::Never;
     };
-    return kLinksLast && (is_restarted(link.from) || is_restarted(link.to));
+    const bool is_alive_again = is_restarted(link.from) || is_restarted(link.to);
+    return kLinksLast && is_alive_again;
   }
 
   bool shared(const GraphLink& link) const {

@@ -41,7 +41,7 @@ void read_route(const Fields& fields, const Node& table, GraphLink& link) {
   if (node == nullptr) return;
   std::vector<std::int64_t> addresses;
   const auto* word = node->as<std::string>();
-  const auto* list = node->as<Node::List>();
+  const auto* list = node->list();
   bool is_right = list != nullptr || (word != nullptr && *word == "all");
   link.routes_all = word != nullptr;
   if (list != nullptr)
@@ -55,7 +55,7 @@ void read_route(const Fields& fields, const Node& table, GraphLink& link) {
 }
 
 void read_link(const Fields& fields, const Node& node, Graph& graph) {
-  if (node.as<Node::Table>() == nullptr) return fields.add(node, "a link is written as [[links]]");
+  if (node.table() == nullptr) return fields.add(node, "a link is written as [[links]]");
   const std::vector<std::string> policies = {"keep",      "rate",       "burst",
                                              "byte_rate", "byte_burst", "memory"};
   std::vector<std::string> keys = {"from", "to", "route"};
@@ -79,7 +79,7 @@ void read_link(const Fields& fields, const Node& node, Graph& graph) {
 void read_links(const Fields& fields, const Node& root, Graph& graph) {
   const Node* links = root.find("links");
   if (links == nullptr) return;
-  const auto* list = links->as<Node::List>();
+  const auto* list = links->list();
   if (list == nullptr) return fields.add(*links, "links are written as [[links]]");
   for (const Node& node : *list) read_link(fields, node, graph);
 }

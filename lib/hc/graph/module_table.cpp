@@ -29,7 +29,7 @@ void read_module(const Fields& fields, const std::string& name, const Node& node
   module.place = node.place;
   if (!is_name(name))
     fields.add(node, "a module's name is snake_case, not " + quoted_name(module.name));
-  if (node.as<Node::Table>() == nullptr)
+  if (node.table() == nullptr)
     return fields.add(node, "a module is a table [modules." + name + "]");
   fields.check_keys(node,
                     {"program", "parameters", "addresses", "encodings", "to", "restart", "mode",
@@ -81,8 +81,8 @@ void read_modules(const Fields& fields, const Node& root, Restart restart, Graph
   if (modules == nullptr) {
     if (root.find("module") == nullptr && root.find("graphs") == nullptr)
       fields.add(root, "a graph has a table [modules.NAME] for each module");
-  } else if (const auto* table = modules->as<Node::Table>()) {
-    for (const auto& [name, node] : *table) read_module(fields, name, node, restart, graph);
+  } else if (const auto* table = modules->table()) {
+    for (const Node& node : *table) read_module(fields, node.key, node, restart, graph);
   } else {
     fields.add(root, "a graph has a table [modules.NAME] for each module");
   }

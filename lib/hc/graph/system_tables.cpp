@@ -9,7 +9,7 @@ void read_groups(const Fields& fields, const Node& root, Graph& graph) {
     GraphGroup group{name, {}, node.place};
     if (!is_name(name) || name == "all")
       fields.add(node, "a group's name is snake_case and not \"all\", not " + quoted_name(name));
-    const auto* list = node.as<Node::List>();
+    const auto* list = node.list();
     if (list == nullptr)
       fields.add(node, "a group is a list of inputs, as \"MODULE.PORT\", and addresses");
     else
@@ -33,7 +33,7 @@ void read_modes(const Fields& fields, const Node& root, Graph& graph) {
 void read_workspace(const Fields& fields, const Node& root, Graph& graph) {
   const Node* node = root.find("workspace");
   if (node == nullptr) return;
-  if (node->as<Node::Table>() == nullptr) return fields.add(*node, "\"workspace\" is a table");
+  if (node->table() == nullptr) return fields.add(*node, "\"workspace\" is a table");
   fields.check_keys(*node, {"module"}, "in the workspace");
   graph.workspace = fields.text(*node, "module");
 }
