@@ -10,7 +10,7 @@ namespace hc::internal {
 std::chrono::nanoseconds Backoff::next() {
   std::uniform_int_distribution<std::int64_t> pause(0, bound_.count());
   std::chrono::nanoseconds chosen(pause(random_));
-  bound_ = std::min<std::chrono::nanoseconds>(2 * bound_, kLongest);
+  bound_ = std::min<std::chrono::nanoseconds>(2 * bound_, longest_);
   return chosen;
 }
 
@@ -18,7 +18,7 @@ Dialer::Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patie
     : peer_(std::move(peer)),
       first_(first),
       patience_(patience),
-      backoff_(std::random_device{}()),
+      backoff_(std::random_device{}(), peer_.longest_pause),
       begin_(now),
       give_up_(now + first),
       next_try_(now) {}

@@ -17,20 +17,22 @@
 namespace hc::internal {
 
 /// Pauses between tries, so that many who lost the same peer do not come back at once: uniform
-/// between 0 and a bound that begins at kFirst and doubles up to kLongest ("full jitter").
+/// between 0 and a bound that begins at kFirst and doubles up to `longest` ("full jitter").
 ///
 /// Source: M. Brooker, Exponential Backoff And Jitter, AWS Architecture Blog, 2015.
 class Backoff {
  public:
   static constexpr std::chrono::milliseconds kFirst{100}, kLongest{5000};
 
-  explicit Backoff(std::uint32_t seed) : random_(seed) {}
+  explicit Backoff(std::uint32_t seed, std::chrono::milliseconds longest = kLongest)
+      : random_(seed), longest_(longest) {}
 
   std::chrono::nanoseconds next();
   void reset() { bound_ = kFirst; }
 
  private:
   std::minstd_rand random_;
+  std::chrono::nanoseconds longest_;
   std::chrono::nanoseconds bound_ = kFirst;
 };
 
@@ -45,6 +47,8 @@ struct Peer {
   std::string name;                ///< for error lines
   /// Whether a peer that has answered is wanted; an error says why not. May be empty.
   std::function<Status(int socket)> admit;
+  /// Between two tries: one on this host costs so little that nobody needs to be spared.
+  std::chrono::milliseconds longest_pause = Backoff::kLongest;
 };
 
 /// Connects to a peer, and to it again when the connection is lost.

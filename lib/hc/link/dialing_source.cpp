@@ -23,6 +23,7 @@ Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dial
 Result<Got> DialingSource::take(Message& message) {
   message = {};
   while (!ended_) {
+    if (source_ == nullptr && finishing_) break;
     if (source_ == nullptr) {
       if (auto dialed = dial(); !dialed) {
         ended_ = true;
@@ -39,6 +40,7 @@ Result<Got> DialingSource::take(Message& message) {
     if (!got && got.error().code == Code::Truncated) ++past_.cut;
     lose_connection(got ? "the writer has gone" : in_words(got.error()));
   }
+  ended_ = true;
   return Got::End;
 }
 
@@ -75,6 +77,7 @@ void DialingSource::lose_connection(const std::string& why) {
   // Messages that are held may keep the connection open.
   static_cast<void>(control(poll_, EPOLL_CTL_DEL, source_->descriptor()));
   source_.reset();
+  if (finishing_) return;
   log(why + "; connecting again");
   auto now = std::chrono::steady_clock::now();
   dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime, why);

@@ -32,6 +32,7 @@ class DialingSource final : public Source {
     return source_ == nullptr ? Source::wait(stop, timeout) : source_->wait(stop, timeout);
   }
   [[nodiscard]] Traffic traffic() const override;
+  void finish() override { finishing_ = true; }
 
  private:
   DialingSource(std::unique_ptr<Dialer> dialer, Open open, Descriptor poll, Descriptor timer,
@@ -54,6 +55,7 @@ class DialingSource final : public Source {
   LinkOptions options_;
   std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;
+  bool finishing_ = false;  // the peer will not come back
   bool ended_ = false;
   Traffic past_;  // of connections that were lost
 };

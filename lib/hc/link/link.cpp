@@ -24,12 +24,12 @@ constexpr std::array<Transport, 8> kTransports = {{
     {"-", "", "", internal::open_stdin, internal::open_stdout},
     {"file", "", "", internal::open_file_source, internal::open_file_sink},
     {"tcp", "wait reconnect", "wait reconnect", internal::open_tcp_source, internal::open_tcp_sink},
-    {"tcp-listen", "", "readers", internal::listen_tcp_source, internal::listen_tcp_sink},
+    {"tcp-listen", "", "readers stay", internal::listen_tcp_source, internal::listen_tcp_sink},
     {"unix", "wait reconnect", "wait reconnect", internal::open_unix_source,
      internal::open_unix_sink},
-    {"unix-listen", "", "readers", internal::listen_unix_source, internal::listen_unix_sink},
+    {"unix-listen", "", "readers stay", internal::listen_unix_source, internal::listen_unix_sink},
     {"inproc", "", "", internal::open_inproc_source, internal::open_inproc_sink},
-    {"shm", "keep spin wait reconnect", "readers", internal::open_shm_source,
+    {"shm", "keep spin wait reconnect", "readers stay", internal::open_shm_source,
      internal::open_shm_sink},
 }};
 

@@ -82,6 +82,10 @@ class Source {
   /// What take() has given so far.
   [[nodiscard]] virtual Traffic traffic() const = 0;
 
+  /// Says that the peer will not come back: the end of the connection there is, or that there is
+  /// none, is the end of the link. Only a source that reconnects needs to be told.
+  virtual void finish() {}
+
   /// Goes on after an error that take() gave, at the next valid header (R40).
   ///
   /// Errors: Unsupported for everything that cannot be read once more; files can.
@@ -140,7 +144,10 @@ struct LinkOptions {
 ///   tell a peer's end from its death, so both lead to trying again. A name's addresses are looked
 ///   up once.
 /// - `readers=N` (listening sinks, shm sink): how many readers to wait for before the first message
-///   and before the end; default, and 0: 1 before the first message, and none before the end.
+///   and before the end; default, and 0: 1 before the first message, and none before the end. When
+///   as many as were counted have all left, the link is closed.
+/// - `stay=1` (the same): who has left may come back, so the link is not closed then. With keep=all
+///   send() waits for the next reader; else what is sent meanwhile is lost (Traffic::cut).
 /// - `spin=MICROSECONDS` (shm source; default 20): how long wait() looks before it sleeps.
 ///
 /// And of every sink; one that listens has them for each reader:

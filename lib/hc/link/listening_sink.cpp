@@ -30,12 +30,14 @@ Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const 
                                                   const LinkOptions& options) {
   auto readers = number_option(uri, "readers", 0, kMaxPeers);
   if (!readers) return readers.error();
+  auto stays = number_option(uri, "stay", 0, 1);
+  if (!stays) return stays.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
   auto acceptor = Acceptor::make(std::move(socket), kMaxPeers);
   if (!acceptor) return acceptor.error();
   return std::unique_ptr<Sink>(new ListeningSink(
-      std::move(*acceptor), static_cast<std::size_t>(*readers), *policy, options));
+      std::move(*acceptor), static_cast<std::size_t>(*readers), *stays == 1, *policy, options));
 }
 
 /// Makes peers of those who have come.
@@ -68,8 +70,16 @@ void ListeningSink::leave(std::size_t peer) {
 Status ListeningSink::send(const Message& message) {
   Outgoing outgoing(encoder_.encode(message), message);
   while (true) {
-    if (begun_ && readers_ > 0 && peers_.empty())
+    if (begun_ && readers_ > 0 && !stays_ && peers_.empty())
       return Error{Code::Closed, "all readers have gone"};
+    if (begun_ && stays_ && peers_.empty() && !policy_.writer_waits()) {
+      let_in();
+      if (peers_.empty()) {
+        ++traffic_.messages;
+        ++traffic_.cut;
+        return {};
+      }
+    }
     // Between messages that follow one another the reactor alone lets peers in.
     auto now = std::chrono::steady_clock::now();
     bool follows = now - last_send_ < kFollowTime;

@@ -15,8 +15,8 @@ namespace hc::internal {
 /// policy than keep=all none waits for another.
 ///
 /// Waits for the first ones to come; peers that leave are forgotten, and those that come later hear
-/// what is sent from then on. When all have left, it waits for another, unless the readers were
-/// counted: then the link is closed.
+/// what is sent from then on. When all have left, it waits for another; but if the readers were
+/// counted the link is closed, or stays: then only a policy that loses nothing waits for another.
 class ListeningSink final : public Sink {
  public:
   /// A sink with the readers and the policy that the URI's options say. Errors: Usage, System.
@@ -28,10 +28,11 @@ class ListeningSink final : public Sink {
   [[nodiscard]] Traffic traffic() const override;
 
  private:
-  ListeningSink(std::unique_ptr<Acceptor> acceptor, std::size_t readers, const Policy& policy,
-                LinkOptions options)
+  ListeningSink(std::unique_ptr<Acceptor> acceptor, std::size_t readers, bool stays,
+                const Policy& policy, LinkOptions options)
       : acceptor_(std::move(acceptor)),
         readers_(readers),
+        stays_(stays),
         policy_(policy),
         options_(std::move(options)) {}
 
@@ -44,6 +45,7 @@ class ListeningSink final : public Sink {
 
   std::unique_ptr<Acceptor> acceptor_;
   std::size_t readers_;  // to wait for before the first message and before the end; 0: one, none
+  bool stays_;           // when all who were waited for have left
   Policy policy_;        // of each peer
   LinkOptions options_;
   bool begun_ = false;  // the readers that were to be waited for have come

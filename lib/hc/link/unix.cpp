@@ -17,6 +17,8 @@
 namespace hc::internal {
 namespace {
 
+constexpr std::chrono::milliseconds kLocalPause{100};
+
 struct UnixAddress {
   sockaddr_un address{};
   unsigned size = 0;
@@ -84,6 +86,7 @@ Result<Peer> unix_peer(const Uri& uri) {
   Peer peer;
   peer.name = uri.rest;
   peer.addresses.emplace_back(&address->address, address->size);
+  peer.longest_pause = kLocalPause;
   if (is_abstract(uri)) peer.admit = refuser("who listens there is of ");
   return peer;
 }

@@ -54,12 +54,14 @@ void copy_words(std::span<const std::byte> bytes, char* to) {
 
 class ShmSink final : public Sink {
  public:
-  ShmSink(SharedMemory memory, std::int64_t counted, std::uint64_t keep, LinkOptions options)
+  ShmSink(SharedMemory memory, std::int64_t counted, bool stays, std::uint64_t keep,
+          LinkOptions options)
       : memory_(std::make_shared<SharedMemory>(std::move(memory))),
         head_(*reinterpret_cast<Head*>(memory_->data())),
         cells_(reinterpret_cast<Cell*>(memory_->data() + kRingBegin)),
         slots_(std::make_shared<SlotPool>(kSlotsBegin, memory_->size())),
         counted_(counted),
+        stays_(stays),
         keep_(keep),
         log_(std::move(options.log)),
         stop_(options.stop) {}
@@ -101,6 +103,7 @@ class ShmSink final : public Sink {
   std::shared_ptr<SlotPool> slots_;
   std::unique_ptr<ShmReaders> readers_;
   std::int64_t counted_;
+  bool stays_;  // when all of them have left
   std::uint64_t keep_;
   LogSink log_;
   int stop_;
@@ -288,9 +291,14 @@ Status ShmSink::send(const Message& message) {
   }
   begun_ = true;
   if (present_ == 0) {
-    if (counted_ > 0) return Error{Code::Closed, "the readers have gone"};
-    if (keep_ == 0)
+    if (counted_ > 0 && !stays_) return Error{Code::Closed, "the readers have gone"};
+    if (keep_ == 0) {
       if (auto came = await_readers(1); !came) return came;
+    } else if (stays_) {
+      ++traffic_.messages;
+      ++traffic_.cut;
+      return {};
+    }
   }
   // The header's line and the elements behind it, if they are small, in words.
   std::array<std::uint64_t, Cell::kWords + kMaxHeaderBytes / sizeof(std::uint64_t)> words;
@@ -409,6 +417,8 @@ Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& o
   if (auto named = check_name(uri); !named) return named.error();
   auto counted = number_option(uri, "readers", 0, kMostReaders);
   if (!counted) return counted.error();
+  auto stays = number_option(uri, "stay", 0, 1);
+  if (!stays) return stays.error();
   if (auto enough = check_shm_memory(uri); !enough) return enough.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
@@ -420,7 +430,7 @@ Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& o
   LinkOptions own = options;
   if (policy->is_paced())  // it sends on the thread that serves links too
     own.log = [remarks](Severity, std::string_view line) { remarks->add(std::string(line)); };
-  auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted,
+  auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted, *stays == 1,
                                         policy->writer_waits() ? 0 : policy->keep, std::move(own));
   if (auto begun = sink->begin(std::move(*socket)); !begun) return begun.error();
   return make_paced(std::move(sink), *policy, options, std::move(remarks));

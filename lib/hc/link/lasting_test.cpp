@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Links that outlive the programs at their ends: `stay` of who listens, and finish() of who
+// reconnects.
+#include <unistd.h>
+
+#include <thread>
+
+#include <hc/link/link_conformance.h>
+#include <hc/link/loopback_test.h>
+
+namespace hc::testing {
+namespace {
+
+/// A scheme whose sinks listen: the two ends of a link.
+struct Ends {
+  std::string name, sink, source;
+};
+
+Ends ends_of(const std::string& scheme) {
+  static int count = 0;
+  auto word = "lasting-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+  if (scheme == "tcp") {
+    auto place = free_port();
+    return {scheme, "tcp-listen:" + place, "tcp:" + place};
+  }
+  if (scheme == "unix") return {scheme, "unix-listen:@" + word, "unix:@" + word};
+  return {scheme, "shm:" + word, "shm:" + word};
+}
+
+class LastingLink : public ::testing::TestWithParam<std::string> {
+ protected:
+  const Ends ends_ = ends_of(GetParam());
+};
+
+INSTANTIATE_TEST_SUITE_P(Schemes, LastingLink, ::testing::Values("tcp", "unix", "shm"),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(LastingLink, WhoDropsGoesOnWithoutReadersAndCounts) {
+  auto sink = sink_of(ends_.sink + "?readers=1&stay=1&keep=latest");
+  auto source = source_of(ends_.source);
+  Message message;
+  ASSERT_TRUE(sink->send(numbered(0, 10)));
+  ASSERT_TRUE(*receive(*source, message));
+  source.reset();
+  while (sink->traffic().cut == 0) ASSERT_TRUE(sink->send(numbered(1, 10)));
+  source = source_of(ends_.source);
+  std::atomic<bool> heard = false;
+  std::thread sender([&] {
+    while (!heard) ASSERT_TRUE(sink->send(numbered(2, 10)));
+  });
+  ASSERT_TRUE(*receive(*source, message));
+  heard = true;
+  sender.join();
+  EXPECT_EQ(message.header.seq, 2);
+}
+
+TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
+  auto sink = sink_of(ends_.sink + "?readers=1&stay=1");
+  auto source = source_of(ends_.source);
+  Message message;
+  ASSERT_TRUE(sink->send(numbered(0, 10)));
+  ASSERT_TRUE(*receive(*source, message));
+  source.reset();
+  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(1, 10))); });
+  source = source_of(ends_.source);
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
+  sender.join();
+}
+
+TEST_P(LastingLink, WithoutStayItEndsWithItsReaders) {
+  auto sink = sink_of(ends_.sink + "?readers=1&keep=latest");
+  auto source = source_of(ends_.source);
+  Message message;
+  ASSERT_TRUE(sink->send(numbered(0, 10)));
+  ASSERT_TRUE(*receive(*source, message));
+  source.reset();
+  Status sent;
+  while (sent) sent = sink->send(numbered(1, 10));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST_P(LastingLink, ASourceThatIsToFinishTakesWhatIsLeftAndEnds) {
+  auto sink = sink_of(ends_.sink + "?readers=1");
+  auto source = source_of(ends_.source + "?reconnect=60");
+  Message message;
+  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
+  ASSERT_TRUE(*receive(*source, message));
+  sender.join();
+  ASSERT_TRUE(sink->send(numbered(1, 10)));
+  ASSERT_TRUE(sink->close());
+  source->finish();
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
+  EXPECT_FALSE(*receive(*source, message));
+  EXPECT_EQ(*source->take(message), Got::End);
+}
+
+TEST_P(LastingLink, ASourceWithoutAConnectionFinishesAtOnce) {
+  auto source = source_of(ends_.source + "?reconnect=60");
+  Message message;
+  ASSERT_EQ(*source->take(message), Got::Nothing);
+  source->finish();
+  EXPECT_EQ(*source->take(message), Got::End);
+}
+
+TEST_P(LastingLink, StayIsYesOrNo) {
+  EXPECT_EQ(open_sink(*parse_uri(ends_.sink + "?stay=2")).error().code, Code::Usage);
+}
+
+}  // namespace
+}  // namespace hc::testing
