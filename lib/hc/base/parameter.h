@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Parameters of a module: declared once with unit, default and range, set on the command line.
+// Parameters of a module: declared once with unit, default and range, set on the command line and,
+// unless they are fixed, while the module runs.
 
 #include <cstdint>
 #include <limits>
@@ -23,6 +24,7 @@ struct ParameterOptions {
   double most = std::numeric_limits<double>::infinity();    ///< of a number
   std::vector<std::string> choices = {};                    ///< of a string; empty: any string
   bool positional = false;  ///< may be given without its name, in the order of declaration
+  bool fixed = false;       ///< read at the start alone: the module is started anew to change it
 };
 
 /// A parameter as declared, with its value.

@@ -2,8 +2,10 @@
 #include <hc/node/arguments.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <string_view>
+#include <tuple>
 
 namespace hc::internal {
 namespace {
@@ -82,8 +84,10 @@ class Parser {
   }
 
   static bool is_common(std::string_view key) {
-    return key == "--in" || key == "--out" || key == "--name" || key == "--address" ||
-           key == "--encoding" || key == "--manage" || key == "--limit";
+    constexpr std::array<std::string_view, 14> kCommon = {
+        "--in",    "--out",   "--name", "--address", "--encoding", "--manage",    "--control",
+        "--limit", "--route", "--to",   "--mode",    "--modes",    "--idle-rate", "--exclusive"};
+    return std::find(kCommon.begin(), kCommon.end(), key) != kCommon.end();
   }
 
   Status unknown(const std::string& key) const {
@@ -93,55 +97,99 @@ class Parser {
 
   Status read_common(const std::string& key, const std::string& value) {
     if (key == "--in" || key == "--out") return read_link(key == "--in", value);
-    if (key == "--address" || key == "--encoding") return read_output(key == "--address", value);
+    if (key == "--address" || key == "--to") return read_address(key, value);
+    if (key == "--encoding") return read_encoding(value);
+    if (key == "--mode" || key == "--modes" || key == "--idle-rate") return read_mode(key, value);
+    if (key == "--exclusive") return read_exclusive(value);
+    if (key == "--route") {
+      auto route = parse_link_route(value);
+      if (!route) return route.error();
+      arguments_.routes.push_back(std::move(*route));
+      return {};
+    }
     if (key == "--name") {
       arguments_.instance = value;
       return {};
     }
-    if (key == "--manage") {
+    if (key == "--manage" || key == "--control") {
       auto uri = parse_uri(value);
       if (!uri) return uri.error();
-      arguments_.manage = *uri;
+      (key == "--manage" ? arguments_.manage : arguments_.control) = *uri;
       return {};
     }
-    if (key == "--limit") {
-      auto& limit = arguments_.limits.element_bytes;
-      const char* end = value.data() + value.size();
-      auto [stop, status] = std::from_chars(value.data(), end, limit);
-      if (status != std::errc() || stop != end) return usage("--limit wants a number of bytes");
-      return {};
-    }
+    if (key == "--limit")
+      return read_number(value, arguments_.limits.element_bytes, "--limit wants a number of bytes");
     return unknown(key);
   }
 
   Status read_link(bool is_input, const std::string& value) {
-    auto split = is_input ? split_port(module_.inputs(), "input", value)
-                          : split_port(module_.outputs(), "output", value);
-    if (!split) return split.error();
-    auto uri = parse_uri(split->second);
-    if (!uri) return uri.error();
-    (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(split->first, *uri);
+    auto link = parse_port_link(module_, is_input, value);
+    if (!link) return link.error();
+    if (link->is_focus)
+      arguments_.focus.push_back(link->uri);
+    else
+      (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(link->port, link->uri);
     return {};
   }
 
-  Status read_output(bool is_address, const std::string& value) {
-    bool all = !is_address && value.find('=') == std::string::npos;
+  Status read_address(const std::string& key, const std::string& value) {
     auto split = split_port(module_.outputs(), "output", value);
     if (!split) return split.error();
-    const auto& [port, text] = *split;
-    if (is_address) {
-      auto& address = module_.outputs()[port]->address;
-      const char* end = text.data() + text.size();
-      auto [stop, status] = std::from_chars(text.data(), end, address);
-      if (status != std::errc() || stop != end || address < 0)
-        return usage("--address wants [PORT=]NUMBER, 0 to 2147483647, not \"" + value + "\"");
-      return {};
-    }
-    auto encoding = encoding_of(text);
-    if (!encoding) return usage("--encoding is text, binary, zstd or jpeg, not \"" + text + "\"");
+    const bool is_src = key == "--address";
+    auto& output = *module_.outputs()[split->first];
+    auto& address = is_src ? output.address : output.to;
+    std::string wrong = key + " wants [PORT=]NUMBER" + (is_src ? ", 0 to 2147483647" : "") +
+                        ", not \"" + value + "\"";
+    if (auto read = read_number(split->second, address, wrong); !read) return read;
+    return is_src && address < 0 ? usage(wrong) : Status();
+  }
+
+  Status read_encoding(const std::string& value) {
+    bool all = value.find('=') == std::string::npos;
+    auto split = split_port(module_.outputs(), "output", value);
+    if (!split) return split.error();
+    auto encoding = encoding_of(split->second);
+    if (!encoding)
+      return usage("--encoding is text, binary, zstd or jpeg, not \"" + split->second + "\"");
     for (std::size_t i = 0; i < module_.outputs().size(); ++i)
-      if (all || i == port) module_.outputs()[i]->encoding = *encoding;
+      if (all || i == split->first) module_.outputs()[i]->encoding = *encoding;
     return {};
+  }
+
+  Status read_mode(const std::string& key, const std::string& value) {
+    auto& attention = arguments_.attention;
+    if (key == "--idle-rate") {
+      auto read = read_number(value, attention.idle_rate, "--idle-rate wants a number [Hz]");
+      if (!read) return read;
+      return attention.idle_rate >= 0 ? Status() : usage("--idle-rate is not below 0");
+    }
+    std::string wrong = key + " wants numbers from 1 on, not \"" + value + "\"";
+    for (std::string_view rest = value; !rest.empty();) {
+      auto word = std::string(rest.substr(0, rest.find(',')));
+      rest.remove_prefix(std::min(rest.size(), word.size() + 1));
+      std::int32_t number = 0;
+      if (auto read = read_number(word, number, wrong); !read || number < 1) return usage(wrong);
+      if (key == "--mode")
+        attention.own = number;
+      else
+        attention.modes.push_back(number);
+    }
+    return {};
+  }
+
+  Status read_exclusive(const std::string& value) {
+    auto input = find_named(module_.inputs(), value);
+    if (input == module_.inputs().end())
+      return usage("no input \"" + value + "\"; there are: " + names(module_.inputs()));
+    (*input)->is_exclusive = true;
+    return {};
+  }
+
+  template <typename Number>
+  static Status read_number(const std::string& text, Number& number, const std::string& wrong) {
+    const char* end = text.data() + text.size();
+    auto [stop, status] = std::from_chars(text.data(), end, number);
+    return status == std::errc() && stop == end ? Status() : usage(wrong);
   }
 
   /// Words without a name go to the positional parameters, in the order of declaration.
@@ -165,6 +213,33 @@ class Parser {
 };
 
 }  // namespace
+
+Result<PortLink> parse_port_link(const Module& module, bool is_input, const std::string& text) {
+  constexpr std::string_view kFocus = "focus=";
+  const bool has_own = find_named(module.inputs(), "focus") != module.inputs().end();
+  PortLink link;
+  link.is_focus = is_input && !has_own && text.starts_with(kFocus);
+  std::string uri = text;
+  if (link.is_focus) {
+    uri.erase(0, kFocus.size());
+  } else {
+    auto split = is_input ? split_port(module.inputs(), "input", text)
+                          : split_port(module.outputs(), "output", text);
+    if (!split) return split.error();
+    std::tie(link.port, uri) = *split;
+  }
+  auto parsed = parse_uri(uri);
+  if (!parsed) return parsed.error();
+  link.uri = std::move(*parsed);
+  return link;
+}
+
+Result<std::pair<std::string, Route>> parse_link_route(std::string_view text) {
+  auto link = text.substr(0, text.find(' '));
+  auto route = parse_route(text.substr(std::min(text.size(), link.size() + 1)));
+  if (!route) return route.error();
+  return std::pair(std::string(link), std::move(*route));
+}
 
 Result<Arguments> parse_arguments(const Module& module, const std::vector<std::string>& words) {
   return Parser(module, words).parse();

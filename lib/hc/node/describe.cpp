@@ -72,6 +72,7 @@ std::string describe_parameter(const ParameterState& parameter) {
   if (!parameter.options.choices.empty())
     object.add("choices", array(parameter.options.choices,
                                 [](const std::string& choice) { return in_quotes(choice); }));
+  if (parameter.options.fixed) object.add("fixed", "true");
   return object.add_text("doc", parameter.doc).text();
 }
 
@@ -96,19 +97,16 @@ std::string parameter_line(const ParameterState& parameter) {
 
 std::string describe(const Module& module) {
   auto input = [](const auto& port) {
-    return Object()
-        .add_text("name", port->name)
-        .add("types", array(port->types, describe_type))
-        .add_text("doc", port->doc)
-        .text();
+    Object object;
+    object.add_text("name", port->name).add("types", array(port->types, describe_type));
+    if (port->is_actor) object.add("actor", "true");
+    return object.add_text("doc", port->doc).text();
   };
   auto output = [](const auto& port) {
-    return Object()
-        .add_text("name", port->name)
-        .add("types", "[" + describe_type(port->type) + "]")
-        .add_text("encoding", name(port->type.info.encoding))
-        .add_text("doc", port->doc)
-        .text();
+    Object object;
+    object.add_text("name", port->name).add("types", array(port->types, describe_type));
+    if (!port->types.empty()) object.add_text("encoding", name(port->type().info.encoding));
+    return object.add_text("doc", port->doc).text();
   };
   auto parameter = [](const auto& state) { return describe_parameter(*state); };
   auto together = [](const auto& state) {
@@ -122,6 +120,8 @@ std::string describe(const Module& module) {
              .add("outputs", array(module.outputs(), output))
              .add("parameters", array(module.parameters(), parameter))
              .add("transports", array(transports(), in_quotes))
+             .add("control", "true")
+             .add("routes", module.routes() ? "true" : "false")
              .text() +
          "\n";
 }
@@ -138,7 +138,7 @@ std::string help(const Module& module) {
   }
   if (!module.outputs().empty()) text += "\nOutputs:\n";
   for (const auto& port : module.outputs())
-    text += line(port->name, port->doc + " (" + in_words(port->type) + ")");
+    text += line(port->name, port->doc + " (" + in_words(port->types) + ")");
   if (!module.parameters().empty()) text += "\nParameters:\n";
   for (const auto& parameter : module.parameters()) text += parameter_line(*parameter);
   text += "\nLinks and common options:\n";
@@ -148,10 +148,15 @@ std::string help(const Module& module) {
     text += line("--out [PORT=]URI", "link an output; without any, all go to standard output");
     text += line("--address PORT=NUMBER", "the src of an output's messages");
     text += line("--encoding [PORT=]NAME", "text, binary, zstd or jpeg");
+    text += line("--to PORT=NUMBER", "the dst of an output's messages");
   }
   text += line("--limit BYTES", "largest elements that are taken (default 268435456)");
   text += line("--name NAME", "what the module is called in its lines");
-  text += line("--manage URI", "where counters of its links go, once a second");
+  text += line("--mode NUMBER", "the system mode of its messages");
+  text += line("--modes NUMBER,…", "modes it works in; others idle it");
+  text += line("--idle-rate HZ", "what it does while idle (default 0: all)");
+  text += line("--manage URI", "where its counters go, twice a second");
+  text += line("--control URI", "where commands come from, a line each");
   text += line("--describe", "print ports and parameters as JSON");
   return text + line("--help", "print this");
 }

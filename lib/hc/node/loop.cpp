@@ -14,7 +14,11 @@ using internal::LinkedSink;
 using internal::LinkedSource;
 using internal::Stopped;
 
-constexpr std::chrono::seconds kReportPeriod{1};
+constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
+
+MonotonicTime in_nanoseconds(std::chrono::duration<double> time) {
+  return std::chrono::duration_cast<MonotonicTime>(time);
+}
 
 /// What ends a module: cleanly when it was told to stop, else with the name of who failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
@@ -29,68 +33,118 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   options_.limits = arguments.limits;
   options_.stop = stop;
   options_.log = [this](Severity, std::string_view line) { module_.log(line); };
+  module_.attention_ = arguments.attention;
   open_outputs(arguments);
+  std::unique_ptr<Sink> reports;
   if (arguments.manage) {
-    auto sink = open_sink(*arguments.manage, options_);
-    if (!sink) fail(arguments.manage->text(), sink.error());
-    manage_ = std::move(*sink);
+    Uri uri = *arguments.manage;
+    if (uri.option("keep", "").empty()) uri.options.emplace_back("keep", kReportsKept);
+    auto sink = open_sink(uri, options_);
+    if (!sink) fail(uri.text(), sink.error());
+    reports = std::move(*sink);
   }
+  auto open = [&](const Uri& uri) {
+    auto source = open_source(uri, options_);
+    if (!source) fail(uri.text(), source.error());
+    return std::move(*source);
+  };
+  management_ = internal::Management(std::move(reports),
+                                     arguments.control ? open(*arguments.control) : nullptr);
   open_inputs(arguments);
+  for (const auto& uri : arguments.focus) focus_.push_back(open(uri));
+  for (const auto& [link, route] : arguments.routes) set_route(link, route);
+  module_.loop_ = this;
+}
+
+std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri) {
+  auto sink = open_sink(uri, options_);
+  if (!sink) fail(uri.text(), sink.error());
+  auto link = std::make_shared<LinkedSink>();
+  link->uri = uri.text();
+  link->sink = std::move(*sink);
+  sinks_.push_back(link);
+  return link;
 }
 
 void Module::Loop::open_outputs(const internal::Arguments& arguments) {
-  auto open = [&](const Uri& uri) {
-    auto sink = open_sink(uri, options_);
-    if (!sink) fail(uri.text(), sink.error());
-    auto link = std::make_shared<LinkedSink>();
-    link->uri = uri.text();
-    link->sink = std::move(*sink);
-    sinks_.push_back(link);
-    return link;
-  };
   for (const auto& [port, uri] : arguments.outputs)
-    module_.outputs_[port]->links.push_back(open(uri));
+    module_.outputs_[port]->links.push_back(open_output(uri));
   if (!arguments.outputs.empty() || module_.outputs_.empty()) return;
-  auto standard_output = open({"-", "", {}});
+  auto standard_output = open_output({"-", "", {}});
   for (auto& output : module_.outputs_) output->links.push_back(standard_output);
 }
 
+void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*> inputs) {
+  auto source = open_source(uri, options_);
+  if (!source) fail(uri.text(), source.error());
+  LinkedSource link;
+  link.uri = uri.text();
+  link.source = std::move(*source);
+  link.inputs = std::move(inputs);
+  sources_.push_back(std::move(link));
+}
+
 void Module::Loop::open_inputs(const internal::Arguments& arguments) {
-  auto open = [&](const Uri& uri, std::vector<internal::InputState*> inputs) {
-    auto source = open_source(uri, options_);
-    if (!source) fail(uri.text(), source.error());
-    sources_.push_back({uri.text(), std::move(*source), std::move(inputs), {}});
-  };
-  for (const auto& [port, uri] : arguments.inputs) open(uri, {module_.inputs_[port].get()});
+  for (const auto& [port, uri] : arguments.inputs) open_input(uri, {module_.inputs_[port].get()});
   if (!arguments.inputs.empty() || module_.inputs_.empty()) return;
   std::vector<internal::InputState*> all;
   for (auto& input : module_.inputs_) all.push_back(input.get());
-  open({"-", "", {}}, std::move(all));
+  open_input({"-", "", {}}, std::move(all));
 }
 
 void Module::Loop::run() {
   end_unlinked();
   end_unneeded();
+  now_ = module_.clock_.monotonic();
+  for (auto& timer : module_.timers_) timer.due = now_ + in_nanoseconds(timer.period());
+  attend();
   if (module_.start_) module_.start_();
-  auto has_ended = [](const LinkedSource& link) { return link.source == nullptr; };
   while (true) {
     if (stop_requested()) throw Stopped();
+    now_ = module_.clock_.monotonic();
+    attend();
+    fire_timers();
     const bool any = take_each();
     end_unneeded();
-    report();
     if (any) continue;
     if (module_.generate_) {
       if (!module_.generate_()) break;
-    } else if (std::all_of(sources_.begin(), sources_.end(), has_ended)) {
+    } else if (all_ended()) {
       break;
     } else {
-      wait();
+      wait(true, next_timer());
     }
   }
   for (const auto& together : module_.together_)
     for (const auto& input : together->inputs) together->matcher.end(input->place);
   module_.handled_time_ = 0;
   if (module_.end_) module_.end_();
+}
+
+/// Whether nothing can come any more. A module that can be told to link an input anew waits for
+/// that where it has none; one without inputs has its timers.
+bool Module::Loop::all_ended() const {
+  if (sources_.empty() &&
+      (management_.commands() != nullptr || (module_.inputs_.empty() && !module_.timers_.empty())))
+    return false;
+  return std::all_of(sources_.begin(), sources_.end(),
+                     [](const LinkedSource& link) { return link.source == nullptr; });
+}
+
+void Module::Loop::fire_timers() {
+  for (auto& timer : module_.timers_) {
+    if (timer.due > now_) continue;
+    timer.handler();
+    now_ = module_.clock_.monotonic();
+    auto period = in_nanoseconds(timer.period());
+    timer.due = std::max(timer.due, now_ - period) + period;
+  }
+}
+
+MonotonicTime Module::Loop::next_timer() const {
+  auto next = MonotonicTime::max();
+  for (const auto& timer : module_.timers_) next = std::min(next, timer.due);
+  return next;
 }
 
 /// Takes a message from each link, but from those with too many that wait for others' only when
@@ -119,6 +173,7 @@ bool Module::Loop::take_one(LinkedSource& link) {
   }
   if (*got == Got::End) end(link);
   if (*got != Got::Message) return false;
+  if (management_.is_heard()) measure(link, message);
   deliver(link, message);
   return true;
 }
@@ -184,12 +239,19 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
       continue;
     }
     if (!input->handler) return;
+    if (!may_handle(*input, message)) {
+      ++link.left_out;
+      return;
+    }
     module_.handled_time_ = message.header.time;
     module_.handled_mode_ = message.header.mode;
-    auto plain = expand(message);
+    module_.handled_peer_ = &link.route.peer;
+    auto plain = input->is_raw ? Result<Message>(message) : expand(message);
     if (!plain) fail(input->name, plain.error());
     input->handler(*plain);
     module_.handled_time_ = 0;
+    module_.handled_mode_ = 0;
+    module_.handled_peer_ = nullptr;
     return;
   }
   const auto& only = *link.inputs.back();
@@ -201,33 +263,62 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
   fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
 }
 
-void Module::Loop::wait() {
-  std::vector<Source*> sources;
-  for (const auto& link : sources_)
-    if (link.source != nullptr) sources.push_back(link.source.get());
-  auto timeout = manage_ ? std::chrono::milliseconds(kReportPeriod) : std::chrono::milliseconds(-1);
-  auto ready = wait_any(sources, options_.stop, timeout);
-  if (!ready) fail("poll", ready.error());
+/// Whether a message is handled now: one of another mode than that in focus is not where this is
+/// asked for, and of all others so many as the module does while idle.
+bool Module::Loop::may_handle(internal::InputState& input, const Message& message) {
+  const auto& attention = module_.attention_;
+  if (input.is_exclusive && message.header.mode != attention.focus) return false;
+  // What is taken together is left out together.
+  return input.matcher != nullptr || may_while_idle(input.handled_at);
 }
 
-void Module::Loop::report() {
-  if (manage_ == nullptr || module_.clock_.monotonic() - reported_ < kReportPeriod) return;
-  reported_ = module_.clock_.monotonic();
-  auto links = sources_.size() + sinks_.size();
-  Draft draft = Draft::make(table<std::int64_t>(std::tuple_size_v<Counters>).type.info, 1,
-                            static_cast<std::int32_t>(links));
-  auto rows = draft.view<std::int64_t>();
-  std::size_t row = 0;
-  auto put = [&](const Traffic& traffic) {
-    auto counters = counters_of(traffic);
-    std::copy(counters.begin(), counters.end(), rows.row(row++).begin());
-  };
-  for (const auto& link : sources_) put(link.source ? link.source->traffic() : link.traffic);
-  for (const auto& link : sinks_) put(link->sink ? link->sink->traffic() : link->traffic);
-  draft.header.seq = reports_++;
-  draft.header.time = module_.now();
-  // Who does not listen to our counters does not stop our work.
-  if (!manage_->send(std::move(draft).finish())) manage_.reset();
+bool Module::Loop::may_handle(internal::TogetherState& together) {
+  if (may_while_idle(together.handled_at)) return true;
+  ++together.left_out;
+  return false;
+}
+
+/// Whether it is time for the next, when the module does less than it could.
+bool Module::Loop::may_while_idle(std::optional<MonotonicTime>& last) const {
+  const auto& attention = module_.attention_;
+  if (!attention.is_idle()) return true;
+  auto period = in_nanoseconds(std::chrono::duration<double>(1 / attention.idle_rate));
+  if (last && now_ - *last < period) return false;
+  last = now_;
+  return true;
+}
+
+/// Notes how old a message is, and how long after the one before it came.
+void Module::Loop::measure(LinkedSource& link, const Message& message) {
+  if (message.header.time != 0) link.ages.add(now_.count() + to_wall_ - message.header.time);
+  if (link.last_come.count() != 0) link.gaps.add((now_ - link.last_come).count());
+  link.last_come = now_;
+}
+
+/// Waits for a command, a report that is due, or a time; and, perhaps, for messages.
+void Module::Loop::wait(bool for_messages, MonotonicTime until) {
+  std::vector<Source*> sources;
+  if (for_messages)
+    for (const auto& link : sources_)
+      if (link.source != nullptr) sources.push_back(link.source.get());
+  for (const auto& source : focus_) sources.push_back(source.get());
+  if (management_.commands() != nullptr) sources.push_back(management_.commands());
+  if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
+  auto timeout = std::chrono::milliseconds(-1);
+  if (until != MonotonicTime::max())
+    timeout = std::max(std::chrono::ceil<std::chrono::milliseconds>(until - now_),
+                       std::chrono::milliseconds(0));
+  auto ready = wait_any(sources, options_.stop, timeout);
+  if (!ready) fail("poll", ready.error());
+  attended_ = {};  // so that one looks what woke us
+}
+
+void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
+  for (now_ = module_.clock_.monotonic(); now_ < due(); now_ = module_.clock_.monotonic()) {
+    wait(false, due());
+    now_ = module_.clock_.monotonic();
+    attend();
+  }
 }
 
 void Module::Loop::close() {
@@ -242,8 +333,7 @@ void Module::Loop::close() {
     failed = link.get();
     failure = closed;
   }
-  reported_ = MonotonicTime(0);
-  report();
+  tell_counters();
   if (failed != nullptr) fail(failed->uri, failure.error());
 }
 

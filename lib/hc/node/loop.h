@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A module at work: takes messages from its links and hands them to the handlers. Internal.
+// A module at work: takes messages from its links and hands them to the handlers, obeys commands,
+// and reports. Internal.
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <hc/node/arguments.h>
+#include <hc/node/management.h>
 #include <hc/node/module.h>
+#include <hc/node/quantiles.h>
 
 namespace hc {
 
@@ -21,41 +24,80 @@ struct LinkedSource {
   std::string uri;
   std::unique_ptr<Source> source;  ///< null once it has ended
   std::vector<InputState*> inputs;
-  Traffic traffic;
+  Route route;                 ///< who is at the other end
+  Traffic traffic = {};        ///< as it was when the link ended
+  std::int64_t left_out = 0;   ///< messages that no handler got: out of focus, or while idle
+  Quantiles ages, gaps;        ///< of the messages since the last report; gaps between them
+  MonotonicTime last_come{0};  ///< the message before; 0: none
 };
 
 }  // namespace internal
 
 struct Module::Loop {
+  static constexpr std::chrono::milliseconds kReportPeriod{500};
+
   /// Opens the links: outputs first, since those that listen must be there before anybody waits.
   Loop(Module& module, const internal::Arguments& arguments, int stop);
+  ~Loop() { module_.loop_ = nullptr; }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
 
   /// Until all inputs have ended, and the generator has.
   void run();
+  /// Waits until a time that `due` gives, which may change with the focus; obeys meanwhile.
+  void pause(const std::function<MonotonicTime()>& due);
   /// Ends the outputs.
   void close();
+  /// Whether a set of messages that were taken together is handled now.
+  [[nodiscard]] bool may_handle(internal::TogetherState& together);
 
  private:
+  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri);
   void open_outputs(const internal::Arguments& arguments);
+  void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);
+  void set_route(const std::string& link, const internal::Route& route);
+
   bool take_each();
   bool take_one(internal::LinkedSource& link);
   [[nodiscard]] bool is_linked(const internal::InputState& input) const;
+  [[nodiscard]] bool all_ended() const;
   void end(internal::LinkedSource& link);
   void end_unlinked();
   void end_unneeded();
   void tell_left_out();
+  void measure(internal::LinkedSource& link, const Message& message);
   void deliver(internal::LinkedSource& link, const Message& message);
-  void wait();
+  [[nodiscard]] bool may_handle(internal::InputState& input, const Message& message);
+  [[nodiscard]] bool may_while_idle(std::optional<MonotonicTime>& last) const;
+  void fire_timers();
+  [[nodiscard]] MonotonicTime next_timer() const;
+  void wait(bool for_messages, MonotonicTime until);
+
+  // loop_control.cpp
+  void attend();
+  void hear_focus();
+  void obey(const std::string& command);
+  Status carry_out(const std::string& command);
+  Status set_parameter(const std::string& assignment);
+  Status link(bool is_input, const std::string& text);
+  Status unlink(bool is_input, const std::string& text);
+  Status finish(const std::string& text);
   void report();
+  void tell_counters();
+  void tell_links();
+  void tell_parameters();
+  void tell_state();
 
   Module& module_;
   LinkOptions options_;
   std::vector<internal::LinkedSource> sources_;
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;  // in the order of the command line
-  std::unique_ptr<Sink> manage_;
-  MonotonicTime reported_{0};
-  std::int64_t reports_ = 0;
+  std::vector<std::unique_ptr<Source>> focus_;                // links that tell the mode in focus
+  internal::Management management_;
+  MonotonicTime now_{0};      // at the last look at the clock
+  std::int64_t to_wall_ = 0;  // from monotonic to wall clock, at the last report [ns]
+  MonotonicTime reported_{0}, attended_{0};
 };
 
 }  // namespace hc

@@ -32,11 +32,12 @@ std::shared_ptr<internal::InputState> Module::add_input(std::string name,
   return state;
 }
 
-std::shared_ptr<internal::OutputState> Module::add_output(std::string name, PortType type,
+std::shared_ptr<internal::OutputState> Module::add_output(std::string name,
+                                                          std::vector<PortType> types,
                                                           std::string doc) {
   auto state = std::make_shared<internal::OutputState>();
   state->name = std::move(name);
-  state->type = type;
+  state->types = std::move(types);
   state->doc = std::move(doc);
   state->module = this;
   outputs_.push_back(state);
@@ -57,7 +58,9 @@ std::shared_ptr<ParameterState> Module::add_parameter(std::string name,
 
 void Module::add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
                           const Matching& how, Matcher::Take handler) {
-  auto take = [this, handler = std::move(handler)](std::span<const Message> set) {
+  const auto index = together_.size();
+  auto take = [this, index, handler = std::move(handler)](std::span<const Message> set) {
+    if (loop_ != nullptr && !loop_->may_handle(*together_[index])) return;
     const Header& latest =
         std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
           return a.header.time < b.header.time;
@@ -66,9 +69,10 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
     handled_mode_ = latest.mode;
     handler(set);
     handled_time_ = 0;
+    handled_mode_ = 0;
   };
   together_.push_back(std::make_unique<internal::TogetherState>(
-      internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take))}));
+      internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take)), 0, {}}));
   internal::TogetherState& state = *together_.back();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     internal::InputState& input = *inputs[i];
@@ -96,48 +100,70 @@ void Module::log(std::string_view line) const {
 }
 
 void Module::keep_rate(double rate) {
-  auto period = std::chrono::duration_cast<MonotonicTime>(std::chrono::duration<double>(1 / rate));
-  MonotonicTime due = next_period_.value_or(clock_.monotonic());
-  while (true) {
-    MonotonicTime left = due - clock_.monotonic();
-    if (left <= MonotonicTime(0)) break;
-    auto waited =
-        wait_readable({}, stop_descriptor(), std::chrono::ceil<std::chrono::milliseconds>(left));
-    if (!waited) throw internal::Stopped();
-  }
+  auto period = [&] {
+    return std::chrono::duration_cast<MonotonicTime>(
+        std::chrono::duration<double>(1 / attention_.rate(rate)));
+  };
+  loop_->pause([&] { return last_period_ ? *last_period_ + period() : MonotonicTime(0); });
   // Periods that were missed are not made up for.
-  next_period_ = std::max(due, clock_.monotonic() - period) + period;
+  auto now = clock_.monotonic();
+  last_period_ = std::max(last_period_ ? *last_period_ + period() : now, now - period());
 }
+
+namespace {
+
+/// Sends to a link; false when its reader has gone, which ends the link.
+bool send_to(internal::LinkedSink& link, const std::string& port, const Message& message) {
+  auto sent = link.sink->send(message);
+  if (sent) return true;
+  if (sent.error().code == Code::Stopped) throw internal::Stopped();
+  if (sent.error().code != Code::Closed)
+    throw ModuleError(Error{
+        sent.error().code,
+        (sent.error().code == Code::NotFound ? link.uri : port) + ": " + sent.error().detail});
+  link.traffic = link.sink->traffic();
+  link.sink.reset();
+  return false;
+}
+
+}  // namespace
 
 void internal::send(OutputState& output, Message message) {
   Module& module = *output.module;
   Header& header = message.header;
   header.src = output.address;
   header.seq = output.seq++;
-  header.mode = module.handled_mode_;
-  if (header.coord == 0) header.coord = output.type.coord;
+  if (header.dst == 0) header.dst = output.to;
+  if (header.mode == 0) header.mode = module.attention_.mode_of(module.handled_mode_);
+  if (header.coord == 0) header.coord = output.type().coord;
   if (header.time == 0) header.time = module.handled_time_;
-  auto wanted = output.encoding.value_or(output.type.info.encoding);
+  auto wanted = output.encoding.value_or(output.type().info.encoding);
   if (message.plain() && (wanted == Encoding::Text || wanted == Encoding::Binary))
     header.info.encoding = wanted;  // the same in memory
   else
     message = value_or_end(compress(message, wanted));
   bool any_left = false;
+  for (auto& link : output.links)
+    if (link->sink != nullptr && link->route.takes(header.dst))
+      any_left = !send_to(*link, output.name, message) || any_left;
+  if (any_left && !module.is_read()) throw Stopped();
+}
+
+std::size_t internal::forward(OutputState& output, const Message& message) {
+  Module& module = *output.module;
+  const std::string* from = module.handled_peer_;
+  std::size_t taken = 0;
+  bool any_left = false;
   for (auto& link : output.links) {
-    if (link->sink == nullptr) continue;
-    auto sent = link->sink->send(message);
-    if (!sent && sent.error().code == Code::Stopped) throw Stopped();
-    if (!sent && sent.error().code != Code::Closed)
-      throw ModuleError(
-          Error{sent.error().code, (sent.error().code == Code::NotFound ? link->uri : output.name) +
-                                       ": " + sent.error().detail});
-    if (!sent) {
-      link->traffic = link->sink->traffic();
-      link->sink.reset();
+    if (link->sink == nullptr || !link->route.takes(message.header.dst)) continue;
+    if (from != nullptr && !from->empty() && *from == link->route.peer) continue;
+    if (send_to(*link, output.name, message))
+      ++taken;
+    else
       any_left = true;
-    }
   }
   if (any_left && !module.is_read()) throw Stopped();
+  return taken;
 }
 
 bool Module::is_read() const {

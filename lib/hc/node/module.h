@@ -25,6 +25,7 @@
 #include <vector>
 
 #include <hc/base/parameter.h>
+#include <hc/node/attention.h>
 #include <hc/node/port.h>
 
 namespace hc {
@@ -64,8 +65,20 @@ class Module {
   /// addresses (src), 1, 2, … in the order of declaration, tell them apart.
   template <typename K>
   Output<K> output(const std::string& name, const K& kind, const std::string& doc) {
-    return Output<K>(add_output(name, kind.type, doc));
+    if constexpr (std::is_same_v<K, AnyKind>)
+      return Output<K>(add_output(name, kind.types, doc));
+    else
+      return Output<K>(add_output(name, {kind.type}, doc));
   }
+
+  /// Says that an input moves something: a graph in which several write to it needs somebody who
+  /// decides (`exclusive`, a router).
+  template <typename K>
+  void actor(const Input<K>& input) {
+    input.state->is_actor = true;
+  }
+  /// Says that each of the module's links gets what its address leads to (`--route`), and not all.
+  void route_outputs() { routes_ = true; }
 
   /// Declares a parameter.
   /// @param otherwise  its default: a bool, an integer, a number or a string, which is its type
@@ -88,6 +101,14 @@ class Module {
     input.state->handler = [handler = std::move(handler)](const Message& message) {
       handler(MessageOf<K>{message});
     };
+  }
+
+  /// The same with each message as it came, of the kind it is: compressed elements are not
+  /// expanded.
+  template <typename Handler>
+  void on_raw(const Input<AnyKind>& input, Handler handler) {
+    input.state->handler = std::move(handler);
+    input.state->is_raw = true;
   }
 
   /// Says what is done with messages that belong together, one of each input, by their times: equal
@@ -122,8 +143,19 @@ class Module {
   /// until it gives false. The module ends then.
   void generate(std::function<bool()> handler) { generate_ = std::move(handler); }
 
+  /// Says what is done again and again, between messages: first a period after the start, and not
+  /// made up for where it was missed. Does not keep a module running whose inputs have ended.
+  /// @param rate  read anew each time. [Hz]
+  void every(const Parameter<double>& rate, std::function<void()> handler) {
+    add_timer([rate] { return std::chrono::duration<double>(1 / *rate); }, std::move(handler));
+  }
+  void every(std::chrono::nanoseconds period, std::function<void()> handler) {
+    add_timer([period] { return std::chrono::duration<double>(period); }, std::move(handler));
+  }
+
   /// For generators: waits until the next period of a rate begins, counted from the first call.
-  /// A module that is told to stop ends here. @param rate [Hz]
+  /// Slower while the module is idle, since another mode has the focus. A module that is told to
+  /// stop ends here. @param rate [Hz]
   void keep_rate(double rate);
 
   /// Says something to the person who runs the module: one line on standard error, with the
@@ -132,6 +164,9 @@ class Module {
 
   /// Wall clock, for messages that begin here. [ns since the Unix epoch]
   [[nodiscard]] std::int64_t now() const { return clock_.wall(); }
+
+  /// Number of the system mode in focus, as last heard; 0: none, or nobody tells it.
+  [[nodiscard]] std::int32_t focus() const { return attention_.focus; }
 
   /// Runs the module as the command line says, until its inputs end, all its readers have gone, or
   /// it is told to stop (SIGINT, SIGTERM).
@@ -144,18 +179,29 @@ class Module {
   [[nodiscard]] const auto& outputs() const { return outputs_; }
   [[nodiscard]] const auto& parameters() const { return parameters_; }
   [[nodiscard]] const auto& together() const { return together_; }
+  [[nodiscard]] bool routes() const { return routes_; }
 
  private:
   friend void internal::send(internal::OutputState&, Message);
+  friend std::size_t internal::forward(internal::OutputState&, const Message&);
   struct Loop;
+  using Period = std::function<std::chrono::duration<double>()>;
+  struct Timer {
+    Period period;
+    std::function<void()> handler;
+    MonotonicTime due{0};
+  };
 
   /// Whether any output has a reader left.
   [[nodiscard]] bool is_read() const;
 
   std::shared_ptr<internal::InputState> add_input(std::string name, std::vector<PortType> types,
                                                   std::string doc);
-  std::shared_ptr<internal::OutputState> add_output(std::string name, PortType type,
+  std::shared_ptr<internal::OutputState> add_output(std::string name, std::vector<PortType> types,
                                                     std::string doc);
+  void add_timer(Period period, std::function<void()> handler) {
+    timers_.push_back({std::move(period), std::move(handler)});
+  }
   std::shared_ptr<ParameterState> add_parameter(std::string name, const ParameterValue& otherwise,
                                                 std::string unit, std::string doc,
                                                 ParameterOptions options);
@@ -172,10 +218,15 @@ class Module {
   std::vector<std::unique_ptr<internal::TogetherState>> together_;
   std::function<void()> start_, end_;
   std::function<bool()> generate_;
+  std::vector<Timer> timers_;
+  bool routes_ = false;
   SystemClock clock_;
+  internal::Attention attention_;
+  Loop* loop_ = nullptr;           // while it runs
   std::int64_t handled_time_ = 0;  // of the message being handled; 0: none
   std::int32_t handled_mode_ = 0;
-  std::optional<MonotonicTime> next_period_;
+  const std::string* handled_peer_ = nullptr;  // who sent it; null: nobody knows
+  std::optional<MonotonicTime> last_period_;   // of keep_rate()
 };
 
 }  // namespace hc

@@ -7,6 +7,7 @@
 
 #include <hc/compress/compress.h>
 #include <hc/node/arguments.h>
+#include <hc/node/management.h>
 
 namespace hc {
 namespace {
@@ -240,7 +241,8 @@ TEST(Module, ReportsItsCounters) {
   EXPECT_EQ(run(module, {"--in=inproc:m6-in", "--out=inproc:m6-out", "--manage=inproc:m6-manage"}),
             0);
   Message message, last;
-  while (*manage->take(message) == Got::Message) last = message;
+  while (*manage->take(message) == Got::Message)
+    if (message.header.src == static_cast<int>(internal::Report::Counters)) last = message;
   auto rows = *last.view<std::int64_t>();
   ASSERT_EQ(rows.height(), 2U);
   EXPECT_EQ(rows.at(0, 0, 0), 7);
@@ -294,7 +296,8 @@ TEST(Module, DescribesItself) {
       R"("parameters":[{"name":"hue","type":"number","unit":"turn","default":0.5,"least":0,"most":1,)"
       R"("doc":"colour"},{"name":"how","type":"string","unit":"","default":"fast","choices":)"
       R"(["fast","good"],"doc":"way"}],)"
-      R"("transports":["-","file","tcp","tcp-listen","unix","unix-listen","inproc","shm"]})"
+      R"("transports":["-","file","tcp","tcp-listen","unix","unix-listen","inproc","shm"],"control":true,)"
+      R"("routes":false})"
       "\n");
   std::string help = internal::help(module);
   for (const char* part : {"Usage: hc blob", "picture (rgb_image 3 x u8, coordinate system 7)",

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A module's place among the system modes: whether it works for the one in focus, and how much it
+// does while it does not. Pure. Internal.
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace hc::internal {
+
+/// Modes are numbers from 1 on; 0 is none.
+struct Attention {
+  std::vector<std::int32_t> modes;  ///< in which the module works; empty: in all
+  std::int32_t own = 0;             ///< mode of all its messages, where it is a task
+  double idle_rate = 0;  ///< what it does out of focus [Hz]; 0: as much as in focus
+  std::int32_t focus = 0;  ///< as last heard; 0: none, or there is no workspace
+
+  [[nodiscard]] bool in_focus() const {
+    return modes.empty() || std::find(modes.begin(), modes.end(), focus) != modes.end();
+  }
+  /// Whether it is to do less now.
+  [[nodiscard]] bool is_idle() const { return idle_rate > 0 && !in_focus(); }
+  /// A rate as it is now. [Hz]
+  [[nodiscard]] double rate(double wanted) const {
+    return is_idle() ? std::min(wanted, idle_rate) : wanted;
+  }
+  /// The mode of a message that is made while one of `handled` mode is handled, or none is (0).
+  [[nodiscard]] std::int32_t mode_of(std::int32_t handled) const {
+    if (own != 0) return own;
+    return handled != 0 ? handled : focus;
+  }
+};
+
+}  // namespace hc::internal
