@@ -29,6 +29,7 @@ constexpr int kMaxReports = 1024;  // of counters, in one turn
 struct Running {
   const PlannedModule* module;
   std::unique_ptr<Source> manage;
+  std::unique_ptr<Sink> control;
   std::optional<Process> process;
   std::optional<int> status;
   bool says_more = true;          // its standard error is open
@@ -111,6 +112,13 @@ class Runner {
     auto manage = open_source(*uri);
     if (!manage) return manage.error();
     running.manage = std::move(*manage);
+    if (!module.control_uri.empty()) {
+      auto place = parse_uri(module.control_uri);
+      if (!place) return place.error();
+      auto control = open_sink(*place);
+      if (!control) return control.error();
+      running.control = std::move(*control);
+    }
     auto process = Process::start(module.command(), Process::Capture::Errors);
     if (!process) return Error{process.error().code, module.name + ": " + process.error().detail};
     running.process.emplace(std::move(*process));
