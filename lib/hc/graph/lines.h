@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a process says, line by line, and the last of it. Pure. Internal to graph.
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace hc::internal {
+
+/// Makes lines of pieces of text, and keeps the last ones.
+class Lines {
+ public:
+  static constexpr std::size_t kMaxLine = 4096;  ///< longer ones come in parts [byte]
+  static constexpr std::size_t kLast = 20;       ///< so many are kept
+
+  using Hear = std::function<void(const std::string& line)>;
+
+  /// Takes what was read; `hear` gets each line that is whole now, and none that is empty.
+  void add(std::string_view piece, const Hear& hear) {
+    for (char c : piece) {
+      if (c != '\n') begun_ += c;
+      if (c == '\n' || begun_.size() >= kMaxLine) finish(hear);
+    }
+  }
+
+  /// Takes what was begun as a line: there comes no more of it.
+  void finish(const Hear& hear) {
+    if (begun_.empty()) return;
+    if (last_.size() == kLast) last_.pop_front();
+    last_.push_back(std::exchange(begun_, {}));
+    hear(last_.back());
+  }
+
+  /// The last lines, the newest at the end.
+  [[nodiscard]] const std::deque<std::string>& last() const { return last_; }
+  void forget() { last_.clear(); }
+
+ private:
+  std::string begun_;
+  std::deque<std::string> last_;
+};
+
+}  // namespace hc::internal
