@@ -173,7 +173,9 @@ std::optional<int> Process::poll_status() {
 }
 
 void Process::ask_to_end() const {
-  if (!status_) ::kill(-number_, SIGTERM);
+  if (status_) return;
+  ::kill(-number_, SIGTERM);
+  ::kill(-number_, SIGCONT);  // one that is stopped could not
 }
 
 }  // namespace hc::internal

@@ -37,6 +37,8 @@ class Process {
   Process& operator=(Process&&) = default;
   ~Process();
 
+  /// Of its guard, whose eldest child the process is.
+  [[nodiscard]] pid_t guard_number() const { return number_; }
   /// What is captured; reading gives 0 bytes when all who could write have ended.
   [[nodiscard]] int output() const { return output_.get(); }
   /// Readable when the process has ended, and all that it had started has been killed.
@@ -45,7 +47,8 @@ class Process {
   /// The exit status, 128 + the signal where one killed it; nothing while it runs.
   std::optional<int> poll_status();
 
-  /// Asks the process, and all that is still in its group, to end (SIGTERM).
+  /// Asks the process, and all that is still in its group, to end (SIGTERM), also where they are
+  /// stopped (SIGCONT).
   void ask_to_end() const;
 
   /// Kills the process and all that it has started; ended() tells when that is done.

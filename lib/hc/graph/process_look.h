@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the kernel tells of a process and all that descends from it (/proc). Internal to graph.
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+namespace hc::internal {
+
+/// The process that a guard has started first, and has not outlived; 0 where there is none.
+pid_t first_child(pid_t process);
+
+/// All that descends from a process, without itself. Cost: some system calls for each of them.
+std::vector<pid_t> descendants(pid_t process);
+
+/// What processes have used, together.
+struct Usage {
+  std::chrono::nanoseconds processor{0};  ///< with what those children used that have ended
+  std::uint64_t memory = 0;               ///< their part of what they share (PSS) [byte]
+  bool is_stopped = false;                ///< one of them, by a signal
+};
+
+/// @param with_memory  whether `memory` is wanted, which takes the kernel longer than the rest.
+Usage usage_of(const std::vector<pid_t>& processes, bool with_memory);
+
+}  // namespace hc::internal
