@@ -13,7 +13,7 @@ void add_check(CLI::App& app) {
   auto* verb = app.add_subcommand("check", "Check a graph file, without starting anything");
   add_graph_options(*verb, *options);
   verb->callback([options] {
-    auto plan = make_plan("check", *options);
+    auto plan = *make_plan("check", *options, hc::graph_token()).plan;
     auto counted = [](std::size_t count, std::string_view what) {
       return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
     };

@@ -8,6 +8,7 @@
 #include <map>
 
 #include <hc/base/suggestion.h>
+#include <hc/graph/commands.h>
 #include <hc/graph/run.h>
 
 #include "common.h"
@@ -49,6 +50,26 @@ void resolve_programs(hc::Graph& graph, hc::Problems& problems) {
   }
 }
 
+/// What a program says of itself. It is asked once, and again when its file is another: a graph
+/// that is planned anew while it runs is not to wait for what is known.
+hc::Result<std::string> describe_once(const std::string& program) {
+  struct Known {
+    std::filesystem::file_time_type time;
+    std::uintmax_t size;
+    std::string description;
+  };
+  static std::map<std::string, Known> all;
+  std::error_code missing;
+  const auto time = std::filesystem::last_write_time(program, missing);
+  const auto size = std::filesystem::file_size(program, missing);
+  auto known = all.find(program);
+  if (!missing && known != all.end() && known->second.time == time && known->second.size == size)
+    return known->second.description;
+  auto description = hc::describe_program(program);
+  if (description && !missing) all[program] = {time, size, *description};
+  return description;
+}
+
 }  // namespace
 
 void add_graph_options(CLI::App& verb, GraphOptions& options) {
@@ -56,24 +77,43 @@ void add_graph_options(CLI::App& verb, GraphOptions& options) {
   verb.add_option("--set", options.settings, "MODULE.PARAMETER=VALUE; may be repeated");
 }
 
-hc::Plan make_plan(std::string_view verb, const GraphOptions& options) {
+hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
+                                     const std::vector<std::string>& commands) {
   hc::Problems problems(options.file);
   auto environment = [](const char* name) -> const char* { return std::getenv(name); };
   auto text = read_text(options.file);
-  if (!text) throw Failure(text.error());
+  if (!text) return text.error();
   hc::Graph graph = hc::parse_graph(*text, environment, problems, read_included);
   for (const auto& setting : options.settings) hc::set_parameter(graph, setting, problems);
+  for (const auto& line : commands)
+    if (auto command = hc::parse_command(line)) hc::apply_command(graph, *command, problems);
   resolve_programs(graph, problems);
-  std::map<std::string, hc::Result<std::string>> described;  // each program is asked once
+  std::map<std::string, hc::Result<std::string>> described;
   auto describe = [&](const std::string& program) {
     auto known = described.find(program);
-    if (known == described.end())
-      known = described.emplace(program, hc::describe_program(program)).first;
+    if (known == described.end()) known = described.emplace(program, describe_once(program)).first;
     return known->second;
   };
-  auto plan = hc::make_plan(std::move(graph), describe, hc::graph_token(), problems);
-  if (problems.empty()) return plan;
-  for (const auto& line : problems.lines())
+  hc::Replanned planned;
+  planned.plan = hc::make_plan(std::move(graph), describe, token, problems);
+  // TODO(soon): modules are started again once the links between them outlive them.
+  for (auto& module : planned.plan->modules) module.restart = hc::Restart::Never;
+  planned.files = problems.files();
+  for (auto& line : problems.lines()) {
+    constexpr std::string_view kBeside = "--set: ";  // what is set beside a file that runs is asked
+    const bool is_asked = !commands.empty() && line.starts_with(kBeside);
+    planned.problems.push_back(is_asked ? line.substr(kBeside.size()) : std::move(line));
+  }
+  if (!problems.empty()) planned.plan.reset();
+  return planned;
+}
+
+hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
+                        const std::string& token) {
+  auto planned = plan_graph(options, token);
+  if (!planned) throw Failure(planned.error());
+  if (planned->plan) return std::move(*planned);
+  for (const auto& line : planned->problems)
     say(fmt::format("hc {}: {}", verb, hc::Error{hc::Code::Usage, line}.text()));
   throw Failure(2);
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/plan.h>
+#include <hc/graph/run.h>
 
 #include "verbs.h"
 
@@ -18,8 +18,15 @@ struct GraphOptions {
 };
 void add_graph_options(CLI::App& verb, GraphOptions& options);
 
-/// Reads, checks and plans a graph. Where something is wrong it says all of that, a line each, and
-/// fails with status 2.
-hc::Plan make_plan(std::string_view verb, const GraphOptions& options);
+/// Reads, checks and plans a graph that commands have changed, one after the other.
+///
+/// Errors: NotFound (the file). All else that is wrong stands in Replanned::problems.
+hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
+                                     const std::vector<std::string>& commands = {});
+
+/// The same for a graph that does not run yet. Where something is wrong it says all of that, a line
+/// each, and fails with status 2.
+hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
+                        const std::string& token);
 
 }  // namespace tool

@@ -3,30 +3,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include <hc/base/program.h>
 #include <hc/graph/run.h>
 
 #include "common.h"
 #include "graph.h"
+#include "status_line.h"
 #include "verbs.h"
 
 namespace tool {
 namespace {
 
+constexpr std::size_t kMaxName = 40;
+
 struct Options {
   GraphOptions graph;
+  std::string name;
   bool quiet = false;
 };
 
-void print_links(const hc::Plan& plan, const hc::RunReport& report) {
+void print_links(const hc::GraphState& state) {
   std::size_t widest = 0;
-  for (const auto& link : plan.links)
+  for (const auto& link : state.links)
     widest = std::max(widest, link.from.size() + link.to.size() + 4);
   std::string text;
-  for (std::size_t i = 0; i < plan.links.size(); ++i) {
-    std::string name = plan.links[i].from + " -> " + plan.links[i].to;
-    const auto& sent = report.links[i];
+  for (const auto& link : state.links) {
+    std::string name = link.from + " -> " + link.to;
+    const auto& sent = link.traffic;
     std::string lost;
     if (sent.lost() > 0) lost = fmt::format("  {} lost ({})", sent.lost(), losses_in_words(sent));
     text += fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
@@ -36,17 +41,50 @@ void print_links(const hc::Plan& plan, const hc::RunReport& report) {
   print(text);
 }
 
+/// A graph's name, of letters, digits, `_` and `-` alone.
+std::string name_of(const Options& options) {
+  std::string name = options.name.empty()
+                         ? std::filesystem::path(options.graph.file).stem().string()
+                         : options.name;
+  name.resize(std::min(name.size(), kMaxName));
+  std::replace_if(
+      name.begin(), name.end(),
+      [](char c) {
+        return (c < 'a' || c > 'z') && (c < 'A' || c > 'Z') && (c < '0' || c > '9') && c != '-';
+      },
+      '_');
+  return name.empty() ? "graph" : name;
+}
+
 void run(const Options& options) {
-  auto plan = make_plan("run", options.graph);
+  const std::string token = hc::graph_token();
+  auto plan = make_plan("run", options.graph, token);
+  StatusLine status(!options.quiet);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
+  run_options.tells_lines = !options.quiet;
   run_options.event = [&](std::string_view line) {
     bool is_event = line.ends_with(": started") || line.ends_with(": ended");
-    if (!(options.quiet && is_event)) say(line);
+    if (!(options.quiet && is_event)) status.say(line);
   };
-  auto report = hc::run_graph(plan, run_options);
+  run_options.state = [&](const hc::GraphState& state) { status.show(state); };
+  run_options.name = name_of(options);
+  run_options.file = options.graph.file;
+  run_options.files = plan.files;
+  run_options.replan = [&](const std::vector<std::string>& commands) {
+    auto planned = plan_graph(options.graph, token, commands);
+    if (planned) return std::move(*planned);
+    return hc::Replanned{{}, {planned.error().detail}, {}};
+  };
+  auto report = hc::run_graph(std::move(*plan.plan), run_options);
+  status.erase();
   if (!report) throw Failure(report.error());
-  print_links(plan, *report);
+  print_links(report->state);
+  std::string given_up;
+  for (const auto& module : report->state.modules)
+    if (module.status == hc::ModuleStatus::GivenUp)
+      given_up += (given_up.empty() ? "" : ", ") + module.name;
+  if (!given_up.empty()) throw Failure(hc::Error{hc::Code::Closed, "given up: " + given_up});
 }
 
 }  // namespace
@@ -55,7 +93,8 @@ void add_run(CLI::App& app) {
   auto options = std::make_shared<Options>();
   auto* verb = app.add_subcommand("run", "Run a graph of modules");
   add_graph_options(*verb, options->graph);
-  verb->add_flag("--quiet", options->quiet, "do not tell which modules start and end");
+  verb->add_option("--as", options->name, "name that others find the graph by; else the file's");
+  verb->add_flag("--quiet", options->quiet, "tell only what goes wrong");
   verb->callback([options] { run(*options); });
 }
 

@@ -34,6 +34,7 @@ class Problems {
 
   [[nodiscard]] bool empty() const { return found_.empty(); }
   [[nodiscard]] std::size_t size() const { return found_.size(); }
+  [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
   [[nodiscard]] const std::string& file(int number = 0) const {
     return files_.at(static_cast<std::size_t>(number));
   }

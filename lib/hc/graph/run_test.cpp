@@ -2,53 +2,14 @@
 #include <hc/graph/run.h>
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
-#include <sys/eventfd.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <csignal>
-#include <functional>
 
-#include <hc/link/descriptor.h>
+#include <hc/graph/running_test.h>
 
 namespace hc {
 namespace {
-
-/// A graph of shells, each with the script that it runs; what is said of it stands in `lines`.
-class Run : public ::testing::Test {
- protected:
-  void add(const std::string& name, const std::string& script) {
-    PlannedModule module;
-    module.name = name;
-    module.program = "/bin/sh";
-    module.options = {"-c", script};
-    module.manage_uri = "unix-listen:@" + token_ + "." + name + ".manage";
-    plan_.modules.push_back(std::move(module));
-  }
-
-  Result<RunReport> run() {
-    RunOptions options;
-    options.stop = stop_.get();
-    options.event = [this](std::string_view line) {
-      lines_.emplace_back(line);
-      if (line == stop_at_) ::eventfd_write(stop_.get(), 1);
-      if (heard_) heard_(line);
-    };
-    return run_graph(plan_, options);
-  }
-
-  bool said(const std::string& line) const {
-    return std::find(lines_.begin(), lines_.end(), line) != lines_.end();
-  }
-
-  std::string token_ = graph_token();
-  Plan plan_;
-  std::function<void(std::string_view line)> heard_;
-  std::string stop_at_;  // the line at which the graph is told to end
-  internal::Descriptor stop_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
-  std::vector<std::string> lines_;
-};
 
 TEST_F(Run, LinesHaveTheModulesName) {
   add("a", "echo hello >&2; echo 'a: myself' >&2; echo; printf 'to the end' >&2");

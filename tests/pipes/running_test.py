@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Graphs while they run: what hc run tells of them, takes, and does when they change."""
+
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+import unittest
+
+from harness import DATA, Pipes, WATCHDOG
+
+GRAPH = (
+    """
+[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+[modules.brightness]
+[[links]]
+from = "camera.left"
+to = "brightness.image"
+"""
+    % DATA
+)
+
+
+class Messages:
+    """Messages of strings, as they come from a stream."""
+
+    def __init__(self, connection):
+        connection.settimeout(WATCHDOG)
+        self.file = connection.makefile("rb")
+
+    def next(self):
+        """Its src, and its rows without the spaces at their ends."""
+        header = [int(word) for word in self.file.readline().split()]
+        width, height = header[9:11]
+        text = self.file.read(width * height).decode()
+        self.file.readline()
+        rows = [text[i : i + width].rstrip() for i in range(0, len(text), width or 1)]
+        return header[1], rows
+
+
+class Running(Pipes):
+    def write(self, text, name="g.toml"):
+        path = pathlib.Path(self.path(name))
+        path.with_suffix(".new").write_text(text)
+        path.with_suffix(".new").rename(path)  # as editors do
+
+    def run_graph(self, options=""):
+        process = self.start("exec hc run g.toml " + options)
+        self.await_lines(process, "brightness: started")
+        return process
+
+    def await_lines(self, process, last):
+        lines = []
+        while not lines or not re.search(last, lines[-1]):
+            line = process.stderr.readline().decode()
+            self.assertNotEqual(line, "", lines)
+            lines.append(line.rstrip("\n"))
+        return lines
+
+    def observe(self, process, name="g"):
+        connection = socket.socket(socket.AF_UNIX)
+        self.addCleanup(connection.close)
+        connection.connect("\0hypercolumn.%s.%d" % (name, process.pid))
+        return Messages(connection)
+
+    def state(self, messages, condition=lambda state: True):
+        """The first state that is as wanted."""
+        while True:
+            src, rows = messages.next()
+            if src == 1 and condition(json.loads(rows[0])):
+                return json.loads(rows[0])
+
+    def ask(self, process, *commands, name="g"):
+        with socket.socket(socket.AF_UNIX) as listening, socket.socket(socket.AF_UNIX) as graph:
+            place = "answer.%d" % process.pid
+            listening.bind("\0" + place)
+            listening.listen()
+            listening.settimeout(WATCHDOG)
+            graph.connect("\0hypercolumn.%s.%d.ask" % (name, process.pid))
+            rows = ["reply unix:@" + place, *commands]
+            width = max(map(len, rows))
+            text = "".join(row.ljust(width) for row in rows)
+            graph.sendall(b"1 0 0 0 8 0 60101 0 0 %d %d\n" % (width, len(rows)))
+            graph.sendall(text.encode() + b"\n")
+            connection, _ = listening.accept()
+            with connection:
+                return Messages(connection).next()[1]
+
+    def stop(self, process, status=0):
+        os.kill(process.pid, signal.SIGINT)
+        out, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, status, err)
+        return out.decode(), err.decode()
+
+    @staticmethod
+    def module(state, name):
+        return next((each for each in state["modules"] if each["name"] == name), None)
+
+    def test_two_graphs_run_side_by_side(self):
+        self.write(GRAPH)
+        first, second = self.run_graph(), self.run_graph("--as other")
+        for process, name in ((first, "g"), (second, "other")):
+            state = self.state(
+                self.observe(process, name), lambda state: state["links"][0]["messages"] > 0
+            )
+            self.assertEqual((state["graph"], state["pid"]), (name, process.pid))
+            self.assertEqual(state["status"], "running")
+        self.stop(first)
+        self.assertEqual(self.ask(second, "stop", name="other"), ["ok"])
+        self.assertEqual(second.wait(timeout=WATCHDOG), 0)
+
+    def test_an_edited_file_changes_the_graph(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        self.write(GRAPH.replace("brightness]", "brihtness]"))
+        lines = self.await_lines(process, "graph: goes on as it was")
+        self.assertIn('no program "brihtness", did you mean "brightness"?', "\n".join(lines))
+        more = "[modules.more]\nprogram = 'brightness'\n[[links]]\nfrom = 'camera.left'\nto = 'more.image'\n"
+        self.write(GRAPH + more)
+        self.await_lines(process, "more: started")
+        self.write(GRAPH)
+        self.await_lines(process, "more: ended")
+        _, err = self.stop(process)
+        self.assertNotIn("brightness: started", err)
+
+    def test_commands_change_the_graph(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        observed = self.observe(process)
+        self.assertEqual(
+            self.ask(process, "add more brightness", "link camera.left more.image rate=10"), ["ok"]
+        )
+        self.state(observed, lambda state: self.module(state, "more"))
+        self.assertEqual(self.ask(process, "set camera.rate=20"), ["ok"])
+        self.state(
+            observed, lambda state: self.module(state, "camera")["parameters"]["rate"] == "20"
+        )
+        self.assertEqual(self.ask(process, "remove more"), ["ok"])
+        self.state(observed, lambda state: not self.module(state, "more"))
+        self.stop(process)
+
+    def test_wrong_commands_are_answered(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        for command, answer in (
+            ("set camera.rate=fast", "fast"),
+            ("set camra.rate=1", 'did you mean "camera"?'),
+            ("add more brihtness", 'did you mean "brightness"?'),
+            ("remove brihtness", 'did you mean "brightness"?'),
+            ("link camera.left brightness.imag", 'did you mean "image"?'),
+            ("unlink camera.left more.image", "no link from camera.left to more.image"),
+            ("restart brihtness", 'no module "brihtness"'),
+            ("dance", 'no command "dance"'),
+        ):
+            rows = self.ask(process, command)
+            self.assertIn(answer, "\n".join(rows), command)
+            self.assertNotIn("ok", rows)
+        self.stop(process)
+
+    def test_the_status_line_stands_below_all_others(self):
+        self.write(GRAPH)
+        out = self.shell(
+            'script -qec "hc run g.toml --set camera.count=40" /dev/null | tr -d "\\r"'
+        )
+        self.assertIn("\x1b[K2 running | ", out)
+        self.assertIn("messages/s", out)
+        self.assertRegex(out, r"\x1b\[Kcamera\.left -> brightness\.image")
+        plain = self.shell("hc run g.toml --set camera.count=4 2>&1")
+        self.assertNotIn("\x1b", plain)
+
+
+if __name__ == "__main__":
+    unittest.main()

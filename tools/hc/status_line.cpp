@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "status_line.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include "common.h"
+
+namespace tool {
+
+std::string summary_of(const hc::GraphState& state) {
+  std::map<hc::ModuleStatus, int> counts;
+  for (const auto& module : state.modules) ++counts[module.status];
+  std::string modules;
+  for (auto status :
+       {hc::ModuleStatus::Running, hc::ModuleStatus::Starting, hc::ModuleStatus::Stalled,
+        hc::ModuleStatus::Waiting, hc::ModuleStatus::Stopping, hc::ModuleStatus::Ended,
+        hc::ModuleStatus::GivenUp})
+    if (counts[status] > 0)
+      modules +=
+          fmt::format("{}{} {}", modules.empty() ? "" : ", ", counts[status], hc::name(status));
+  double rate = 0;
+  for (const auto& link : state.links) rate += link.per_second;
+  std::string text = fmt::format("{} | {:.0f} messages/s", modules, rate);
+  if (state.focus != 0) text += " | focus: " + state.focus_name();
+  return text;
+}
+
+StatusLine::StatusLine(bool wanted) : on_terminal_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+
+void StatusLine::say(std::string_view line) {
+  if (shown_.empty()) return tool::say(line);
+  fmt::print(stderr, "\r\033[K{}\n", line);
+  draw();
+}
+
+void StatusLine::show(const hc::GraphState& state) {
+  if (!on_terminal_) return;
+  shown_ = summary_of(state);
+  draw();
+}
+
+void StatusLine::draw() {
+  winsize size{};
+  const std::size_t width =
+      ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  fmt::print(stderr, "\r\033[K{}", shown_.substr(0, width - 1));
+}
+
+void StatusLine::erase() {
+  if (shown_.empty()) return;
+  fmt::print(stderr, "\r\033[K");
+  shown_.clear();
+}
+
+}  // namespace tool
