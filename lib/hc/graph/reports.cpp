@@ -8,8 +8,6 @@
 namespace hc::internal {
 namespace {
 
-enum Sender : std::int32_t { kCounters = 1, kLinks, kParameters, kState };
-
 constexpr std::size_t kTraffic = std::tuple_size_v<Counters>;
 constexpr std::size_t kLeftOut = kTraffic, kAge = kLeftOut + 1, kGap = kAge + 3, kEnd = kGap + 3;
 

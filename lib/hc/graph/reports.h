@@ -33,6 +33,9 @@ std::string end_key(bool is_input, const std::string& port, const std::string& u
 
 class Reports {
  public:
+  /// Tells reports apart, by src.
+  enum Sender : std::int32_t { kCounters = 1, kLinks, kParameters, kState };
+
   /// @param ends  in whose order counters come, inputs first, from one that does not tell.
   explicit Reports(const std::vector<PlannedEnd>& ends) { set_ends(ends); }
   void set_ends(const std::vector<PlannedEnd>& ends);

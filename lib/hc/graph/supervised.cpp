@@ -210,7 +210,8 @@ bool Supervised::read_piece() {
 
 void Supervised::take_report(const Message& message) {
   heard_ = now();
-  has_reported_ = true;
+  // Counters alone come all the time, and of links: a module that has none tells none.
+  has_reported_ = has_reported_ || message.header.src <= Reports::kCounters;
   const bool has_changed = reports_.take(message, heard_);
   if (status_ == ModuleStatus::Stalled) hear_.event("goes on");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting)
