@@ -58,8 +58,9 @@ from = "camera.left"
 to = "brightness.image"
 """
 
-    def run_live(self):
-        self.write("live.toml", re.sub(r"\[modules.store\]\n.*\n", "", self.LIVE % DATA))
+    def run_live(self, restart="failure"):
+        text = re.sub(r"\[modules.store\]\n.*\n", "", self.LIVE % DATA)
+        self.write("live.toml", "restart = '%s'\n%s" % (restart, text))
         process = self.start("exec hc run live.toml")
         lines = []
         while len(lines) < 2:
@@ -115,8 +116,8 @@ rate = 2
         for child in children:
             wait_until(lambda: is_gone(child))
 
-    def test_a_killed_module_is_named_and_ends_the_graph(self):
-        process = self.run_live()
+    def test_a_killed_module_that_is_never_restarted_ends_the_graph(self):
+        process = self.run_live("never")
         os.kill(self.children(process.pid)[1], signal.SIGKILL)
         _, err = process.communicate(timeout=WATCHDOG)
         self.assertEqual(process.returncode, 1)

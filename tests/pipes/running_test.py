@@ -161,6 +161,56 @@ class Running(Pipes):
             self.assertNotIn("ok", rows)
         self.stop(process)
 
+    def test_a_killed_module_comes_back_and_messages_flow_again(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        observed = self.observe(process)
+        for name in ("camera", "brightness") * 3:
+            is_flowing = lambda state: state["links"][0]["per_second"] > 20 and all(
+                module["status"] == "running" for module in state["modules"]
+            )
+            before = self.module(self.state(observed, is_flowing), name)
+            os.kill(before["pid"], signal.SIGKILL)
+            is_back = lambda state: (
+                is_flowing(state) and self.module(state, name)["pid"] not in (0, before["pid"])
+            )
+            after = self.module(self.state(observed, is_back), name)
+            self.assertEqual(after["restarts"], before["restarts"] + 1)
+        _, err = self.stop(process)
+        self.assertEqual(err.count("camera: killed by signal 9; starting it again"), 3)
+
+    def test_a_stopped_module_is_shown_as_stalled(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        observed = self.observe(process)
+        stalled = self.state(
+            observed, lambda state: self.module(state, "camera")["status"] == "running"
+        )
+        pid = self.module(stalled, "camera")["pid"]
+        os.kill(pid, signal.SIGSTOP)
+        is_stalled = lambda state: self.module(state, "camera")["status"] == "stalled"
+        detail = self.module(self.state(observed, is_stalled), "camera")["detail"]
+        self.assertEqual(detail, "stopped by a signal")
+        os.kill(pid, signal.SIGCONT)
+        self.state(observed, lambda state: not is_stalled(state))
+        os.kill(pid, signal.SIGSTOP)
+        self.stop(process)
+
+    def test_a_running_module_is_told_and_not_restarted(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        observed = self.observe(process)
+        self.assertEqual(self.ask(process, "set camera.rate=100"), ["ok"])
+        rows = self.ask(process, "add more brightness", "link camera.left more.image keep=all")
+        self.assertEqual(rows, ["ok"])
+        counts = lambda state: {link["to"]: link["messages"] for link in state["links"]}
+        self.state(observed, lambda state: counts(state).get("more.image", 0) > 0)
+        self.assertEqual(self.ask(process, "unlink camera.left more.image"), ["ok"])
+        state = self.state(observed, lambda state: len(state["links"]) == 1)
+        self.assertEqual([module["restarts"] for module in state["modules"]], [0, 0, 0])
+        self.assertEqual(self.module(state, "camera")["parameters"]["rate"], "100")
+        self.stop(process)
+
     def test_the_status_line_stands_below_all_others(self):
         self.write(GRAPH)
         out = self.shell(

@@ -96,8 +96,6 @@ hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::str
   };
   hc::Replanned planned;
   planned.plan = hc::make_plan(std::move(graph), describe, token, problems);
-  // TODO(soon): modules are started again once the links between them outlive them.
-  for (auto& module : planned.plan->modules) module.restart = hc::Restart::Never;
   planned.files = problems.files();
   for (auto& line : problems.lines()) {
     constexpr std::string_view kBeside = "--set: ";  // what is set beside a file that runs is asked

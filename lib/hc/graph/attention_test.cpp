@@ -45,11 +45,12 @@ TEST(Attention, ModulesAreToldTheirModes) {
 TEST(Attention, TheFocusIsLinkedToWhoFollowsIt) {
   auto planned = plan(kModes);
   ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(values_of(planned->modules[3], "--out"),
-            (Words{"focus=unix-listen:@t.workspace.focus.read.focus?readers=1&keep=latest",
-                   "focus=unix-listen:@t.workspace.focus.actor.focus?readers=1&keep=latest"}));
+  EXPECT_EQ(
+      values_of(planned->modules[3], "--out"),
+      (Words{"focus=unix-listen:@t.workspace.focus.read.focus?readers=1&stay=1&keep=latest",
+             "focus=unix-listen:@t.workspace.focus.actor.focus?readers=1&stay=1&keep=latest"}));
   EXPECT_EQ(values_of(planned->modules[1], "--in"),
-            (Words{"focus=unix:@t.workspace.focus.read.focus?wait=60"}));
+            (Words{"focus=unix:@t.workspace.focus.read.focus?reconnect=86400"}));
   ASSERT_EQ(planned->links.size(), 4U);
   EXPECT_EQ(planned->links[3].from, "workspace.focus");
   EXPECT_EQ(planned->links[3].to, "actor.focus");

@@ -9,10 +9,6 @@
 namespace hc::internal {
 namespace {
 
-/// Whether links outlive the processes at their ends. Neither the runner nor modules can do that
-/// yet, so every link is one that ends with them.
-constexpr bool kLinksLast = false;
-
 /// Longest name of a link: a socket's has 107 bytes, of which shared memory takes 17.
 constexpr std::size_t kMaxLinkName = 90;
 
@@ -128,8 +124,9 @@ class LinkPlanner {
     auto is_restarted = [&](const GraphPort& port) {
       return planning_.planned(port.module)->restart != Restart::Never;
     };
-    const bool is_alive_again = is_restarted(link.from) || is_restarted(link.to);
-    return kLinksLast && is_alive_again;
+    // A reader that does not listen to who runs it could not be told that nothing comes any more.
+    const bool is_told = !planning_.planned(link.to.module)->control_uri.empty();
+    return is_told && (is_restarted(link.from) || is_restarted(link.to));
   }
 
   bool shared(const GraphLink& link) const {

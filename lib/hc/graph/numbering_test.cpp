@@ -33,9 +33,10 @@ TEST(Numbering, InputsGroupsAndRoutesReachTheModules) {
   EXPECT_EQ(values_of(planned->modules[0], "--to"), (Words{"bid=-2", "command=7"}));
   EXPECT_EQ(
       values_of(planned->modules[1], "--route"),
-      (Words{"in=unix:@t.task.command.router.in?wait=60 peer=task",
-             "out=unix-listen:@t.router.out.actor.command?readers=1 to=-2,-1,7 peer=actor",
-             "out=unix-listen:@t.router.out.other.command?readers=1 to=-2,-1,22 peer=other"}));
+      (Words{
+          "in=unix:@t.task.command.router.in?reconnect=86400 peer=task",
+          "out=unix-listen:@t.router.out.actor.command?readers=1&stay=1 to=-2,-1,7 peer=actor",
+          "out=unix-listen:@t.router.out.other.command?readers=1&stay=1 to=-2,-1,22 peer=other"}));
   EXPECT_TRUE(values_of(planned->modules[2], "--route").empty());
 }
 
