@@ -128,10 +128,12 @@ bool ShmSource::has_ended() const {
 /// Takes the bytes that woke us, and notices when the publisher has gone.
 void ShmSource::look_at_socket() {
   std::array<char, 64> bytes;
-  ssize_t size = 0;
-  while ((size = ::recv(attachment_->socket.get(), bytes.data(), bytes.size(), MSG_DONTWAIT)) > 0) {
-  }
-  if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  const auto most = static_cast<ssize_t>(bytes.size());
+  ssize_t size = most;
+  while (size == most)
+    size = ::recv(attachment_->socket.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+  // Behind a short read there is nothing but, perhaps, the end: poll() tells of that again.
+  if (size > 0 || (size < 0 && (errno == EAGAIN || errno == EINTR))) return;
   publisher_gone_ = true;
 }
 
