@@ -21,7 +21,7 @@ ALLOWED = {
     "vision": {"base"},
     "graphics": {"base"},
     "sound": {"base"},
-    "modules": {"base", "wire", "node", "adapter", "drivers"} | PACKAGES,
+    "modules": {"base", "wire", "compress", "node", "adapter", "drivers"} | PACKAGES,
     "tools": {"base", "wire", "compress", "link", "graph"},
 }
 CORE = {"base", "wire", "compress", "link", "node", "graph"}

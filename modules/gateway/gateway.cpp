@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway.h"
+
+#include <charconv>
+#include <vector>
+
+#include <hc/compress/compress.h>
+
+namespace {
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    if (text.empty()) return words;
+    auto end = std::min(text.find(' '), text.size());
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+}
+
+hc::Error usage(std::string_view word, const char* what) {
+  return {hc::Code::Usage, "\"" + std::string(word) + "\" " + what};
+}
+
+bool parse(std::string_view word, std::int32_t& number) {
+  auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+}  // namespace
+
+hc::Result<Renumbering> parse_renumbering(std::string_view text) {
+  Renumbering numbers;
+  std::set<std::int32_t> taken;
+  for (auto word : words_of(text)) {
+    auto equals = word.find('=');
+    std::int32_t here = 0, there = 0;
+    if (equals == std::string_view::npos || !parse(word.substr(0, equals), here) ||
+        !parse(word.substr(equals + 1), there))
+      return usage(word, "is not NUMBER=NUMBER");
+    bool are_addresses = here > 0 && there > 0, are_groups = here < -1 && there < -1;
+    if (!are_addresses && !are_groups)
+      return usage(word, "does not make an address of an address, or a group of a group");
+    if (!numbers.emplace(here, there).second || !taken.insert(there).second)
+      return usage(word, "has a number that was there before");
+  }
+  return numbers;
+}
+
+hc::Result<std::set<std::int32_t>> parse_addresses(std::string_view text) {
+  std::set<std::int32_t> addresses;
+  for (auto word : words_of(text)) {
+    std::int32_t number = 0;
+    if (!parse(word, number)) return usage(word, "is not an address");
+    if (!addresses.insert(number).second) return usage(word, "was there before");
+  }
+  return addresses;
+}
+
+std::string GatewayCounts::text() const {
+  return std::to_string(passed) + " passed; dropped: " + std::to_string(ttl) + " ttl, " +
+         std::to_string(unlisted) + " not listed, " + std::to_string(no_route) +
+         " without a route, " + std::to_string(damaged) + " damaged";
+}
+
+bool admit(hc::Header& header, const GatewayRules& rules, GatewayCounts& counts) {
+  auto is_listed = [](const std::set<std::int32_t>& list, std::int32_t number) {
+    return list.empty() || list.contains(number);
+  };
+  if (!is_listed(rules.only, header.dst) || !is_listed(rules.only_from, header.src)) {
+    ++counts.unlisted;
+    return false;
+  }
+  if (header.ttl <= 1) {
+    ++counts.ttl;
+    return false;
+  }
+  --header.ttl;
+  for (std::int32_t* number : {&header.src, &header.dst})
+    if (auto found = rules.numbers.find(*number); found != rules.numbers.end())
+      *number = found->second;
+  return true;
+}
+
+hc::Result<hc::Message> in_encoding(const hc::Message& message, hc::Encoding wanted) {
+  hc::Info info = message.header.info;
+  info.encoding = wanted;
+  if (message.header.empty() || hc::broken_rule(info) != 0) return message;
+  if (wanted == hc::Encoding::Text || wanted == hc::Encoding::Binary) {
+    auto plain = hc::expand(message);
+    if (plain) plain->header.info.encoding = wanted;  // the same in memory
+    return plain;
+  }
+  if (!message.plain()) return message;
+  auto small = hc::compress(message, wanted);
+  if (!small || small->elements.size() >= message.elements.size()) return message;
+  return small;
+}
