@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A task for demonstrations: bids for the focus as a script says, and commands while it bids,
+// whoever has the focus. What keeps it from acting out of focus is the actor's exclusive input.
+#include "bidder.h"
+
+#include <hc/node/module.h>
+
+int main(int argc, char** argv) {
+  hc::Module module{"bidder", "Bids for the focus as a script says, and commands."};
+  auto bid = module.output("bid", hc::table<double>(), "1 x 1: salience; 0 withdraws");
+  auto command =
+      module.output("command", hc::table<double>(), "1 x 1: the salience, while it is not 0");
+  auto text = module.parameter("script", "0:0.5", "",
+                               "SECONDS:SALIENCE …, at the end SECONDS:end or SECONDS:again",
+                               {.positional = true, .fixed = true});
+  auto rate = module.parameter("rate", 20.0, "Hz", "bids and commands a second",
+                               {.least = 0.1, .most = 1e5});
+  auto ttl = module.parameter("ttl", 8, "", "routers that a command may pass, and one",
+                              {.least = 0, .most = 255});
+
+  hc::SystemClock clock;
+  Script script;
+  hc::MonotonicTime started{};
+  module.on_start([&] {
+    script = hc::value_or_end(Script::parse(*text));
+    started = clock.monotonic();
+  });
+  module.generate([&] {
+    module.keep_rate(*rate);
+    std::chrono::duration<double> passed = clock.monotonic() - started;
+    auto salience = script.at(passed.count());
+    if (!salience) return false;
+    auto message = hc::table({*salience});
+    message.header.time = module.now();
+    bid.send(message);
+    if (*salience == 0) return true;
+    message.header.ttl = static_cast<std::uint8_t>(*ttl);
+    command.send(message);
+    return true;
+  });
+  return module.run(argc, argv);
+}
