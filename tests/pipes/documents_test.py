@@ -45,6 +45,9 @@ class Documents(Pipes):
     def test_modules(self):
         self.run_document("doc/modules.md")
 
+    def test_routing(self):
+        self.run_document("doc/routing.md")
+
 
 if __name__ == "__main__":
     unittest.main()
