@@ -165,16 +165,20 @@ class Running(Pipes):
         self.write(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
+        messages = lambda state: state["links"][0]["messages"]
+        is_running = lambda state: all(each["status"] == "running" for each in state["modules"])
+        state = self.state(observed, lambda state: is_running(state) and messages(state) > 0)
         for name in ("camera", "brightness") * 3:
-            is_flowing = lambda state: state["links"][0]["per_second"] > 20 and all(
-                module["status"] == "running" for module in state["modules"]
-            )
-            before = self.module(self.state(observed, is_flowing), name)
+            before = self.module(state, name)
             os.kill(before["pid"], signal.SIGKILL)
             is_back = lambda state: (
-                is_flowing(state) and self.module(state, name)["pid"] not in (0, before["pid"])
+                is_running(state) and self.module(state, name)["pid"] not in (0, before["pid"])
             )
-            after = self.module(self.state(observed, is_back), name)
+            back = self.state(observed, is_back)
+            state = self.state(
+                observed, lambda state: is_running(state) and messages(state) > messages(back)
+            )
+            after = self.module(state, name)
             self.assertEqual(after["restarts"], before["restarts"] + 1)
         _, err = self.stop(process)
         self.assertEqual(err.count("camera: killed by signal 9; starting it again"), 3)
