@@ -41,6 +41,8 @@ constexpr std::chrono::microseconds kSpinAlone{2};  // until one who spins lets 
 constexpr int kSpinRounds = 32;                     // between two looks at the clock
 constexpr std::chrono::milliseconds kSpinLook{1};   // how often one who spins looks at all else
 
+constexpr unsigned kLookSeldom = 8;  // waits, until one looks at a silent link
+
 constexpr std::size_t kCopyHold = kMostHeld - 1;
 constexpr std::size_t kNoHold = kMostHeld;
 constexpr int kMostSkips = 64;  // until who is overtaken again and again looks after other things
@@ -107,6 +109,7 @@ class ShmSource final : public Source {
   LinkOptions options_;
   std::uint32_t arming_ = 0;
   bool armed_ = false;
+  unsigned unlooked_ = 0;  // waits that began without a look at the socket
   bool publisher_gone_ = false;
   bool told_ = false;  // that too many are held
   HeaderMemo memo_;
@@ -300,7 +303,8 @@ void ShmSource::disarm() {
 }
 
 bool ShmSource::prepare_wait() {
-  look_at_socket();
+  // Who is armed still was woken by another link: nothing but the end can have come meanwhile.
+  if (!armed_ || ++unlooked_ % kLookSeldom == 0) look_at_socket();
   arm(true);
   if (!is_ready()) return true;
   disarm();
