@@ -135,6 +135,14 @@ std::vector<std::string> module_names() {
   return names;
 }
 
+std::string seconds_in_words(double seconds) {
+  auto whole = static_cast<std::int64_t>(seconds);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{}:{:02} min", whole / 60, whole % 60);
+  if (whole < 48 * 3600) return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
+  return fmt::format("{} d", whole / (24 * 3600));
+}
+
 std::string bytes_in_words(double bytes) {
   constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
   std::size_t unit = 0;

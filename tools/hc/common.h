@@ -89,6 +89,9 @@ std::vector<std::string> module_names();
 /// "1.44 MB"
 std::string bytes_in_words(double bytes);
 
+/// "12 s", "3:05 min", "4:00 h", "12 d"
+std::string seconds_in_words(double seconds);
+
 /// A bar on standard error, where that is a terminal; silent elsewhere.
 class Progress {
  public:

@@ -40,6 +40,9 @@ int main(int argc, char** argv) {
   app.footer(footer);
   tool::add_run(app);
   tool::add_check(app);
+  tool::add_graph(app);
+  tool::add_ps(app);
+  tool::add_top(app);
   tool::add_cat(app);
   tool::add_info(app);
   tool::add_send(app);

@@ -34,10 +34,13 @@ inline void add_count(CLI::App& verb, std::uint64_t& count) {
 void add_cat(CLI::App& app);
 void add_check(CLI::App& app);
 void add_describe(CLI::App& app);
+void add_graph(CLI::App& app);
 void add_info(CLI::App& app);
 void add_play(CLI::App& app);
+void add_ps(CLI::App& app);
 void add_record(CLI::App& app);
 void add_run(CLI::App& app);
 void add_send(CLI::App& app);
+void add_top(CLI::App& app);
 
 }  // namespace tool

@@ -13,8 +13,8 @@ namespace hc::internal {
 struct Attention {
   std::vector<std::int32_t> modes;  ///< in which the module works; empty: in all
   std::int32_t own = 0;             ///< mode of all its messages, where it is a task
-  double idle_rate = 0;  ///< what it does out of focus [Hz]; 0: as much as in focus
-  std::int32_t focus = 0;  ///< as last heard; 0: none, or there is no workspace
+  double idle_rate = 0;             ///< what it does out of focus [Hz]; 0: as much as in focus
+  std::int32_t focus = 0;           ///< as last heard; 0: none, or there is no workspace
 
   [[nodiscard]] bool in_focus() const {
     return modes.empty() || std::find(modes.begin(), modes.end(), focus) != modes.end();

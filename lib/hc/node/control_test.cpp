@@ -117,8 +117,8 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   auto row = last.view<std::int64_t>()->row(0);
   ASSERT_EQ(row.size(), 14U);
   EXPECT_EQ(row[0], 3);
-  EXPECT_EQ(row[7], 0);                       // left out
-  for (std::size_t i : {8U, 9U, 10U}) {       // ages
+  EXPECT_EQ(row[7], 0);                  // left out
+  for (std::size_t i : {8U, 9U, 10U}) {  // ages
     EXPECT_GE(row[i], hour);
     EXPECT_LT(row[i], hour + hour / 7);
   }
@@ -241,8 +241,8 @@ TEST_F(RunningModule, DoesLessWhileAnotherModeHasTheFocus) {
   ASSERT_TRUE(focus->send(table<std::int32_t>({2})));
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(table({1.0})));
   ASSERT_TRUE(sink->close());
-  start(module, {"--in=" + uri("in"), "--in", "focus=" + uri("focus"), "--modes=1,3",
-                 "--idle-rate=0.001"});
+  start(module,
+        {"--in=" + uri("in"), "--in", "focus=" + uri("focus"), "--modes=1,3", "--idle-rate=0.001"});
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(handled, 1);
 }
@@ -259,8 +259,8 @@ TEST_F(RunningModule, AGeneratorIsSlowWhileIdleAndQuickAgainAtOnce) {
   auto focus = sink_of(uri("focus"));
   auto source = source_of(uri("out"));
   ASSERT_TRUE(focus->send(table<std::int32_t>({2})));
-  start(module, {"--in", "focus=" + uri("focus"), "--modes=1", "--idle-rate=0.0001", "--out",
-                 uri("out")});
+  start(module,
+        {"--in", "focus=" + uri("focus"), "--modes=1", "--idle-rate=0.0001", "--out", uri("out")});
   Message message;
   ASSERT_TRUE(*receive(*source, message));  // the next would be hours away
   EXPECT_EQ(message.header.mode, 2);
@@ -296,8 +296,8 @@ TEST_F(RunningModule, ForwardsByAddressButNeverBack) {
   module.on_raw(in, [&](const Message& message) { taken.push_back(out.forward(message)); });
   auto from_a = sink_of(uri("from-a"));
   auto to_a = source_of(uri("to-a")), to_b = source_of(uri("to-b"));
-  Message image = Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 8, 8)
-                      .finish();
+  Message image =
+      Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 8, 8).finish();
   image = *compress(image, Encoding::Zstd);
   image.header.src = 77;
   image.header.seq = 5;
@@ -306,11 +306,10 @@ TEST_F(RunningModule, ForwardsByAddressButNeverBack) {
   ASSERT_TRUE(from_a->send(to(table({3.0}), 11)));
   ASSERT_TRUE(from_a->send(table({4.0})));
   ASSERT_TRUE(from_a->close());
-  start(module,
-        {"--in", "in=" + uri("from-a"), "--out", "out=" + uri("to-a"), "--out",
-         "out=" + uri("to-b"), "--route", "in=" + uri("from-a") + " peer=a", "--route",
-         "out=" + uri("to-a") + " to=11,-1 peer=a", "--route",
-         "out=" + uri("to-b") + " to=21,-1 peer=b"});
+  start(module, {"--in", "in=" + uri("from-a"), "--out", "out=" + uri("to-a"), "--out",
+                 "out=" + uri("to-b"), "--route", "in=" + uri("from-a") + " peer=a", "--route",
+                 "out=" + uri("to-a") + " to=11,-1 peer=a", "--route",
+                 "out=" + uri("to-b") + " to=21,-1 peer=b"});
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(taken, (std::vector<std::size_t>{1, 1, 0, 0}));
   Message message;

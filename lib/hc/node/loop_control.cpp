@@ -143,8 +143,8 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
     return {};
   }
   auto& links = module_.outputs_[link->port]->links;
-  auto found = std::find_if(links.begin(), links.end(),
-                            [&](const auto& each) { return each->uri == uri; });
+  auto found =
+      std::find_if(links.begin(), links.end(), [&](const auto& each) { return each->uri == uri; });
   if (found == links.end()) return unknown;
   // Closing would wait for who is slow; nobody is to have these messages any more.
   sinks_.erase(std::find(sinks_.begin(), sinks_.end(), *found));

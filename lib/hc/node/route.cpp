@@ -42,8 +42,8 @@ Result<Route> parse_route(std::string_view words) {
       }
       std::sort(route.to.begin(), route.to.end());
     } else if (!key.empty()) {
-      return Error{Code::Usage, "a route is to=ADDRESS,… and peer=NAME, not \"" + std::string(key) +
-                                    "\""};
+      return Error{Code::Usage,
+                   "a route is to=ADDRESS,… and peer=NAME, not \"" + std::string(key) + "\""};
     }
   }
   return route;
