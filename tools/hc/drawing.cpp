@@ -117,8 +117,8 @@ std::string as_dot(const Drawing& drawing) {
     for (const auto& [name, port] : {std::pair(from, output), std::pair(to, input)})
       if (port.empty() && !std::exchange(outside[name], true))
         text += fmt::format("  {} [shape=plain];\n", in_quotes(name));
-    text += fmt::format("  {} -> {} [taillabel={}, headlabel={}, label={}", in_quotes(from), in_quotes(to),
-                        in_quotes(output), in_quotes(input), in_quotes(arrow.words));
+    text += fmt::format("  {} -> {} [taillabel={}, headlabel={}, label={}", in_quotes(from),
+                        in_quotes(to), in_quotes(output), in_quotes(input), in_quotes(arrow.words));
     if (arrow.is_bold) text += ", penwidth=3, color=black";
     text += "];\n";
   }

@@ -37,7 +37,8 @@ void write_svg(const std::string& dot, const std::string& path) {
 void draw(const Options& options) {
   auto drawing = [&] {
     if (!options.file.file.empty())
-      return drawing_of(make_plan("graph", options.file), options.file.file);
+      return drawing_of(*make_plan("graph", options.file, hc::graph_token()).plan,
+                        options.file.file);
     auto graph = choose_running(options.running);
     auto state = Observer(graph).next();
     if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});

@@ -20,7 +20,7 @@ namespace tool {
 namespace {
 
 constexpr std::string_view kPrefix = "hypercolumn.";
-constexpr std::int32_t kState = 1;  // src of what a graph says of itself
+constexpr std::int32_t kState = 1;                            // src of what a graph says of itself
 constexpr std::uint64_t kMostSaid = std::uint64_t{16} << 20;  // [byte]
 constexpr std::chrono::seconds kAnswerTime{10};
 constexpr std::chrono::milliseconds kSilence{5000};  // a graph speaks twice a second
@@ -111,8 +111,8 @@ std::optional<nlohmann::json> Observer::next(int input) {
     if (!ready) throw Failure(ready.error());
     if (input >= 0 && *ready == 1) return nlohmann::json::object();
     if (*ready == (input >= 0 ? 2U : 1U))
-      throw Failure(hc::Error{hc::Code::Closed,
-                              name_ + " has said nothing for 5 s; it may be stopped"});
+      throw Failure(
+          hc::Error{hc::Code::Closed, name_ + " has said nothing for 5 s; it may be stopped"});
   }
 }
 
@@ -133,8 +133,7 @@ void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
     std::array<int, 1> descriptors = {source->descriptor()};
     auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kAnswerTime);
     if (!ready) throw Failure(ready.error());
-    if (*ready == 1)
-      throw Failure(hc::Error{hc::Code::Closed, graph.text() + " does not answer"});
+    if (*ready == 1) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " does not answer"});
   }
   auto answer = hc::rows_of(message);
   if (answer == std::vector<std::string>{"ok"}) return;

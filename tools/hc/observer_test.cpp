@@ -25,15 +25,19 @@ TEST(Observer, FindsGraphsAmongSockets) {
 
 TEST(Screen, NumbersAreShort) {
   const std::pair<double, const char*> cases[] = {
-      {0, "0"},         {1, "1"},         {30, "30"},         {1.5, "1.50"},   {999.4, "999"},
-      {999.6, "1.00k"}, {12345, "12.3k"}, {0.0123, "12.3m"},  {2e-6, "2.00µ"}, {-1500, "-1.50k"},
+      {0, "0"},         {1, "1"},         {30, "30"},        {1.5, "1.50"},   {999.4, "999"},
+      {999.6, "1.00k"}, {12345, "12.3k"}, {0.0123, "12.3m"}, {2e-6, "2.00µ"}, {-1500, "-1.50k"},
       {5e9, "5.00G"},   {999499, "999k"}, {0.99999, "1.00"}};
   for (const auto& [number, text] : cases) EXPECT_EQ(short_number(number), text) << number;
 }
 
 nlohmann::json some_state(int modules) {
-  nlohmann::json state = {{"graph", "head"},  {"file", "head.toml"}, {"pid", 12},
-                          {"uptime", 65.2},   {"status", "running"}, {"modules", nlohmann::json::array()},
+  nlohmann::json state = {{"graph", "head"},
+                          {"file", "head.toml"},
+                          {"pid", 12},
+                          {"uptime", 65.2},
+                          {"status", "running"},
+                          {"modules", nlohmann::json::array()},
                           {"focus", {{"mode", "track"}, {"number", 1}}},
                           {"links", nlohmann::json::array()}};
   for (int i = 0; i < modules; ++i) {

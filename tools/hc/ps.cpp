@@ -21,8 +21,8 @@ std::string row(const nlohmann::json& state) {
   if (stalled > 0) status += fmt::format(", {} stalled", stalled);
   if (given_up > 0) status += fmt::format(", {} given up", given_up);
   const auto& focus = state.at("focus");
-  return fmt::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n", state.at("graph").get<std::string>(),
-                     state.at("pid").get<int>(),
+  return fmt::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n",
+                     state.at("graph").get<std::string>(), state.at("pid").get<int>(),
                      seconds_in_words(state.at("uptime").get<double>()), running,
                      state.at("modules").size(),
                      focus.is_null() ? "-" : focus.at("mode").get<std::string>(), status);

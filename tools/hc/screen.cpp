@@ -65,8 +65,7 @@ std::string heading(const json& state) {
                      state.at("graph").get<std::string>(), state.at("status").get<std::string>(),
                      seconds_in_words(state.at("uptime").get<double>()), up,
                      state.at("modules").size(), short_number(rate), 100 * load,
-                     focus.is_null() ? ""
-                                     : ", focus " + focus.at("mode").get<std::string>());
+                     focus.is_null() ? "" : ", focus " + focus.at("mode").get<std::string>());
 }
 
 Line module_line(const json& module, std::size_t width) {
@@ -78,11 +77,10 @@ Line module_line(const json& module, std::size_t width) {
   line.is_red = is_wrong(module.at("status"));
   line.is_bold = module.at("in_workspace").get<bool>();
   line.is_dim = !module.at("in_focus").get<bool>();
-  auto fixed = fmt::format(" {:>6} {:>8} {:>3} {:<7} ",
-                           fmt::format("{:.1f}%", 100 * module.at("cpu").get<double>()),
-                           bytes_in_words(module.at("memory").get<double>()),
-                           module.at("restarts").get<int>(),
-                           fitted(module.at("mode").get<std::string>(), 7));
+  auto fixed = fmt::format(
+      " {:>6} {:>8} {:>3} {:<7} ", fmt::format("{:.1f}%", 100 * module.at("cpu").get<double>()),
+      bytes_in_words(module.at("memory").get<double>()), module.at("restarts").get<int>(),
+      fitted(module.at("mode").get<std::string>(), 7));
   const std::size_t name = kName;
   auto rest = width > name + fixed.size() ? width - name - fixed.size() : 1;
   line.text = fitted(module.at("name"), name) + fixed + fitted(status, rest);
@@ -97,13 +95,12 @@ Line link_line(const json& link, std::size_t width) {
   line.is_bold = link.at("in_workspace").get<bool>();
   auto fixed = fmt::format(
       " {:>6} {:>7} {:>6} {:>6} {:>6}", short_number(link.at("per_second").get<double>()),
-      short_number(link.at("bytes_per_second").get<double>()) + "B",
-      quantile(link.at("age"), 0), quantile(link.at("age"), 1),
-      lost == 0 ? "-" : short_number(static_cast<double>(lost)));
+      short_number(link.at("bytes_per_second").get<double>()) + "B", quantile(link.at("age"), 0),
+      quantile(link.at("age"), 1), lost == 0 ? "-" : short_number(static_cast<double>(lost)));
   auto name = width > fixed.size() + 10 ? width - fixed.size() : 10;
-  line.text = fitted(link.at("from").get<std::string>() + " → " + link.at("to").get<std::string>(),
-                     name) +
-              fixed;
+  line.text =
+      fitted(link.at("from").get<std::string>() + " → " + link.at("to").get<std::string>(), name) +
+      fixed;
   return line;
 }
 
@@ -137,25 +134,26 @@ std::string short_number(double number) {
 
 std::string draw(const json& state, const Screen& screen) {
   std::vector<Line> lines, modules, links;
-  for (const auto& module : state.at("modules")) modules.push_back(module_line(module, screen.width));
+  for (const auto& module : state.at("modules"))
+    modules.push_back(module_line(module, screen.width));
   for (const auto& link : state.at("links")) links.push_back(link_line(link, screen.width));
   lines.push_back({heading(state), true});
   const std::size_t headings = links.empty() ? 3 : 5;
-  std::size_t room = screen.height == 0 ? modules.size() + links.size()
+  std::size_t room = screen.height == 0         ? modules.size() + links.size()
                      : screen.height > headings ? screen.height - headings
                                                 : 0;
   // Modules and links share the room; who needs less than half leaves the rest to the other.
-  std::size_t for_modules = std::min(modules.size(), std::max(room - std::min(room, links.size()),
-                                                              room / 2));
+  std::size_t for_modules =
+      std::min(modules.size(), std::max(room - std::min(room, links.size()), room / 2));
   lines.push_back({});
-  lines.push_back({fitted("MODULE", kName) + "    CPU   MEMORY NEW MODE    STATUS", false, false,
-                   true});
+  lines.push_back(
+      {fitted("MODULE", kName) + "    CPU   MEMORY NEW MODE    STATUS", false, false, true});
   add_some(std::move(modules), for_modules, lines);
   if (!links.empty()) {
     lines.push_back({});
     auto column = screen.width > 46 ? screen.width - 36 : 10;
-    lines.push_back({fitted("LINK", column) + "    1/s     B/s    AGE    p99   LOST", false, false,
-                     true});
+    lines.push_back(
+        {fitted("LINK", column) + "    1/s     B/s    AGE    p99   LOST", false, false, true});
     add_some(std::move(links), room - for_modules, lines);
   }
   std::string text;
