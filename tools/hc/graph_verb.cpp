@@ -40,7 +40,7 @@ void draw(const Options& options) {
       return drawing_of(*make_plan("graph", options.file, hc::graph_token()).plan,
                         options.file.file);
     auto graph = choose_running(options.running);
-    auto state = Observer(graph).next();
+    auto state = Observer(graph).next_measured();
     if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});
     return drawing_of(*state);
   }();

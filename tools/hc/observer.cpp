@@ -116,6 +116,13 @@ std::optional<nlohmann::json> Observer::next(int input) {
   }
 }
 
+std::optional<nlohmann::json> Observer::next_measured() {
+  constexpr int kUnmeasured = 2;  // the first tells what was before, the second begins to measure
+  for (int i = 0; i < kUnmeasured; ++i)
+    if (!next()) return std::nullopt;
+  return next();
+}
+
 void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
   const std::string answers = fmt::format("@{}answer.{}", kPrefix, ::getpid());
   auto source = open_source("unix-listen:" + answers, kMostSaid);

@@ -40,6 +40,9 @@ class Observer {
   /// @param input  descriptor that ends the wait too when it is readable, with an empty object; -1.
   std::optional<nlohmann::json> next(int input = -1);
 
+  /// A state with the load of processors and memory, which a graph measures while it is watched.
+  std::optional<nlohmann::json> next_measured();
+
  private:
   std::string name_;
   std::unique_ptr<hc::Source> source_;

@@ -57,7 +57,7 @@ void top(const std::string& name, bool once) {
   auto graph = choose_running(name);
   Observer observer(graph);
   if (once || ::isatty(STDOUT_FILENO) == 0) {
-    auto state = observer.next();
+    auto state = observer.next_measured();
     if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});
     print(draw(*state, {80, 0, true}));
     return;

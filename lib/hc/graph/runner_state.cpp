@@ -24,8 +24,9 @@ GraphState Runner::state() const {
     const auto* module = find(planned.name);
     if (module == nullptr) continue;
     state.modules.push_back(module->state());
-    const bool decides = plan_.workspace.empty() || planned.name == plan_.workspace;
-    if (decides && state.focus == 0) state.focus = module->reports().focus;
+    // The workspace tells the focus and does not hear it; those that hear it work, or may be wrong.
+    if (state.focus == 0 && module->status() == ModuleStatus::Running)
+      state.focus = module->reports().focus;
   }
   for (const auto& link : plan_.links) state.links.push_back(state_of(link));
   const auto workspace = global_workspace(plan_, state.focus_name());

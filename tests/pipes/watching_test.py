@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Graphs that run, seen and changed by the verbs of hc: ps, top and graph."""
+
+import os
+import pathlib
+import pty
+import re
+import unittest
+
+from harness import DATA, Pipes, ROOT, WATCHDOG, wait_until
+
+GRAPH = (
+    """
+[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+[modules.brightness]
+[[links]]
+from = "camera.left"
+to = "brightness.image"
+"""
+    % DATA
+)
+
+
+class Watching(Pipes):
+    def hc(self, words, status=0):
+        process = self.start("exec hc " + words)
+        out, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, status, (words, out, err))
+        return out.decode() if status == 0 else err.decode()
+
+    def run_graph(self, name, text=GRAPH, last="brightness: started"):
+        """A graph with a name that no other test has."""
+        pathlib.Path(self.path("g.toml")).write_text(text)
+        name = "%s_%d" % (name, os.getpid())
+        process = self.start("exec hc run g.toml --as " + name)
+        while last not in process.stderr.readline().decode():
+            self.assertIsNone(process.poll())
+        return name, process
+
+    def stop(self, name, process):
+        self.hc("graph stop --of " + name)
+        _, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, 0, err)
+
+    def test_a_graph_is_listed_shown_and_drawn(self):
+        name, process = self.run_graph("seen")
+        wait_until(lambda: re.search(name + " .* 2/2 .* running", self.hc("ps")))
+        top = self.hc("top " + name)
+        self.assertRegex(top, name + ": running .*, 2/2 modules up, .* messages/s")
+        self.assertRegex(top, r"camera +[0-9.]+% +[0-9.]+ MB +0 +running")
+        self.assertRegex(top, "camera.left → brightness.image .*[0-9][kM]?B")
+        for line in top.splitlines():
+            self.assertLessEqual(len(line), 80)
+        text = self.hc("graph --of %s.%d" % (name, process.pid))
+        self.assertRegex(text, r"camera  \([0-9.]+ %\)\n  left → brightness.image  [0-9.]+/s\n")
+        self.assertIn(
+            '"camera" -> "brightness" [taillabel="left"', self.hc("graph --dot --of " + name)
+        )
+        self.hc("graph --svg g.svg --of " + name)
+        picture = pathlib.Path(self.path("g.svg")).read_text()
+        for word in ("camera", "brightness", "left", "image"):
+            self.assertIn(">%s</text>" % word, picture)
+        self.stop(name, process)
+        self.assertNotIn(name, self.hc("ps"))
+
+    def test_a_file_is_drawn_without_running(self):
+        pathlib.Path(self.path("g.toml")).write_text(GRAPH + "keep = 3\n")
+        self.assertIn("  left → brightness.image  keep 3\n", self.hc("graph g.toml"))
+        pathlib.Path(self.path("g.toml")).write_text(GRAPH.replace("brightness.image", "b.image"))
+        self.assertIn('no module "b"', self.hc("graph g.toml", 2))
+
+    def test_a_running_graph_is_changed(self):
+        name, process = self.run_graph("changed")
+        of = " --of " + name
+        self.hc("graph set camera.rate=20" + of)
+        self.hc("graph add second brightness" + of)
+        self.hc("graph link camera.left second.image keep=latest" + of)
+        wait_until(lambda: "left → second.image" in self.hc("graph" + of))
+        self.hc("graph unlink camera.left brightness.image" + of)
+        self.hc("graph remove brightness" + of)
+        wait_until(lambda: "brightness" not in self.hc("graph" + of))
+        self.assertEqual(
+            self.hc("graph set camera.raet=50" + of, 2),
+            'hc graph: Usage: module camera has no parameter "raet", did you mean "rate"?\n',
+        )
+        self.hc("graph restart camera" + of)
+        wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))
+        self.stop(name, process)
+
+    def test_what_does_not_run_is_told(self):
+        name, process = self.run_graph("here")
+        self.assertIn(
+            'did you mean "%s"?' % name, self.hc("top " + name.replace("here", "hree"), 1)
+        )
+        self.stop(name, process)
+        self.assertIn("NotFound: no graph", self.hc("graph set a.b=1 --of nowhere", 1))
+
+    def test_top_keeps_the_terminal_as_it_was(self):
+        name, process = self.run_graph("live")
+        pid, terminal = pty.fork()
+        if pid == 0:
+            os.environ.update(self.environment)
+            os.execvp("hc", ["hc", "top", name])
+        shown = b""
+        while shown.count(b"camera.left") < 2:  # two pages
+            shown += os.read(terminal, 65536)
+        os.write(terminal, b"q")
+        try:
+            while piece := os.read(terminal, 65536):
+                shown += piece
+        except OSError:
+            pass  # how the end of a terminal is told
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), 0)
+        self.assertTrue(shown.startswith(b"\x1b[?1049h"))
+        self.assertTrue(shown.endswith(b"\x1b[?1049l"))
+        self.stop(name, process)
+
+    def test_the_global_workspace_is_bold(self):
+        text = (ROOT / "graphs/contest.toml").read_text()
+        text = text.replace("2:0.9 4:0 ", "").replace("5:end", "600:end")  # tracking wins for good
+        name, process = self.run_graph("contest", text, "actor: started")
+        wait_until(
+            lambda: re.search(
+                '"tracking" -> "actor" .*penwidth=3', self.hc("graph --dot --of " + name)
+            )
+        )
+        dot = self.hc("graph --dot --of " + name)
+        self.assertNotRegex(dot, '"looking" -> "actor" .*penwidth')
+        self.assertIn("focus: track", dot)
+        self.assertIn("focus track", self.hc("top " + name))
+        self.stop(name, process)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=0)
