@@ -57,6 +57,7 @@ nlohmann::json some_state(int modules) {
                                 {"parameters", nlohmann::json::object()}});
     state["links"].push_back({{"from", "module_" + std::to_string(i) + ".left"},
                               {"to", "tcp:robot:7000"},
+                              {"rate", i == 1 ? 30.0 : 0.0},
                               {"per_second", 30.0},
                               {"bytes_per_second", 43.2e6},
                               {"lost", {{"superseded", i}}},
@@ -78,7 +79,7 @@ TEST(Screen, ShowsWhatFitsAndWhatIsWrongFirst) {
             "\n"
             "LINK                                            1/s     B/s    AGE    p99   LOST\n"
             "module_0.left → tcp:robot:7000                   30  43.2MB 2.10ms 10.2ms      -\n"
-            "module_1.left → tcp:robot:7000                   30  43.2MB 2.10ms 10.2ms      1\n");
+            "module_1.left → tcp:robot:7000 ≤30/s             30  43.2MB 2.10ms 10.2ms      1\n");
   std::string some = draw(some_state(50), {80, 24, true});
   EXPECT_EQ(std::count(some.begin(), some.end(), '\n'), 24);
   EXPECT_NE(some.find("given up: failed with status 1"), std::string::npos);

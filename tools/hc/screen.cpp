@@ -98,8 +98,11 @@ Line link_line(const json& link, std::size_t width) {
       short_number(link.at("bytes_per_second").get<double>()) + "B", quantile(link.at("age"), 0),
       quantile(link.at("age"), 1), lost == 0 ? "-" : short_number(static_cast<double>(lost)));
   auto name = width > fixed.size() + 10 ? width - fixed.size() : 10;
+  auto rate = link.at("rate").get<double>();  // that the link does not exceed
+  auto limit = rate > 0 ? " ≤" + short_number(rate) + "/s" : "";
   line.text =
-      fitted(link.at("from").get<std::string>() + " → " + link.at("to").get<std::string>(), name) +
+      fitted(link.at("from").get<std::string>() + " → " + link.at("to").get<std::string>() + limit,
+             name) +
       fixed;
   return line;
 }

@@ -6,6 +6,13 @@
 #include <hc/link/epoll.h>
 
 namespace hc::internal {
+namespace {
+
+/// How long the writer may be away that said its end, until it is told: where both ends are ended
+/// together, the reader's end follows.
+constexpr std::chrono::milliseconds kTellAfter{200};
+
+}  // namespace
 
 Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer, Open open,
                                                     const LinkOptions& options) {
@@ -38,7 +45,7 @@ Result<Got> DialingSource::take(Message& message) {
                        : got.error().code == Code::Truncated || got.error().code == Code::Closed;
     if (!is_lost) return got;
     if (!got && got.error().code == Code::Truncated) ++past_.cut;
-    lose_connection(got ? "the writer has gone" : in_words(got.error()));
+    lose_connection(got ? "" : in_words(got.error()));
   }
   ended_ = true;
   return Got::End;
@@ -50,6 +57,10 @@ Status DialingSource::dial() {
   auto connected = dialer_->dial(now);
   if (!connected) return connected.error();
   if (auto remark = dialer_->take_remark(now)) log(*remark);
+  if (now >= tell_at_) {
+    log("the writer has gone; connecting again");
+    tell_at_ = TimePoint::max();
+  }
   if (*connected) {
     auto source = open_(std::move(*connected));
     if (!source) {
@@ -60,11 +71,12 @@ Status DialingSource::dial() {
       source_ = std::move(*source);
       watch(source_->descriptor(), EPOLLIN);
       connected_at_ = now;
+      tell_at_ = TimePoint::max();
     }
   }
   std::chrono::nanoseconds left(0);
   if (source_ == nullptr) {
-    left = std::max(dialer_->due() - now, std::chrono::nanoseconds(1));
+    left = std::max(std::min(dialer_->due(), tell_at_) - now, std::chrono::nanoseconds(1));
     if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), EPOLLOUT);
   }
   set_timer(timer_, left);
@@ -78,9 +90,13 @@ void DialingSource::lose_connection(const std::string& why) {
   static_cast<void>(control(poll_, EPOLL_CTL_DEL, source_->descriptor()));
   source_.reset();
   if (finishing_) return;
-  log(why + "; connecting again");
   auto now = std::chrono::steady_clock::now();
-  dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime, why);
+  if (why.empty())
+    tell_at_ = now + kTellAfter;
+  else
+    log(why + "; connecting again");
+  dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime,
+                why.empty() ? "the writer has gone" : why);
 }
 
 /// Watches a descriptor, which is forgotten when it is closed.

@@ -44,6 +44,7 @@ class DialingSource final : public Source {
         options_(std::move(options)) {}
 
   Status dial();
+  /// @param why  empty: the writer said its end.
   void lose_connection(const std::string& why);
   void watch(int descriptor, std::uint32_t events) const;
   void log(std::string_view line) const;
@@ -55,7 +56,8 @@ class DialingSource final : public Source {
   LinkOptions options_;
   std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;
-  bool finishing_ = false;  // the peer will not come back
+  TimePoint tell_at_ = TimePoint::max();  // that the writer has gone
+  bool finishing_ = false;                // the peer will not come back
   bool ended_ = false;
   Traffic past_;  // of connections that were lost
 };

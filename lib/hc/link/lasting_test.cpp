@@ -7,7 +7,7 @@
 #include <thread>
 
 #include <hc/link/link_conformance.h>
-#include <hc/link/loopback_test.h>
+#include <hc/link/socket_test.h>
 
 namespace hc::testing {
 namespace {
@@ -109,6 +109,23 @@ TEST_P(LastingLink, ASourceWithoutAConnectionFinishesAtOnce) {
   ASSERT_EQ(*source->take(message), Got::Nothing);
   source->finish();
   EXPECT_EQ(*source->take(message), Got::End);
+}
+
+TEST_P(LastingLink, AnEndThatIsFollowedByItsOwnIsNotTold) {
+  Warnings warnings;
+  auto sink = sink_of(ends_.sink + "?readers=1");
+  auto source = source_of(ends_.source + "?reconnect=60", warnings.options());
+  Message message;
+  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
+  ASSERT_TRUE(*receive(*source, message));
+  sender.join();
+  sink.reset();
+  while (!*source->wait(-1, std::chrono::milliseconds(0))) {
+  }
+  ASSERT_EQ(*source->take(message), Got::Nothing);
+  source->finish();
+  EXPECT_EQ(*source->take(message), Got::End);
+  EXPECT_EQ(warnings.lines, std::vector<std::string>());
 }
 
 TEST_P(LastingLink, StayIsYesOrNo) {
