@@ -34,6 +34,7 @@ inline void add_count(CLI::App& verb, std::uint64_t& count) {
 void add_cat(CLI::App& app);
 void add_check(CLI::App& app);
 void add_describe(CLI::App& app);
+void add_doctor(CLI::App& app);
 void add_graph(CLI::App& app);
 void add_info(CLI::App& app);
 void add_play(CLI::App& app);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc doctor: what this machine has, and what a graph would miss on it.
+#include <hc/graph/run.h>
+
+#include "common.h"
+#include "diagnosis.h"
+#include "graph.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+/// A graph that is wrong has no plan, and so nothing that could be looked for.
+std::vector<Finding> examine(const GraphOptions& options, Needs& needs) {
+  auto planned = plan_graph(options, hc::graph_token());
+  if (!planned) throw Failure(planned.error());
+  std::vector<Finding> findings;
+  for (const auto& problem : planned->problems) findings.push_back({Mark::Wrong, "graph", problem});
+  if (planned->plan) {
+    findings.push_back({Mark::Ok, "graph", options.file + ": nothing is wrong"});
+    needs = needs_of(*planned->plan);
+  } else {
+    findings.push_back({Mark::Note, "graph", "mend this first; the rest has not been looked at"});
+  }
+  return findings;
+}
+
+void run(const GraphOptions& options) {
+  Needs needs;
+  std::vector<Finding> findings;
+  if (!options.file.empty()) findings = examine(options, needs);
+  std::vector<std::string> paths, ports;
+  for (const auto& path : needs.paths) paths.push_back(path.path);
+  for (const auto& port : needs.ports) ports.push_back(port.port);
+  const Facts facts = gather_facts(paths, ports);
+  for (auto& finding : diagnose(needs, facts)) findings.push_back(std::move(finding));
+  auto machine = diagnose(facts);
+  machine.insert(machine.end(), findings.begin(), findings.end());
+  print(as_text(machine));
+  if (is_ill(machine)) throw Failure(1);
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app) {
+  auto options = std::make_shared<GraphOptions>();
+  auto* verb =
+      app.add_subcommand("doctor", "Say what this machine has, and what a graph would miss on it");
+  auto* graph = verb->add_option("graph", options->file, "a graph file (TOML)");
+  verb->add_option("--set", options->settings, "MODULE.PARAMETER=VALUE; may be repeated")
+      ->needs(graph);
+  verb->callback([options] { run(*options); });
+}
+
+}  // namespace tool
