@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this module is for, in a line or two. doc/modules.md tells how modules are written.
+// What this module is for, in a line or two. Hypercolumn's doc/modules.md tells how one is written.
 #include <hc/node/module.h>
 
 int main(int argc, char** argv) {

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   tool::add_record(app);
   tool::add_play(app);
   tool::add_describe(app);
+  tool::add_new(app);
 
   std::string first = argc > 1 ? argv[1] : "";
   auto verbs = app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; });

@@ -37,6 +37,7 @@ void add_describe(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_graph(CLI::App& app);
 void add_info(CLI::App& app);
+void add_new(CLI::App& app);
 void add_play(CLI::App& app);
 void add_ps(CLI::App& app);
 void add_record(CLI::App& app);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc new: begins a module outside of this project, from templates that stand in this program.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common.h"
+#include "templates.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxName = 40;
+
+struct Options {
+  std::string name;
+  std::string folder = ".";
+  bool is_python = false;
+};
+
+bool is_snake_case(const std::string& name) {
+  return !name.empty() && name.size() <= kMaxName && name[0] >= 'a' && name[0] <= 'z' &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+}
+
+void replace_all(std::string& text, std::string_view word, std::string_view by) {
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
+    text.replace(at, word.size(), by);
+}
+
+/// The templates are under this project's licence; what is made of them is its author's.
+void remove_licence(std::string& text) {
+  auto at = text.find("SPDX-License-Identifier");
+  if (at == std::string::npos) return;
+  auto begin = text.rfind('\n', at);
+  begin = begin == std::string::npos ? 0 : begin + 1;
+  text.erase(begin, text.find('\n', at) + 1 - begin);
+}
+
+void write_file(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw Failure(hc::Error{hc::Code::System, path.string() + " cannot be written"});
+  if (text.starts_with("#!"))
+    fs::permissions(path, fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
+                    fs::perm_options::add);
+}
+
+void begin(const Options& options) {
+  if (!is_snake_case(options.name))
+    throw Failure(hc::Error{hc::Code::Usage,
+                            fmt::format("a module's name is snake_case, of at most {} letters, "
+                                        "not \"{}\"",
+                                        kMaxName, options.name)});
+  const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(folder, error)))
+    throw Failure(hc::Error{hc::Code::Usage, folder.string() + " is there already"});
+  fs::create_directories(folder, error);
+  if (error) throw Failure(hc::Error{hc::Code::System, folder.string() + ": " + error.message()});
+  for (const auto& file : options.is_python ? python_template() : cpp_template()) {
+    std::string path(file.path), text(file.text);
+    replace_all(path, "@NAME@", options.name);
+    replace_all(text, "@NAME@", options.name);
+    remove_licence(text);
+    write_file(folder / path, text);
+  }
+  const std::string test =
+      options.is_python ? fmt::format("python3 {}_test.py", options.name)
+                        : "cmake -S . -B build && cmake --build build && ctest --test-dir build";
+  print(fmt::format("{} is begun; next: cd {} && {}\n", folder.string(), folder.string(), test));
+}
+
+}  // namespace
+
+void add_new(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  auto* verb = app.add_subcommand("new", "Begin a module of your own");
+  verb->require_subcommand(1);
+  auto* module = verb->add_subcommand("module", "Make a folder with a module and its test");
+  module->add_option("name", options->name, "snake_case; of the folder too")->required();
+  module->add_flag("--python", options->is_python, "in Python, without a library; else in C++");
+  module->add_option("--folder", options->folder, "where to make it; else here");
+  module->callback([options] { begin(*options); });
+}
+
+}  // namespace tool
