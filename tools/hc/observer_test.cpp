@@ -95,8 +95,8 @@ TEST(Screen, ShowsWhatFitsAndWhatIsWrongFirst) {
 }
 
 TEST(Screen, IsMadeOfAnySize) {
-  for (std::size_t width : {1, 20, 40, 300})
-    for (std::size_t height : {1, 2, 5, 6, 100})
+  for (std::size_t width : {1U, 20U, 40U, 300U})
+    for (std::size_t height : {1U, 2U, 5U, 6U, 100U})
       EXPECT_FALSE(draw(some_state(7), {width, height, false}).empty());
 }
 
