@@ -35,12 +35,35 @@ TimeSpan Track::known() const {
   return {samples_.front().time, samples_.back().time};
 }
 
+std::optional<TimeSpan> Track::gap_at(std::int64_t time) const {
+  auto next = first_from(time);
+  HC_CHECK(next != samples_.end(), time);
+  if (next->time == time) return std::nullopt;
+  HC_CHECK(next != samples_.begin(), time);
+  auto before = std::prev(next);
+  if (!is_gap(*before, *next)) return std::nullopt;
+  return TimeSpan{before->time, next->time};
+}
+
+std::optional<TimeSpan> Track::known_until(std::int64_t time) const {
+  auto next = first_from(time);
+  const bool exact = next != samples_.end() && next->time == time;
+  if (!exact && next == samples_.begin()) return std::nullopt;
+  auto first = exact ? next : std::prev(next);
+  TimeSpan span{first->time, first->time};
+  if (!exact && next != samples_.end() && !is_gap(*first, *next)) span.last = time;
+  while (first != samples_.begin() && !is_gap(*std::prev(first), *first)) --first;
+  span.first = first->time;
+  return span;
+}
+
 Pose Track::at(std::int64_t time) const {
   auto next = first_from(time);
   HC_CHECK(next != samples_.end(), time);
   if (next->time == time) return next->pose;
   HC_CHECK(next != samples_.begin(), time);
   auto before = std::prev(next);
+  HC_CHECK(!is_gap(*before, *next), time);
   return between(
       before->pose, next->pose,
       static_cast<double>(time - before->time) / static_cast<double>(next->time - before->time));

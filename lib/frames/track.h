@@ -8,15 +8,20 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <optional>
 
 #include <frames/rigid.h>
 
 namespace hc::frames {
 
-/// How much of a movement is kept. What passes either bound is forgotten, the oldest first.
+/// How much of a movement is kept, and how far apart poses may be that tell of what lies between.
+/// What passes `span` or `poses` is forgotten, the oldest first.
 struct Memory {
   std::chrono::nanoseconds span = std::chrono::seconds(10);  ///< before the latest time, over 0
   std::size_t poses = 4096;                                  ///< at least 1
+  /// Between neighbours that are further apart nothing is known, over 0. One second is longer than
+  /// any source of poses pauses that follows a movement, and a head turns away and back in it.
+  std::chrono::nanoseconds gap = std::chrono::seconds(1);
 };
 
 /// From when to when something is known, both ends included [ns, as in a message's header].
@@ -47,10 +52,20 @@ class Track {
   Fed add(std::int64_t time, const Pose& pose);
 
   [[nodiscard]] bool empty() const { return samples_.empty(); }
-  /// From the oldest to the latest pose. Of an empty track: a bug.
+  /// From the oldest to the latest pose, gaps included. Of an empty track: a bug.
   [[nodiscard]] TimeSpan known() const;
 
-  /// The pose of that time, or what lies between its neighbours. A time outside known(): a bug.
+  /// The two poses around a time within known(), if too much time lies between them.
+  /// Cost: logarithmic in the poses; no allocation.
+  [[nodiscard]] std::optional<TimeSpan> gap_at(std::int64_t time) const;
+
+  /// The latest times up to `time`, without a gap in them, of which something is known; nothing:
+  /// all that is known is later.
+  /// Cost: linear in the poses of that span.
+  [[nodiscard]] std::optional<TimeSpan> known_until(std::int64_t time) const;
+
+  /// The pose of that time, or what lies between its neighbours. A time outside known(), or in a
+  /// gap: a bug.
   /// Cost: logarithmic in the poses; no allocation.
   [[nodiscard]] Pose at(std::int64_t time) const;
 
@@ -63,6 +78,10 @@ class Track {
   };
 
   [[nodiscard]] std::deque<Sample>::const_iterator first_from(std::int64_t time) const;
+  /// Times are over 0, so that no difference overflows.
+  [[nodiscard]] bool is_gap(const Sample& before, const Sample& next) const {
+    return next.time - before.time > memory_.gap.count();
+  }
 
   Memory memory_;
   std::deque<Sample> samples_;  ///< by time, each time once

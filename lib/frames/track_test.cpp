@@ -68,7 +68,7 @@ TEST(Track, RemembersACount) {
 
 TEST(Track, BearsTheFirstAndLastTimesThereAre) {
   constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
-  Track track({.span = std::chrono::nanoseconds::max()});
+  Track track({.span = std::chrono::nanoseconds::max(), .gap = std::chrono::nanoseconds::max()});
   track.add(kLast, at_x(1));
   track.add(1, at_x(0));
   EXPECT_EQ(track.known(), (TimeSpan{1, kLast}));
@@ -79,7 +79,9 @@ TEST(Track, IsWhatASortedListWouldBe) {
   RandomMotion random(6);
   for (int round = 0; round < 50; ++round) {
     const int span = random.whole(1, 200), count = random.whole(1, 40);
-    Track track({std::chrono::nanoseconds(span), static_cast<std::size_t>(count)});
+    const int gap = random.whole(1, 60);
+    Track track({std::chrono::nanoseconds(span), static_cast<std::size_t>(count),
+                 std::chrono::nanoseconds(gap)});
     std::map<std::int64_t, Pose> all;
     for (int i = 0; i < 100; ++i) {
       std::int64_t time = random.whole(1, 300);
@@ -95,6 +97,27 @@ TEST(Track, IsWhatASortedListWouldBe) {
       std::int64_t asked =
           random.whole(static_cast<int>(all.begin()->first), static_cast<int>(all.rbegin()->first));
       auto next = all.lower_bound(asked), before = next == all.begin() ? next : std::prev(next);
+      // Known, from each time backwards, one by one.
+      auto is_known = [&](std::int64_t at) {
+        auto right = all.lower_bound(at);
+        if (right == all.end() || right->first == at) return right != all.end();
+        return right != all.begin() && right->first - std::prev(right)->first <= gap;
+      };
+      std::int64_t last = asked + random.whole(-20, 20);
+      std::optional<TimeSpan> expected_span;
+      auto until = track.known_until(last);
+      while (last >= all.begin()->first && !is_known(last)) --last;
+      if (last >= all.begin()->first) {
+        expected_span = {last, last};
+        while (is_known(expected_span->first - 1)) --expected_span->first;
+      }
+      ASSERT_EQ(until, expected_span);
+      auto hole = track.gap_at(asked);
+      ASSERT_EQ(hole.has_value(), !is_known(asked));
+      if (hole) {
+        ASSERT_EQ(*hole, (TimeSpan{before->first, next->first}));
+        continue;
+      }
       Eigen::Matrix4d expected = next->second.transformation().matrix();
       if (next->first != asked)
         expected = interpolated(before->second.transformation().matrix(), expected,
@@ -105,11 +128,29 @@ TEST(Track, IsWhatASortedListWouldBe) {
   }
 }
 
+TEST(Track, BridgesNoGap) {
+  Track track({.gap = std::chrono::nanoseconds(100)});
+  for (std::int64_t time : {100, 200, 301, 350}) track.add(time, at_x(static_cast<double>(time)));
+  EXPECT_EQ(track.at(150).p.x(), 150) << "as far apart as is bridged";
+  EXPECT_EQ(track.gap_at(150), std::nullopt);
+  EXPECT_EQ(track.gap_at(201), (TimeSpan{200, 301}));
+  for (std::int64_t time : {200, 301}) EXPECT_EQ(track.at(time).p.x(), time);
+  EXPECT_EQ(track.known(), (TimeSpan{100, 350}));
+  EXPECT_EQ(track.known_until(1000), (TimeSpan{301, 350}));
+  EXPECT_EQ(track.known_until(310), (TimeSpan{301, 310}));
+  EXPECT_EQ(track.known_until(300), (TimeSpan{100, 200}));
+  EXPECT_EQ(track.known_until(99), std::nullopt);
+  track.add(260, at_x(0));
+  EXPECT_EQ(track.gap_at(201), std::nullopt) << "a late pose closes it";
+}
+
 TEST(TrackDeathTest, OutsideIsABug) {
   Track track({});
   track.add(10, at_x(0));
   EXPECT_DEATH(static_cast<void>(track.at(9)), "9");
   EXPECT_DEATH(static_cast<void>(track.at(11)), "11");
+  track.add(2'000'000'000, at_x(0));
+  EXPECT_DEATH(static_cast<void>(track.at(11)), "11") << "in a gap";
 }
 
 }  // namespace

@@ -46,12 +46,8 @@ std::string outside(std::int64_t time, TimeSpan span) {
 }  // namespace
 
 Tree Tree::standard() {
-  // The metric frames of the table in spec/mtp-1.md, R44.
-  constexpr std::pair<std::int32_t, std::string_view> kFrames[] = {
-      {1, "world"},     {2, "robot"},         {3, "head"},       {4, "left_eye"},
-      {5, "right_eye"}, {6, "cyclopean_eye"}, {14, "supervisor"}};
   Tree tree;
-  for (auto [number, name] : kFrames) {
+  for (auto [number, name] : kStandardFrames) {
     auto added = tree.add(number, name);
     HC_CHECK(added.has_value());
   }
@@ -62,14 +58,23 @@ Status Tree::add(std::int32_t number, std::string_view name) {
   std::string which = "frame " + std::to_string(number);
   if (number < 1 || number >= kFrameNumbers)
     return error(Code::Usage, which + " is not within 1 … " + std::to_string(kFrameNumbers - 1));
+  if (auto taken = by_number_.find(number); taken != by_number_.end())
+    return error(Code::Usage, which + " is " + nodes_[taken->second].name + " already");
+  auto added = add_node(which, name);
+  if (added) by_number_.emplace(number, nodes_.size() - 1);
+  return added;
+}
+
+Status Tree::add(std::string_view name) {
+  return add_node("a frame", name);
+}
+
+Status Tree::add_node(const std::string& which, std::string_view name) {
   if (name.empty()) return error(Code::Usage, which + " has no name");
   if (std::any_of(name.begin(), name.end(), [](char c) { return c >= 0 && c <= ' '; }))
     return error(Code::Usage, which + " has a name with a blank");
-  if (auto taken = by_number_.find(number); taken != by_number_.end())
-    return error(Code::Usage, which + " is " + nodes_[taken->second].name + " already");
   if (by_name_.contains(name))
     return error(Code::Usage, "there is a frame " + std::string(name) + " already");
-  by_number_.emplace(number, nodes_.size());
   by_name_.emplace(name, nodes_.size());
   nodes_.emplace_back().name = name;
   return {};
@@ -132,6 +137,9 @@ Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory)
   if (memory.span.count() <= 0 || memory.poses == 0)
     return error(Code::Usage, "a memory of " + std::to_string(memory.poses) + " poses over " +
                                   std::to_string(memory.span.count()) + " ns keeps nothing");
+  if (memory.gap.count() <= 0)
+    return error(Code::Usage,
+                 "a gap of " + std::to_string(memory.gap.count()) + " ns joins nothing");
   return attach(parent, child, Track(memory));
 }
 
@@ -169,12 +177,11 @@ Result<std::size_t> Tree::find_common(std::size_t a, std::size_t b) const {
                                    nodes_[root(asked[1])].name);
 }
 
-Result<TimeSpan> Tree::joint_known(std::size_t child) const {
+Result<const Track*> Tree::track_of(std::size_t child) const {
   const auto* track = std::get_if<Track>(&nodes_[child].joint);
-  if (track == nullptr) return TimeSpan();
-  if (track->empty())
+  if (track != nullptr && track->empty())
     return error(Code::NotFound, joint_name(child) + " is not known yet: it was not fed");
-  return track->known();
+  return track;
 }
 
 /// T_to_from of a frame and one above it.
@@ -186,13 +193,21 @@ Result<Eigen::Isometry3d> Tree::climb(std::size_t from, std::size_t to, std::int
       T_to_from = *fixed * T_to_from;
       continue;
     }
-    auto span = joint_known(from);
-    if (!span) return span.error();
-    if (time < span->first || time > span->last)
+    auto track = track_of(from);
+    if (!track) return track.error();
+    const TimeSpan span = (*track)->known();
+    if (time < span.first || time > span.last)
       return error(Code::NotFound, joint_name(from) + " is known from " +
-                                       std::to_string(span->first) + " to " +
-                                       std::to_string(span->last) + " ns" + outside(time, *span));
-    T_to_from = std::get<Track>(joint).at(time).transformation() * T_to_from;
+                                       std::to_string(span.first) + " to " +
+                                       std::to_string(span.last) + " ns" + outside(time, span));
+    if (auto gap = (*track)->gap_at(time))
+      return error(Code::NotFound, joint_name(from) + " is not known between " +
+                                       std::to_string(gap->first) + " and " +
+                                       std::to_string(gap->last) + " ns, asked for " +
+                                       std::to_string(time) + " ns: a gap of " +
+                                       duration(static_cast<std::uint64_t>(gap->last) -
+                                                static_cast<std::uint64_t>(gap->first)));
+    T_to_from = (*track)->at(time).transformation() * T_to_from;
   }
   return T_to_from;
 }
@@ -218,26 +233,47 @@ Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
   if (!s) return s.error();
   auto common = find_common(*t, *s);
   if (!common) return common.error();
-  TimeSpan both;
-  std::size_t latest = kNone, earliest = kNone;  // the joints that bound the span
+  std::vector<const Track*> moving;
+  TimeSpan all;                                  // from first to last poses, whatever the gaps
+  std::size_t latest = kNone, earliest = kNone;  // the joints that bound `all`
   for (std::size_t end : {*s, *t}) {
     for (std::size_t at = end; at != *common; at = nodes_[at].parent) {
-      auto span = joint_known(at);
-      if (!span) return span.error();
-      if (span->first > both.first) {
-        both.first = span->first;
+      auto track = track_of(at);
+      if (!track) return track.error();
+      if (*track == nullptr) continue;
+      moving.push_back(*track);
+      const TimeSpan span = (*track)->known();
+      if (span.first > all.first) {
+        all.first = span.first;
         latest = at;
       }
-      if (span->last < both.last) {
-        both.last = span->last;
+      if (span.last < all.last) {
+        all.last = span.last;
         earliest = at;
       }
     }
   }
-  if (both.first <= both.last) return both;
-  return error(Code::NotFound, joint_name(earliest) + " is known to " + std::to_string(both.last) +
-                                   " ns and " + joint_name(latest) + " from " +
-                                   std::to_string(both.first) + " ns: at no time both");
+  if (all.first > all.last)
+    return error(Code::NotFound, joint_name(earliest) + " is known to " + std::to_string(all.last) +
+                                     " ns and " + joint_name(latest) + " from " +
+                                     std::to_string(all.first) + " ns: at no time both");
+  // Back in time from the last of all, to before each gap that is met, until none is.
+  TimeSpan both = all;
+  for (bool is_settled = false; !is_settled;) {
+    is_settled = true;
+    both.first = all.first;
+    for (const Track* track : moving) {
+      auto span = track->known_until(both.last);
+      if (!span || span->last < all.first)
+        return error(Code::NotFound, "between " + std::to_string(all.first) + " and " +
+                                         std::to_string(all.last) +
+                                         " ns always one joint or another has a gap");
+      is_settled = is_settled && span->last == both.last;
+      both.last = span->last;
+      both.first = std::max(both.first, span->first);
+    }
+  }
+  return both;
 }
 
 void Tree::forget() {

@@ -24,6 +24,17 @@ using Frame = std::variant<std::int32_t, std::string_view>;
 /// Numbers of frames are below this, so that a message can hold two of them (R44).
 inline constexpr std::int32_t kFrameNumbers = 1000;
 
+/// A frame of the specification.
+struct StandardFrame {
+  std::int32_t number;
+  std::string_view name;
+};
+
+/// The metric frames that have a number everywhere. Source: the table in spec/mtp-1.md, R44.
+inline constexpr StandardFrame kStandardFrames[] = {
+    {1, "world"},     {2, "robot"},         {3, "head"},       {4, "left_eye"},
+    {5, "right_eye"}, {6, "cyclopean_eye"}, {14, "supervisor"}};
+
 /// A tree (or several) of frames, each joined to its parent by a transformation that is fixed, or
 /// that moves and is fed with poses as they are measured.
 ///
@@ -45,8 +56,7 @@ class Tree {
  public:
   /// A tree without frames.
   Tree() = default;
-  /// The metric frames of the specification, not joined yet: world, robot, head, left_eye,
-  /// right_eye, cyclopean_eye, supervisor.
+  /// kStandardFrames, not joined yet.
   static Tree standard();
 
   /// Makes a frame known.
@@ -55,6 +65,8 @@ class Tree {
   /// Errors: Usage (a number out of range; a number or a name that is taken; a name that is
   /// empty or has a blank or control byte).
   Status add(std::int32_t number, std::string_view name);
+  /// The same of a frame without a number.
+  Status add(std::string_view name);
 
   /// Joins `child` to `parent` for good.
   ///
@@ -66,7 +78,7 @@ class Tree {
   /// on.
   ///
   /// Errors: NotFound (no such frame); Usage (the child has a parent; a cycle; a memory for
-  /// nothing).
+  /// nothing, or that joins nothing).
   Status join(const Frame& parent, const Frame& child, const Memory& memory = {});
 
   /// Tells where `child`, which join() joined, was at a time. Poses may come in any order. One of a
@@ -81,8 +93,9 @@ class Tree {
                    const Eigen::Isometry3d& T_parent_child);
 
   /// T_target_source, which takes points in `source` to points in `target`, both at `time`. Between
-  /// two poses of a joint it is interpolated as between() does, in the parent's frame; outside them
-  /// nothing is known. What is above the frames' nearest common one is not asked.
+  /// two poses of a joint it is interpolated as between() does, in the parent's frame; outside
+  /// them, and between two that are further apart than its Memory::gap, nothing is known. What is
+  /// above the frames' nearest common one is not asked.
   ///
   /// @param time  [ns]; of no importance where all that lies between is fixed.
   /// Errors: NotFound (no such frame; frames that are not joined; a joint on the way that is not
@@ -93,9 +106,11 @@ class Tree {
   [[nodiscard]] Result<Eigen::Isometry3d> lookup(const Frame& target, const Frame& source,
                                                  std::int64_t time) const;
 
-  /// When lookup() of these two succeeds; `last` is their latest common time. A default TimeSpan,
-  /// hence always, where all that lies between is fixed.
+  /// When lookup() of these two succeeds: the latest span without a gap in it, whose `last` is
+  /// their latest common time. A default TimeSpan, hence always, where all that lies between is
+  /// fixed.
   ///
+  /// Cost: linear in the poses of that span.
   /// Errors: NotFound (no such frame; not joined; a joint that was not fed; no time in common).
   [[nodiscard]] Result<TimeSpan> known(const Frame& target, const Frame& source) const;
 
@@ -110,12 +125,14 @@ class Tree {
   };
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
+  Status add_node(const std::string& which, std::string_view name);
   [[nodiscard]] Result<std::size_t> find(const Frame& frame) const;
   [[nodiscard]] Result<std::size_t> find_common(std::size_t a, std::size_t b) const;
   [[nodiscard]] std::size_t depth(std::size_t node) const;
   [[nodiscard]] std::size_t root(std::size_t node) const;
   [[nodiscard]] std::string joint_name(std::size_t child) const;
-  [[nodiscard]] Result<TimeSpan> joint_known(std::size_t child) const;
+  /// The track of a joint that moves, fed once at least; null: it is fixed.
+  [[nodiscard]] Result<const Track*> track_of(std::size_t child) const;
   [[nodiscard]] Result<Eigen::Isometry3d> climb(std::size_t from, std::size_t to,
                                                 std::int64_t time) const;
   Status attach(const Frame& parent, const Frame& child,

@@ -7,7 +7,8 @@
 namespace {
 
 constexpr const char* kPorts =
-    R"({"name":"m","inputs":[{"name":"i","actor":true,"types":[]}],"outputs":[{"name":"o",)"
+    R"({"name":"m","inputs":[{"name":"i","actor":true,"types":[]},)"
+    R"({"name":"frames","types":[]}],"outputs":[{"name":"o",)"
     R"("types":[{"type":"table","components":1,"scalar":"f64","width":0,"height":0,"coord":0}]},)"
     R"({"name":"focus","types":[{"type":"table","components":1,"scalar":"i32","width":1,"height":1,)"
     R"("coord":0}]}],"parameters":[{"name":"p","type":"integer","least":0,"fixed":true},)"

@@ -148,6 +148,8 @@ BROKEN = [
     FRAME + 'moved_by = "acto.pose" #! no module "acto", did you mean "actor"?\n',
     FRAME + 'moved_by = "actor.pose"\ntranslation = [1, 2, 3] #! a frame that is moved has no'
     ' "translation"\n',
+    FRAME + '[frames.a]\nparent = "head"\nmoved_by = "actor.pose"\n[frames.b]\nparent = "head"\n'
+    'moved_by = "actor.pose" #! actor.pose moves a and b, so they and their parents need a "coord"\n',
     FRAME
     + '[frames.eye]\nparent = "haed" #! no frame "haed", did you mean "head"?; the root is robot\n',
     ACTOR

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include <frames/graph_frames.h>
 #include <frames/rigid.h>
 #include <hc/adapter/eigen.h>
 
@@ -21,13 +22,21 @@ struct TimedPose {
 namespace internal {
 
 template <ScalarType T>
-Result<TimedPose> pose_of(const Message& message) {
+Result<Eigen::Isometry3d> rigid_of(const Message& message) {
   auto matrix = as_eigen<T>(message);
   if (!matrix) return matrix.error();
-  auto T_to_from = frames::rigid(matrix->template cast<double>());
-  if (!T_to_from) return T_to_from.error();
+  return frames::rigid(matrix->template cast<double>());
+}
+
+/// The transformation of 4 x 4 that a message carries, whatever its coord.
+inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
   const Header& header = message.header;
-  return TimedPose{header.coord / 1000, header.coord % 1000, header.time, *T_to_from};
+  if (header.info.type != MatrixType::Transformation || header.width != 4 || header.height != 4)
+    return Error{Code::Unsupported, "a pose is a transformation of 4 x 4, not a " +
+                                        std::string(name(header.info.type)) + " of " +
+                                        std::to_string(header.width) + " x " +
+                                        std::to_string(header.height)};
+  return header.info.scalar == Scalar::F32 ? rigid_of<float>(message) : rigid_of<double>(message);
 }
 
 }  // namespace internal
@@ -41,17 +50,26 @@ Result<TimedPose> pose_of(const Message& message) {
 /// name two frames; what frames::rigid() refuses).
 /// Cost: no allocation unless it fails.
 inline Result<TimedPose> pose_of(const Message& message) {
+  auto T_to_from = internal::rigid_of(message);
+  if (!T_to_from) return T_to_from.error();
   const Header& header = message.header;
-  if (header.info.type != MatrixType::Transformation || header.width != 4 || header.height != 4)
-    return Error{Code::Unsupported, "a pose is a transformation of 4 x 4, not a " +
-                                        std::string(name(header.info.type)) + " of " +
-                                        std::to_string(header.width) + " x " +
-                                        std::to_string(header.height)};
   if (header.coord / 1000 < 1 || header.coord / 1000 > 999 || header.coord % 1000 == 0)
     return Error{Code::Malformed,
                  "a pose's coord is 1000 x to + from, not " + std::to_string(header.coord)};
-  return header.info.scalar == Scalar::F32 ? internal::pose_of<float>(message)
-                                           : internal::pose_of<double>(message);
+  return TimedPose{header.coord / 1000, header.coord % 1000, header.time, *T_to_from};
+}
+
+/// Hands a pose to the frames of a graph: to the one that its src and coord mean.
+///
+/// Errors: as GraphFrames::mover_of() (no frame is meant), pose_of() but for the coord of a frame
+/// without a number, and Tree::feed() (a time of 0). Nothing changes then.
+inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& message) {
+  auto mover = frames.mover_of(message.header.src, message.header.coord);
+  if (!mover) return mover.error();
+  auto pose = internal::rigid_of(message);
+  if (!pose) return pose.error();
+  return frames.tree.feed(std::string_view((*mover)->parent), std::string_view((*mover)->child),
+                          message.header.time, *pose);
 }
 
 /// The rotation that a `rotation` of one element tells: roll φ, pitch θ, yaw ψ [rad], right-handed,

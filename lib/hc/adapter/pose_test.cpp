@@ -54,6 +54,25 @@ TEST(Pose, FeedsATree) {
   EXPECT_EQ(T_robot_head->matrix(), pose.T_to_from.matrix());
 }
 
+TEST(Pose, FeedsTheFramesOfAGraph) {
+  auto frames = *frames::read_frames("head 3 robot neck.pose 9; chip 0 head neck.chip 12");
+  Message message = message_of(kHead);
+  const std::int64_t time = message.header.time;
+  ASSERT_TRUE(feed(frames, message));
+  EXPECT_TRUE(frames.tree.lookup("robot", "head", time));
+  message.header.coord = 4;
+  EXPECT_EQ(feed(frames, message).error().text(),
+            "NotFound: frames: no frame is moved by messages from 7 with coord 4");
+  message.header.src = 12;
+  ASSERT_TRUE(feed(frames, message)) << "no coord is wanted of who has no number";
+  EXPECT_TRUE(frames.tree.lookup("robot", "chip", time));
+  message.header.time = 0;
+  EXPECT_EQ(feed(frames, message).error().text(),
+            "Malformed: frames: chip in head is fed without a time");
+  message.header.width = 1;
+  EXPECT_EQ(feed(frames, message).error().code, Code::Unsupported);
+}
+
 TEST(Pose, RefusesWhatIsNone) {
   EXPECT_EQ(refusal("4 4\n0 -1 0 0\n1 0 0 0\n0 0 1 0.3\n", "4 1\n"),
             "Unsupported: a pose is a transformation of 4 x 4, not a transformation of 4 x 1");

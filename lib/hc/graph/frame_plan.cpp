@@ -8,7 +8,11 @@
 namespace hc::internal {
 namespace {
 
-constexpr const char* kParameter = "frames";
+constexpr const char* kFrames = "frames";  // the parameter, and the input
+
+/// Of links to an input `frames`: who is slow must not keep from moving what moves. So many poses
+/// are four seconds of a source of 250 Hz.
+constexpr const char* kKeep = "1024";
 
 /// Metric frames that have a number. Source: spec/mtp-1.md, R44
 const std::map<std::string, std::int64_t> kStandard = {
@@ -25,14 +29,12 @@ class Frames {
     check_tree();
     for (const auto& frame : graph_.frames)
       if (frame.moved_by) check_mover(*frame.moved_by);
+    check_numbers_of_moved();
     if (!planning_.problems.empty() || graph_.frames.empty()) return;
     const std::string text = text_of_all();
-    for (auto& [name, description] : planning_.described) {
-      const auto* parameter = find_named(description.parameters, kParameter);
-      PlannedModule* planned = planning_.planned(name);
-      if (parameter != nullptr && std::holds_alternative<std::string>(parameter->state.value))
-        planned->parameters.try_emplace(kParameter, text);
-    }
+    for (const auto& [name, description] : planning_.described)
+      if (takes_frames(planning_, name))
+        planning_.planned(name)->parameters.try_emplace(kFrames, text);
   }
 
  private:
@@ -101,16 +103,34 @@ class Frames {
       add_no_port(planning_, mover.place, port, "output", description->outputs);
   }
 
+  /// Of frames that one output moves, its messages tell which is meant by their numbers.
+  void check_numbers_of_moved() {
+    std::map<std::string, const GraphFrame*> unnumbered;
+    for (const auto& frame : graph_.frames) {
+      if (!frame.moved_by || (number_of(frame.name) != 0 && number_of(frame.parent.value) != 0))
+        continue;
+      auto [other, is_new] = unnumbered.emplace(frame.moved_by->value.text(), &frame);
+      if (!is_new)
+        planning_.problems.add(frame.moved_by->place,
+                               frame.moved_by->value.text() + " moves " + other->second->name +
+                                   " and " + frame.name +
+                                   ", so they and their parents need a \"coord\"");
+    }
+  }
+
+  [[nodiscard]] std::int64_t number_of(const std::string& name) const {
+    if (auto standard = kStandard.find(name); standard != kStandard.end()) return standard->second;
+    auto frame = by_name_.find(name);
+    return frame == by_name_.end() ? 0 : frame->second->coord.value;
+  }
+
   /// As G36 has it.
   [[nodiscard]] std::string text_of_all() const {
     std::ostringstream text;
     text.precision(17);
     for (const auto& frame : graph_.frames) {
       if (text.tellp() > 0) text << "; ";
-      auto standard = kStandard.find(frame.name);
-      text << frame.name << " "
-           << (standard != kStandard.end() ? standard->second : frame.coord.value) << " "
-           << frame.parent.value;
+      text << frame.name << " " << number_of(frame.name) << " " << frame.parent.value;
       if (frame.moved_by) {
         text << " " << frame.moved_by->value.text() << " " << address_of(frame.moved_by->value);
         continue;
@@ -135,6 +155,45 @@ class Frames {
 };
 
 }  // namespace
+
+bool takes_frames(const Planning& planning, const std::string& module) {
+  const Description* description = planning.description_of(module);
+  if (description == nullptr) return false;
+  const auto* parameter = find_named(description->parameters, kFrames);
+  return parameter != nullptr && std::holds_alternative<std::string>(parameter->state.value);
+}
+
+void link_frames(Planning& planning) {
+  std::vector<Lined<GraphPort>> movers;  // each once, in the order of the file
+  for (const auto& frame : planning.graph.frames) {
+    if (!frame.moved_by) continue;
+    const GraphPort& port = frame.moved_by->value;
+    const Description* description = planning.description_of(port.module);
+    const bool is_there = description != nullptr && find_output(*description, port.port) != nullptr;
+    auto is_it = [&](const auto& each) { return each.value.text() == port.text(); };
+    if (is_there && std::none_of(movers.begin(), movers.end(), is_it))
+      movers.push_back(*frame.moved_by);
+  }
+  std::vector<GraphLink> made;
+  for (const auto& module : planning.graph.modules) {
+    if (!takes_frames(planning, module.name) || module.parameters.contains(kFrames)) continue;
+    if (find_input(*planning.description_of(module.name), kFrames) == nullptr) continue;
+    GraphLink link;
+    link.to = {module.name, kFrames, {}};
+    link.policy["keep"] = {kKeep, {}};
+    bool is_linked =
+        std::any_of(planning.graph.links.begin(), planning.graph.links.end(),
+                    [&](const auto& each) { return each.to.text() == link.to.text(); });
+    if (is_linked) continue;
+    for (const auto& mover : movers) {
+      if (mover.value.module == module.name) continue;
+      link.from = mover.value;
+      link.place = mover.place;
+      made.push_back(link);
+    }
+  }
+  planning.graph.links.insert(planning.graph.links.end(), made.begin(), made.end());
+}
 
 void plan_frames(Planning& planning) {
   Frames(planning).run();

@@ -34,6 +34,65 @@ coord = 200
   EXPECT_EQ(planned->modules[0].fixed, (std::set<std::string>{"file"}));
 }
 
+constexpr const char* kMoved = R"([modules.neck]
+[modules.seeker]
+[frames.head]
+parent = "robot"
+moved_by = "neck.pose"
+[frames.gripper]
+parent = "robot"
+coord = 100
+moved_by = "seeker.pose"
+[frames.finger]
+parent = "gripper"
+coord = 101
+moved_by = "neck.pose"
+)";
+
+std::string links_of(const Result<Plan>& planned) {
+  if (!planned) return planned.error().detail;
+  std::string text;
+  for (const auto& link : planned->links)
+    text += link.from + " " + link.to + " " + link.keep + "\n";
+  return text;
+}
+
+TEST(Frames, WhatMovesThemIsLinkedToWhoAsksForThem) {
+  auto planned = plan(kMoved);
+  EXPECT_EQ(links_of(planned), "neck.pose seeker.frames 1024\n")
+      << "once, and not what the seeker itself moves";
+  EXPECT_EQ(planned->modules[1].parameters.at("frames"),
+            "head 3 robot neck.pose 1; gripper 100 robot seeker.pose 3; "
+            "finger 101 gripper neck.pose 1");
+  EXPECT_EQ(values_of(planned->modules[0], "--out"),
+            (std::vector<std::string>{"pose=shm:t.neck.pose?readers=1"}));
+  EXPECT_EQ(values_of(planned->modules[1], "--in"),
+            (std::vector<std::string>{"frames=shm:t.neck.pose?wait=60&keep=1024"}));
+}
+
+TEST(Frames, ALinkOrAParameterOfTheFileStandsInTheirPlace) {
+  EXPECT_EQ(links_of(plan(kMoved + link_text("unix:poses", "seeker.frames"))),
+            "unix:poses seeker.frames all\n");
+  EXPECT_EQ(links_of(plan(std::string(kMoved) + "[modules.other]\nprogram = \"seeker\"\n"
+                                                "parameters.frames = \"\"\n")),
+            "neck.pose seeker.frames 1024\n");
+}
+
+TEST(Frames, PosesMakeNoLoop) {
+  EXPECT_EQ(links_of(plan(kMoved + link_text("seeker.command", "neck.command"))),
+            "seeker.command neck.command all\nneck.pose seeker.frames 1024\n");
+}
+
+TEST(Frames, WhatMovesThemTellsPoses) {
+  EXPECT_EQ(wrong("[modules.source]\n[modules.seeker]\n[frames.head]\nparent = \"robot\"\n"
+                  "moved_by = \"source.left\"\n"),
+            "g.toml:5: source.left gives map 1 x f32 in coordinate system 7, seeker.frames takes "
+            "transformation 1 x f64");
+  EXPECT_EQ(wrong("[modules.neck]\n[frames.a]\nparent = \"root\"\nmoved_by = \"neck.pose\"\n"
+                  "[frames.b]\nparent = \"a\"\nmoved_by = \"neck.pose\"\n"),
+            "g.toml:7: neck.pose moves a and b, so they and their parents need a \"coord\"");
+}
+
 TEST(Frames, AnglesAreRollPitchAndYawAboutAxesThatStandStill) {
   auto rotation = [](const std::string& angles) {
     Problems problems("g.toml");

@@ -123,8 +123,9 @@ void check_loops(Planning& planning) {
   for (const auto& link : planning.graph.links) {
     const Description* to = planning.description_of(link.to.module);
     const bool is_focus = to != nullptr && find_input(*to, link.to.port) == &focus_input();
+    const bool is_frames = link.to.port == "frames" && takes_frames(planning, link.to.module);
     if (link.from.uri.empty() && link.to.uri.empty() && !is_paced(link) && !is_focus &&
-        !planning.routes(link.from))
+        !is_frames && !planning.routes(link.from))
       leaving[link.from.module].push_back(&link);
   }
   enum class Visit { Begun = 1, Done };

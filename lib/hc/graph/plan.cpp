@@ -157,6 +157,7 @@ Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Pr
     internal::plan_module(planning, describe, module);
   internal::number_ports(planning);
   internal::plan_modes(planning);
+  internal::link_frames(planning);
   internal::check_links(planning);
   internal::check_loops(planning);
   internal::check_actors(planning);

@@ -60,6 +60,10 @@ void number_ports(Planning& planning);
 /// Modes, focus and exclusive inputs: checks them, tells modules, and links the focus to them.
 void plan_modes(Planning& planning);
 
+/// Whether a module gets the frames as text: it has a parameter for them.
+bool takes_frames(const Planning& planning, const std::string& module);
+/// Links what moves frames to the inputs `frames` of modules that get them as text.
+void link_frames(Planning& planning);
 /// Checks the frames, and tells them to modules that have a parameter `frames`.
 void plan_frames(Planning& planning);
 

@@ -57,6 +57,15 @@ inline Result<std::string> describe(const std::string& program) {
     return std::string(R"({"name":"x","inputs":[],"outputs":[],"parameters":[)"
                        R"({"name":"frames","type":"string"},)"
                        R"({"name":"file","type":"string","fixed":true}]})");
+  const std::string pose =
+      R"("types":[{"type":"transformation","components":1,"scalar":"f64","width":4,"height":4,)"
+      R"("coord":0}]})";
+  if (program == "neck")
+    return shares(module(port("command", "map", 0), R"({"name":"pose",)" + pose));
+  if (program == "seeker")  // moves something itself too
+    return shares(R"({"name":"x","inputs":[{"name":"frames",)" + pose + R"(],"outputs":[)" +
+                  port("command", "map", 0) + R"(,{"name":"pose",)" + pose +
+                  R"(],"parameters":[{"name":"frames","type":"string","fixed":true}]})");
   if (program == "dumb") return std::string("hello");
   if (program == "odd") return std::string(R"({"inputs":[{}],"outputs":3,"parameters":[{"x":1}]})");
   return Error{Code::NotFound, "no such program"};

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Frames of a graph file: fixed ones and moving ones, at the times of messages."""
+
+import math
+import pathlib
+import unittest
+
+from harness import BUILD, Pipes
+
+START = 1763683200_000000000  # [ns]
+STEP = 100_000_000  # [ns] between poses
+TURN = 0.25  # [rad] of the head to the left in each
+GRAPH = """
+[modules.neck]
+program = "relay"
+addresses.out = 11
+[modules.eyes]
+program = "relay"
+[modules.whereabouts]
+program = "%s"
+parameters = { %s }
+[frames.robot]
+parent = "world"
+translation = [1.0, 2.0, 0.0]
+rotation = [0.0, 0.0, 90.0]
+[frames.head]
+parent = "robot"
+moved_by = "neck.out"
+[frames.left_eye]
+parent = "head"
+translation = [0.05, 0.03, 0.0]
+[[links]]
+from = "file:poses"
+to = "neck.in"
+[[links]]
+from = "file:pictures"
+to = "eyes.in"
+[[links]]
+from = "eyes.out"
+to = "whereabouts.when"
+[[links]]
+from = "whereabouts.pose"
+to = "file:found"
+keep = "all"
+"""
+
+
+def turned(yaw, x, y, z):
+    """A turn to the left [rad] about z and a place [m], as rows."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    return [[c, -s, 0, x], [s, c, 0, y], [0, 0, 1, z], [0, 0, 0, 1]]
+
+
+def product(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
+
+
+def world_left_eye(steps):
+    """T_world_left_eye, so many steps after the start: the head turns evenly and rises 1 cm each."""
+    head = turned(TURN * steps, 0, 0, 0.3 + 0.01 * steps)
+    return product(product(turned(math.pi / 2, 1, 2, 0), head), turned(0, 0.05, 0.03, 0))
+
+
+def pose(step):
+    rows = turned(TURN * step, 0, 0, 0.3 + 0.01 * step)
+    text = "".join(" ".join(map(repr, row)) + "\n" for row in rows)
+    return "1 11 0 %d 8 %d 70190 0 2003 4 4\n%s" % (step, START + STEP * step, text)
+
+
+def picture(number, time):
+    return "1 12 0 %d 8 %d 60100 0 0 1 1\nx\n" % (number, time)
+
+
+class Frames(Pipes):
+    def write(self, name, text):
+        pathlib.Path(self.path(name)).write_text(text)
+
+    def run_graph(self, poses, times, parameters=""):
+        """The poses that whereabouts tells, by time; `told` is what the graph logs then."""
+        self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", parameters))
+        self.write("poses", "".join(map(pose, poses)))
+        self.write("pictures", "".join(picture(*each) for each in enumerate(times)))
+        self.shell("exec hc run graph.toml")
+        self.told = self.err
+        lines = self.shell("hc cat --raw found").splitlines()
+        found = {}
+        for begin in range(0, len(lines), 5):
+            header = lines[begin].split()
+            rows = [list(map(float, line.split())) for line in lines[begin + 1 : begin + 5]]
+            found[int(header[5])] = rows
+        return found
+
+    def expect(self, rows, wanted):
+        for row, wanted_row in zip(rows, wanted):
+            for number, each in zip(row, wanted_row):
+                self.assertAlmostEqual(number, each, delta=1e-12)  # m or 1, some roundings
+
+    def test_the_left_eye_is_where_the_head_was_at_the_time_of_each_picture(self):
+        steps = [0, 0.5, 1.25, 3, 7.875, 9]
+        times = [START + int(STEP * each) for each in steps]
+        found = self.run_graph(range(10), times)
+        self.assertEqual(sorted(found), times)
+        for step, time in zip(steps, times):
+            self.expect(found[time], world_left_eye(step))
+
+    def test_outside_of_what_is_known_nothing_is_guessed(self):
+        times = [START - 5_000_000, START + STEP, START + 10 * STEP]
+        found = self.run_graph(range(10), times)
+        self.assertEqual(list(found), [START + STEP])
+        self.expect(found[START + STEP], world_left_eye(1))
+        known = "frames: head in robot is known from %d to " % START
+        self.assertRegex(self.told, known + r"\d+ ns, asked for %d ns: 5.0 ms too early" % times[0])
+        last = START + 9 * STEP
+        self.assertIn(
+            known + "%d ns, asked for %d ns: 100.0 ms too late" % (last, times[2]), self.told
+        )
+
+    def test_a_gap_is_not_bridged(self):
+        times = [START + STEP, START + 2 * STEP, START + 5 * STEP // 2, START + 4 * STEP]
+        found = self.run_graph([0, 1, 3, 4], times, "gap = 0.15")
+        self.assertEqual(sorted(found), [times[0], times[3]])
+        for time in times[1:3]:
+            self.assertIn(
+                "frames: head in robot is not known between %d and %d ns, asked for %d ns: a gap "
+                "of 200.0 ms" % (START + STEP, START + 3 * STEP, time),
+                self.told,
+            )
+        found = self.run_graph([0, 1, 3, 4], times)  # 1 s unless told otherwise
+        self.assertEqual(sorted(found), times)
+        self.expect(found[times[2]], world_left_eye(2.5))
+
+    def test_text_that_is_no_frames_ends_the_module_with_what_is_wrong(self):
+        self.shell("%s --frames 'head 5 robot a.b 1'" % (BUILD / "tests/whereabouts"), status=1)
+        self.assertIn("frames: frame 1, head: its number is 3, not 5", self.err)
+
+
+if __name__ == "__main__":
+    unittest.main()
