@@ -2,15 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Graphs while they run: what hc run tells of them, takes, and does when they change."""
 
-import json
 import os
-import pathlib
-import re
 import signal
-import socket
 import unittest
 
-from harness import DATA, Pipes, WATCHDOG
+from graphs import Graphs
+from harness import DATA, WATCHDOG
 
 GRAPH = (
     """
@@ -25,80 +22,11 @@ to = "brightness.image"
 )
 
 
-class Messages:
-    """Messages of strings, as they come from a stream."""
-
-    def __init__(self, connection):
-        connection.settimeout(WATCHDOG)
-        self.file = connection.makefile("rb")
-
-    def next(self):
-        """Its src, and its rows without the spaces at their ends."""
-        header = [int(word) for word in self.file.readline().split()]
-        width, height = header[9:11]
-        text = self.file.read(width * height).decode()
-        self.file.readline()
-        rows = [text[i : i + width].rstrip() for i in range(0, len(text), width or 1)]
-        return header[1], rows
-
-
-class Running(Pipes):
-    def write(self, text, name="g.toml"):
-        path = pathlib.Path(self.path(name))
-        path.with_suffix(".new").write_text(text)
-        path.with_suffix(".new").rename(path)  # as editors do
-
+class Running(Graphs):
     def run_graph(self, options=""):
         process = self.start("exec hc run g.toml " + options)
         self.await_lines(process, "brightness: started")
         return process
-
-    def await_lines(self, process, last):
-        lines = []
-        while not lines or not re.search(last, lines[-1]):
-            line = process.stderr.readline().decode()
-            self.assertNotEqual(line, "", lines)
-            lines.append(line.rstrip("\n"))
-        return lines
-
-    def observe(self, process, name="g"):
-        connection = socket.socket(socket.AF_UNIX)
-        self.addCleanup(connection.close)
-        connection.connect("\0hypercolumn.%s.%d" % (name, process.pid))
-        return Messages(connection)
-
-    def state(self, messages, condition=lambda state: True):
-        """The first state that is as wanted."""
-        while True:
-            src, rows = messages.next()
-            if src == 1 and condition(json.loads(rows[0])):
-                return json.loads(rows[0])
-
-    def ask(self, process, *commands, name="g"):
-        with socket.socket(socket.AF_UNIX) as listening, socket.socket(socket.AF_UNIX) as graph:
-            place = "answer.%d" % process.pid
-            listening.bind("\0" + place)
-            listening.listen()
-            listening.settimeout(WATCHDOG)
-            graph.connect("\0hypercolumn.%s.%d.ask" % (name, process.pid))
-            rows = ["reply unix:@" + place, *commands]
-            width = max(map(len, rows))
-            text = "".join(row.ljust(width) for row in rows)
-            graph.sendall(b"1 0 0 0 8 0 60101 0 0 %d %d\n" % (width, len(rows)))
-            graph.sendall(text.encode() + b"\n")
-            connection, _ = listening.accept()
-            with connection:
-                return Messages(connection).next()[1]
-
-    def stop(self, process, status=0):
-        os.kill(process.pid, signal.SIGINT)
-        out, err = process.communicate(timeout=WATCHDOG)
-        self.assertEqual(process.returncode, status, err)
-        return out.decode(), err.decode()
-
-    @staticmethod
-    def module(state, name):
-        return next((each for each in state["modules"] if each["name"] == name), None)
 
     def test_two_graphs_run_side_by_side(self):
         self.write(GRAPH)

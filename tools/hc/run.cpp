@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc run: runs a graph.
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -56,7 +57,18 @@ std::string name_of(const Options& options) {
   return name.empty() ? "graph" : name;
 }
 
+/// Each module takes several descriptors, and a login shell allows 1024; the system allows more to
+/// who asks. Not all of it: there are programs that close every number up to their limit.
+void allow_descriptors() {
+  constexpr rlim_t kWanted = rlim_t{64} << 10;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kWanted) return;
+  limit.rlim_cur = std::min(kWanted, limit.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 void run(const Options& options) {
+  allow_descriptors();
   const std::string token = hc::graph_token();
   auto plan = make_plan("run", options.graph, token);
   StatusLine status(!options.quiet);

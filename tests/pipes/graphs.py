@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Graphs that run, as tests see them: what hc run tells, and what is asked of it."""
+
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+
+from harness import Pipes, WATCHDOG
+
+
+class Messages:
+    """Messages of strings, as they come from a stream."""
+
+    def __init__(self, connection):
+        connection.settimeout(WATCHDOG)
+        self.connection = connection
+        self.file = connection.makefile("rb")
+
+    def close(self):
+        self.file.close()
+        self.connection.close()
+
+    def next(self):
+        """Its src, and its rows without the spaces at their ends."""
+        header = [int(word) for word in self.file.readline().split()]
+        width, height = header[9:11]
+        text = self.file.read(width * height).decode()
+        self.file.readline()
+        rows = [text[i : i + width].rstrip() for i in range(0, len(text), width or 1)]
+        return header[1], rows
+
+
+class Graphs(Pipes):
+    def write(self, text, name="g.toml"):
+        path = pathlib.Path(self.path(name))
+        path.with_suffix(".new").write_text(text)
+        path.with_suffix(".new").rename(path)  # as editors do
+
+    def await_lines(self, process, last):
+        lines = []
+        while not lines or not re.search(last, lines[-1]):
+            line = process.stderr.readline().decode()
+            self.assertNotEqual(line, "", lines)
+            lines.append(line.rstrip("\n"))
+        return lines
+
+    def observe(self, process, name="g"):
+        connection = socket.socket(socket.AF_UNIX)
+        try:
+            connection.connect("\0hypercolumn.%s.%d" % (name, process.pid))
+        except OSError:
+            connection.close()
+            raise
+        self.addCleanup(connection.close)
+        return Messages(connection)
+
+    def state(self, messages, condition=lambda state: True):
+        """The first state that is as wanted."""
+        while True:
+            src, rows = messages.next()
+            if src == 1 and condition(json.loads(rows[0])):
+                return json.loads(rows[0])
+
+    def ask(self, process, *commands, name="g"):
+        with socket.socket(socket.AF_UNIX) as listening, socket.socket(socket.AF_UNIX) as graph:
+            place = "answer.%d" % process.pid
+            listening.bind("\0" + place)
+            listening.listen()
+            listening.settimeout(WATCHDOG)
+            graph.connect("\0hypercolumn.%s.%d.ask" % (name, process.pid))
+            rows = ["reply unix:@" + place, *commands]
+            width = max(map(len, rows))
+            text = "".join(row.ljust(width) for row in rows)
+            graph.sendall(b"1 0 0 0 8 0 60101 0 0 %d %d\n" % (width, len(rows)))
+            graph.sendall(text.encode() + b"\n")
+            connection, _ = listening.accept()
+            with connection:
+                return Messages(connection).next()[1]
+
+    def stop(self, process, status=0):
+        os.kill(process.pid, signal.SIGINT)
+        out, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, status, err)
+        return out.decode(), err.decode()
+
+    @staticmethod
+    def module(state, name):
+        return next((each for each in state["modules"] if each["name"] == name), None)
