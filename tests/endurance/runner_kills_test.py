@@ -24,7 +24,7 @@ class RunnerKills(Endurance):
             for name in ("near", "far"):
                 self.await_message(name, begun)
             started.append(time.monotonic() - begun)
-            self.assertEqual(len(processes_of(process.pid)), 9)
+            self.assertGreaterEqual(len(processes_of(process.pid)), 9)
             killed = time.monotonic()
             os.kill(process.pid, signal.SIGKILL)
             wait_until(lambda: not processes_of(process.pid))

@@ -7,6 +7,7 @@ import pathlib
 import re
 import signal
 import socket
+import threading
 
 from harness import Pipes, WATCHDOG
 
@@ -41,10 +42,15 @@ class Graphs(Pipes):
 
     def await_lines(self, process, last):
         lines = []
-        while not lines or not re.search(last, lines[-1]):
-            line = process.stderr.readline().decode()
-            self.assertNotEqual(line, "", lines)
-            lines.append(line.rstrip("\n"))
+        watchdog = threading.Timer(WATCHDOG, lambda: os.killpg(process.pid, signal.SIGKILL))
+        watchdog.start()
+        try:
+            while not lines or not re.search(last, lines[-1]):
+                line = process.stderr.readline().decode()
+                self.assertNotEqual(line, "", lines)
+                lines.append(line.rstrip("\n"))
+        finally:
+            watchdog.cancel()
         return lines
 
     def observe(self, process, name="g"):

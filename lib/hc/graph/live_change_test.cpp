@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -22,6 +23,7 @@ class LiveChange : public Run {
   LiveChange() {
     options_.name = "live";
     options_.replan = [this](const Lines& commands) {
+      std::lock_guard lock(mutex_);
       commands_ = commands;
       Replanned planned;
       if (next_)
@@ -30,9 +32,6 @@ class LiveChange : public Run {
         planned.problems = {"one problem", "another"};
       return planned;
     };
-  }
-  ~LiveChange() override {
-    if (thread_.joinable()) thread_.join();
   }
 
   PlannedModule& add(const std::string& name, const std::string& script = "exec sleep 1000") {
@@ -67,9 +66,27 @@ class LiveChange : public Run {
     });
   }
 
+  Result<RunReport> run() {
+    auto report = Run::run();
+    if (thread_.joinable()) thread_.join();
+    return report;
+  }
+
+  void plan_next(Plan plan) {
+    std::lock_guard lock(mutex_);
+    next_ = std::move(plan);
+  }
+  Lines commands() {
+    std::lock_guard lock(mutex_);
+    return commands_;
+  }
+
+  std::thread thread_;  // reads what the graph is made of
+
+ private:
+  std::mutex mutex_;
   std::optional<Plan> next_;
   Lines commands_;
-  std::thread thread_;
 };
 
 TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
@@ -80,9 +97,9 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
               (Lines{"the command is: stop", "no module \"camra\""}));
     EXPECT_EQ(ask({}), Lines{"there is no command"});
     EXPECT_EQ(ask({"remove camera"}), (Lines{"one problem", "another"}));
-    next_ = plan_;
+    plan_next(plan_);
     EXPECT_EQ(ask({"set camera.rate=3"}), Lines{"ok"});
-    EXPECT_EQ(commands_, Lines{"set camera.rate=3"});
+    EXPECT_EQ(commands(), Lines{"set camera.rate=3"});
   });
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
@@ -91,18 +108,17 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
 
 TEST_F(LiveChange, ModulesComeAndGo) {
   add("stays");
+  add("comes");
+  Plan other = plan_;
+  plan_.modules.pop_back();
   add("goes");
   heard_ = [this](std::string_view) {
     if (count("goes: started") == 2) stop();
   };
   thread_ = std::thread([&] {
-    next_ = plan_;
-    next_->modules.pop_back();
-    add("comes");
-    next_->modules.push_back(plan_.modules.back());
-    plan_.modules.pop_back();
+    plan_next(other);
     EXPECT_EQ(ask({"remove goes", "add comes program"}), Lines{"ok"});
-    next_ = plan_;
+    plan_next(plan_);
     EXPECT_EQ(ask({"add goes program"}), Lines{"ok"}) << "while it may be stopping still";
   });
   auto report = run();
@@ -118,8 +134,9 @@ TEST_F(LiveChange, AnotherProgramIsStartedInThePlaceOfTheFirst) {
   add("a");
   stop_at_ = "a: other";
   thread_ = std::thread([&] {
-    next_ = plan_;
-    next_->modules[0].options = {"-c", "echo other >&2; exec sleep 1000"};
+    Plan other = plan_;
+    other.modules[0].options = {"-c", "echo other >&2; exec sleep 1000"};
+    plan_next(other);
     EXPECT_EQ(ask({"set a.b=1"}), Lines{"ok"});
   });
   ASSERT_TRUE(run());
@@ -158,10 +175,11 @@ TEST_F(LiveChange, AModuleThatListensIsTold) {
   add("view").ends = {{true, "image", "shm:t.left?reconnect=86400", ""}};
   beside([&] {
     Listener first(plan_.modules[0]), second(plan_.modules[1]);
-    next_ = plan_;
-    next_->modules[0].parameters["rate"] = "10";
-    next_->modules[0].ends = {{false, "left", "shm:t.own?readers=1&rate=5", "to=5"}};
-    next_->modules[1].ends = {{true, "image", "shm:t.own?reconnect=86400", ""}};
+    Plan other = plan_;
+    other.modules[0].parameters["rate"] = "10";
+    other.modules[0].ends = {{false, "left", "shm:t.own?readers=1&rate=5", "to=5"}};
+    other.modules[1].ends = {{true, "image", "shm:t.own?reconnect=86400", ""}};
+    plan_next(other);
     EXPECT_EQ(ask({"set camera.rate=10"}), Lines{"ok"});
     EXPECT_EQ(first.next(), "unlink out left=shm:t.left?readers=1");
     EXPECT_EQ(first.next(), "set rate=10");
@@ -200,11 +218,12 @@ TEST_F(LiveChange, AnEditedFileIsReadAnew) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") write();
     if (line == "graph: goes on as it was") {
-      next_ = plan_;
-      next_->modules.push_back(plan_.modules[0]);
-      next_->modules[1].name = "b";
-      next_->modules[1].manage_uri += "2";
-      next_->modules[1].control_uri.clear();
+      Plan other = plan_;
+      other.modules.push_back(plan_.modules[0]);
+      other.modules[1].name = "b";
+      other.modules[1].manage_uri += "2";
+      other.modules[1].control_uri.clear();
+      plan_next(other);
       write();
     }
     if (line == "b: started") stop();

@@ -272,9 +272,11 @@ void Supervised::forget_process() {
 void Supervised::go_on(int status) {
   exit_ = status;
   auto words = end_in_words(status);
-  const bool is_our_signal = status == 0 || status == kSignal + SIGTERM;
-  if (is_to_end_ || is_to_restart_ || (is_dismissed_ && is_our_signal)) {
-    hear_.event(words);
+  const bool is_told_to = is_to_end_ || is_to_restart_ || is_dismissed_;
+  // One that did not come to heed our signal yet has done as it was told all the same.
+  const bool is_as_told = is_told_to && (status == 0 || status == kSignal + SIGTERM);
+  if (is_to_end_ || is_to_restart_ || is_as_told) {
+    hear_.event(is_as_told ? end_in_words(0) : words);
     if (is_to_restart_) return start_again();
     change(ModuleStatus::Ended);
     return hear_.ended();

@@ -196,17 +196,19 @@ TEST_F(Supervision, AStandInReadsForWhoHasBeenGivenUp) {
                   "all",
                   {},
                   true}};
+  std::thread to_stand_in;
   heard_ = [&](std::string_view line) {
-    if (!line.starts_with("reader: failed")) return;
-    std::thread([this, place] {
+    if (!line.starts_with("reader: failed") || to_stand_in.joinable()) return;
+    to_stand_in = std::thread([this, place] {
       LinkOptions options;
       auto sink = open_sink(*parse_uri(place + "?readers=1"), options);
       EXPECT_TRUE(sink);
       EXPECT_TRUE((*sink)->send(make_rows(std::array{std::string("for nobody")})));
       stop();
-    }).detach();
+    });
   };
   auto report = run();
+  to_stand_in.join();
   ASSERT_TRUE(report) << report.error().detail;
 }
 

@@ -125,6 +125,28 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   for (std::size_t i : {11U, 12U, 13U}) EXPECT_GE(row[i], 0);  // gaps
 }
 
+TEST_F(RunningModule, HasOnlyTheLinksThatItIsToldOf) {
+  Module module{"relay", "Sends on."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  auto control = sink_of(uri("control"));
+  auto reports = source_of(uri("reports"));
+  start(module, {"--manage=" + uri("reports"), "--control=" + uri("control")});
+  // Neither standard input, which may have ended, nor standard output.
+  EXPECT_TRUE(rows_of(next(*reports, internal::Report::Links)).empty());
+  auto first = sink_of(uri("first"));
+  auto from = source_of(uri("out"));
+  ASSERT_TRUE(tell(*control, "link out out=" + uri("out")));
+  ASSERT_TRUE(tell(*control, "link in in=" + uri("first")));
+  ASSERT_TRUE(first->send(table({2.0})));
+  Message message;
+  ASSERT_TRUE(*receive(*from, message));
+  EXPECT_EQ(message.view<double>()->at(0, 0), 2);
+  ASSERT_TRUE(first->close());
+  EXPECT_EQ(join(), 0);
+}
+
 TEST_F(RunningModule, ObeysCommands) {
   Module module{"gauge", "Multiplies."};
   auto in = module.input("in", table<double>(), "");

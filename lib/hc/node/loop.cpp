@@ -69,7 +69,7 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri) {
 void Module::Loop::open_outputs(const internal::Arguments& arguments) {
   for (const auto& [port, uri] : arguments.outputs)
     module_.outputs_[port]->links.push_back(open_output(uri));
-  if (!arguments.outputs.empty() || module_.outputs_.empty()) return;
+  if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
   auto standard_output = open_output({"-", "", {}});
   for (auto& output : module_.outputs_) output->links.push_back(standard_output);
 }
@@ -86,7 +86,7 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
 
 void Module::Loop::open_inputs(const internal::Arguments& arguments) {
   for (const auto& [port, uri] : arguments.inputs) open_input(uri, {module_.inputs_[port].get()});
-  if (!arguments.inputs.empty() || module_.inputs_.empty()) return;
+  if (!arguments.inputs.empty() || module_.inputs_.empty() || arguments.control) return;
   std::vector<internal::InputState*> all;
   for (auto& input : module_.inputs_) all.push_back(input.get());
   open_input({"-", "", {}}, std::move(all));
