@@ -174,8 +174,10 @@ std::optional<int> Process::poll_status() {
 
 void Process::ask_to_end() const {
   if (status_) return;
+  // First, as one that is stopped could not; behind, it may undo the stop of a leak checker or a
+  // debugger that looks at one that is ending.
+  ::kill(-number_, SIGCONT);
   ::kill(-number_, SIGTERM);
-  ::kill(-number_, SIGCONT);  // one that is stopped could not
 }
 
 }  // namespace hc::internal
