@@ -6,7 +6,7 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/base/uri.h>
-#include <hc/graph/fields.h>
+#include <hc/graph/file/fields.h>
 #include <hc/link/policy.h>
 
 namespace hc {

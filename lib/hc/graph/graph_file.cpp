@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include <hc/base/suggestion.h>
-#include <hc/graph/tables.h>
+#include <hc/graph/file/tables.h>
 
 namespace hc {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <hc/base/suggestion.h>
-#include <hc/graph/planning.h>
+#include <hc/graph/plan/planning.h>
 
 namespace hc {
 namespace internal {

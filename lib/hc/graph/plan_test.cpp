@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hc/graph/planning_test.h>
+#include <hc/graph/plan/planning_test.h>
 
 namespace hc {
 namespace {

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/file/document.h>
+
+#include <algorithm>
+#include <charconv>
+#include <tuple>
+
+#include <hc/graph/graph_file.h>
+
+// toml++ before 3.4 asserts, or assumes, what hostile text can break (a line end in a table's
+// name), and reports the error right behind it; so it is to go on.
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(condition) static_cast<void>(0)
+#include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
+
+namespace hc::internal {
+namespace {
+
+/// toml++ up to 3.4 runs into undefined behaviour at letters outside ASCII in odd places, so it
+/// gets none to see: each of their bytes stands as ~ and two digits, and original() brings it back.
+std::string ascii_only(std::string_view text) {
+  constexpr std::string_view kHex = "0123456789abcdef";
+  std::string result;
+  result.reserve(text.size());
+  for (char c : text) {
+    auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && c != '~')
+      result += c;
+    else
+      result.append({'~', kHex[byte >> 4], kHex[byte & 15]});
+  }
+  return result;
+}
+
+/// Where ~ stands as an escape, \u007e, which original() would take for one of ours; npos: nowhere.
+std::size_t find_escaped_tilde(std::string_view text) {
+  for (std::size_t at = text.find('\\'); at != std::string_view::npos;
+       at = text.find('\\', at + 1)) {
+    std::string_view escape = text.substr(at + 1, 9);
+    if (escape.starts_with('\\')) ++at;  // an escaped backslash
+    bool is_tilde = escape.starts_with("u007") ? escape.size() > 4 && (escape[4] | 0x20) == 'e'
+                                               : escape == "U0000007e" || escape == "U0000007E";
+    if (is_tilde) return at;
+  }
+  return std::string_view::npos;
+}
+
+/// Where the string that opens at `at` has ended; the end of `text` where it does not.
+std::size_t skip_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string closing(text.substr(at, 3) == std::string(3, quote) ? 3 : 1, quote);
+  for (at += closing.size(); at < text.size(); ++at) {
+    if (quote == '"' && text[at] == '\\') {
+      ++at;  // what is escaped
+    } else if (text.substr(at).starts_with(closing)) {
+      at += closing.size();
+      // Up to two quotes may stand before the three that close.
+      for (int more = 0; closing.size() == 3 && more < 2 && at < text.size() && text[at] == quote;
+           ++more)
+        ++at;
+      return at;
+    } else if (closing.size() == 1 && text[at] == '\n') {
+      return at;
+    }
+  }
+  return text.size();
+}
+
+/// Where a key has too many parts, or brackets stand in too many others; npos: nowhere. Each such
+/// level is a call within a call of toml++, which so runs out of stack. What is no TOML may be read
+/// wrongly here, but only behind where toml++ stops.
+std::size_t find_too_deep(std::string_view text) {
+  int dots = 0, brackets = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    char c = text[at];
+    if (c == '#') at = std::min(text.find('\n', at), text.size());
+    if (c == '"' || c == '\'') at = skip_string(text, at) - 1;
+    if (c == '[' || c == '{') ++brackets;
+    if (c == ']' || c == '}') --brackets;
+    if (c == '.') ++dots;
+    if (std::string_view("=,#\n[{").find(c) != std::string_view::npos) dots = 0;
+    if (dots > kMaxGraphDepth || brackets > kMaxGraphDepth) return at;
+  }
+  return std::string_view::npos;
+}
+
+std::string original(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    bool escaped = text[i] == '~' && i + 2 < text.size() &&
+                   std::from_chars(&text[i] + 1, &text[i] + 3, byte, 16).ec == std::errc();
+    result += escaped ? static_cast<char>(byte) : text[i];
+    if (escaped) i += 2;
+  }
+  return result;
+}
+
+Node convert(const toml::node& from, int file) {
+  Node node;
+  node.place = {std::max(static_cast<int>(from.source().begin.line), 1), file};
+  if (auto text = from.value_exact<std::string>()) node.value = original(*text);
+  if (auto number = from.value_exact<std::int64_t>()) node.value = *number;
+  if (auto number = from.value_exact<double>()) node.value = *number;
+  if (auto flag = from.value_exact<bool>()) node.value = *flag;
+  if (const toml::array* list = from.as_array()) {
+    node.value = Node::List();
+    for (const auto& each : *list) node.nodes.push_back(convert(each, file));
+  }
+  if (const toml::table* table = from.as_table()) {
+    node.value = Node::Table();
+    // toml++ sorts its keys; people expect things in the order in which they wrote them.
+    std::vector<std::tuple<toml::source_index, toml::source_index, Node>> entries;
+    for (const auto& [key, each] : *table) {
+      const auto& begin = each.source().begin;
+      entries.emplace_back(begin.line, begin.column, convert(each, file));
+      std::get<Node>(entries.back()).key = original(key.str());
+    }
+    std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+      return std::pair(std::get<0>(a), std::get<1>(a)) < std::pair(std::get<0>(b), std::get<1>(b));
+    });
+    for (auto& entry : entries) node.nodes.push_back(std::move(std::get<Node>(entry)));
+  }
+  return node;
+}
+
+}  // namespace
+
+const Node* Node::find(std::string_view name) const {
+  if (table() == nullptr) return nullptr;
+  auto found =
+      std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node.key == name; });
+  return found == nodes.end() ? nullptr : &*found;
+}
+
+std::optional<Node> read_document(std::string_view text, int file, Problems& problems) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  auto refuse_at = [&](std::size_t at, const std::string& what) {
+    auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    problems.add({static_cast<int>(lines) + 1, file}, what);
+    return std::nullopt;
+  };
+  if (text.size() > kMaxGraphBytes) return refuse_at(0, "a graph file has at most 1048576 bytes");
+  if (auto escape = find_escaped_tilde(text); escape != std::string_view::npos)
+    return refuse_at(escape, "write ~ itself, not its \\u escape");
+  if (auto deep = find_too_deep(text); deep != std::string_view::npos)
+    return refuse_at(deep, "a key has at most " + std::to_string(kMaxGraphDepth) +
+                               " dots, and as many brackets may stand in one another");
+  try {
+    return convert(toml::parse(ascii_only(text), problems.file(file)), file);
+  } catch (const toml::parse_error& error) {
+    problems.add({std::max(static_cast<int>(error.source().begin.line), 1), file},
+                 original(error.description()));
+    return std::nullopt;
+  }
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Graphs within graphs, and links with the world outside.
+#include <gtest/gtest.h>
+
+#include <hc/graph/plan/planning_test.h>
+
+namespace hc {
+namespace {
+
+const std::string kEye = R"([modules.camera]
+program = "source"
+parameters.rate = 1
+[modules.follow]
+program = "task"
+mode = "track"
+to.command = "follow.image"
+to.bid = "eyes"
+[modes]
+track = 1
+[groups]
+eyes = ["follow.image"]
+[frames.lens]
+parent = "mount"
+[frames.chip]
+parent = "lens"
+moved_by = "camera.left"
+)" + link_text("camera.left", "follow.image");
+
+TEST(Inclusion, NamesGetThatOfTheGraphBeforeThem) {
+  auto planned = plan(R"([modules.sink]
+[graphs.left]
+file = "parts/eye.toml"
+parameters.camera.rate = 5
+[graphs.right]
+file = "parts/eye.toml"
+)" + link_text("left_camera.right", "sink.in"),
+                      {{"parts/eye.toml", kEye}});
+  ASSERT_TRUE(planned) << planned.error().detail;
+  std::vector<std::string> names;
+  for (const auto& module : planned->modules) names.push_back(module.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"sink", "left_camera", "left_follow", "right_camera",
+                                             "right_follow"}));
+  EXPECT_EQ(planned->modules[1].program, "source");
+  EXPECT_EQ(planned->modules[1].parameters.at("rate"), "5");
+  EXPECT_EQ(planned->modules[3].parameters.at("rate"), "1");
+  ASSERT_EQ(planned->links.size(), 3U);
+  EXPECT_EQ(planned->links[1].from, "left_camera.left");
+  EXPECT_EQ(planned->links[2].to, "right_follow.image");
+  EXPECT_EQ(planned->groups,
+            (std::map<std::string, std::int64_t>{{"left_eyes", -2}, {"right_eyes", -3}}));
+  EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"track", 1}}));
+  EXPECT_EQ(values_of(planned->modules[4], "--to").front(), "bid=-3");
+}
+
+TEST(Inclusion, ErrorsNameTheFileAndTheLineInIt) {
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\n",
+                  {{"b.toml", "[modules.source]\nparameters.rat = 3\nx = 1\n"}}),
+            "b.toml:2: module a_source has no parameter \"rat\", did you mean \"rate\"?\n"
+            "b.toml:3: no key \"x\" in module source");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\n", {{"b.toml", "\nx = \n"}}).substr(0, 9),
+            "b.toml:2:");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"none.toml\"\n"), "g.toml:2: none.toml: cannot be read");
+  EXPECT_EQ(wrong("[graphs.a]\n"), "g.toml:1: \"file\" is missing");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"./x/../g.toml\"\n"), "g.toml:2: g.toml includes itself");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b/b.toml\"\n",
+                  {{"b/b.toml", "[modules.source]\n[graphs.c]\nfile = \"b.toml\"\n"}}),
+            "b/b.toml:3: b/b.toml includes itself");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\nparameters.sourc.rate = 3\n",
+                  {{"b.toml", "[modules.source]\n"}}),
+            "g.toml:3: graph a has no module \"sourc\", did you mean \"source\"?");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\nparameters.source.rat = 3\n",
+                  {{"b.toml", "[modules.source]\n"}}),
+            "g.toml:3: module a_source has no parameter \"rat\", did you mean \"rate\"?");
+  EXPECT_EQ(wrong("[modules.a_source]\nprogram = \"source\"\n[graphs.a]\nfile = \"b.toml\"\n",
+                  {{"b.toml", "[modules.source]\n"}}),
+            "b.toml:1: module \"a_source\" is there twice");
+}
+
+TEST(Inclusion, IsBounded) {
+  std::string many;
+  for (int i = 0; i < 20; ++i) many += "[graphs.g" + std::to_string(i) + "]\nfile = \"b.toml\"\n";
+  std::string more;
+  for (int i = 0; i < 20; ++i) more += "[graphs.h" + std::to_string(i) + "]\nfile = \"c.toml\"\n";
+  EXPECT_NE(wrong(many, {{"b.toml", more}, {"c.toml", "[modules.source]\n"}})
+                .find("b.toml:8: at most 256 files are included"),
+            std::string::npos);
+}
+
+TEST(Outside, EndsMayBeUris) {
+  auto planned = plan("[modules.filter]\n" + link_text("tcp-listen:7000", "filter.in") +
+                      link_text("filter.out", "file:out.mtp", "rate = 3\n"));
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(values_of(planned->modules[0], "--in"),
+            (std::vector<std::string>{"in=tcp-listen:7000"}));
+  EXPECT_EQ(values_of(planned->modules[0], "--out"),
+            (std::vector<std::string>{"out=file:out.mtp?rate=3"}));
+  EXPECT_EQ(planned->links[0].from, "tcp-listen:7000");
+  EXPECT_EQ(planned->links[0].sender_uri, "");
+  EXPECT_EQ(planned->links[1].reader_uri, "");
+  EXPECT_EQ(planned->links[1].sender_uri, "file:out.mtp?rate=3");
+}
+
+TEST(Outside, ErrorsNameTheLineAndWhatWouldBeRight) {
+  auto with = [](const std::string& from, const std::string& to, const std::string& more = "") {
+    return wrong("[modules.filter]\n" + link_text(from, to, more));
+  };
+  EXPECT_EQ(with("tcp:1", "tcp:2"), "g.toml:2: a link has a module at one of its ends");
+  EXPECT_EQ(with("tpc:1", "filter.in"),
+            "g.toml:2: module filter has no links of the kind \"tpc\", did you mean \"tcp\"?");
+  EXPECT_EQ(with("shm:x", "filter.in"), "g.toml:2: module filter has no links of the kind \"shm\"");
+  EXPECT_EQ(with("tcp:1?a", "filter.in").substr(0, 9), "g.toml:3:");
+  EXPECT_EQ(with("tcp:1", "filter.in", "rate = 3\n"),
+            "g.toml:5: a link from outside has no rate: that is its sender's");
+  EXPECT_EQ(with("filter.out", "tcp:1?rate=2", "rate = 3\n"),
+            "g.toml:5: tcp:1?rate=2 has rate too");
+  EXPECT_EQ(with("tcp-listen:1", "filter.in", link_text("filter.out", "tcp-listen:1")),
+            "g.toml:5: tcp-listen:1 is there twice, and two cannot listen there");
+}
+
+}  // namespace
+}  // namespace hc

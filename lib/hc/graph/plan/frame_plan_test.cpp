@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames, from the file to the modules that ask for them.
+#include <gtest/gtest.h>
+
+#include <hc/graph/plan/planning_test.h>
+
+namespace hc {
+namespace {
+
+TEST(Frames, ModulesGetThemAsText) {
+  auto planned = plan(R"([modules.framed]
+[modules.own]
+program = "framed"
+parameters.frames = "mine"
+[modules.source]
+addresses.left = 11
+[frames.head]
+parent = "robot"
+translation = [0, 0.5, 1.25]
+[frames.left_eye]
+parent = "head"
+moved_by = "source.left"
+[frames.nose]
+parent = "head"
+quaternion = [1, 0, 0, 0]
+coord = 200
+)");
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->modules[0].parameters.at("frames"),
+            "head 3 robot 0 0.5 1.25 0 0 0 1; left_eye 4 head source.left 11; "
+            "nose 200 head 0 0 0 1 0 0 0");
+  EXPECT_EQ(planned->modules[1].parameters.at("frames"), "mine");
+  EXPECT_TRUE(planned->modules[2].parameters.empty());
+  EXPECT_EQ(planned->modules[0].fixed, (std::set<std::string>{"file"}));
+}
+
+constexpr const char* kMoved = R"([modules.neck]
+[modules.seeker]
+[frames.head]
+parent = "robot"
+moved_by = "neck.pose"
+[frames.gripper]
+parent = "robot"
+coord = 100
+moved_by = "seeker.pose"
+[frames.finger]
+parent = "gripper"
+coord = 101
+moved_by = "neck.pose"
+)";
+
+std::string links_of(const Result<Plan>& planned) {
+  if (!planned) return planned.error().detail;
+  std::string text;
+  for (const auto& link : planned->links)
+    text += link.from + " " + link.to + " " + link.keep + "\n";
+  return text;
+}
+
+TEST(Frames, WhatMovesThemIsLinkedToWhoAsksForThem) {
+  auto planned = plan(kMoved);
+  EXPECT_EQ(links_of(planned), "neck.pose seeker.frames 1024\n")
+      << "once, and not what the seeker itself moves";
+  EXPECT_EQ(planned->modules[1].parameters.at("frames"),
+            "head 3 robot neck.pose 1; gripper 100 robot seeker.pose 3; "
+            "finger 101 gripper neck.pose 1");
+  EXPECT_EQ(values_of(planned->modules[0], "--out"),
+            (std::vector<std::string>{"pose=shm:t.neck.pose?readers=1"}));
+  EXPECT_EQ(values_of(planned->modules[1], "--in"),
+            (std::vector<std::string>{"frames=shm:t.neck.pose?wait=60&keep=1024"}));
+}
+
+TEST(Frames, ALinkOrAParameterOfTheFileStandsInTheirPlace) {
+  EXPECT_EQ(links_of(plan(kMoved + link_text("unix:poses", "seeker.frames"))),
+            "unix:poses seeker.frames all\n");
+  EXPECT_EQ(links_of(plan(std::string(kMoved) + "[modules.other]\nprogram = \"seeker\"\n"
+                                                "parameters.frames = \"\"\n")),
+            "neck.pose seeker.frames 1024\n");
+}
+
+TEST(Frames, PosesMakeNoLoop) {
+  EXPECT_EQ(links_of(plan(kMoved + link_text("seeker.command", "neck.command"))),
+            "seeker.command neck.command all\nneck.pose seeker.frames 1024\n");
+}
+
+TEST(Frames, WhatMovesThemTellsPoses) {
+  EXPECT_EQ(wrong("[modules.source]\n[modules.seeker]\n[frames.head]\nparent = \"robot\"\n"
+                  "moved_by = \"source.left\"\n"),
+            "g.toml:5: source.left gives map 1 x f32 in coordinate system 7, seeker.frames takes "
+            "transformation 1 x f64");
+  EXPECT_EQ(wrong("[modules.neck]\n[frames.a]\nparent = \"root\"\nmoved_by = \"neck.pose\"\n"
+                  "[frames.b]\nparent = \"a\"\nmoved_by = \"neck.pose\"\n"),
+            "g.toml:7: neck.pose moves a and b, so they and their parents need a \"coord\"");
+}
+
+TEST(Frames, AnglesAreRollPitchAndYawAboutAxesThatStandStill) {
+  auto rotation = [](const std::string& angles) {
+    Problems problems("g.toml");
+    auto graph =
+        parse_graph("[modules.a]\n[frames.a]\nparent = \"b\"\nrotation = " + angles, {}, problems);
+    EXPECT_TRUE(problems.empty());
+    return graph.frames.at(0).rotation;
+  };
+  constexpr double kHalf = 0.70710678118654752;  // sin(90° / 2)
+  constexpr double kTolerance = 1e-15;           // some roundings of numbers below 1
+  auto expect = [&](const std::string& angles, const std::array<double, 4>& wanted) {
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(rotation(angles)[i], wanted[i], kTolerance) << angles << " " << i;
+  };
+  expect("[90, 0, 0]", {kHalf, 0, 0, kHalf});
+  expect("[0, 90, 0]", {0, kHalf, 0, kHalf});
+  expect("[0, 0, 90]", {0, 0, kHalf, kHalf});
+  // Rz(90°) Rx(90°) = (0, 0, s, s) (s, 0, 0, s) as quaternions, s² = 1/2.
+  expect("[90, 0, 90]", {0.5, 0.5, 0.5, 0.5});
+  expect("[90, 90, 0]", {0.5, 0.5, -0.5, 0.5});  // Ry(90°) Rx(90°)
+}
+
+TEST(Frames, ErrorsNameTheLineAndWhatWouldBeRight) {
+  const std::string top = "[modules.source]\n[frames.a]\nparent = \"root\"\n";
+  EXPECT_EQ(wrong(top + "[frames.b]\nparent = \"aa\"\n"),
+            "g.toml:5: no frame \"aa\", did you mean \"a\"?; the root is root");
+  EXPECT_EQ(wrong("[modules.source]\n[frames.a]\nparent = \"b\"\n[frames.b]\nparent = \"a\"\n"),
+            "g.toml:3: frames form a circle: a in b in a");
+  EXPECT_EQ(wrong("[modules.source]\n[frames.a]\nparent = \"a\"\n"),
+            "g.toml:3: frames form a circle: a in a");
+  EXPECT_EQ(wrong(top + "coord = 3\n"), "g.toml:4: coordinate system 3 is head");
+  EXPECT_EQ(wrong("[modules.source]\n[frames.head]\nparent = \"root\"\ncoord = 200\n"),
+            "g.toml:4: frame head has the number 3");
+  EXPECT_EQ(wrong(top + "coord = 200\n[frames.b]\nparent = \"a\"\ncoord = 200\n"),
+            "g.toml:7: coordinate system 200 is a");
+  EXPECT_EQ(wrong(top + "moved_by = \"source.lft\"\n"),
+            "g.toml:4: module source has no output \"lft\", did you mean \"left\"?");
+  EXPECT_EQ(wrong(top + "moved_by = \"sourc.left\"\n"),
+            "g.toml:4: no module \"sourc\", did you mean \"source\"?");
+  EXPECT_EQ(wrong(top + "moved_by = \"source.left\"\ntranslation = [1, 2, 3]\n"),
+            "g.toml:5: a frame that is moved has no \"translation\"");
+  EXPECT_EQ(wrong(top + "translation = [1, 2]\n"),
+            "g.toml:4: \"translation\" is a list of 3 numbers");
+  EXPECT_EQ(wrong(top + "rotation = [1, 2, nan]\n"),
+            "g.toml:4: \"rotation\" is a list of 3 numbers");
+  EXPECT_EQ(wrong(top + "quaternion = [1, 1, 0, 0]\n"),
+            "g.toml:4: \"quaternion\" has the length 1");
+  EXPECT_EQ(wrong("[modules.source]\n[frames.a]\n"), "g.toml:2: \"parent\" is missing");
+}
+
+}  // namespace
+}  // namespace hc

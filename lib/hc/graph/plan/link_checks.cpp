@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be wrong with a link, and with links together.
+#include <algorithm>
+#include <map>
+
+#include <hc/base/uri.h>
+#include <hc/graph/plan/planning.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+/// A link's check; it wants to be asked once for each, in their order.
+class LinkCheck {
+ public:
+  explicit LinkCheck(Planning& planning) : planning_(planning), problems_(planning.problems) {}
+
+  void check(const GraphLink& link) {
+    if (!linked_.insert(link.from.text() + " " + link.to.text()).second)
+      problems_.add(link.place, "the link from " + link.from.text() + " to " + link.to.text() +
+                                    " is there twice");
+    const DescribedPort* from = end(link, link.from, false);
+    const DescribedPort* to = end(link, link.to, true);
+    if (link.route) check_route(link);
+    if (!link.from.uri.empty()) check_outer_policy(link);
+    if (from == nullptr || to == nullptr) return;
+    if (!fits(*from, *to))
+      problems_.add(link.place, link.from.text() + " gives " + in_words(from->types) + ", " +
+                                    link.to.text() + " takes " + in_words(to->types));
+    if (auto memory = link.policy.find("memory");
+        memory != link.policy.end() && knows(link.from, "shm") && knows(link.to, "shm"))
+      if (auto enough = check_shm_memory({"shm", "", {{"memory", memory->second.value}}}); !enough)
+        problems_.add(memory->second.place, enough.error().detail);
+  }
+
+ private:
+  bool knows(const GraphPort& port, std::string_view transport) const {
+    return planning_.description_of(port.module)->knows(transport);
+  }
+
+  /// Null where there is none, or where nobody knows since the module is not described.
+  const DescribedPort* end(const GraphLink& link, const GraphPort& port, bool is_input) {
+    if (!port.uri.empty()) {
+      check_uri(link, port, is_input);
+      return nullptr;
+    }
+    if (!planning_.names.contains(port.module)) add_no_module(planning_, link.place, port.module);
+    const Description* description = planning_.description_of(port.module);
+    if (description == nullptr) return nullptr;
+    const DescribedPort* found =
+        is_input ? find_input(*description, port.port) : find_output(*description, port.port);
+    if (found == nullptr)
+      add_no_port(planning_, link.place, port, is_input ? "input" : "output",
+                  is_input ? description->inputs : description->outputs);
+    return found;
+  }
+
+  /// The world outside; its other end is a module.
+  void check_uri(const GraphLink& link, const GraphPort& outside, bool is_input) {
+    const Uri uri = *parse_uri(outside.uri);
+    if (uri.scheme.ends_with("-listen") && !listening_.insert(uri.scheme + ":" + uri.rest).second)
+      problems_.add(link.place, outside.uri + " is there twice, and two cannot listen there");
+    for (const auto& [key, value] : link.policy)
+      if (!uri.option(key, "").empty())
+        problems_.add(value.place, outside.uri + " has " + key + " too");
+    const std::string& module = is_input ? link.from.module : link.to.module;
+    const Description* description = planning_.description_of(module);
+    if (description == nullptr) return;
+    std::vector<std::string> known = {"file", "tcp", "tcp-listen", "unix", "unix-listen"};
+    if (description->transports) known = *description->transports;
+    if (uri.scheme == "-" || uri.scheme == "inproc" ||
+        std::find(known.begin(), known.end(), uri.scheme) == known.end())
+      problems_.add(link.place, "module " + module + " has no links of the kind \"" + uri.scheme +
+                                    "\"" + suggest(planning_, uri.scheme, known));
+  }
+
+  /// A link from outside has its sender there; `keep` is its reader's affair in shared memory.
+  void check_outer_policy(const GraphLink& link) {
+    for (const auto& [key, value] : link.policy)
+      if (key != "keep" || !link.from.uri.starts_with("shm:"))
+        problems_.add(value.place, "a link from outside has no " + key + ": that is its sender's");
+  }
+
+  void check_route(const GraphLink& link) {
+    const Description* sender = planning_.description_of(link.from.module);
+    if (sender != nullptr && !sender->control)
+      problems_.add(link.route->place, "module " + link.from.module +
+                                           " cannot have \"route\": its program knows no "
+                                           "--control");
+    else if (!link.from.uri.empty())
+      problems_.add(link.route->place, "a link from outside has no route: that is its sender's");
+  }
+
+  Planning& planning_;
+  Problems& problems_;
+  std::set<std::string> linked_, listening_;
+};
+
+bool is_paced(const GraphLink& link) {
+  return link.policy.contains("rate") || link.policy.contains("byte_rate");
+}
+
+std::string way_in_words(const std::vector<const GraphLink*>& way, const std::string& last) {
+  std::string text = last;
+  auto begin = std::find_if(way.begin(), way.end(),
+                            [&](const GraphLink* link) { return link->from.module == last; });
+  for (auto link = begin; link != way.end(); ++link) text += " -> " + (*link)->to.module;
+  return text + " -> " + last;
+}
+
+}  // namespace
+
+void check_links(Planning& planning) {
+  LinkCheck check(planning);
+  for (const auto& link : planning.graph.links) check.check(link);
+}
+
+/// A message that comes back to where it came from, and makes another, does so as fast as the
+/// machine can, unless a link on its way has a rate. Behind a router it goes where its address
+/// leads, which is not known here.
+void check_loops(Planning& planning) {
+  std::map<std::string, std::vector<const GraphLink*>> leaving;
+  for (const auto& link : planning.graph.links) {
+    const Description* to = planning.description_of(link.to.module);
+    const bool is_focus = to != nullptr && find_input(*to, link.to.port) == &focus_input();
+    const bool is_frames = link.to.port == "frames" && takes_frames(planning, link.to.module);
+    if (link.from.uri.empty() && link.to.uri.empty() && !is_paced(link) && !is_focus &&
+        !is_frames && !planning.routes(link.from))
+      leaving[link.from.module].push_back(&link);
+  }
+  enum class Visit { Begun = 1, Done };
+  std::map<std::string, Visit> visits;
+  std::vector<const GraphLink*> way;
+  // Depth first, without recursion: each step of the way, and which of its links is next.
+  for (const auto& module : planning.graph.modules) {
+    if (visits.contains(module.name)) continue;
+    std::vector<std::pair<std::string, std::size_t>> steps = {{module.name, 0}};
+    visits[module.name] = Visit::Begun;
+    while (!steps.empty()) {
+      auto& [name, next] = steps.back();
+      const auto& links = leaving[name];
+      if (next == links.size()) {
+        visits[name] = Visit::Done;
+        steps.pop_back();
+        if (!way.empty()) way.pop_back();
+        continue;
+      }
+      const GraphLink* link = links[next++];
+      auto visit = visits.find(link->to.module);
+      if (visit == visits.end()) {
+        visits[link->to.module] = Visit::Begun;
+        way.push_back(link);
+        steps.emplace_back(link->to.module, 0);
+      } else if (visit->second == Visit::Begun) {
+        planning.problems.add(link->place,
+                              "a loop without a rate: " + way_in_words(way, link->to.module) +
+                                  "; give one of its links a rate, as rate = 30");
+      }
+    }
+  }
+}
+
+/// Two writers to an actor work against each other, unless one at a time is let through: by an
+/// input that is exclusive, or by who routes.
+void check_actors(Planning& planning) {
+  std::map<std::string, std::string> writers;  // by input, the first
+  for (const auto& link : planning.graph.links) {
+    const Description* description = planning.description_of(link.to.module);
+    if (description == nullptr || planning.routes(link.from)) continue;
+    const DescribedPort* input = find_named(description->inputs, link.to.port);
+    const PlannedModule* planned = planning.planned(link.to.module);
+    if (input == nullptr || !input->actor || planned->exclusive.contains(link.to.port)) continue;
+    auto [first, is_first] = writers.emplace(link.to.text(), link.from.text());
+    if (!is_first)
+      planning.problems.add(link.place, link.to.text() + " is an actor's and gets commands from " +
+                                            first->second + " and " + link.from.text() +
+                                            "; make it exclusive, or put a router before it");
+  }
+}
+
+}  // namespace hc::internal

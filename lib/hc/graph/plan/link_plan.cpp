@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gives each link of a graph, which has been checked, its two ends.
+#include <algorithm>
+
+#include <hc/base/uri.h>
+#include <hc/graph/plan/planning.h>
+#include <hc/graph/plan/routes.h>
+
+namespace hc::internal {
+namespace {
+
+/// Longest name of a link: a socket's has 107 bytes, of which shared memory takes 17.
+constexpr std::size_t kMaxLinkName = 90;
+
+/// 64 bits of a text, as 16 hexadecimal digits. Source: FNV-1a,
+/// https://datatracker.ietf.org/doc/html/draft-eastlake-fnv
+std::string digest(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  std::string digits;
+  for (int shift = 60; shift >= 0; shift -= 4) digits += "0123456789abcdef"[hash >> shift & 15];
+  return digits;
+}
+
+/// What one link of an output says to its sender, as options of a URI; `keep` is the reader's
+/// affair where memory is shared.
+std::string pace_of(const GraphLink& link) {
+  std::string options;
+  for (const auto& [key, value] : link.policy)
+    if (key != "keep") options.append("&").append(key).append("=").append(value.value);
+  return options;
+}
+
+class LinkPlanner {
+ public:
+  explicit LinkPlanner(Planning& planning) : planning_(planning), graph_(planning.graph) {}
+
+  void run() {
+    find_routes();
+    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
+      const GraphLink& link = graph_.links[i];
+      if (!is_inside(link)) continue;
+      Sender& sender = senders_[name_of(i)];
+      ++sender.readers;
+      sender.lasts = sender.lasts || lasts(link);
+    }
+    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
+      PlannedLink planned = is_inside(graph_.links[i]) ? plan_inside(i) : plan_outside(i);
+      for (const auto& [key, value] : graph_.links[i].policy)
+        if (key != "keep") planned.policy[key] = value.value;
+      planning_.plan.links.push_back(std::move(planned));
+    }
+  }
+
+ private:
+  /// The sending end of a link, or of several that share its memory.
+  struct Sender {
+    std::size_t readers = 0;
+    bool lasts = false;
+    std::string uri;
+  };
+
+  static bool is_inside(const GraphLink& link) {
+    return link.from.uri.empty() && link.to.uri.empty();
+  }
+
+  std::size_t number_of(const GraphPort& port) const {
+    return port.uri.empty() ? planning_.index.at(port.module) : kOutside;
+  }
+
+  /// The words of --route at both ends of each link.
+  void find_routes() {
+    std::vector<RoutedLink> links;
+    std::vector<bool> is_router;
+    for (const auto& module : planning_.plan.modules)
+      is_router.push_back(planning_.is_router(module.name));
+    for (const auto& link : graph_.links) {
+      RoutedLink& routed = links.emplace_back();
+      routed.from = planning_.routes(link.from) ? number_of(link.from) : kOutside;
+      routed.to = number_of(link.to);
+      if (link.route) routed.given = link.route->value;
+      auto address = planning_.plan.addresses.find(link.to.text());
+      if (address != planning_.plan.addresses.end()) routed.reaches.push_back(address->second);
+      auto groups = planning_.groups_of.find(link.to.text());
+      if (groups != planning_.groups_of.end())
+        routed.reaches.insert(routed.reaches.end(), groups->second.begin(), groups->second.end());
+    }
+    std::vector<std::int64_t> groups;
+    for (const auto& [name, number] : planning_.plan.groups) groups.push_back(number);
+    const auto passed = compute_routes(links, is_router, groups);
+    for (std::size_t i = 0; i < graph_.links.size(); ++i)
+      routes_.push_back(words_of(graph_.links[i], passed[i]));
+  }
+
+  struct RouteWords {
+    std::string sender, reader;
+  };
+
+  [[nodiscard]] RouteWords words_of(const GraphLink& link,
+                                    const std::vector<std::int64_t>& passed) const {
+    const bool leaves_router = planning_.routes(link.from);
+    RouteWords words;
+    std::string addresses;
+    for (auto address : link.route ? link.route->value : passed)
+      addresses += (addresses.empty() ? "" : ",") + std::to_string(address);
+    if (link.routes_all) addresses = "*";
+    if (link.route || leaves_router) words.sender = "to=" + addresses;
+    if (leaves_router && link.to.uri.empty()) words.sender += " peer=" + link.to.module;
+    if (link.from.uri.empty() && link.to.uri.empty() && planning_.is_router(link.to.module))
+      words.reader = "peer=" + link.from.module;
+    return words;
+  }
+
+  /// A link's name: the same in every plan of this graph, and no other's.
+  [[nodiscard]] std::string link_name(std::initializer_list<std::string> words) const {
+    std::string name = planning_.plan.token;
+    for (const auto& word : words) name += "." + word;
+    if (name.size() <= kMaxLinkName) return name;
+    return planning_.plan.token + "." + digest(name);
+  }
+
+  /// Whether a link outlives the processes at its ends.
+  bool lasts(const GraphLink& link) const {
+    auto is_restarted = [&](const GraphPort& port) {
+      return planning_.planned(port.module)->restart != Restart::Never;
+    };
+    // A reader that does not listen to who runs it could not be told that nothing comes any more.
+    const bool is_told = !planning_.planned(link.to.module)->control_uri.empty();
+    return is_told && (is_restarted(link.from) || is_restarted(link.to));
+  }
+
+  bool shared(const GraphLink& link) const {
+    return planning_.description_of(link.from.module)->knows("shm") &&
+           planning_.description_of(link.to.module)->knows("shm");
+  }
+
+  /// Whether links of an output have an end in common with this one.
+  bool is_common(std::size_t number) const {
+    const GraphLink& link = graph_.links[number];
+    return shared(link) && pace_of(link).empty() && routes_[number].sender.empty();
+  }
+
+  std::string name_of(std::size_t number) const {
+    const GraphPort& from = graph_.links[number].from;
+    const GraphPort& to = graph_.links[number].to;
+    return is_common(number) ? link_name({from.module, from.port})
+                             : link_name({from.module, from.port, to.module, to.port});
+  }
+
+  /// Images are as good as they are new, so that the newest alone waits for who is slow; of
+  /// anything else all.
+  std::string keep_of(const GraphLink& link) const {
+    if (auto given = link.policy.find("keep"); given != link.policy.end())
+      return given->second.value;
+    if (!link.from.uri.empty() || link.to.uri.starts_with("file:")) return "all";
+    const Description& description = *planning_.description_of(link.from.module);
+    const auto& types = find_output(description, link.from.port)->types;
+    bool is_image = !types.empty() && (types.front().type == name(MatrixType::RgbImage) ||
+                                       types.front().type == name(MatrixType::IntensityImage));
+    return is_image ? "latest" : "all";
+  }
+
+  /// The links of an output that share memory have one sending end in common, but for those that
+  /// have a pace, bound or route of their own; every other link has a socket. Senders wait for
+  /// their readers, so that it does not matter who starts first.
+  PlannedLink plan_inside(std::size_t number) {
+    const GraphLink& link = graph_.links[number];
+    const bool by_memory = shared(link);
+    const std::string name = name_of(number), keep = keep_of(link);
+    const std::string and_keep = keep == "all" ? "" : "&keep=" + keep;
+    Sender& sender = senders_[name];
+    if (sender.uri.empty()) {
+      sender.uri = (by_memory ? "shm:" : "unix-listen:@") + name +
+                   "?readers=" + std::to_string(sender.readers) + (sender.lasts ? "&stay=1" : "") +
+                   (is_common(number) ? "" : and_keep) + pace_of(link);
+      add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
+    }
+    const std::string reader_uri = (by_memory ? "shm:" : "unix:@") + name +
+                                   (sender.lasts ? "?reconnect=86400" : "?wait=60") +
+                                   (by_memory ? and_keep : "");
+    add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
+    return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, sender.lasts};
+  }
+
+  /// A link with the world outside is as the file says.
+  PlannedLink plan_outside(std::size_t number) {
+    const GraphLink& link = graph_.links[number];
+    const bool is_input = !link.from.uri.empty();
+    Uri uri = *parse_uri(is_input ? link.from.uri : link.to.uri);
+    const std::string keep{uri.option("keep", keep_of(link))};
+    if (keep != "all" && uri.option("keep", "").empty()) uri.options.emplace_back("keep", keep);
+    for (const auto& [key, value] : link.policy)
+      if (key != "keep") uri.options.emplace_back(key, value.value);
+    const std::string text = uri.text();
+    if (is_input)
+      add_end(link.to, {true, link.to.port, text, routes_[number].reader});
+    else
+      add_end(link.from, {false, link.from.port, text, routes_[number].sender});
+    return {link.from.text(),
+            link.to.text(),
+            is_input ? "" : text,
+            is_input ? text : "",
+            keep,
+            {},
+            false};
+  }
+
+  void add_end(const GraphPort& port, PlannedEnd end) {
+    planning_.planned(port.module)->ends.push_back(std::move(end));
+  }
+
+  Planning& planning_;
+  const Graph& graph_;
+  std::vector<RouteWords> routes_;         // by number of a link
+  std::map<std::string, Sender> senders_;  // by name
+};
+
+}  // namespace
+
+void plan_links(Planning& planning) {
+  LinkPlanner(planning).run();
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The steps from a graph to a plan; plan.cpp takes them one after the other. Internal to graph.
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <hc/graph/plan.h>
+#include <hc/graph/plan/description.h>
+
+namespace hc::internal {
+
+/// What is known while one plans.
+struct Planning {
+  Graph graph;  ///< its links have modules, ports and types that fit, as far as they are described
+  Problems& problems;
+  const Plan* before;  ///< of this graph, whose numbers stay; null: there was none
+  Plan plan{};
+  std::map<std::string, Description> described{};                ///< by module
+  std::map<std::string, std::size_t> index{};                    ///< of a module in Plan::modules
+  std::map<std::string, std::vector<std::int64_t>> groups_of{};  ///< by input
+  std::set<std::string> names{};                                 ///< of modules
+
+  /// What a module says of itself; null where nobody knows.
+  [[nodiscard]] const Description* description_of(const std::string& module) const {
+    auto found = described.find(module);
+    return found == described.end() ? nullptr : &found->second;
+  }
+  [[nodiscard]] bool is_router(const std::string& module) const {
+    const Description* description = description_of(module);
+    return description != nullptr && description->routes;
+  }
+  /// Whether messages leave an output by their address: of a router, one that gives anything.
+  [[nodiscard]] bool routes(const GraphPort& output) const {
+    if (!output.uri.empty() || !is_router(output.module)) return false;
+    const DescribedPort* port = find_output(described.at(output.module), output.port);
+    return port != nullptr && port->types.empty();
+  }
+  [[nodiscard]] PlannedModule* planned(const std::string& module) {
+    auto found = index.find(module);
+    return found == index.end() ? nullptr : &plan.modules[found->second];
+  }
+};
+
+/// ", did you mean "camera"?", unless too much is wrong to look for it all.
+std::string suggest(const Planning& planning, std::string_view name,
+                    const std::vector<std::string>& known);
+
+/// Says that a module, such as a link names it, is not there.
+void add_no_module(Planning& planning, const Place& place, const std::string& module);
+/// Says that a module has no such port. @param kind  "input", "output" or "port".
+void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
+                 const std::string& kind, const std::vector<DescribedPort>& ports);
+
+/// Gives ports their addresses, groups their numbers, and messages of outputs whom they are for.
+void number_ports(Planning& planning);
+
+/// Modes, focus and exclusive inputs: checks them, tells modules, and links the focus to them.
+void plan_modes(Planning& planning);
+
+/// Whether a module gets the frames as text: it has a parameter for them.
+bool takes_frames(const Planning& planning, const std::string& module);
+/// Links what moves frames to the inputs `frames` of modules that get them as text.
+void link_frames(Planning& planning);
+/// Checks the frames, and tells them to modules that have a parameter `frames`.
+void plan_frames(Planning& planning);
+
+/// Checks each link on its own; those that are wrong are taken out of the graph.
+void check_links(Planning& planning);
+/// Loops without a rate, and actors that several command.
+void check_loops(Planning& planning);
+void check_actors(Planning& planning);
+
+/// Gives each link its two ends.
+void plan_links(Planning& planning);
+
+}  // namespace hc::internal

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/announcer.h>
+
+#include <sys/socket.h>
+
+#include <hc/base/uri.h>
+#include <hc/link/unix.h>
+#include <hc/wire/codec.h>
+
+namespace hc::internal {
+
+Result<std::unique_ptr<Announcer>> Announcer::make(EventLoop& loop, const std::string& uri,
+                                                   std::function<std::vector<Message>()> welcome) {
+  auto parsed = parse_uri(uri);
+  if (!parsed) return parsed.error();
+  auto socket = listen_unix(*parsed);
+  if (!socket) return socket.error();
+  std::unique_ptr<Announcer> announcer(new Announcer(loop, std::move(*socket), std::move(welcome)));
+  auto watched = loop.watch(announcer->socket_.descriptor.get(), EPOLLIN,
+                            [self = announcer.get()] { self->let_in(); });
+  if (!watched) return watched.error();
+  announcer->watch_ = std::move(*watched);
+  return announcer;
+}
+
+void Announcer::let_in() {
+  while (true) {
+    auto accepted = accept_peer(socket_, {});
+    if (!accepted || !*accepted) break;
+    if (peers_.size() == kMostPeers) continue;
+    auto peer = std::make_unique<Peer>();
+    peer->socket = std::move(*accepted);
+    auto& newcomer = *peer;
+    peers_.push_back(std::move(peer));
+    if (welcome_)
+      for (const auto& message : welcome_()) put(newcomer, encode(message));
+    watch(newcomer);
+  }
+  forget_those_who_left();
+}
+
+void Announcer::say(const Message& message) {
+  if (peers_.empty()) return;
+  const std::string bytes = encode(message);
+  for (auto& peer : peers_) put(*peer, bytes);
+  forget_those_who_left();
+}
+
+void Announcer::put(Peer& peer, const std::string& bytes) {
+  if (peer.waiting.size() + bytes.size() > kMostWaiting) return;
+  const bool was_waiting = !peer.waiting.empty();
+  peer.waiting += bytes;
+  if (was_waiting) return;
+  write(peer);
+  if (!peer.waiting.empty() && peer.watch) watch(peer);
+}
+
+void Announcer::write(Peer& peer) {
+  auto sent = system_call("send", "", [&] {
+    return ::send(peer.socket.get(), peer.waiting.data(), peer.waiting.size(),
+                  MSG_NOSIGNAL | MSG_DONTWAIT);
+  });
+  if (sent)
+    peer.waiting.erase(0, static_cast<std::size_t>(*sent));
+  else if (errno != EAGAIN)
+    peer.has_left = true;
+}
+
+/// Watches for its leaving, and where something waits for room too.
+void Announcer::watch(Peer& peer) {
+  const bool waits = !peer.waiting.empty();
+  peer.watch.reset();
+  auto watched = loop_.watch(
+      peer.socket.get(), waits ? EPOLLIN | EPOLLOUT : EPOLLIN, [this, who = &peer, waits] {
+        char piece[256];  // it has nothing to say
+        auto size = ::recv(who->socket.get(), piece, sizeof piece, MSG_DONTWAIT);
+        who->has_left = size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR);
+        if (waits && !who->has_left) write(*who);
+        if (waits && who->waiting.empty()) watch(*who);
+        forget_those_who_left();
+      });
+  if (watched)
+    peer.watch = std::move(*watched);
+  else
+    peer.has_left = true;
+}
+
+void Announcer::forget_those_who_left() {
+  std::erase_if(peers_, [](const auto& peer) { return peer->has_left; });
+}
+
+Status say_at_once(const std::string& uri, const Message& message) {
+  auto parsed = parse_uri(uri);
+  if (!parsed) return parsed.error();
+  if (parsed->scheme != "unix") return Error{Code::Usage, uri + ": only unix: can be said to"};
+  auto peer = unix_peer(*parsed);
+  if (!peer) return peer.error();
+  const Address& address = peer->addresses.front();
+  auto socket = open_socket(address);
+  if (!socket) return socket.error();
+  auto connected = system_call(
+      "connect", uri, [&] { return ::connect(socket->get(), address.get(), address.size); });
+  if (!connected) return connected.error();
+  if (auto admitted = peer->admit ? peer->admit(socket->get()) : Status(); !admitted)
+    return admitted;
+  const std::string bytes = encode(message);
+  auto sent = system_call("send", uri, [&] {
+    return ::send(socket->get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  });
+  if (!sent) return sent.error();
+  if (static_cast<std::size_t>(*sent) < bytes.size())
+    return Error{Code::System, uri + ": there was no room for all"};
+  return {};
+}
+
+}  // namespace hc::internal

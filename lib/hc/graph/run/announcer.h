@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Says messages to all who listen, and never waits for one of them. Internal to graph.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/graph/run/event_loop.h>
+#include <hc/link/socket.h>
+#include <hc/wire/message.h>
+
+namespace hc::internal {
+
+/// The listening end of a Unix socket where messages go in. Unlike a listening sink it is used on
+/// the thread of a loop, does not mind if nobody has come, and has something to say to who comes.
+/// Who is more than kMostWaiting behind misses messages, whole ones.
+class Announcer {
+ public:
+  static constexpr std::size_t kMostWaiting = std::size_t{4} << 20;  ///< [byte]
+  static constexpr std::size_t kMostPeers = 64;                      ///< at once
+
+  /// @param uri  `unix-listen:…`
+  /// @param welcome  gives what is said first to each who comes; may be empty.
+  ///
+  /// Errors: Usage, System (the name is in use).
+  static Result<std::unique_ptr<Announcer>> make(
+      EventLoop& loop, const std::string& uri, std::function<std::vector<Message>()> welcome = {});
+
+  void say(const Message& message);
+  [[nodiscard]] bool is_heard() const { return !peers_.empty(); }
+  /// Ends all connections there are.
+  void leave_all() { peers_.clear(); }
+
+ private:
+  struct Peer {
+    Descriptor socket;
+    std::string waiting;  // bytes that the socket has not taken
+    EventLoop::Handle watch;
+    bool has_left = false;
+  };
+
+  Announcer(EventLoop& loop, ListeningSocket socket, std::function<std::vector<Message>()> welcome)
+      : loop_(loop), socket_(std::move(socket)), welcome_(std::move(welcome)) {}
+
+  void let_in();
+  void put(Peer& peer, const std::string& bytes);
+  void write(Peer& peer);
+  void watch(Peer& peer);
+  void forget_those_who_left();
+
+  EventLoop& loop_;
+  ListeningSocket socket_;
+  std::function<std::vector<Message>()> welcome_;
+  std::vector<std::unique_ptr<Peer>> peers_;
+  EventLoop::Handle watch_;
+};
+
+/// Says one message to who listens at `unix:…`, if it can be said at once.
+///
+/// Errors: Usage (another URI), Closed (nobody listens), System.
+Status say_at_once(const std::string& uri, const Message& message);
+
+}  // namespace hc::internal

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/change.h>
+
+#include <algorithm>
+
+#include <hc/graph/run/reports.h>
+
+namespace hc::internal {
+namespace {
+
+const PlannedEnd* find_same(const std::vector<PlannedEnd>& ends, const PlannedEnd& wanted) {
+  auto found = std::find_if(ends.begin(), ends.end(),
+                            [&](const auto& end) { return is_same_end(end, wanted); });
+  return found == ends.end() ? nullptr : &*found;
+}
+
+std::string place(const PlannedEnd& end) {
+  return end.port + "=" + end.uri;
+}
+
+/// Sets what is new or has another value. Of what is given no more, the module alone knows what it
+/// was otherwise.
+void add_settings(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
+  for (const auto& [key, value] : before.parameters)
+    if (!after.parameters.contains(key)) change.needs_restart = true;
+  for (const auto& [key, value] : after.parameters) {
+    auto found = before.parameters.find(key);
+    if (found != before.parameters.end() && found->second == value) continue;
+    if (after.fixed.contains(key)) change.needs_restart = true;
+    change.settings.push_back("set " + key + "=" + value);
+  }
+}
+
+void add_links(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
+  for (const auto& end : before.ends)
+    if (find_same(after.ends, end) == nullptr)
+      change.unlinks.push_back((end.is_input ? "unlink in " : "unlink out ") + place(end));
+  for (const auto& end : after.ends) {
+    auto& commands = end.is_input ? change.inputs : change.outputs;
+    const PlannedEnd* old = find_same(before.ends, end);
+    if (old == nullptr) commands.push_back((end.is_input ? "link in " : "link out ") + place(end));
+    if (end.route != (old == nullptr ? "" : old->route))
+      commands.push_back("route " + place(old == nullptr ? end : *old) +
+                         (end.route.empty() ? " to=*" : " " + end.route));
+  }
+}
+
+}  // namespace
+
+bool is_same_end(const PlannedEnd& one, const PlannedEnd& other) {
+  return end_key(one.is_input, one.port, one.uri) == end_key(other.is_input, other.port, other.uri);
+}
+
+ModuleChange change_between(const PlannedModule& before, const PlannedModule& after) {
+  ModuleChange change;
+  add_settings(before, after, change);
+  add_links(before, after, change);
+  if (after.control_uri.empty() && !change.is_empty()) change.needs_restart = true;
+  if (before.program != after.program || before.options != after.options ||
+      before.control_uri != after.control_uri)
+    change.needs_restart = true;
+  return change;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/intake.h>
+
+namespace hc::internal {
+
+Result<std::unique_ptr<Intake>> Intake::make(EventLoop& loop, const std::string& uri, Take take,
+                                             const LinkOptions& options) {
+  auto parsed = parse_uri(uri);
+  if (!parsed) return parsed.error();
+  auto source = open_source(*parsed, options);
+  if (!source) return source.error();
+  std::unique_ptr<Intake> intake(new Intake(loop, std::move(*source), std::move(take)));
+  auto watched =
+      loop.watch(intake->source_->descriptor(), EPOLLIN, [self = intake.get()] { self->take(); });
+  if (!watched) return watched.error();
+  intake->watch_ = std::move(*watched);
+  // A source may have something before its descriptor has ever been asked to tell.
+  intake->again_ = loop.call_at({}, [self = intake.get()] { self->take(); });
+  return intake;
+}
+
+void Intake::take() {
+  Message message;
+  for (int i = 0; i < kMostInATurn; ++i) {
+    auto got = source_->take(message);
+    if (!got || *got == Got::End) {
+      watch_.reset();
+      again_.reset();
+      return;
+    }
+    if (*got == Got::Message)
+      take_(message);
+    else if (source_->prepare_wait())
+      return;
+  }
+  again_ = loop_.call_at(std::chrono::steady_clock::now(), [this] { take(); });
+}
+
+Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri) {
+  auto uri = parse_uri(reader_uri);
+  if (!uri) return uri.error();
+  uri->options = {{"reconnect", "86400"}};
+  if (uri->scheme == "shm") uri->options.emplace_back("keep", "latest");
+  return Intake::make(loop, uri->text(), [](const Message&) {});
+}
+
+}  // namespace hc::internal

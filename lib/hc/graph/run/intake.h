@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Takes what comes over a link, as it comes, on the thread of a loop. Internal to graph.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <hc/graph/run/event_loop.h>
+#include <hc/link/link.h>
+
+namespace hc::internal {
+
+/// Hands on all messages of a link until it ends; one that goes on and on lets others have a turn.
+class Intake {
+ public:
+  using Take = std::function<void(const Message& message)>;
+
+  /// Errors: as open_source(), System.
+  static Result<std::unique_ptr<Intake>> make(EventLoop& loop, const std::string& uri, Take take,
+                                              const LinkOptions& options = {});
+
+  /// Takes what is there now.
+  void take();
+
+ private:
+  static constexpr int kMostInATurn = 256;
+
+  Intake(EventLoop& loop, std::unique_ptr<Source> source, Take take)
+      : loop_(loop), source_(std::move(source)), take_(std::move(take)) {}
+
+  EventLoop& loop_;
+  std::unique_ptr<Source> source_;
+  Take take_;
+  EventLoop::Handle watch_, again_;
+};
+
+/// What reads in the place of a module that has ended for good, so that no writer waits for it.
+///
+/// @param reader_uri  the URI of its end; how long it was to wait plays no part, and it keeps no
+///     message from being overwritten.
+///
+/// Errors: as Intake::make.
+Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri);
+
+}  // namespace hc::internal

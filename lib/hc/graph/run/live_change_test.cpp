@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <hc/graph/run/running_test.h>
+#include <hc/wire/rows.h>
+
+namespace hc {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string peer_of(const std::string& listening) {
+  return "unix" + listening.substr(listening.find(':'));
+}
+
+/// A graph that is planned anew when it is asked to be, by the name that a test gave it.
+class LiveChange : public Run {
+ protected:
+  LiveChange() {
+    options_.name = "live";
+    options_.replan = [this](const Lines& commands) {
+      std::lock_guard lock(mutex_);
+      commands_ = commands;
+      Replanned planned;
+      if (next_)
+        planned.plan = *next_;
+      else
+        planned.problems = {"one problem", "another"};
+      return planned;
+    };
+  }
+
+  PlannedModule& add(const std::string& name, const std::string& script = "exec sleep 1000") {
+    auto& module = Run::add(name, script);
+    module.restart = Restart::Failure;
+    module.control_uri = "unix-listen:@" + token_ + "." + name + ".control";
+    module.options = {"-c", script + "; # "};
+    return module;
+  }
+
+  /// Asks the graph that runs; gives its answer.
+  static Lines ask(const Lines& commands) {
+    const std::string place = "@live-answer-" + std::to_string(::getpid());
+    auto answers = open_source({"unix-listen", place, {}});
+    HC_CHECK(answers, answers.error().detail);
+    Lines rows = {"reply unix:" + place};
+    rows.insert(rows.end(), commands.begin(), commands.end());
+    auto graph = open_sink(
+        {"unix", "@hypercolumn.live." + std::to_string(::getpid()) + ".ask", {{"wait", "60"}}});
+    HC_CHECK(graph, graph.error().detail);
+    HC_CHECK((*graph)->send(make_rows(rows)));
+    Message answer;
+    HC_CHECK(receive(**answers, answer));
+    return rows_of(answer);
+  }
+
+  /// Does something beside the graph, and ends it then.
+  void beside(std::function<void()> what) {
+    thread_ = std::thread([this, what = std::move(what)] {
+      what();
+      stop();
+    });
+  }
+
+  Result<RunReport> run() {
+    auto report = Run::run();
+    if (thread_.joinable()) thread_.join();
+    return report;
+  }
+
+  void plan_next(Plan plan) {
+    std::lock_guard lock(mutex_);
+    next_ = std::move(plan);
+  }
+  Lines commands() {
+    std::lock_guard lock(mutex_);
+    return commands_;
+  }
+
+  std::thread thread_;  // reads what the graph is made of
+
+ private:
+  std::mutex mutex_;
+  std::optional<Plan> next_;
+  Lines commands_;
+};
+
+TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
+  add("camera");
+  beside([&] {
+    EXPECT_EQ(ask({"remov camera"}), Lines{"no command \"remov\", did you mean \"remove\"?"});
+    EXPECT_EQ(ask({"stop it", "restart camra"}),
+              (Lines{"the command is: stop", "no module \"camra\""}));
+    EXPECT_EQ(ask({}), Lines{"there is no command"});
+    EXPECT_EQ(ask({"remove camera"}), (Lines{"one problem", "another"}));
+    plan_next(plan_);
+    EXPECT_EQ(ask({"set camera.rate=3"}), Lines{"ok"});
+    EXPECT_EQ(commands(), Lines{"set camera.rate=3"});
+  });
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(count("camera: started"), 1);
+}
+
+TEST_F(LiveChange, ModulesComeAndGo) {
+  add("stays");
+  add("comes");
+  Plan other = plan_;
+  plan_.modules.pop_back();
+  add("goes");
+  heard_ = [this](std::string_view) {
+    if (count("goes: started") == 2) stop();
+  };
+  thread_ = std::thread([&] {
+    plan_next(other);
+    EXPECT_EQ(ask({"remove goes", "add comes program"}), Lines{"ok"});
+    plan_next(plan_);
+    EXPECT_EQ(ask({"add goes program"}), Lines{"ok"}) << "while it may be stopping still";
+  });
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(count("stays: started"), 1);
+  EXPECT_EQ(count("comes: started"), 1);
+  EXPECT_EQ(count("goes: started"), 2);
+  ASSERT_EQ(report->state.modules.size(), 2U);
+  EXPECT_EQ(report->state.modules[1].name, "goes");
+}
+
+TEST_F(LiveChange, AnotherProgramIsStartedInThePlaceOfTheFirst) {
+  add("a");
+  stop_at_ = "a: other";
+  thread_ = std::thread([&] {
+    Plan other = plan_;
+    other.modules[0].options = {"-c", "echo other >&2; exec sleep 1000"};
+    plan_next(other);
+    EXPECT_EQ(ask({"set a.b=1"}), Lines{"ok"});
+  });
+  ASSERT_TRUE(run());
+  EXPECT_EQ(count("a: started"), 2);
+}
+
+TEST_F(LiveChange, StopIsACommand) {
+  add("a");
+  thread_ = std::thread([&] { EXPECT_EQ(ask({"stop"}), Lines{"ok"}); });
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(report->stopped);
+}
+
+/// Listens to what a module is told, in its place.
+class Listener {
+ public:
+  explicit Listener(const PlannedModule& module)
+      : source_(std::move(*open_source(*parse_uri(peer_of(module.control_uri) + "?wait=60")))) {}
+  /// The next command; empty when the process has ended.
+  std::string next() {
+    Message message;
+    auto received = receive(*source_, message);
+    HC_CHECK(received, received.error().detail);
+    return *received ? rows_of(message).at(0) : "";
+  }
+
+ private:
+  std::unique_ptr<Source> source_;
+};
+
+TEST_F(LiveChange, AModuleThatListensIsTold) {
+  auto& camera = add("camera");
+  camera.parameters = {{"rate", "30"}};
+  camera.ends = {{false, "left", "shm:t.left?readers=1", ""}};
+  add("view").ends = {{true, "image", "shm:t.left?reconnect=86400", ""}};
+  beside([&] {
+    Listener first(plan_.modules[0]), second(plan_.modules[1]);
+    Plan other = plan_;
+    other.modules[0].parameters["rate"] = "10";
+    other.modules[0].ends = {{false, "left", "shm:t.own?readers=1&rate=5", "to=5"}};
+    other.modules[1].ends = {{true, "image", "shm:t.own?reconnect=86400", ""}};
+    plan_next(other);
+    EXPECT_EQ(ask({"set camera.rate=10"}), Lines{"ok"});
+    EXPECT_EQ(first.next(), "unlink out left=shm:t.left?readers=1");
+    EXPECT_EQ(first.next(), "set rate=10");
+    EXPECT_EQ(first.next(), "link out left=shm:t.own?readers=1&rate=5");
+    EXPECT_EQ(first.next(), "route left=shm:t.own?readers=1&rate=5 to=5");
+    EXPECT_EQ(second.next(), "unlink in image=shm:t.left?reconnect=86400");
+    EXPECT_EQ(second.next(), "link in image=shm:t.own?reconnect=86400");
+  });
+  ASSERT_TRUE(run());
+  EXPECT_EQ(count("camera: started"), 1);
+  EXPECT_TRUE(said("camera: set rate=10"));
+}
+
+TEST_F(LiveChange, AReaderIsToldThatItsWriterHasEnded) {
+  const std::string out = "shm:t.out?readers=1&stay=1", in = "shm:t.out?reconnect=86400";
+  add("writer", "exit 0").ends = {{false, "out", out, ""}};
+  add("reader").ends = {{true, "in", in, ""}};
+  plan_.links = {{"writer.out", "reader.in", out, in, "all", {}, true}};
+  beside([&] {
+    Listener reader(plan_.modules[1]);
+    EXPECT_EQ(reader.next(), "finish in=" + in);
+    EXPECT_EQ(ask({"restart reader"}), Lines{"ok"});
+    EXPECT_EQ(reader.next(), "");
+    Listener again(plan_.modules[1]);
+    EXPECT_EQ(again.next(), "finish in=" + in) << "its next process has to know it too";
+  });
+  ASSERT_TRUE(run());
+}
+
+TEST_F(LiveChange, AnEditedFileIsReadAnew) {
+  const std::string file = ::testing::TempDir() + token_ + ".toml";
+  auto write = [&] { ::close(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600)); };
+  write();
+  options_.files = {file};
+  add("a");
+  heard_ = [&](std::string_view line) {
+    if (line == "a: started") write();
+    if (line == "graph: goes on as it was") {
+      Plan other = plan_;
+      other.modules.push_back(plan_.modules[0]);
+      other.modules[1].name = "b";
+      other.modules[1].manage_uri += "2";
+      other.modules[1].control_uri.clear();
+      plan_next(other);
+      write();
+    }
+    if (line == "b: started") stop();
+  };
+  ASSERT_TRUE(run());
+  ::unlink(file.c_str());
+  EXPECT_TRUE(said("graph: one problem"));
+  EXPECT_TRUE(said("graph: another"));
+  EXPECT_EQ(count("a: started"), 1);
+}
+
+TEST_F(LiveChange, TheStateIsToldAsJson) {
+  add("camera").mode = "track";
+  plan_.modes = {{"track", 1}};
+  std::string text, line;
+  beside([&] {
+    auto graph =
+        open_source({"unix", "@hypercolumn.live." + std::to_string(::getpid()), {{"wait", "60"}}});
+    ASSERT_TRUE(graph);
+    Message message;
+    ASSERT_TRUE(receive(**graph, message));
+    EXPECT_EQ(message.header.src, 1);
+    text = rows_of(message).at(0);
+    EXPECT_EQ(ask({"restart camera"}), Lines{"ok"});
+    while (message.header.src != 2) ASSERT_TRUE(receive(**graph, message));
+    line = rows_of(message).at(0);
+  });
+  ASSERT_TRUE(run());
+  for (const char* part : {"{\"graph\":\"live\"", "\"name\":\"camera\"", "\"status\":\"starting\"",
+                           "\"mode\":\"track\"", "\"modes\":{\"track\":1}", "\"focus\":null"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+  EXPECT_EQ(line.substr(0, 8), "camera: ");
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/observation.h>
+
+#include <unistd.h>
+
+#include <hc/base/clock.h>
+#include <hc/wire/rows.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::chrono::milliseconds kSoon{20};
+constexpr std::uint64_t kMostCommands = std::uint64_t{1} << 20;  // in one message [byte]
+
+enum Sender : std::int32_t { kState = 1, kLog };
+
+Message stamped(Message message, Sender src, std::int64_t& seq) {
+  message.header.src = src;
+  message.header.seq = seq++;
+  message.header.time = SystemClock().wall();
+  return message;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Observation>> Observation::make(EventLoop& loop, const std::string& name,
+                                                       Asked asked) {
+  const std::string uri = "unix-listen:@hypercolumn." + name + "." + std::to_string(::getpid());
+  std::unique_ptr<Observation> observation(new Observation(loop, std::move(asked)));
+  auto& self = *observation;
+  auto announcer =
+      Announcer::make(loop, uri, [&self] { return std::vector{self.state_message()}; });
+  if (!announcer) return announcer.error();
+  self.announcer_ = std::move(*announcer);
+  LinkOptions options;
+  options.limits.element_bytes = kMostCommands;
+  auto commands = Intake::make(
+      loop, uri + ".ask", [&self](const Message& message) { self.take_commands(message); },
+      options);
+  if (!commands) return commands.error();
+  self.commands_ = std::move(*commands);
+  return observation;
+}
+
+Message Observation::state_message() {
+  return stamped(make_rows(std::array{to_json(asked_.state())}), kState, states_);
+}
+
+void Observation::tell_state() {
+  if (!is_heard()) return;
+  soon_.reset();
+  announcer_->say(state_message());
+}
+
+void Observation::changed() {
+  if (!is_heard() || soon_) return;
+  soon_ = loop_.call_at(std::chrono::steady_clock::now() + kSoon, [this] { tell_state(); });
+}
+
+void Observation::log(const std::string& line) {
+  if (is_heard() && !line.empty())
+    announcer_->say(stamped(make_rows(std::array{line}), kLog, lines_));
+}
+
+void Observation::take_commands(const Message& message) const {
+  constexpr std::string_view kReply = "reply ";
+  auto commands = rows_of(message);
+  std::string reply;
+  if (!commands.empty() && commands.front().starts_with(kReply)) {
+    reply = commands.front().substr(kReply.size());
+    commands.erase(commands.begin());
+  }
+  std::vector<std::string> answer = {"there is no command"};
+  if (!commands.empty()) answer = asked_.obey(commands);
+  if (answer.empty()) answer = {"ok"};
+  // Who has gone meanwhile does not want to know.
+  if (!reply.empty()) static_cast<void>(say_at_once(reply, make_rows(answer)));
+}
+
+}  // namespace hc::internal

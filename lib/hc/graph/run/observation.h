@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The two links that a graph which runs has for others of the same user: it tells its state and its
+// log over one, and takes commands over the other (spec/graph.md). Internal to graph.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/graph/run/announcer.h>
+#include <hc/graph/run/intake.h>
+#include <hc/graph/state.h>
+
+namespace hc::internal {
+
+class Observation {
+ public:
+  struct Asked {
+    std::function<GraphState()> state;
+    /// Does what commands say, all of them or none; gives what is wrong with them, if anything.
+    std::function<std::vector<std::string>(const std::vector<std::string>& commands)> obey;
+  };
+
+  /// @param name  of the graph. Errors: System (another graph of this process has the name).
+  static Result<std::unique_ptr<Observation>> make(EventLoop& loop, const std::string& name,
+                                                   Asked asked);
+
+  /// Tells the state, if anybody listens.
+  void tell_state();
+  /// Has the state told soon, however often it is called by then.
+  void changed();
+  void log(const std::string& line);
+  [[nodiscard]] bool is_heard() const { return announcer_->is_heard(); }
+
+ private:
+  Observation(EventLoop& loop, Asked asked) : loop_(loop), asked_(std::move(asked)) {}
+
+  Message state_message();
+  void take_commands(const Message& message) const;
+
+  EventLoop& loop_;
+  Asked asked_;
+  std::int64_t states_ = 0, lines_ = 0;  // told so far
+  EventLoop::Handle soon_;
+  std::unique_ptr<Announcer> announcer_;
+  std::unique_ptr<Intake> commands_;
+};
+
+}  // namespace hc::internal

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/process.h>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <csignal>
+
+namespace hc::internal {
+namespace {
+
+constexpr int kCannotExecute = 127;
+
+/// What a guard and its program get from us. Between fork and exec, and in a guard all its life,
+/// nothing may allocate: another thread of ours may have held a lock when we forked.
+struct Start {
+  char* const* arguments;
+  Process::Capture capture;
+  int output;  // for what is captured
+  int errors;  // for the errno of what fails
+  int life;    // at its end when we have gone
+};
+
+[[noreturn]] void fail(const Start& start) {
+  int number = errno;
+  [[maybe_unused]] auto written = ::write(start.errors, &number, sizeof number);
+  ::_exit(kCannotExecute);
+}
+
+/// Becomes the program.
+[[noreturn]] void become(const Start& start, pid_t parent, const sigset_t& signals) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(kCannotExecute);  // it died before it could be noticed
+  int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  ::dup2(null, STDIN_FILENO);
+  ::dup2(start.capture == Process::Capture::Output ? start.output : null, STDOUT_FILENO);
+  ::dup2(start.capture == Process::Capture::Errors ? start.output : null, STDERR_FILENO);
+  std::signal(SIGPIPE, SIG_DFL);
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+  ::execvp(start.arguments[0], start.arguments);
+  fail(start);
+}
+
+/// Signals every child of ours to die; whether there was one that can be.
+bool kill_children() {
+  int list = ::open("/proc/thread-self/children", O_RDONLY | O_CLOEXEC);
+  bool any = false;
+  pid_t child = 0;
+  char piece[4096];
+  for (ssize_t size = 0; (size = ::read(list, piece, sizeof piece)) > 0;)
+    for (ssize_t i = 0; i < size; ++i) {
+      if (piece[i] >= '0' && piece[i] <= '9') {
+        child = child * 10 + (piece[i] - '0');
+      } else if (child != 0) {
+        any = ::kill(child, SIGKILL) == 0 || any;
+        child = 0;
+      }
+    }
+  ::close(list);
+  return any;
+}
+
+/// Stands between us and a program: see process.h.
+[[noreturn]] void guard(const Start& start) {
+  sigset_t all, before, ended;
+  ::sigfillset(&all);
+  ::sigprocmask(SIG_SETMASK, &all, &before);
+  std::signal(SIGCHLD, SIG_DFL);  // were it ignored, nothing could be waited for
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_NAME, "guard");
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  pid_t self = ::getpid();
+  pid_t program = ::fork();
+  if (program < 0) fail(start);
+  if (program == 0) become(start, self, before);
+
+  // All pipes of other processes are open here too, and would not close when we go.
+  ::dup2(start.life, 0);
+  ::close_range(1, ~0U, 0);
+  ::sigemptyset(&ended);
+  ::sigaddset(&ended, SIGCHLD);
+  pollfd polled[] = {{0, POLLIN, 0}, {::signalfd(-1, &ended, SFD_NONBLOCK), POLLIN, 0}};
+  int status = 0;
+  bool has_ended = false;
+  while (!has_ended && polled[0].revents == 0) {
+    ::poll(polled, 2, -1);
+    signalfd_siginfo signal;
+    while (::read(polled[1].fd, &signal, sizeof signal) > 0) {
+    }
+    int each = 0;
+    for (pid_t child = 0; (child = ::waitpid(-1, &each, WNOHANG)) > 0;) {
+      if (child != program) continue;
+      has_ended = true;
+      status = WIFSIGNALED(each) ? 128 + WTERMSIG(each) : WEXITSTATUS(each);
+    }
+  }
+  // The children of one that dies become ours, so this goes on until nobody is left.
+  while (kill_children()) ::waitpid(-1, nullptr, 0);
+  // Those that the system would not list, where it lists none, and this process itself.
+  if (!has_ended) ::kill(0, SIGKILL);
+  ::_exit(status);
+}
+
+Result<std::array<Descriptor, 2>> make_pipe() {
+  int ends[2];
+  auto made = system_call("pipe2", "", [&] { return ::pipe2(ends, O_CLOEXEC); });
+  if (!made) return made.error();
+  return std::array<Descriptor, 2>{Descriptor(ends[0]), Descriptor(ends[1])};
+}
+
+}  // namespace
+
+Result<Process> Process::start(const std::vector<std::string>& command, Capture capture) {
+  std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
+  for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  auto output = make_pipe();
+  if (!output) return output.error();
+  auto errors = make_pipe();
+  if (!errors) return errors.error();
+  auto life = make_pipe();
+  if (!life) return life.error();
+
+  pid_t child = ::fork();
+  if (child < 0) return system_error("fork", command[0]);
+  if (child == 0)
+    guard({arguments.data(), capture, (*output)[1].get(), (*errors)[1].get(), (*life)[0].get()});
+
+  Process process;
+  process.number_ = child;
+  process.handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
+  process.output_ = std::move((*output)[0]);
+  process.life_ = std::move((*life)[1]);
+  ::fcntl(process.output_.get(), F_SETFL, O_NONBLOCK);
+  // The pipe closes by itself when exec succeeds.
+  (*errors)[1].reset();
+  int number = 0;
+  auto size =
+      system_call("read", "", [&] { return ::read((*errors)[0].get(), &number, sizeof number); });
+  if (size && *size == sizeof number) return system_error("exec", command[0], number);
+  if (!process.handle_) return system_error("pidfd_open", command[0]);
+  return process;
+}
+
+Process::~Process() {
+  if (!owned_.flag || number_ < 0 || status_) return;
+  kill();
+  siginfo_t ended{};
+  while (::waitid(P_PID, static_cast<id_t>(number_), &ended, WEXITED | WNOWAIT) < 0 &&
+         errno == EINTR) {
+  }
+  poll_status();
+}
+
+std::optional<int> Process::poll_status() {
+  siginfo_t ended{};
+  if (status_ || ::waitid(P_PID, static_cast<id_t>(number_), &ended, WEXITED | WNOHANG | WNOWAIT) ||
+      ended.si_pid != number_)
+    return status_;
+  // What a guard that was killed could not see to. Until it is reaped, the number is nobody else's.
+  ::kill(-number_, SIGKILL);
+  int status = 0;
+  ::waitpid(number_, &status, 0);
+  status_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  return status_;
+}
+
+void Process::ask_to_end() const {
+  if (status_) return;
+  // First, as one that is stopped could not; behind, it may undo the stop of a leak checker or a
+  // debugger that looks at one that is ending.
+  ::kill(-number_, SIGCONT);
+  ::kill(-number_, SIGTERM);
+}
+
+}  // namespace hc::internal

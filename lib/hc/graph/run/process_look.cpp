@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/process_look.h>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <hc/link/descriptor.h>
+
+namespace hc::internal {
+namespace {
+
+std::string text_of(const std::string& path) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  std::string text;
+  char piece[4096];
+  for (ssize_t size = 0; file && (size = ::read(file.get(), piece, sizeof piece)) > 0;)
+    text.append(piece, static_cast<std::size_t>(size));
+  return text;
+}
+
+/// The whole numbers at the beginning of a text, between spaces.
+std::vector<std::int64_t> numbers_in(std::string_view text) {
+  std::vector<std::int64_t> numbers;
+  while (!text.empty()) {
+    std::int64_t number = 0;
+    auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (status != std::errc()) break;
+    numbers.push_back(number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  }
+  return numbers;
+}
+
+/// Children of one thread, the eldest first.
+std::vector<std::int64_t> children_of(pid_t process, const std::string& thread) {
+  return numbers_in(text_of("/proc/" + std::to_string(process) + "/task/" + thread + "/children"));
+}
+
+std::vector<std::string> threads_of(pid_t process) {
+  std::vector<std::string> threads;
+  std::unique_ptr<DIR, int (*)(DIR*)> folder(
+      ::opendir(("/proc/" + std::to_string(process) + "/task").c_str()), ::closedir);
+  if (folder == nullptr) return threads;
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): a stream of one thread
+  while (const dirent* entry = ::readdir(folder.get()))
+    if (entry->d_name[0] != '.') threads.emplace_back(entry->d_name);
+  return threads;
+}
+
+/// The share of memory, of "Pss: 1234 kB".
+std::uint64_t memory_of(pid_t process) {
+  constexpr std::string_view kKey = "\nPss:";
+  auto text = text_of("/proc/" + std::to_string(process) + "/smaps_rollup");
+  auto place = text.find(kKey);
+  if (place == std::string::npos) return 0;
+  std::string_view rest = std::string_view(text).substr(place + kKey.size());
+  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+  auto numbers = numbers_in(rest);
+  return numbers.empty() ? 0 : static_cast<std::uint64_t>(numbers[0]) << 10;
+}
+
+}  // namespace
+
+pid_t first_child(pid_t process) {
+  auto children = children_of(process, std::to_string(process));
+  return children.empty() ? 0 : static_cast<pid_t>(children.front());
+}
+
+std::vector<pid_t> descendants(pid_t process) {
+  std::vector<pid_t> all;
+  auto add = [&](pid_t parent) {
+    for (const auto& thread : threads_of(parent))
+      for (auto child : children_of(parent, thread)) all.push_back(static_cast<pid_t>(child));
+  };
+  add(process);
+  for (std::size_t i = 0; i < all.size(); ++i) add(all[i]);
+  return all;
+}
+
+Usage usage_of(const std::vector<pid_t>& processes, bool with_memory) {
+  // Source: man 5 proc, /proc/pid/stat. Fields are counted from behind the name, which may hold
+  // anything: the state is the first, and times of 14 to 17 the 11th to 14th behind it.
+  constexpr std::size_t kFirstTime = 10, kTimes = 4;
+  const auto tick = std::chrono::nanoseconds(std::nano::den / ::sysconf(_SC_CLK_TCK));
+  Usage usage;
+  for (auto process : processes) {
+    auto text = text_of("/proc/" + std::to_string(process) + "/stat");
+    auto name_end = text.rfind(") ");
+    if (name_end == std::string::npos || name_end + 4 > text.size()) continue;
+    const char state = text[name_end + 2];
+    usage.is_stopped = usage.is_stopped || state == 'T' || state == 't';
+    auto numbers = numbers_in(std::string_view(text).substr(name_end + 4));
+    for (std::size_t i = kFirstTime; i < kFirstTime + kTimes && i < numbers.size(); ++i)
+      usage.processor += numbers[i] * tick;
+    if (with_memory) usage.memory += memory_of(process);
+  }
+  return usage;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/reports.h>
+
+#include <gtest/gtest.h>
+
+#include <hc/wire/rows.h>
+
+namespace hc::internal {
+namespace {
+
+using namespace std::chrono_literals;
+
+class ReportsTest : public ::testing::Test {
+ protected:
+  static Message table(std::int32_t src, std::vector<std::vector<std::int64_t>> rows) {
+    Draft draft = Draft::make({MatrixType::Table, static_cast<std::uint8_t>(rows[0].size()),
+                               Scalar::I64, Encoding::Binary},
+                              1, static_cast<std::int32_t>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      std::copy(rows[i].begin(), rows[i].end(), draft.view<std::int64_t>().row(i).begin());
+    draft.header.src = src;
+    return std::move(draft).finish();
+  }
+  static Message rows(std::int32_t src, std::vector<std::string> lines) {
+    auto message = make_rows(lines);
+    message.header.src = src;
+    return message;
+  }
+  /// Counters as of after half a second more.
+  void count(std::vector<std::vector<std::int64_t>> rows) {
+    reports_.take(table(1, std::move(rows)), now_ += 500ms);
+  }
+
+  MonotonicTime now_{1s};
+  PlannedEnd out_{false, "out", "shm:t.a.out?readers=2&stay=1", ""};
+  PlannedEnd in_{true, "in", "unix:@t", ""};
+  Reports reports_{{out_, in_}};
+};
+
+TEST_F(ReportsTest, RowsOfWhoDoesNotTellAreInputsFirst) {
+  EXPECT_EQ(reports_.find(in_), nullptr);
+  reports_.take(table(0, {{7, 70}, {9, 90}}), now_);
+  ASSERT_NE(reports_.find(in_), nullptr);
+  EXPECT_EQ(reports_.find(in_)->traffic.messages, 7U);
+  EXPECT_EQ(reports_.find(out_)->traffic.bytes, 90U);
+}
+
+TEST_F(ReportsTest, LinksSayTheOrderHoweverManyReaders) {
+  EXPECT_TRUE(
+      reports_.take(rows(2, {"out out shm:t.a.out?readers=1&stay=1", "in in unix:@t"}), now_));
+  reports_.take(table(1, {{9, 90}, {7, 70}}), now_);
+  EXPECT_EQ(reports_.find(in_)->traffic.messages, 7U);
+  EXPECT_EQ(reports_.find(out_)->traffic.messages, 9U);
+}
+
+TEST_F(ReportsTest, RatesAreBetweenTwoReports) {
+  count({{0, 0}, {100, 1000}});
+  EXPECT_EQ(reports_.find(out_)->per_second, 0);
+  count({{0, 0}, {150, 2000}});
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 100);
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->bytes_per_second, 2000);
+}
+
+TEST_F(ReportsTest, CountsGoOnWhenItIsStartedAnew) {
+  count({{1, 1}, {100, 1000}});
+  reports_.end();
+  EXPECT_EQ(reports_.find(out_)->traffic.messages, 100U);
+  count({{2, 2}, {200, 2000}});
+  EXPECT_EQ(reports_.find(out_)->traffic.messages, 300U);
+  EXPECT_EQ(reports_.find(out_)->per_second, 0);
+  count({{2, 2}, {50, 500}});  // a link that was made anew counts from 0 too
+  EXPECT_EQ(reports_.find(out_)->traffic.messages, 350U);
+}
+
+TEST_F(ReportsTest, AllColumnsAreTaken) {
+  count({{1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 20, 21, 22}});
+  const auto* report = reports_.find(in_);
+  EXPECT_EQ(report->traffic.cut, 7U);
+  EXPECT_EQ(report->left_out, 8U);
+  EXPECT_EQ(report->age, (std::array<std::int64_t, 3>{10, 11, 12}));
+  EXPECT_EQ(report->gap, (std::array<std::int64_t, 3>{20, 21, 22}));
+}
+
+TEST_F(ReportsTest, ParametersAndModeTellOfChangesAlone) {
+  auto parameters = rows(3, {"rate=30", "text=a = b"});
+  EXPECT_TRUE(reports_.take(parameters, now_));
+  EXPECT_FALSE(reports_.take(parameters, now_));
+  EXPECT_EQ(reports_.parameters().at("text"), "a = b");
+  EXPECT_TRUE(reports_.take(table(4, {{2, 1, 0}}), now_));
+  EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0}}), now_));
+  EXPECT_EQ(reports_.mode, 2);
+  EXPECT_EQ(reports_.focus, 1);
+  EXPECT_FALSE(reports_.in_focus);
+}
+
+TEST_F(ReportsTest, WhatMakesNoSenseIsPassedOver) {
+  reports_.take(rows(2, {"", "in", "out x"}), now_);
+  EXPECT_FALSE(reports_.take(rows(1, {"no table"}), now_));
+  EXPECT_FALSE(reports_.take(table(4, {{1, 2}}), now_));
+  EXPECT_FALSE(reports_.take(table(1, {{1}}), now_));
+}
+
+}  // namespace
+}  // namespace hc::internal

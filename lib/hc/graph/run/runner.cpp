@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/runner.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace hc::internal {
+namespace {
+
+using MonotonicClock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kTick{250};
+constexpr int kTicksOfState = 2, kTicksOfMemory = 8;
+constexpr int kSignal = 128;  // the status of who was killed by one is above
+
+MonotonicTime now() {
+  return SystemClock().monotonic();
+}
+
+/// A line with its module's name before it, where that is not there yet.
+std::string with_name(const std::string& module, const std::string& line) {
+  const std::string prefix = module + ": ";
+  return line.starts_with(prefix) ? line : prefix + line;
+}
+
+}  // namespace
+
+Result<RunReport> Runner::run() {
+  if (auto begun = begin(); !begun) return begun.error();
+  while (!is_over()) {
+    if (auto turned = loop_->turn(); !turned) return turned.error();
+    settle();
+  }
+  if (!outcome_) return outcome_.error();
+  return RunReport{state(), is_stopped_};
+}
+
+Status Runner::begin() {
+  begun_ = now();
+  auto loop = EventLoop::make();
+  if (!loop) return loop.error();
+  loop_ = std::move(*loop);
+  if (!options_.name.empty()) {
+    auto observation = Observation::make(
+        *loop_, options_.name,
+        {[this] { return state(); }, [this](const auto& lines) { return obey(lines); }});
+    if (!observation) return observation.error();
+    observation_ = std::move(*observation);
+  }
+  if (options_.stop >= 0) {
+    auto watched = loop_->watch(options_.stop, EPOLLIN, [this] {
+      stop_.reset();
+      is_stopped_ = true;
+      end_all();
+    });
+    if (!watched) return watched.error();
+    stop_ = std::move(*watched);
+  }
+  if (options_.replan && !options_.files.empty()) {
+    auto files = FileWatch::make(*loop_, [this] { read_anew(); });
+    if (!files) return files.error();
+    files_ = std::move(*files);
+    files_->set_files(options_.files);
+  }
+  // All listen before one starts: who comes early finds its peers.
+  for (const auto& planned : plan_.modules) {
+    auto module = make(planned);
+    if (!module) return module.error();
+    modules_[planned.name] = std::move(*module);
+  }
+  for (const auto& planned : plan_.modules)
+    if (auto started = find(planned.name)->start(); !started) return started;
+  tick();
+  return {};
+}
+
+Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
+  const std::string& name = module.name;
+  Supervised::Hear hear;
+  hear.event = [this, name](const std::string& line) { say(with_name(name, line)); };
+  hear.said = [this, name](const std::string& line) { this->hear(with_name(name, line)); };
+  hear.failed = [this, name](const std::deque<std::string>& last_words) {
+    if (!options_.tells_lines)
+      for (const auto& line : last_words) tell(with_name(name, line));
+  };
+  hear.changed = [this] {
+    is_unsettled_ = true;
+    if (observation_) observation_->changed();
+  };
+  hear.ended = [this, name] {
+    const Supervised* ended = find(name);
+    if (ended == nullptr || ended->status() != ModuleStatus::GivenUp || is_stopping_) return;
+    const bool is_failure = ended->plan().restart == Restart::Never;
+    if (is_failure) failures_.push_back({name, ended->exit().value_or(0)});
+  };
+  return Supervised::make(*loop_, module, options_.limits, std::move(hear));
+}
+
+Supervised* Runner::find(const std::string& name) const {
+  auto found = modules_.find(name);
+  return found == modules_.end() ? nullptr : found->second.get();
+}
+
+Supervised* Runner::at(const std::string& end) const {
+  return find(end.substr(0, end.find('.')));
+}
+
+void Runner::tell(const std::string& line) const {
+  if (options_.event) options_.event(line);
+}
+
+void Runner::say(const std::string& line) {
+  tell(line);
+  if (observation_) observation_->log(line);
+}
+
+void Runner::hear(const std::string& line) {
+  if (options_.tells_lines) tell(line);
+  if (observation_) observation_->log(line);
+}
+
+void Runner::tick() {
+  const auto time = now();
+  for (auto& [name, module] : modules_) module->look(time);
+  if (ticks_++ % kTicksOfState == 0) {
+    if (observation_ && observation_->is_heard()) {
+      for (auto& [name, module] : modules_)
+        module->measure(time, (ticks_ - 1) % kTicksOfMemory == 0);
+      observation_->tell_state();
+    }
+    if (options_.state) options_.state(state());
+  }
+  tick_ = loop_->call_at(MonotonicClock::now() + kTick, [this] { tick(); });
+}
+
+bool Runner::is_over() const {
+  return leaving_.empty() && std::all_of(modules_.begin(), modules_.end(),
+                                         [](const auto& entry) { return entry.second->is_over(); });
+}
+
+/// Does what follows of what has happened in a turn.
+void Runner::settle() {
+  if (!failures_.empty()) settle_failures();
+  while (std::exchange(is_unsettled_, false)) settle_links();
+  std::erase_if(leaving_, [](const auto& entry) { return entry.second->is_over(); });
+}
+
+/// Ends the graph. Who was killed is the cause of what others say of their links.
+void Runner::settle_failures() {
+  // A copy, since what is noted may add to them; and behind the others, so that none is blamed for
+  // our own signal.
+  for (auto& [name, module] : modules_) module->note_end();
+  auto cause = std::find_if(failures_.begin(), failures_.end(),
+                            [](const Failure& each) { return each.status > kSignal; });
+  if (cause == failures_.end()) cause = failures_.begin();
+  outcome_ = Error{Code::Closed, "module " + cause->module + ": " + end_in_words(cause->status)};
+  failures_.clear();
+  end_all();
+}
+
+void Runner::end_all() {
+  if (std::exchange(is_stopping_, true)) return;
+  if (is_stopped_) say("graph: stopping");
+  for (auto& [name, module] : modules_) module->end();
+}
+
+/// Sees to it that no writer waits for a reader that has ended for good, and no reader for a
+/// writer.
+void Runner::settle_links() {
+  if (is_stopping_) return;
+  std::map<std::string, bool> to_read;  // in the place of readers: by URI
+  for (const auto& link : plan_.links)
+    if (link.lasts) settle_link(link, to_read);
+  std::erase_if(stand_ins_, [&](const auto& entry) { return !to_read.contains(entry.first); });
+  for (const auto& [uri, wanted] : to_read) {
+    if (stand_ins_.contains(uri)) continue;
+    auto stand_in = make_stand_in(*loop_, uri);
+    if (!stand_in) say("graph: " + uri + ": " + stand_in.error().text());
+    stand_ins_[uri] = stand_in ? std::move(*stand_in) : nullptr;
+  }
+  end_unneeded();
+}
+
+void Runner::settle_link(const PlannedLink& link, std::map<std::string, bool>& to_read) {
+  Supervised* writer = at(link.from);
+  Supervised* reader = at(link.to);
+  if (writer == nullptr || reader == nullptr) return;
+  if (reader->is_over() && !writer->is_over()) to_read[link.reader_uri] = true;
+  if (reader->is_over()) return;
+  const std::string port = link.to.substr(link.to.find('.') + 1);
+  reader->finish_input({true, port, link.reader_uri, {}}, writer->status() == ModuleStatus::Ended);
+}
+
+/// A module all of whose readers have done their work has nothing left to do.
+void Runner::end_unneeded() {
+  std::map<std::string, bool> is_needed;  // of writers
+  for (const auto& link : plan_.links) {
+    const Supervised* reader = at(link.to);
+    const bool is_done = reader != nullptr && reader->status() == ModuleStatus::Ended;
+    bool& needed = is_needed[link.from.substr(0, link.from.find('.'))];
+    needed = needed || !is_done;
+  }
+  for (const auto& [name, needed] : is_needed) {
+    Supervised* writer = find(name);
+    if (needed || writer == nullptr || writer->is_over() || writer->is_to_end() ||
+        writer->plan().restart == Restart::Always)
+      continue;
+    writer->dismiss();
+  }
+}
+
+}  // namespace hc::internal
+
+namespace hc {
+
+Result<RunReport> run_graph(Plan plan, const RunOptions& options) {
+  return internal::Runner(std::move(plan), options).run();
+}
+
+}  // namespace hc

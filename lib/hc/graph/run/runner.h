@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A graph at work: its modules, the links between them, and what others ask of it. Internal to
+// graph.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/graph/run.h>
+#include <hc/graph/run/event_loop.h>
+#include <hc/graph/run/file_watch.h>
+#include <hc/graph/run/observation.h>
+#include <hc/graph/run/supervised.h>
+
+namespace hc::internal {
+
+class Runner {
+ public:
+  Runner(Plan plan, const RunOptions& options) : options_(options), plan_(std::move(plan)) {}
+
+  Result<RunReport> run();
+
+ private:
+  struct Failure {
+    std::string module;
+    int status;
+  };
+
+  Status begin();
+  Result<std::unique_ptr<Supervised>> make(const PlannedModule& module);
+  [[nodiscard]] Supervised* find(const std::string& name) const;
+  /// The module of "MODULE.PORT"; null where it is the world outside.
+  [[nodiscard]] Supervised* at(const std::string& end) const;
+
+  void tell(const std::string& line) const;
+  void say(const std::string& line);
+  void hear(const std::string& line);
+
+  void tick();
+  void settle();
+  void settle_failures();
+  void settle_links();
+  void settle_link(const PlannedLink& link, std::map<std::string, bool>& to_read);
+  void end_unneeded();
+  void end_all();
+  [[nodiscard]] bool is_over() const;
+
+  void read_anew();
+  std::vector<std::string> obey(const std::vector<std::string>& lines);
+  void change_to(Plan plan);
+  void add(const PlannedModule& module);
+
+  [[nodiscard]] GraphState state() const;
+  [[nodiscard]] LinkState state_of(const PlannedLink& link) const;
+
+  const RunOptions& options_;
+  Plan plan_;
+  MonotonicTime begun_{0};
+  int ticks_ = 0;
+  bool is_stopping_ = false, is_stopped_ = false;
+  bool is_unsettled_ = false;  // a module has started or ended, or links have changed
+  std::vector<Failure> failures_;
+  Status outcome_;
+  std::vector<std::string> commands_;  // that have changed the graph
+  std::unique_ptr<EventLoop> loop_;
+  std::unique_ptr<Observation> observation_;
+  std::unique_ptr<FileWatch> files_;
+  std::map<std::string, std::unique_ptr<Intake>> stand_ins_;  // by the URI they read; null: failed
+  std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
+  EventLoop::Handle stop_, tick_;
+};
+
+}  // namespace hc::internal

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a graph that runs is changed: by its files, and by commands.
+#include <hc/graph/commands.h>
+#include <hc/graph/run/runner.h>
+
+namespace hc::internal {
+
+void Runner::read_anew() {
+  if (is_stopping_) return;
+  auto planned = options_.replan(commands_);
+  if (!planned.plan && !commands_.empty()) {
+    // Perhaps the file is right, and what was asked beside it does not go with it any more.
+    auto alone = options_.replan({});
+    if (alone.plan) {
+      for (const auto& line : planned.problems) say("graph: " + line);
+      say("graph: the commands so far are forgotten");
+      commands_.clear();
+      planned = std::move(alone);
+    }
+  }
+  files_->set_files(planned.files.empty() ? options_.files : planned.files);
+  if (planned.plan) return change_to(std::move(*planned.plan));
+  for (const auto& line : planned.problems) say("graph: " + line);
+  say("graph: goes on as it was");
+}
+
+/// Does what all of some commands say, or nothing; gives what is wrong.
+std::vector<std::string> Runner::obey(const std::vector<std::string>& lines) {
+  std::vector<std::string> wrong;
+  std::vector<Command> commands;
+  auto edits = commands_;
+  for (const auto& line : lines) {
+    auto command = parse_command(line);
+    if (!command) {
+      wrong.push_back(command.error().detail);
+      continue;
+    }
+    if (command->is_edit()) add_command(edits, line);
+    if (command->verb == Command::Verb::Restart && find(command->words[0]) == nullptr)
+      wrong.push_back("no module \"" + command->words[0] + "\"");
+    commands.push_back(std::move(*command));
+  }
+  if (is_stopping_) wrong.emplace_back("the graph is stopping");
+  if (!wrong.empty()) return wrong;
+  if (edits != commands_) {
+    if (!options_.replan) return {"this graph cannot be changed"};
+    auto planned = options_.replan(edits);
+    if (!planned.plan) return planned.problems;
+    commands_ = std::move(edits);
+    change_to(std::move(*planned.plan));
+  }
+  for (const auto& command : commands) {
+    if (command.verb == Command::Verb::Restart) {
+      if (auto* module = find(command.words[0])) module->restart();
+    } else if (command.verb == Command::Verb::Stop) {
+      is_stopped_ = true;
+      end_all();
+    }
+  }
+  return {};
+}
+
+/// Makes the graph that runs as another plan says.
+void Runner::change_to(Plan plan) {
+  plan_ = std::move(plan);
+  is_unsettled_ = true;
+  std::map<std::string, const PlannedModule*> planned;
+  for (const auto& module : plan_.modules) planned[module.name] = &module;
+  for (auto& [name, module] : modules_)
+    if (auto found = planned.find(name); found != planned.end())
+      module->change_plan(*found->second);
+  for (auto entry = modules_.begin(); entry != modules_.end();) {
+    auto module = entry++;
+    if (planned.contains(module->first)) continue;
+    module->second->end();
+    leaving_.insert(modules_.extract(module));
+  }
+  for (const auto& module : plan_.modules) {
+    if (auto* there = find(module.name))
+      there->start_change();
+    else
+      add(module);
+  }
+  for (auto& [name, module] : modules_) module->end_change();
+  say("graph: changed");
+}
+
+void Runner::add(const PlannedModule& module) {
+  if (auto back = leaving_.extract(module.name)) {
+    auto& there = *modules_.insert(std::move(back)).position->second;
+    there.change_plan(module);
+    return there.restart();
+  }
+  auto made = make(module);
+  if (!made) return say(module.name + ": " + made.error().text());
+  auto& added = *(modules_[module.name] = std::move(*made));
+  added.restart();
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a graph that runs does, put together of what its modules report.
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include <hc/graph/global_workspace.h>
+#include <hc/graph/run/runner.h>
+
+namespace hc::internal {
+
+GraphState Runner::state() const {
+  GraphState state;
+  state.name = options_.name;
+  state.file = options_.file;
+  state.process = ::getpid();
+  state.uptime = std::chrono::duration<double>(SystemClock().monotonic() - begun_).count();
+  state.is_stopping = is_stopping_;
+  state.modes = plan_.modes;
+  state.groups = plan_.groups;
+  state.addresses = plan_.addresses;
+  for (const auto& planned : plan_.modules) {
+    const auto* module = find(planned.name);
+    if (module == nullptr) continue;
+    state.modules.push_back(module->state());
+    // The workspace tells the focus and does not hear it; those that hear it work, or may be wrong.
+    if (state.focus == 0 && module->status() == ModuleStatus::Running)
+      state.focus = module->reports().focus;
+  }
+  for (const auto& link : plan_.links) state.links.push_back(state_of(link));
+  const auto workspace = global_workspace(plan_, state.focus_name());
+  for (auto& module : state.modules) module.in_workspace = workspace.modules.contains(module.name);
+  for (auto number : workspace.links) state.links.at(number).in_workspace = true;
+  return state;
+}
+
+LinkState Runner::state_of(const PlannedLink& link) const {
+  LinkState state;
+  state.from = link.from;
+  state.to = link.to;
+  state.keep = link.keep;
+  const std::string& inside = link.reader_uri.empty() ? link.sender_uri : link.reader_uri;
+  state.transport = inside.substr(0, inside.find_first_of("-:"));
+  if (auto rate = link.policy.find("rate"); rate != link.policy.end()) state.rate = rate->second;
+  auto report_of = [&](const std::string& end, bool is_input, const std::string& uri) {
+    const auto* module = at(end);
+    return module == nullptr
+               ? nullptr
+               : module->reports().find({is_input, end.substr(end.find('.') + 1), uri, {}});
+  };
+  const auto* sender = report_of(link.from, false, link.sender_uri);
+  const auto* reader = report_of(link.to, true, link.reader_uri);
+  const auto* counts = sender != nullptr || at(link.from) != nullptr ? sender : reader;
+  if (counts != nullptr) {
+    state.traffic = counts->traffic;
+    state.per_second = counts->per_second;
+    state.bytes_per_second = counts->bytes_per_second;
+  }
+  if (reader == nullptr) return state;
+  if (counts != reader) {
+    Traffic lost = reader->traffic;
+    lost.messages = lost.bytes = lost.kept_back = 0;
+    state.traffic += lost;
+  }
+  state.left_out = reader->left_out;
+  auto seconds = [](const std::array<std::int64_t, 3>& times) {
+    std::optional<std::array<double, 3>> result;
+    if (times[0] < 0) return result;
+    result.emplace();
+    std::transform(times.begin(), times.end(), result->begin(), [](std::int64_t time) {
+      return std::chrono::duration<double>(std::chrono::nanoseconds(time)).count();
+    });
+    return result;
+  };
+  state.age = seconds(reader->age);
+  state.gap = seconds(reader->gap);
+  return state;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/run/supervised.h>
+
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+
+#include <hc/wire/rows.h>
+
+namespace hc::internal {
+namespace {
+
+using MonotonicClock = std::chrono::steady_clock;
+
+constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
+constexpr int kLastPieces = 16;      // a pipe can be made to hold a MiB; source: man 7 pipe
+constexpr int kCannotExecute = 127;  // as shells say it
+constexpr int kSignal = 128;         // the status of who was killed by one is above
+constexpr std::size_t kMostToTell = 1024;
+
+MonotonicTime now() {
+  return MonotonicClock::now().time_since_epoch();
+}
+
+std::string seconds_in_words(std::chrono::nanoseconds time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g s", std::chrono::duration<double>(time).count());
+  return text;
+}
+
+Message command_message(const std::string& command) {
+  return make_rows(std::array{command});
+}
+
+}  // namespace
+
+std::string end_in_words(int status) {
+  if (status == 0) return "ended";
+  if (status > kSignal) return "killed by signal " + std::to_string(status - kSignal);
+  return "failed with status " + std::to_string(status);
+}
+
+Supervised::Supervised(EventLoop& loop, PlannedModule plan, const SupervisionLimits& limits,
+                       Hear hear)
+    : loop_(loop),
+      plan_(std::move(plan)),
+      told_(plan_),
+      limits_(limits),
+      hear_(std::move(hear)),
+      restarts_(plan_.restart, limits.restarts,
+                static_cast<std::uint32_t>(std::hash<std::string>()(plan_.manage_uri))),
+      reports_(plan_.ends) {}
+
+Result<std::unique_ptr<Supervised>> Supervised::make(EventLoop& loop, PlannedModule plan,
+                                                     const SupervisionLimits& limits, Hear hear) {
+  std::unique_ptr<Supervised> module(
+      new Supervised(loop, std::move(plan), limits, std::move(hear)));
+  auto& self = *module;
+  auto manage = Intake::make(loop, self.plan_.manage_uri,
+                             [&self](const Message& message) { self.take_report(message); });
+  if (!manage) return manage.error();
+  self.manage_ = std::move(*manage);
+  if (self.plan_.control_uri.empty()) return module;
+  auto control = Announcer::make(loop, self.plan_.control_uri, [&self] {
+    std::vector<Message> messages;
+    for (const auto& command : std::exchange(self.to_tell_, {}))
+      messages.push_back(command_message(command));
+    return messages;
+  });
+  if (!control) return control.error();
+  self.control_ = std::move(*control);
+  return module;
+}
+
+void Supervised::change(ModuleStatus status, const std::string& detail) {
+  if (status_ == status && detail_ == detail) return;
+  status_ = status;
+  detail_ = detail;
+  hear_.changed();
+}
+
+Status Supervised::start() {
+  timer_.reset();
+  is_to_end_ = is_to_restart_ = is_dismissed_ = false;
+  finished_.clear();
+  to_tell_.clear();
+  lines_.forget();
+  restarts_.started(now());
+  ++starts_;
+  auto process = Process::start(plan_.command(), Process::Capture::Errors);
+  if (!process) return Error{process.error().code, plan_.name + ": " + process.error().detail};
+  process_.emplace(std::move(*process));
+  program_ = first_child(process_->guard_number());
+  told_ = plan_;
+  auto said = loop_.watch(process_->output(), EPOLLIN, [this] { read_lines(); });
+  if (!said) return said.error();
+  said_ = std::move(*said);
+  auto ended = loop_.watch(process_->ended(), EPOLLIN, [this] { note_end(); });
+  if (!ended) return ended.error();
+  ended_ = std::move(*ended);
+  hear_.event("started");
+  change(control_ ? ModuleStatus::Starting : ModuleStatus::Running);
+  return {};
+}
+
+void Supervised::start_again() {
+  auto started = start();
+  if (started) return;
+  hear_.event(started.error().detail);
+  forget_process();
+  go_on(kCannotExecute);
+}
+
+void Supervised::end() {
+  if (is_over()) return;
+  is_to_end_ = true;
+  is_to_restart_ = false;
+  ask_to_end();
+}
+
+void Supervised::dismiss() {
+  if (is_over()) return;
+  is_dismissed_ = true;
+  ask_to_end();
+}
+
+void Supervised::restart() {
+  restarts_.reset();
+  is_to_end_ = false;
+  if (!process_) return start_again();
+  is_to_restart_ = true;
+  ask_to_end();
+}
+
+/// Of one without a process, what follows its end follows at once.
+void Supervised::ask_to_end() {
+  if (!process_) {
+    timer_.reset();
+    change(ModuleStatus::Ended);
+    hear_.ended();
+    return;
+  }
+  if (status_ == ModuleStatus::Stopping) return;
+  process_->ask_to_end();
+  change(ModuleStatus::Stopping);
+  timer_ = loop_.call_at(MonotonicClock::now() + limits_.grace, [this] { process_->kill(); });
+}
+
+void Supervised::change_plan(PlannedModule plan) {
+  change_ = change_between(told_, plan);
+  if (!change_.needs_restart) {
+    for (const auto& command : change_.unlinks) tell(command);
+    auto ends = std::exchange(told_, plan).ends;
+    for (auto& end : told_.ends)
+      for (const auto& before : ends)
+        if (is_same_end(end, before)) end.uri = before.uri;
+  }
+  plan_ = std::move(plan);
+  reports_.set_ends(plan_.ends);
+  restarts_.set_policy(plan_.restart);
+}
+
+void Supervised::start_change() {
+  if (change_.is_empty()) return;
+  if (change_.needs_restart || !process_) {
+    change_ = {};
+    return restart();
+  }
+  for (const auto& command : change_.settings) {
+    hear_.event(command);
+    tell(command);
+  }
+  for (const auto& command : change_.outputs) tell(command);
+}
+
+void Supervised::end_change() {
+  for (const auto& command : change_.inputs) tell(command);
+  change_ = {};
+}
+
+void Supervised::tell(const std::string& command) {
+  if (!control_ || !process_) return;
+  if (control_->is_heard())
+    control_->say(command_message(command));
+  else if (to_tell_.size() < kMostToTell)
+    to_tell_.push_back(command);
+}
+
+void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
+  std::string what = end.port + "=" + end.uri;
+  if (is_finished && finished_.insert(what).second) tell("finish " + what);
+  if (!is_finished && finished_.erase(what) != 0) tell("link in " + what);
+}
+
+void Supervised::read_lines() {
+  if (!read_piece()) said_.reset();
+}
+
+/// Hands on what a module has said; whether there may be more. One piece only: one who does not
+/// stop must not keep us from all else.
+bool Supervised::read_piece() {
+  static thread_local std::array<char, kPiece> piece;
+  ssize_t size = ::read(process_->output(), piece.data(), piece.size());
+  if (size < 0) return true;
+  lines_.add({piece.data(), static_cast<std::size_t>(size)}, hear_.said);
+  return size > 0;
+}
+
+void Supervised::take_report(const Message& message) {
+  heard_ = now();
+  // Counters alone come all the time, and of links: a module that has none tells none.
+  has_reported_ = has_reported_ || message.header.src <= Reports::kCounters;
+  const bool has_changed = reports_.take(message, heard_);
+  if (status_ == ModuleStatus::Stalled) hear_.event("goes on");
+  if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting)
+    change(ModuleStatus::Running);
+  else if (has_changed)
+    hear_.changed();
+}
+
+void Supervised::look(MonotonicTime time) {
+  if (status_ != ModuleStatus::Running || !has_reported_ || time - heard_ < limits_.stall) return;
+  const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
+  change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
+  hear_.event("stalled: " + detail_);
+}
+
+void Supervised::measure(MonotonicTime time, bool with_memory) {
+  if (!process_) return;
+  with_memory = with_memory || processes_.empty();
+  if (with_memory) processes_ = descendants(process_->guard_number());
+  auto usage = usage_of(processes_, with_memory);
+  if (!with_memory) usage.memory = usage_.memory;
+  if (measured_ != MonotonicTime(0) && time > measured_)
+    processor_ = std::max(0.0, std::chrono::duration<double>(usage.processor - usage_.processor) /
+                                   std::chrono::duration<double>(time - measured_));
+  usage_ = usage;
+  measured_ = time;
+}
+
+void Supervised::note_end() {
+  if (!process_) return;
+  auto status = process_->poll_status();
+  if (!status) return;
+  manage_->take();  // lets in one that has just come,
+  manage_->take();  // … and hears what it had to say
+  // Its last words stand in the pipe; who else still holds that open may do so for ever.
+  for (int piece = 0; piece < kLastPieces && said_; ++piece) read_lines();
+  lines_.finish(hear_.said);
+  forget_process();
+  go_on(*status);
+}
+
+void Supervised::forget_process() {
+  reports_.end();
+  has_reported_ = false;
+  said_.reset();
+  ended_.reset();
+  timer_.reset();
+  process_.reset();
+  program_ = 0;
+  processes_.clear();
+  usage_ = {};
+  measured_ = MonotonicTime(0);
+  processor_ = 0;
+  if (control_) control_->leave_all();
+}
+
+/// Does what is to be done when a process has ended.
+void Supervised::go_on(int status) {
+  exit_ = status;
+  auto words = end_in_words(status);
+  const bool is_told_to = is_to_end_ || is_to_restart_ || is_dismissed_;
+  // One that did not come to heed our signal yet has done as it was told all the same.
+  const bool is_as_told = is_told_to && (status == 0 || status == kSignal + SIGTERM);
+  if (is_to_end_ || is_to_restart_ || is_as_told) {
+    hear_.event(is_as_told ? end_in_words(0) : words);
+    if (is_to_restart_) return start_again();
+    change(ModuleStatus::Ended);
+    return hear_.ended();
+  }
+  if (status != 0) hear_.failed(lines_.last());
+  auto decision = restarts_.ended(status, now());
+  using Next = Restarts::Next;
+  if (decision.next == Next::Again && decision.delay.count() == 0) {
+    hear_.event(words + "; starting it again");
+    return start_again();
+  }
+  if (decision.next == Next::Again) {
+    hear_.event(words + "; starting it again in " + seconds_in_words(decision.delay));
+    change(ModuleStatus::Waiting, words);
+    timer_ = loop_.call_at(MonotonicClock::now() + decision.delay, [this] { start_again(); });
+    return;
+  }
+  bool is_given_up = decision.next == Next::GiveUp;
+  hear_.event(is_given_up && plan_.restart != Restart::Never
+                  ? words + "; given up after start " + std::to_string(starts_)
+                  : words);
+  change(is_given_up ? ModuleStatus::GivenUp : ModuleStatus::Ended, is_given_up ? words : "");
+  hear_.ended();
+}
+
+ModuleState Supervised::state() const {
+  ModuleState state;
+  state.name = plan_.name;
+  state.program = plan_.program;
+  state.process = program_;
+  state.status = status_;
+  state.detail = detail_;
+  state.restarts = std::max(0, starts_ - 1);
+  state.exit = exit_;
+  state.processor = processor_;
+  state.memory = usage_.memory;
+  state.mode = plan_.mode;
+  state.modes = plan_.modes;
+  state.in_focus = reports_.in_focus;
+  state.parameters = plan_.parameters;
+  for (const auto& [key, value] : reports_.parameters()) state.parameters[key] = value;
+  return state;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// One module of a graph that runs: its process, and the next one where that fails; what it says and
+// reports; and what it is told. Internal to graph.
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <hc/graph/limits.h>
+#include <hc/graph/run/announcer.h>
+#include <hc/graph/run/change.h>
+#include <hc/graph/run/intake.h>
+#include <hc/graph/run/lines.h>
+#include <hc/graph/run/process.h>
+#include <hc/graph/run/process_look.h>
+#include <hc/graph/run/reports.h>
+#include <hc/graph/run/restarts.h>
+#include <hc/graph/state.h>
+
+namespace hc::internal {
+
+/// How a process has ended, by its status: "failed with status 1".
+std::string end_in_words(int status);
+
+class Supervised {
+ public:
+  /// Who hears of it. None may destroy it.
+  struct Hear {
+    std::function<void(const std::string& line)> event;  ///< "started"
+    std::function<void(const std::string& line)> said;   ///< by the module itself
+    std::function<void(const std::deque<std::string>& last_words)> failed;
+    std::function<void()> changed;  ///< its state, other than in numbers
+    std::function<void()> ended;    ///< for good
+  };
+
+  /// Listens to a module, which is not started yet. Errors: Usage, System (a name is in use).
+  static Result<std::unique_ptr<Supervised>> make(EventLoop& loop, PlannedModule plan,
+                                                  const SupervisionLimits& limits, Hear hear);
+
+  /// Starts it. Errors: NotFound, System; of later starts they are events.
+  Status start();
+  /// Ends it for good: SIGTERM, and SIGKILL when it has had its time.
+  void end();
+  /// Ends it since nobody needs it any more. If it fails all the same, it has failed.
+  void dismiss();
+  /// Ends it where it runs, and starts it; also one that has ended for good.
+  void restart();
+
+  /// Makes it as another plan says: told where it can be, else started anew. In three steps, so
+  /// that those of all modules may go together: it leaves links; has new outputs; has new inputs.
+  void change_plan(PlannedModule plan);
+  void start_change();
+  void end_change();
+
+  /// Tells it that an input's writer has ended for good, or that it is there again.
+  void finish_input(const PlannedEnd& end, bool is_finished);
+  /// Looks whether it still reports.
+  void look(MonotonicTime now);
+  /// Takes stock of what its processes use.
+  void measure(MonotonicTime now, bool with_memory);
+  /// Looks whether its process has ended, without waiting for the event.
+  void note_end();
+
+  [[nodiscard]] const PlannedModule& plan() const { return plan_; }
+  [[nodiscard]] ModuleStatus status() const { return status_; }
+  [[nodiscard]] bool is_over() const {
+    return status_ == ModuleStatus::Ended || status_ == ModuleStatus::GivenUp;
+  }
+  /// Ended or is about to, because it was told to.
+  [[nodiscard]] bool is_to_end() const { return is_to_end_ || is_dismissed_; }
+  [[nodiscard]] std::optional<int> exit() const { return exit_; }
+  [[nodiscard]] const Reports& reports() const { return reports_; }
+  [[nodiscard]] ModuleState state() const;
+
+ private:
+  Supervised(EventLoop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
+
+  void tell(const std::string& command);
+  void change(ModuleStatus status, const std::string& detail = "");
+  void ask_to_end();
+  void read_lines();
+  bool read_piece();
+  void take_report(const Message& message);
+  void forget_process();
+  void go_on(int status);
+  void start_again();
+
+  EventLoop& loop_;
+  PlannedModule plan_;
+  PlannedModule told_;   // as its process has been told, which may know links by their older URIs
+  ModuleChange change_;  // that is under way
+  SupervisionLimits limits_;
+  Hear hear_;
+  ModuleStatus status_ = ModuleStatus::Waiting;
+  std::string detail_;
+  bool is_to_end_ = false, is_to_restart_ = false, is_dismissed_ = false;
+  std::optional<int> exit_;
+  int starts_ = 0;
+  Restarts restarts_;
+  Lines lines_;
+  Reports reports_;
+  bool has_reported_ = false;  // this process has
+  MonotonicTime heard_{0};     // when it reported last
+  pid_t program_ = 0;
+  Usage usage_;
+  MonotonicTime measured_{0};
+  double processor_ = 0;
+  std::vector<pid_t> processes_;
+  std::set<std::string> finished_;   // inputs it was told to finish
+  std::deque<std::string> to_tell_;  // commands, until it listens
+  std::unique_ptr<Intake> manage_;
+  std::unique_ptr<Announcer> control_;
+  std::optional<Process> process_;
+  EventLoop::Handle said_, ended_, timer_;
+};
+
+}  // namespace hc::internal

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <thread>
+
+#include <hc/graph/run/running_test.h>
+#include <hc/wire/rows.h>
+
+namespace hc {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Modules that end, or do nothing any more.
+class Supervision : public Run {
+ protected:
+  Supervision() {
+    options_.limits.restarts.first_delay = 1ms;
+    options_.limits.restarts.longest_delay = 2ms;
+  }
+
+  PlannedModule& add(const std::string& name, const std::string& script,
+                     Restart restart = Restart::Failure) {
+    auto& module = Run::add(name, script);
+    module.restart = restart;
+    return module;
+  }
+  static const ModuleState& module(const RunReport& report, const std::string& name) {
+    return *std::find_if(report.state.modules.begin(), report.state.modules.end(),
+                         [&](const auto& each) { return each.name == name; });
+  }
+};
+
+TEST_F(Supervision, OneThatIsKilledComesBackAndTheOthersGoOn) {
+  add("a", "echo $$ >&2; exec sleep 1000");
+  add("b", "exec sleep 1000");
+  heard_ = [this](std::string_view line) {
+    if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9') {
+      if (count("a: started") == 3) return stop();
+      ASSERT_EQ(::kill(std::stoi(std::string(line.substr(3))), SIGKILL), 0);
+    }
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(count("a: killed by signal 9; starting it again"), 2);
+  EXPECT_EQ(count("b: started"), 1);
+  EXPECT_EQ(module(*report, "a").restarts, 2);
+  EXPECT_EQ(module(*report, "b").restarts, 0);
+}
+
+TEST_F(Supervision, OneThatEndsAtOnceIsPutOffAndGivenUp) {
+  add("a", "exit 3");
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(count("a: started"), 13);
+  EXPECT_EQ(count("a: failed with status 3; starting it again"), 4);
+  EXPECT_EQ(lines_.back(), "a: failed with status 3; given up after start 13");
+  EXPECT_EQ(module(*report, "a").status, ModuleStatus::GivenUp);
+  EXPECT_EQ(module(*report, "a").exit, 3);
+}
+
+TEST_F(Supervision, BadArgumentsWouldBeBadAgain) {
+  add("a", "exit 2");
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(lines_, (std::vector<std::string>{"a: started",
+                                              "a: failed with status 2; given up after start 1"}));
+}
+
+TEST_F(Supervision, AlwaysIsAfterAGoodEndToo) {
+  add("a", "exit 0", Restart::Always);
+  heard_ = [this](std::string_view) {
+    if (count("a: started") == 7) stop();
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(count("a: ended; starting it again"), 4);
+}
+
+TEST_F(Supervision, AStoppingGraphStartsNothingAgain) {
+  options_.limits.restarts.first_delay = options_.limits.restarts.longest_delay = 1h;
+  add("a", "exit 3");
+  add("b", "exec sleep 1000");
+  heard_ = [this](std::string_view line) {
+    if (line.find("starting it again in") != std::string_view::npos) stop();
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(report->stopped);
+  EXPECT_EQ(module(*report, "a").status, ModuleStatus::Ended);
+}
+
+TEST_F(Supervision, WhoDoesNotEndWhenAskedToIsKilled) {
+  options_.limits.grace = 10ms;
+  add("a", "trap '' TERM; echo ready >&2; while :; do sleep 1000; done");
+  stop_at_ = "a: ready";
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(said("a: killed by signal 9"));
+}
+
+TEST_F(Supervision, AQuietOneTellsItsLastLinesWhenItFails) {
+  options_.tells_lines = false;
+  add("a", "seq 1 30 >&2; exit 2");
+  ASSERT_TRUE(run());
+  ASSERT_EQ(lines_.size(), 22U);
+  EXPECT_EQ(lines_[1], "a: 11");
+  EXPECT_EQ(lines_[20], "a: 30");
+}
+
+/// Reports, as a module does, on the thread that hears of the graph.
+class Reporter {
+ public:
+  explicit Reporter(const std::string& manage_uri) {
+    auto uri = parse_uri("unix" + manage_uri.substr(manage_uri.find(':')));
+    sink_ = std::move(*open_sink(*uri));
+  }
+  void report(std::int32_t src, Message message) {
+    message.header.src = src;
+    ASSERT_TRUE(sink_->send(message));
+  }
+  void count(std::int64_t messages) {
+    Draft draft = Draft::make({MatrixType::Table, 2, Scalar::I64, Encoding::Binary}, 1, 1);
+    draft.view<std::int64_t>().at(0, 0, 0) = messages;
+    draft.view<std::int64_t>().at(0, 0, 1) = 10 * messages;
+    report(1, std::move(draft).finish());
+  }
+
+ private:
+  std::unique_ptr<Sink> sink_;
+};
+
+TEST_F(Supervision, OneThatIsStoppedIsShownAsStalledAndGoesOn) {
+  options_.limits.stall = 50ms;
+  add("a", "kill -STOP $$; exec sleep 1000");
+  std::unique_ptr<Reporter> reporter;
+  heard_ = [&](std::string_view line) {
+    if (line == "a: started") {
+      reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
+      reporter->count(1);
+    }
+    if (line == "a: stalled: stopped by a signal" || line == "a: stalled: busy") reporter->count(2);
+    if (line == "a: goes on") stop();
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(said("a: goes on"));
+}
+
+TEST_F(Supervision, CountsAreThoseOfAllProcesses) {
+  auto& module = add("a", "read line </dev/null; exit 1", Restart::Failure);
+  module.ends = {{false, "out", "unix-listen:@" + token_ + ".a.out", ""}};
+  plan_.links = {{"a.out", "tcp:1", module.ends[0].uri, "", "all", {}, false}};
+  heard_ = [&](std::string_view line) {
+    if (line == "a: started") Reporter(plan_.modules[0].manage_uri).count(5);
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(report->state.links.at(0).traffic.messages, 65U);
+}
+
+TEST_F(Supervision, AModuleAllOfWhoseReadersHaveEndedEnds) {
+  add("writer", "exec sleep 1000");
+  add("between", "exec sleep 1000");
+  add("reader", "exit 0");
+  plan_.links = {{"writer.out", "between.in", "", "", "", {}, false},
+                 {"between.out", "reader.in", "", "", "", {}, false}};
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_FALSE(report->stopped);
+  for (const auto& each : report->state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
+}
+
+TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
+  add("writer", "trap 'exit 7' TERM; echo ready >&2; while :; do sleep 0.01; done", Restart::Never);
+  add("reader", "trap 'exit 0' TERM; echo $$ >&2; while :; do sleep 0.01; done");
+  plan_.links = {{"writer.out", "reader.in", "", "", "", {}, false}};
+  std::string reader;
+  heard_ = [&](std::string_view line) {
+    if (line.starts_with("reader: ") && line[8] >= '0' && line[8] <= '9') reader = line.substr(8);
+    if (!reader.empty() && said("writer: ready")) ::kill(std::stoi(reader), SIGTERM);
+  };
+  auto report = run();
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().detail, "module writer: failed with status 7");
+}
+
+TEST_F(Supervision, AStandInReadsForWhoHasBeenGivenUp) {
+  // The test writes in the place of the module "writer", and finds a reader.
+  const std::string place = "unix-listen:@" + token_ + ".writer.out";
+  add("writer", "exec sleep 1000");
+  add("reader", "exit 2");
+  plan_.links = {{"writer.out",
+                  "reader.in",
+                  place,
+                  "unix:@" + token_ + ".writer.out?reconnect=86400",
+                  "all",
+                  {},
+                  true}};
+  std::thread to_stand_in;
+  heard_ = [&](std::string_view line) {
+    if (!line.starts_with("reader: failed") || to_stand_in.joinable()) return;
+    to_stand_in = std::thread([this, place] {
+      LinkOptions options;
+      auto sink = open_sink(*parse_uri(place + "?readers=1"), options);
+      EXPECT_TRUE(sink);
+      EXPECT_TRUE((*sink)->send(make_rows(std::array{std::string("for nobody")})));
+      stop();
+    });
+  };
+  auto report = run();
+  to_stand_in.join();
+  ASSERT_TRUE(report) << report.error().detail;
+}
+
+}  // namespace
+}  // namespace hc
