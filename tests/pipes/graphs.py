@@ -9,7 +9,20 @@ import signal
 import socket
 import threading
 
-from harness import Pipes, WATCHDOG
+from harness import DATA, Pipes, WATCHDOG
+
+# Its modules go on until they are told to end.
+GRAPH = (
+    """
+[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+[modules.brightness]
+[[links]]
+from = "camera.left"
+to = "brightness.image"
+"""
+    % DATA
+)
 
 
 class Messages:
@@ -39,6 +52,11 @@ class Graphs(Pipes):
         path = pathlib.Path(self.path(name))
         path.with_suffix(".new").write_text(text)
         path.with_suffix(".new").rename(path)  # as editors do
+
+    def run_graph(self, options="", last="brightness: started"):
+        process = self.start("exec hc run g.toml " + options)
+        self.await_lines(process, last)
+        return process
 
     def await_lines(self, process, last):
         lines = []

@@ -6,28 +6,11 @@ import os
 import signal
 import unittest
 
-from graphs import Graphs
-from harness import DATA, WATCHDOG
-
-GRAPH = (
-    """
-[modules.camera]
-parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
-[modules.brightness]
-[[links]]
-from = "camera.left"
-to = "brightness.image"
-"""
-    % DATA
-)
+from graphs import GRAPH, Graphs
+from harness import WATCHDOG
 
 
 class Running(Graphs):
-    def run_graph(self, options=""):
-        process = self.start("exec hc run g.toml " + options)
-        self.await_lines(process, "brightness: started")
-        return process
-
     def test_two_graphs_run_side_by_side(self):
         self.write(GRAPH)
         first, second = self.run_graph(), self.run_graph("--as other")

@@ -8,44 +8,30 @@ import pty
 import re
 import unittest
 
-from harness import DATA, Pipes, ROOT, WATCHDOG, wait_until
-
-GRAPH = (
-    """
-[modules.camera]
-parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
-[modules.brightness]
-[[links]]
-from = "camera.left"
-to = "brightness.image"
-"""
-    % DATA
-)
+from graphs import GRAPH, Graphs
+from harness import ROOT, WATCHDOG, wait_until
 
 
-class Watching(Pipes):
+class Watching(Graphs):
     def hc(self, words, status=0):
         process = self.start("exec hc " + words)
         out, err = process.communicate(timeout=WATCHDOG)
         self.assertEqual(process.returncode, status, (words, out, err))
         return out.decode() if status == 0 else err.decode()
 
-    def run_graph(self, name, text=GRAPH, last="brightness: started"):
+    def run_named(self, name, text=GRAPH, last="brightness: started"):
         """A graph with a name that no other test has."""
-        pathlib.Path(self.path("g.toml")).write_text(text)
+        self.write(text)
         name = "%s_%d" % (name, os.getpid())
-        process = self.start("exec hc run g.toml --as " + name)
-        while last not in process.stderr.readline().decode():
-            self.assertIsNone(process.poll())
-        return name, process
+        return name, self.run_graph("--as " + name, last)
 
-    def stop(self, name, process):
+    def stop_named(self, name, process):
         self.hc("graph stop --of " + name)
         _, err = process.communicate(timeout=WATCHDOG)
         self.assertEqual(process.returncode, 0, err)
 
     def test_a_graph_is_listed_shown_and_drawn(self):
-        name, process = self.run_graph("seen")
+        name, process = self.run_named("seen")
         wait_until(lambda: re.search(name + " .* 2/2 .* running", self.hc("ps")))
         top = self.hc("top " + name)
         self.assertRegex(top, name + ": running .*, 2/2 modules up, .* messages/s")
@@ -62,17 +48,17 @@ class Watching(Pipes):
         picture = pathlib.Path(self.path("g.svg")).read_text()
         for word in ("camera", "brightness", "left", "image"):
             self.assertIn(">%s</text>" % word, picture)
-        self.stop(name, process)
+        self.stop_named(name, process)
         self.assertNotIn(name, self.hc("ps"))
 
     def test_a_file_is_drawn_without_running(self):
-        pathlib.Path(self.path("g.toml")).write_text(GRAPH + "keep = 3\n")
+        self.write(GRAPH + "keep = 3\n")
         self.assertIn("  left → brightness.image  keep 3\n", self.hc("graph g.toml"))
-        pathlib.Path(self.path("g.toml")).write_text(GRAPH.replace("brightness.image", "b.image"))
+        self.write(GRAPH.replace("brightness.image", "b.image"))
         self.assertIn('no module "b"', self.hc("graph g.toml", 2))
 
     def test_a_running_graph_is_changed(self):
-        name, process = self.run_graph("changed")
+        name, process = self.run_named("changed")
         of = " --of " + name
         self.hc("graph set camera.rate=20" + of)
         self.hc("graph add second brightness" + of)
@@ -87,18 +73,18 @@ class Watching(Pipes):
         )
         self.hc("graph restart camera" + of)
         wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))
-        self.stop(name, process)
+        self.stop_named(name, process)
 
     def test_what_does_not_run_is_told(self):
-        name, process = self.run_graph("here")
+        name, process = self.run_named("here")
         self.assertIn(
             'did you mean "%s"?' % name, self.hc("top " + name.replace("here", "hree"), 1)
         )
-        self.stop(name, process)
+        self.stop_named(name, process)
         self.assertIn("NotFound: no graph", self.hc("graph set a.b=1 --of nowhere", 1))
 
     def test_top_keeps_the_terminal_as_it_was(self):
-        name, process = self.run_graph("live")
+        name, process = self.run_named("live")
         pid, terminal = pty.fork()
         if pid == 0:
             os.environ.update(self.environment)
@@ -115,12 +101,12 @@ class Watching(Pipes):
         self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), 0)
         self.assertTrue(shown.startswith(b"\x1b[?1049h"))
         self.assertTrue(shown.endswith(b"\x1b[?1049l"))
-        self.stop(name, process)
+        self.stop_named(name, process)
 
     def test_the_global_workspace_is_bold(self):
         text = (ROOT / "graphs/contest.toml").read_text()
         text = text.replace("2:0.9 4:0 ", "").replace("5:end", "600:end")  # tracking wins for good
-        name, process = self.run_graph("contest", text, "actor: started")
+        name, process = self.run_named("contest", text, "actor: started")
         wait_until(
             lambda: re.search(
                 '"tracking" -> "actor" .*penwidth=3', self.hc("graph --dot --of " + name)
@@ -130,7 +116,7 @@ class Watching(Pipes):
         self.assertNotRegex(dot, '"looking" -> "actor" .*penwidth')
         self.assertIn("focus: track", dot)
         self.assertIn("focus track", self.hc("top " + name))
-        self.stop(name, process)
+        self.stop_named(name, process)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,14 @@ std::string number_text(double value) {
           std::to_chars(written.data(), written.data() + written.size(), value).ptr};
 }
 
+std::string range_in_words(const ParameterOptions& options) {
+  const bool has_least = std::isfinite(options.least), has_most = std::isfinite(options.most);
+  if (has_least && has_most)
+    return "from " + number_text(options.least) + " to " + number_text(options.most);
+  if (has_least) return "at least " + number_text(options.least);
+  return has_most ? "at most " + number_text(options.most) : "a number";
+}
+
 }  // namespace
 
 std::string_view type_name(const ParameterValue& value) {
@@ -62,7 +70,7 @@ Status ParameterState::set(std::string_view given) {
     return refuse(whole ? "a whole number" : "a number");
   if (whole) number = static_cast<double>(integer);
   if (!(number >= options.least && number <= options.most) || std::isnan(number))
-    return refuse("from " + number_text(options.least) + " to " + number_text(options.most));
+    return refuse(range_in_words(options));
   if (whole)
     value = integer;
   else

@@ -35,6 +35,12 @@ TEST(Parameter, KeepsItsRange) {
   EXPECT_TRUE(share.set("1"));
   EXPECT_EQ(share.set("1.01").error().detail, "parameter p: \"1.01\" is not from 0 to 1");
   EXPECT_EQ(text(share.value), "1");
+  auto refusal = [](ParameterOptions options, const char* text) {
+    return state(0.5, std::move(options)).set(text).error().detail;
+  };
+  EXPECT_EQ(refusal({.least = 0}, "-1"), "parameter p: \"-1\" is not at least 0");
+  EXPECT_EQ(refusal({.most = 0}, "1"), "parameter p: \"1\" is not at most 0");
+  EXPECT_EQ(refusal({}, "nan"), "parameter p: \"nan\" is not a number");
   auto choice = state(std::string("auto"), {.choices = {"auto", "yes"}});
   EXPECT_TRUE(choice.set("yes"));
   EXPECT_EQ(choice.set("no").error().detail, "parameter p: \"no\" is not one of auto yes");

@@ -218,6 +218,10 @@ TEST_F(LiveChange, AnEditedFileIsReadAnew) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") write();
     if (line == "graph: goes on as it was") {
+      plan_next(plan_);
+      write();
+    }
+    if (line == "graph: as it was") {
       Plan other = plan_;
       other.modules.push_back(plan_.modules[0]);
       other.modules[1].name = "b";

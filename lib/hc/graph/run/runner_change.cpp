@@ -64,6 +64,7 @@ std::vector<std::string> Runner::obey(const std::vector<std::string>& lines) {
 void Runner::change_to(Plan plan) {
   plan_ = std::move(plan);
   is_unsettled_ = true;
+  bool has_changed = false;
   std::map<std::string, const PlannedModule*> planned;
   for (const auto& module : plan_.modules) planned[module.name] = &module;
   for (auto& [name, module] : modules_)
@@ -72,17 +73,17 @@ void Runner::change_to(Plan plan) {
   for (auto entry = modules_.begin(); entry != modules_.end();) {
     auto module = entry++;
     if (planned.contains(module->first)) continue;
+    has_changed = true;
     module->second->end();
     leaving_.insert(modules_.extract(module));
   }
   for (const auto& module : plan_.modules) {
-    if (auto* there = find(module.name))
-      there->start_change();
-    else
-      add(module);
+    auto* there = find(module.name);
+    has_changed = there == nullptr || there->start_change() || has_changed;
+    if (there == nullptr) add(module);
   }
   for (auto& [name, module] : modules_) module->end_change();
-  say("graph: changed");
+  say(has_changed ? "graph: changed" : "graph: as it was");
 }
 
 void Runner::add(const PlannedModule& module) {

@@ -162,17 +162,19 @@ void Supervised::change_plan(PlannedModule plan) {
   restarts_.set_policy(plan_.restart);
 }
 
-void Supervised::start_change() {
-  if (change_.is_empty()) return;
+bool Supervised::start_change() {
+  if (change_.is_empty()) return false;
   if (change_.needs_restart || !process_) {
     change_ = {};
-    return restart();
+    restart();
+    return true;
   }
   for (const auto& command : change_.settings) {
     hear_.event(command);
     tell(command);
   }
   for (const auto& command : change_.outputs) tell(command);
+  return true;
 }
 
 void Supervised::end_change() {

@@ -51,9 +51,10 @@ class Supervised {
   void restart();
 
   /// Makes it as another plan says: told where it can be, else started anew. In three steps, so
-  /// that those of all modules may go together: it leaves links; has new outputs; has new inputs.
+  /// that those of all modules may go together: it leaves links; has new outputs (whether there is
+  /// anything to change); has new inputs.
   void change_plan(PlannedModule plan);
-  void start_change();
+  bool start_change();
   void end_change();
 
   /// Tells it that an input's writer has ended for good, or that it is there again.
