@@ -35,8 +35,12 @@ class Running(Graphs):
         self.await_lines(process, "more: started")
         self.write(GRAPH)
         self.await_lines(process, "more: ended")
+        # One that comes first in the file has a number of its own, and the others keep theirs.
+        self.write(more.partition("[[")[0] + GRAPH)
+        self.await_lines(process, "graph: changed")
         _, err = self.stop(process)
         self.assertNotIn("brightness: started", err)
+        self.assertNotIn("camera: started", err)
 
     def test_commands_change_the_graph(self):
         self.write(GRAPH)

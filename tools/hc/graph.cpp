@@ -78,7 +78,8 @@ void add_graph_options(CLI::App& verb, GraphOptions& options) {
 }
 
 hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
-                                     const std::vector<std::string>& commands) {
+                                     const std::vector<std::string>& commands,
+                                     const hc::Plan* before) {
   hc::Problems problems(options.file);
   auto environment = [](const char* name) -> const char* { return std::getenv(name); };
   auto text = read_text(options.file);
@@ -95,7 +96,7 @@ hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::str
     return known->second;
   };
   hc::Replanned planned;
-  planned.plan = hc::make_plan(std::move(graph), describe, token, problems);
+  planned.plan = hc::make_plan(std::move(graph), describe, token, problems, before);
   planned.files = problems.files();
   for (auto& line : problems.lines()) {
     constexpr std::string_view kBeside = "--set: ";  // what is set beside a file that runs is asked

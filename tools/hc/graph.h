@@ -20,9 +20,12 @@ void add_graph_options(CLI::App& verb, GraphOptions& options);
 
 /// Reads, checks and plans a graph that commands have changed, one after the other.
 ///
+/// @param before  the plan by which it runs, whose numbers stay; null: it does not run.
+///
 /// Errors: NotFound (the file). All else that is wrong stands in Replanned::problems.
 hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
-                                     const std::vector<std::string>& commands = {});
+                                     const std::vector<std::string>& commands = {},
+                                     const hc::Plan* before = nullptr);
 
 /// The same for a graph that does not run yet. Where something is wrong it says all of that, a line
 /// each, and fails with status 2.

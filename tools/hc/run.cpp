@@ -83,8 +83,8 @@ void run(const Options& options) {
   run_options.name = name_of(options);
   run_options.file = options.graph.file;
   run_options.files = plan.files;
-  run_options.replan = [&](const std::vector<std::string>& commands) {
-    auto planned = plan_graph(options.graph, token, commands);
+  run_options.replan = [&](const std::vector<std::string>& commands, const hc::Plan& running) {
+    auto planned = plan_graph(options.graph, running.token, commands, &running);
     if (planned) return std::move(*planned);
     return hc::Replanned{{}, {planned.error().detail}, {}};
   };

@@ -40,9 +40,9 @@ struct RunOptions {
   /// Where others find the graph: it has two links of that name (spec/graph.md). Empty: none.
   std::string name;
   std::string file;  ///< what its state calls the graph file
-  /// Plans the graph anew, with the same token: of its files as they are now, changed by commands
-  /// (commands.h) one after the other. Empty: it stays as it is.
-  std::function<Replanned(const std::vector<std::string>& commands)> replan;
+  /// Plans the graph anew, with the token and the numbers of the plan that runs: of its files as
+  /// they are now, changed by commands (commands.h) one after the other. Empty: it stays as it is.
+  std::function<Replanned(const std::vector<std::string>& commands, const Plan& running)> replan;
   std::vector<std::string> files;  ///< as Replanned::files, of the first plan
   SupervisionLimits limits;
 };

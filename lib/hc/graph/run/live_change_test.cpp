@@ -22,7 +22,7 @@ class LiveChange : public Run {
  protected:
   LiveChange() {
     options_.name = "live";
-    options_.replan = [this](const Lines& commands) {
+    options_.replan = [this](const Lines& commands, const Plan&) {
       std::lock_guard lock(mutex_);
       commands_ = commands;
       Replanned planned;
