@@ -8,6 +8,7 @@ import re
 import signal
 import socket
 import threading
+import time
 
 from harness import DATA, Pipes, WATCHDOG
 
@@ -83,10 +84,12 @@ class Graphs(Pipes):
 
     def state(self, messages, condition=lambda state: True):
         """The first state that is as wanted."""
-        while True:
+        end = time.monotonic() + WATCHDOG
+        while time.monotonic() < end:
             src, rows = messages.next()
             if src == 1 and condition(json.loads(rows[0])):
                 return json.loads(rows[0])
+        self.fail("no state is as wanted; the last: %s" % rows)
 
     def ask(self, process, *commands, name="g"):
         with socket.socket(socket.AF_UNIX) as listening, socket.socket(socket.AF_UNIX) as graph:

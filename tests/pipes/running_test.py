@@ -58,6 +58,20 @@ class Running(Graphs):
         self.state(observed, lambda state: not self.module(state, "more"))
         self.stop(process)
 
+    def test_a_link_lives_on_with_another_policy(self):
+        self.write(GRAPH.replace("[modules", 'restart = "never"\n[modules', 1))
+        process = self.run_graph()
+        observed = self.observe(process)
+        link = lambda state: state["links"][0]
+        messages = link(self.state(observed, lambda state: link(state)["messages"] > 0))["messages"]
+        self.assertEqual(self.ask(process, "link camera.left brightness.image rate=40"), ["ok"])
+        self.state(
+            observed,
+            lambda state: link(state)["rate"] == 40 and link(state)["messages"] > messages + 10,
+        )
+        _, err = self.stop(process)
+        self.assertNotIn("started", err)
+
     def test_wrong_commands_are_answered(self):
         self.write(GRAPH)
         process = self.run_graph()

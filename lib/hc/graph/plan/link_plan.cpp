@@ -119,14 +119,10 @@ class LinkPlanner {
     return planning_.plan.token + "." + digest(name);
   }
 
-  /// Whether a link outlives the processes at its ends.
+  /// Whether a link outlives the processes at its ends, and its policy. A reader that does not
+  /// listen to who runs it could not be told that nothing comes any more.
   bool lasts(const GraphLink& link) const {
-    auto is_restarted = [&](const GraphPort& port) {
-      return planning_.planned(port.module)->restart != Restart::Never;
-    };
-    // A reader that does not listen to who runs it could not be told that nothing comes any more.
-    const bool is_told = !planning_.planned(link.to.module)->control_uri.empty();
-    return is_told && (is_restarted(link.from) || is_restarted(link.to));
+    return !planning_.planned(link.to.module)->control_uri.empty();
   }
 
   bool shared(const GraphLink& link) const {

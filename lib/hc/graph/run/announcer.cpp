@@ -39,20 +39,23 @@ void Announcer::let_in() {
   forget_those_who_left();
 }
 
-void Announcer::say(const Message& message) {
-  if (peers_.empty()) return;
+bool Announcer::say(const Message& message) {
+  if (peers_.empty()) return true;
   const std::string bytes = encode(message);
-  for (auto& peer : peers_) put(*peer, bytes);
+  bool has_room = true;
+  for (auto& peer : peers_) has_room = put(*peer, bytes) && has_room;
   forget_those_who_left();
+  return has_room;
 }
 
-void Announcer::put(Peer& peer, const std::string& bytes) {
-  if (peer.waiting.size() + bytes.size() > kMostWaiting) return;
+bool Announcer::put(Peer& peer, const std::string& bytes) {
+  if (peer.waiting.size() + bytes.size() > kMostWaiting) return false;
   const bool was_waiting = !peer.waiting.empty();
   peer.waiting += bytes;
-  if (was_waiting) return;
+  if (was_waiting) return true;
   write(peer);
   if (!peer.waiting.empty() && peer.watch) watch(peer);
+  return true;
 }
 
 void Announcer::write(Peer& peer) {

@@ -28,7 +28,8 @@ class Announcer {
   static Result<std::unique_ptr<Announcer>> make(
       EventLoop& loop, const std::string& uri, std::function<std::vector<Message>()> welcome = {});
 
-  void say(const Message& message);
+  /// Says it to all there are; whether all have it or will.
+  bool say(const Message& message);
   [[nodiscard]] bool is_heard() const { return !peers_.empty(); }
   /// Ends all connections there are.
   void leave_all() { peers_.clear(); }
@@ -45,7 +46,7 @@ class Announcer {
       : loop_(loop), socket_(std::move(socket)), welcome_(std::move(welcome)) {}
 
   void let_in();
-  void put(Peer& peer, const std::string& bytes);
+  bool put(Peer& peer, const std::string& bytes);
   void write(Peer& peer);
   void watch(Peer& peer);
   void forget_those_who_left();

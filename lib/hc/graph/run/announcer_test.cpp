@@ -68,7 +68,9 @@ TEST_F(AnnouncerTest, WhoDoesNotListenMissesWholeMessages) {
   auto source = listen();
   turn_until([&] { return announcer_->is_heard(); });
   const std::string large(Announcer::kMostWaiting / 4, 'x');
-  for (int i = 0; i < 16; ++i) announcer_->say(line(std::to_string(i) + " " + large));
+  bool has_room = true;
+  for (int i = 0; i < 16; ++i) has_room = announcer_->say(line(std::to_string(i) + " " + large));
+  EXPECT_FALSE(has_room);
   std::string last = hear(*source);
   EXPECT_EQ(last.substr(0, 2), "0 ");
   announcer_->say(line("end"));

@@ -24,6 +24,7 @@ void Intake::take() {
   for (int i = 0; i < kMostInATurn; ++i) {
     auto got = source_->take(message);
     if (!got || *got == Got::End) {
+      is_over_ = true;
       watch_.reset();
       again_.reset();
       return;
@@ -36,10 +37,13 @@ void Intake::take() {
   again_ = loop_.call_at(std::chrono::steady_clock::now(), [this] { take(); });
 }
 
-Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri) {
+Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri,
+                                              StandIn until) {
   auto uri = parse_uri(reader_uri);
   if (!uri) return uri.error();
-  uri->options = {{"reconnect", "86400"}};
+  // Also for a link that ends, since who only waits does so for the writer's answer too, which may
+  // be slow to come.
+  uri->options = {{"reconnect", until == StandIn::UntilTheLinkEnds ? "10" : "86400"}};
   if (uri->scheme == "shm") uri->options.emplace_back("keep", "latest");
   return Intake::make(loop, uri->text(), [](const Message&) {});
 }

@@ -22,6 +22,8 @@ class Intake {
 
   /// Takes what is there now.
   void take();
+  /// Whether the link has ended, or failed.
+  [[nodiscard]] bool is_over() const { return is_over_; }
 
  private:
   static constexpr int kMostInATurn = 256;
@@ -32,15 +34,23 @@ class Intake {
   EventLoop& loop_;
   std::unique_ptr<Source> source_;
   Take take_;
+  bool is_over_ = false;
   EventLoop::Handle watch_, again_;
 };
 
-/// What reads in the place of a module that has ended for good, so that no writer waits for it.
+/// For how long there is a reader in another's place.
+enum class StandIn {
+  WhileThereAreWriters,  ///< one after the other
+  UntilTheLinkEnds       ///< and some seconds longer
+};
+
+/// What reads in the place of a module that reads no more, so that no writer waits for it.
 ///
 /// @param reader_uri  the URI of its end; how long it was to wait plays no part, and it keeps no
 ///     message from being overwritten.
 ///
 /// Errors: as Intake::make.
-Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri);
+Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri,
+                                              StandIn until = StandIn::WhileThereAreWriters);
 
 }  // namespace hc::internal

@@ -193,6 +193,73 @@ TEST_F(LiveChange, AModuleThatListensIsTold) {
   EXPECT_TRUE(said("camera: set rate=10"));
 }
 
+TEST_F(LiveChange, WhoComesToListenIsToldTheDifference) {
+  auto& camera = add("camera");
+  camera.parameters = {{"rate", "0"}};
+  camera.ends = {{true, "in", "unix:@a?reconnect=1", ""}};
+  beside([&] {
+    Plan other = plan_;
+    for (int i = 1; i <= 1100; ++i) {
+      other.modules[0].parameters["rate"] = std::to_string(i);
+      other.modules[0].ends[0].uri = "unix:@" + std::to_string(i) + "?reconnect=1";
+      plan_next(other);
+      EXPECT_EQ(ask({"set camera.rate=" + std::to_string(i)}), Lines{"ok"});
+    }
+    Listener module(plan_.modules[0]);
+    EXPECT_EQ(module.next(), "unlink in in=unix:@a?reconnect=1");
+    EXPECT_EQ(module.next(), "set rate=1100");
+    EXPECT_EQ(module.next(), "link in in=unix:@1100?reconnect=1");
+    other.modules[0].parameters["rate"] = "0";
+    plan_next(other);
+    EXPECT_EQ(ask({"set camera.rate=0"}), Lines{"ok"});
+    EXPECT_EQ(module.next(), "set rate=0");
+  });
+  ASSERT_TRUE(run());
+  EXPECT_EQ(count("camera: started"), 1);
+}
+
+TEST_F(LiveChange, AnotherProgramMayTakeCommandsWhereTheFirstDidNot) {
+  add("a");
+  Plan with = plan_;
+  with.modules[0].parameters = {{"rate", "1"}};
+  plan_.modules[0].control_uri.clear();
+  const Plan without = plan_;
+  heard_ = [this](std::string_view) {
+    if (count("a: started") == 3) stop();
+  };
+  thread_ = std::thread([&] {
+    plan_next(with);
+    EXPECT_EQ(ask({"set a.b=1"}), Lines{"ok"});
+    { Listener listener(with.modules[0]); }
+    plan_next(without);
+    EXPECT_EQ(ask({"set a.b=2"}), Lines{"ok"});
+  });
+  auto report = run();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(count("a: started"), 3);
+}
+
+TEST_F(LiveChange, WhoHasEndedRestsUntilThereIsMoreToRead) {
+  auto& reader = add("reader", "exit 0");
+  reader.ends = {{true, "in", "unix:@one?wait=1", ""}, {true, "in", "unix:@two?wait=1", ""}};
+  add("stays");
+  heard_ = [this](std::string_view line) {
+    if (line != "reader: ended" || thread_.joinable()) return;
+    thread_ = std::thread([this] {
+      Plan other = plan_;
+      other.modules[0].ends.pop_back();
+      plan_next(other);
+      EXPECT_EQ(ask({"unlink x.out reader.in"}), Lines{"ok"});
+      other.modules[0].ends.push_back({true, "in", "unix:@three?wait=1", ""});
+      plan_next(other);
+      EXPECT_EQ(ask({"link x.out reader.in"}), Lines{"ok"});
+      stop();
+    });
+  };
+  ASSERT_TRUE(run());
+  EXPECT_EQ(count("reader: started"), 2);
+}
+
 TEST_F(LiveChange, AReaderIsToldThatItsWriterHasEnded) {
   const std::string out = "shm:t.out?readers=1&stay=1", in = "shm:t.out?reconnect=86400";
   add("writer", "exit 0").ends = {{false, "out", out, ""}};

@@ -122,6 +122,7 @@ void Runner::hear(const std::string& line) {
 void Runner::tick() {
   const auto time = now();
   for (auto& [name, module] : modules_) module->look(time);
+  std::erase_if(ending_, [](const auto& stand_in) { return stand_in->is_over(); });
   if (ticks_++ % kTicksOfState == 0) {
     if (observation_ && observation_->is_heard()) {
       for (auto& [name, module] : modules_)
@@ -168,27 +169,25 @@ void Runner::end_all() {
 /// writer.
 void Runner::settle_links() {
   if (is_stopping_) return;
-  std::map<std::string, bool> to_read;  // in the place of readers: by URI
-  for (const auto& link : plan_.links)
-    if (link.lasts) settle_link(link, to_read);
+  std::map<LinkName, const PlannedLink*> to_read;  // in the place of their readers
+  for (const auto& link : plan_.links) {
+    const Supervised* writer = at(link.from);
+    Supervised* reader = at(link.to);
+    if (writer == nullptr || reader == nullptr) continue;
+    if (reader->is_over() && !writer->is_over()) to_read[{link.from, link.to}] = &link;
+    if (reader->is_over() || !link.lasts) continue;
+    const std::string port = link.to.substr(link.to.find('.') + 1);
+    reader->finish_input({true, port, link.reader_uri, {}},
+                         writer->status() == ModuleStatus::Ended);
+  }
   std::erase_if(stand_ins_, [&](const auto& entry) { return !to_read.contains(entry.first); });
-  for (const auto& [uri, wanted] : to_read) {
-    if (stand_ins_.contains(uri)) continue;
-    auto stand_in = make_stand_in(*loop_, uri);
-    if (!stand_in) say("graph: " + uri + ": " + stand_in.error().text());
-    stand_ins_[uri] = stand_in ? std::move(*stand_in) : nullptr;
+  for (const auto& [name, link] : to_read) {
+    if (stand_ins_.contains(name)) continue;
+    auto stand_in = make_stand_in(*loop_, link->reader_uri);
+    if (!stand_in) say("graph: " + link->reader_uri + ": " + stand_in.error().text());
+    stand_ins_[name] = stand_in ? std::move(*stand_in) : nullptr;
   }
   end_unneeded();
-}
-
-void Runner::settle_link(const PlannedLink& link, std::map<std::string, bool>& to_read) {
-  Supervised* writer = at(link.from);
-  Supervised* reader = at(link.to);
-  if (writer == nullptr || reader == nullptr) return;
-  if (reader->is_over() && !writer->is_over()) to_read[link.reader_uri] = true;
-  if (reader->is_over()) return;
-  const std::string port = link.to.substr(link.to.find('.') + 1);
-  reader->finish_input({true, port, link.reader_uri, {}}, writer->status() == ModuleStatus::Ended);
 }
 
 /// A module all of whose readers have done their work has nothing left to do.

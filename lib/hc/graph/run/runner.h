@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/graph/run.h>
@@ -24,6 +25,7 @@ class Runner {
   Result<RunReport> run();
 
  private:
+  using LinkName = std::pair<std::string, std::string>;  // from, to
   struct Failure {
     std::string module;
     int status;
@@ -43,13 +45,13 @@ class Runner {
   void settle();
   void settle_failures();
   void settle_links();
-  void settle_link(const PlannedLink& link, std::map<std::string, bool>& to_read);
   void end_unneeded();
   void end_all();
   [[nodiscard]] bool is_over() const;
 
   void read_anew();
   std::vector<std::string> obey(const std::vector<std::string>& lines);
+  void read_what_ends(const Plan& next);
   void change_to(Plan plan);
   void add(const PlannedModule& module);
 
@@ -68,7 +70,9 @@ class Runner {
   std::unique_ptr<EventLoop> loop_;
   std::unique_ptr<Observation> observation_;
   std::unique_ptr<FileWatch> files_;
-  std::map<std::string, std::unique_ptr<Intake>> stand_ins_;  // by the URI they read; null: failed
+  std::map<LinkName, std::unique_ptr<Intake>>
+      stand_ins_;                                // for readers that are over; null: failed
+  std::vector<std::unique_ptr<Intake>> ending_;  // read links that are taken away
   std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
   EventLoop::Handle stop_, tick_;
 };

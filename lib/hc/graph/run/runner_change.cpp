@@ -3,6 +3,8 @@
 #include <hc/graph/commands.h>
 #include <hc/graph/run/runner.h>
 
+#include <algorithm>
+
 namespace hc::internal {
 
 void Runner::read_anew() {
@@ -60,8 +62,26 @@ std::vector<std::string> Runner::obey(const std::vector<std::string>& lines) {
   return {};
 }
 
+/// Reads links that the next plan has no more until their writers have been told so: one that waits
+/// for a reader that has left hears no commands.
+void Runner::read_what_ends(const Plan& next) {
+  auto is_there = [&](const PlannedLink& link) {
+    return std::any_of(next.links.begin(), next.links.end(), [&](const PlannedLink& other) {
+      return other.from == link.from && other.to == link.to && other.sender_uri == link.sender_uri;
+    });
+  };
+  for (const auto& link : plan_.links) {
+    const Supervised* writer = at(link.from);
+    if (writer == nullptr || writer->is_over() || at(link.to) == nullptr || is_there(link))
+      continue;
+    if (auto stand_in = make_stand_in(*loop_, link.reader_uri, StandIn::UntilTheLinkEnds))
+      ending_.push_back(std::move(*stand_in));
+  }
+}
+
 /// Makes the graph that runs as another plan says.
 void Runner::change_to(Plan plan) {
+  read_what_ends(plan);
   plan_ = std::move(plan);
   is_unsettled_ = true;
   bool has_changed = false;

@@ -18,7 +18,6 @@ constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;      // a pipe can be made to hold a MiB; source: man 7 pipe
 constexpr int kCannotExecute = 127;  // as shells say it
 constexpr int kSignal = 128;         // the status of who was killed by one is above
-constexpr std::size_t kMostToTell = 1024;
 
 MonotonicTime now() {
   return MonotonicClock::now().time_since_epoch();
@@ -62,16 +61,42 @@ Result<std::unique_ptr<Supervised>> Supervised::make(EventLoop& loop, PlannedMod
                              [&self](const Message& message) { self.take_report(message); });
   if (!manage) return manage.error();
   self.manage_ = std::move(*manage);
-  if (self.plan_.control_uri.empty()) return module;
-  auto control = Announcer::make(loop, self.plan_.control_uri, [&self] {
+  if (auto opened = self.open_control(); !opened) return opened.error();
+  return module;
+}
+
+/// Listens to be told, if the plan says that the module takes commands.
+Status Supervised::open_control() {
+  if (plan_.control_uri.empty()) control_.reset();
+  if (plan_.control_uri.empty() || control_) return {};
+  auto control = Announcer::make(loop_, plan_.control_uri, [this] {
     std::vector<Message> messages;
-    for (const auto& command : std::exchange(self.to_tell_, {}))
-      messages.push_back(command_message(command));
+    for (const auto& command : catch_up()) messages.push_back(command_message(command));
     return messages;
   });
   if (!control) return control.error();
-  self.control_ = std::move(*control);
-  return module;
+  control_ = std::move(*control);
+  return {};
+}
+
+/// What a process that comes to listen has to be told: what has changed since it was started.
+std::vector<std::string> Supervised::catch_up() {
+  const auto change = change_between(told_, plan_);
+  std::vector<std::string> commands;
+  for (const auto* some : {&change.unlinks, &change.settings, &change.outputs, &change.inputs})
+    commands.insert(commands.end(), some->begin(), some->end());
+  for (const auto& input : finished_) commands.push_back("finish " + input);
+  set_told();
+  return commands;
+}
+
+/// Notes that the process has been told all that the plan says. It goes on to know links by the
+/// URIs that it has them by.
+void Supervised::set_told() {
+  auto ends = std::exchange(told_, plan_).ends;
+  for (auto& end : told_.ends)
+    for (const auto& before : ends)
+      if (is_same_end(end, before)) end.uri = before.uri;
 }
 
 void Supervised::change(ModuleStatus status, const std::string& detail) {
@@ -85,8 +110,8 @@ Status Supervised::start() {
   timer_.reset();
   is_to_end_ = is_to_restart_ = is_dismissed_ = false;
   finished_.clear();
-  to_tell_.clear();
   lines_.forget();
+  if (auto opened = open_control(); !opened) return opened;
   restarts_.started(now());
   ++starts_;
   auto process = Process::start(plan_.command(), Process::Capture::Errors);
@@ -150,21 +175,20 @@ void Supervised::ask_to_end() {
 
 void Supervised::change_plan(PlannedModule plan) {
   change_ = change_between(told_, plan);
-  if (!change_.needs_restart) {
-    for (const auto& command : change_.unlinks) tell(command);
-    auto ends = std::exchange(told_, plan).ends;
-    for (auto& end : told_.ends)
-      for (const auto& before : ends)
-        if (is_same_end(end, before)) end.uri = before.uri;
-  }
   plan_ = std::move(plan);
+  if (!change_.needs_restart && is_heard()) {
+    for (const auto& command : change_.unlinks) tell(command);
+    set_told();
+  }
   reports_.set_ends(plan_.ends);
   restarts_.set_policy(plan_.restart);
 }
 
 bool Supervised::start_change() {
   if (change_.is_empty()) return false;
-  if (change_.needs_restart || !process_) {
+  // One that has done its work has more to do when it has something else to read.
+  const bool is_at_rest = status_ == ModuleStatus::Ended && change_.inputs.empty();
+  if (change_.needs_restart || (!process_ && !is_at_rest)) {
     change_ = {};
     restart();
     return true;
@@ -182,12 +206,16 @@ void Supervised::end_change() {
   change_ = {};
 }
 
+bool Supervised::is_heard() const {
+  return process_ && control_ && control_->is_heard();
+}
+
+/// One that does not listen yet catches up when it does; one that never takes what it is told has
+/// to begin anew.
 void Supervised::tell(const std::string& command) {
-  if (!control_ || !process_) return;
-  if (control_->is_heard())
-    control_->say(command_message(command));
-  else if (to_tell_.size() < kMostToTell)
-    to_tell_.push_back(command);
+  if (!is_heard() || control_->say(command_message(command)) || is_to_restart_) return;
+  hear_.event("takes no commands; starting it again");
+  restart();
 }
 
 void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {

@@ -80,6 +80,10 @@ class Supervised {
  private:
   Supervised(EventLoop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
 
+  Status open_control();
+  std::vector<std::string> catch_up();
+  void set_told();
+  [[nodiscard]] bool is_heard() const;
   void tell(const std::string& command);
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
@@ -111,8 +115,7 @@ class Supervised {
   MonotonicTime measured_{0};
   double processor_ = 0;
   std::vector<pid_t> processes_;
-  std::set<std::string> finished_;   // inputs it was told to finish
-  std::deque<std::string> to_tell_;  // commands, until it listens
+  std::set<std::string> finished_;  // inputs it has to finish
   std::unique_ptr<Intake> manage_;
   std::unique_ptr<Announcer> control_;
   std::optional<Process> process_;

@@ -184,32 +184,53 @@ TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
   EXPECT_EQ(report.error().detail, "module writer: failed with status 7");
 }
 
-TEST_F(Supervision, AStandInReadsForWhoHasBeenGivenUp) {
-  // The test writes in the place of the module "writer", and finds a reader.
-  const std::string place = "unix-listen:@" + token_ + ".writer.out";
-  add("writer", "exec sleep 1000");
-  add("reader", "exit 2");
-  plan_.links = {{"writer.out",
-                  "reader.in",
-                  place,
-                  "unix:@" + token_ + ".writer.out?reconnect=86400",
-                  "all",
-                  {},
-                  true}};
-  std::thread to_stand_in;
-  heard_ = [&](std::string_view line) {
-    if (!line.starts_with("reader: failed") || to_stand_in.joinable()) return;
-    to_stand_in = std::thread([this, place] {
-      LinkOptions options;
-      auto sink = open_sink(*parse_uri(place + "?readers=1"), options);
-      EXPECT_TRUE(sink);
-      EXPECT_TRUE((*sink)->send(make_rows(std::array{std::string("for nobody")})));
-      stop();
-    });
-  };
-  auto report = run();
-  to_stand_in.join();
-  ASSERT_TRUE(report) << report.error().detail;
+/// What the test writes in the place of the module "writer" comes to readers, or to those in their
+/// place: all the output's `readers` are waited for.
+class StandIns : public Supervision {
+ protected:
+  void write_for(const std::string& sender_uri) {
+    add("writer", "exec sleep 1000");
+    heard_ = [this, sender_uri](std::string_view line) {
+      failures_ += line.find(": failed") != std::string_view::npos ? 1 : 0;
+      if (failures_ < static_cast<int>(plan_.links.size()) || thread_.joinable()) return;
+      thread_ = std::thread([this, sender_uri] {
+        auto sink = open_sink(*parse_uri(sender_uri));
+        EXPECT_TRUE(sink);
+        EXPECT_TRUE((*sink)->send(make_rows(std::array{std::string("for nobody")})));
+        stop();
+      });
+    };
+    auto report = run();
+    thread_.join();
+    ASSERT_TRUE(report) << report.error().detail;
+  }
+  void add_link(const std::string& reader, const std::string& uri, const std::string& in,
+                bool lasts) {
+    add(reader, "exit 2");
+    plan_.links.push_back({"writer.out", reader + ".in", uri, in, "all", {}, lasts});
+  }
+
+  int failures_ = 0;
+  std::thread thread_;
+};
+
+TEST_F(StandIns, ReadForWhoHasBeenGivenUp) {
+  const std::string name = "@" + token_ + ".writer.out";
+  add_link("reader", "unix-listen:" + name, "unix:" + name + "?reconnect=86400", true);
+  write_for("unix-listen:" + name + "?readers=1");
+}
+
+TEST_F(StandIns, ReadForEachReaderOfACommonOutput) {
+  const std::string uri = "shm:" + token_ + ".writer.out";
+  for (const char* reader : {"first", "second"})
+    add_link(reader, uri, uri + "?reconnect=86400", true);
+  write_for(uri + "?readers=2");
+}
+
+TEST_F(StandIns, ReadForWhoTakesNoCommands) {
+  const std::string name = "@" + token_ + ".writer.out";
+  add_link("reader", "unix-listen:" + name, "unix:" + name + "?wait=60", false);
+  write_for("unix-listen:" + name + "?readers=1");
 }
 
 }  // namespace
