@@ -129,13 +129,16 @@ function(hc_test name)
 endfunction()
 
 # hc_module(depth LIBS hc::opencv hc::vision)
-# A module: main.cpp, with depth.h and depth.cpp and their test where they exist, and its cases/.
+# A module: main.cpp, with program.cpp, depth.h, depth.cpp and their test where they exist, and its
+# cases/.
 function(hc_module name)
   cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
   set(sources main.cpp)
-  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp)
-    list(APPEND sources ${name}.cpp)
-  endif()
+  foreach(source program.cpp ${name}.cpp)
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+      list(APPEND sources ${source})
+    endif()
+  endforeach()
   add_executable(module_${name} ${sources})
   set_target_properties(module_${name} PROPERTIES
     OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/libexec/hypercolumn)

@@ -1,16 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands for what moves in demonstrations and tests: takes commands, and tells which it has taken.
-#include <hc/node/module.h>
+#include "program.h"
 
 int main(int argc, char** argv) {
-  hc::Module module{"actor", "Takes commands, and tells which ones."};
-  auto command = module.input("command", hc::table<double>(), "any numbers");
-  auto done =
-      module.output("done", hc::table<std::int32_t>(),
-                    "1 x 2 for each command: its mode, and the mode in focus as it was taken");
-  module.actor(command);
-  module.on(command, [&](const auto& message) {
-    done.send(hc::table({message.header.mode, module.focus()}));
-  });
-  return module.run(argc, argv);
+  return run_actor(argc, argv);
 }

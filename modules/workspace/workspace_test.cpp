@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "workspace_conformance.h"
+
 namespace {
 
 using std::chrono::milliseconds;
@@ -122,17 +124,6 @@ TEST(Workspace, bids_that_make_no_sense_are_counted_and_change_nothing) {
   EXPECT_EQ(table.workspace.refused().total(), 11);
 }
 
-/// What a test knows of bids by itself.
-struct Known {
-  double salience = 0;
-  hc::MonotonicTime made{};
-  bool stands = false;
-
-  [[nodiscard]] bool is_there(hc::MonotonicTime now, std::chrono::nanoseconds expiry) const {
-    return stands && now - made < expiry;
-  }
-};
-
 /// One random sequence of bids, with what must hold at each period.
 class Sequence {
  public:
@@ -142,6 +133,7 @@ class Sequence {
     options_.expiry = milliseconds(100 * pick(1, 12));
     options_.person_expiry = milliseconds(100 * pick(1, 20));
     workspace_ = Workspace(options_);
+    rules_ = FocusRules(options_);
   }
 
   void run() {
@@ -161,55 +153,27 @@ class Sequence {
     double salience = pick(0, 9) == 0 ? 0 : 0.01 * pick(1, 100);
     if (pick(0, 19) == 0) {
       ASSERT_TRUE(workspace_.bid_of_person(mode, salience, now_).has_value());
-      person_ = {salience, now_, salience > 0};
-      person_mode_ = mode;
+      rules_.bid_of_person(mode, salience, now_);
     } else if (pick(0, 19) == 0) {
       EXPECT_FALSE(workspace_.bid(mode, -salience - 0.1, now_).has_value());
     } else {
       ASSERT_TRUE(workspace_.bid(mode, salience, now_).has_value());
-      tasks_[mode] = {salience, now_, salience > 0};
+      rules_.bid(mode, salience, now_);
     }
   }
 
   void decide() {
     const std::int32_t before = workspace_.focus();
     const bool changed = workspace_.decide(now_);
-    const std::int32_t focus = workspace_.focus();
-    EXPECT_EQ(changed, focus != before);
-    const bool is_held = person_.is_there(now_, options_.person_expiry);
-    if (is_held) {
-      EXPECT_EQ(focus, person_mode_);  // within one period
-    }
-    auto stands = [&](int mode) {
-      return mode > 0 && tasks_[mode].is_there(now_, options_.expiry);
-    };
-    // An expired bid never holds focus; and none is in focus only where none bids.
-    bool any = stands(1) || stands(2) || stands(3) || stands(4);
-    if (!is_held) {
-      EXPECT_TRUE(focus == 0 ? !any : stands(focus));
-    }
-    if (changed) {
-      if (!is_held && stands(before)) {  // so neither by expiry nor by a person
-        EXPECT_GE(now_ - changed_, options_.dwell);
-        EXPECT_GT(tasks_[focus].salience, tasks_[before].salience + options_.margin);
-      }
-      changed_ = now_;
-    }
-    // Nobody is kept out behind the dwell time.
-    if (is_held || !any || now_ - changed_ < options_.dwell) return;
-    for (int mode = 1; mode <= 4; ++mode) {
-      if (!stands(mode)) continue;
-      EXPECT_LE(tasks_[mode].salience, tasks_[focus].salience + options_.margin);
-    }
+    EXPECT_EQ(changed, workspace_.focus() != before);
+    rules_.decided(workspace_.focus(), now_);
   }
 
   std::minstd_rand random_;
   WorkspaceOptions options_;
   Workspace workspace_;
-  hc::MonotonicTime now_{0}, changed_{milliseconds(-10'000)};
-  Known tasks_[5];
-  Known person_;
-  std::int32_t person_mode_ = 0;
+  FocusRules rules_;
+  hc::MonotonicTime now_{0};
 };
 
 TEST(Workspace, ten_thousand_random_sequences_keep_the_rules) {

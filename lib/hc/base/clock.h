@@ -3,6 +3,7 @@
 // The two clocks: a monotonic one for every timer, and the wall clock that stamps messages.
 // Tests turn a ManualClock by hand.
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 
@@ -33,20 +34,20 @@ class SystemClock final : public Clock {
   }
 };
 
-/// A clock that stands still until it is told otherwise.
+/// A clock that stands still until it is told otherwise. One thread turns it, any may look.
 class ManualClock final : public Clock {
  public:
   [[nodiscard]] MonotonicTime monotonic() const override { return monotonic_; }
   [[nodiscard]] std::int64_t wall() const override { return wall_; }
   void advance(std::chrono::nanoseconds by) {
-    monotonic_ += by;
+    monotonic_ = monotonic() + by;
     wall_ += by.count();
   }
   void set_wall(std::int64_t time) { wall_ = time; }
 
  private:
-  MonotonicTime monotonic_{0};
-  std::int64_t wall_ = 0;
+  std::atomic<MonotonicTime> monotonic_{MonotonicTime(0)};
+  std::atomic<std::int64_t> wall_ = 0;
 };
 
 }  // namespace hc

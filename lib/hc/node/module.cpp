@@ -14,10 +14,15 @@ namespace {
 
 constexpr int kDone = 0, kFailure = 1, kUsage = 2;
 
+const SystemClock kSystemClock;
+
 }  // namespace
 
 Module::Module(std::string name, std::string summary)
-    : name_(std::move(name)), summary_(std::move(summary)), instance_(name_) {}
+    : Module(std::move(name), std::move(summary), kSystemClock) {}
+
+Module::Module(std::string name, std::string summary, const Clock& clock)
+    : name_(std::move(name)), summary_(std::move(summary)), instance_(name_), clock_(clock) {}
 
 Module::~Module() = default;
 

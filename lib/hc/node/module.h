@@ -48,6 +48,9 @@ class Module {
   /// @param name  as in the graph and on the command line: snake_case.
   /// @param summary  one sentence.
   Module(std::string name, std::string summary);
+  /// The same by another clock than the machine's, which outlives the module: a test's. Who turns
+  /// it wakes the module by a message, since waiting is by the machine's clock.
+  Module(std::string name, std::string summary, const Clock& clock);
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
   ~Module();
@@ -220,7 +223,7 @@ class Module {
   std::function<bool()> generate_;
   std::vector<Timer> timers_;
   bool routes_ = false;
-  SystemClock clock_;
+  const Clock& clock_;
   internal::Attention attention_;
   Loop* loop_ = nullptr;           // while it runs
   std::int64_t handled_time_ = 0;  // of the message being handled; 0: none

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.h"
+
+#include <hc/node/module.h>
+
+int run_actor(int argc, char** argv) {
+  hc::Module module{"actor", "Takes commands, and tells which ones."};
+  auto command = module.input("command", hc::table<double>(), "any numbers");
+  auto done =
+      module.output("done", hc::table<std::int32_t>(),
+                    "1 x 2 for each command: its mode, and the mode in focus as it was taken");
+  module.actor(command);
+  module.on(command, [&](const auto& message) {
+    done.send(hc::table({message.header.mode, module.focus()}));
+  });
+  return module.run(argc, argv);
+}
