@@ -204,6 +204,9 @@ int Module::run(int argc, char** argv) {
     loop.close();
   } catch (const internal::Stopped&) {
     // Told to stop while its links opened or closed.
+  } catch (const ModuleError& error) {
+    log(error.what());
+    return error.is_usage ? kUsage : kFailure;
   } catch (const std::exception& error) {
     log(error.what());
     return kFailure;

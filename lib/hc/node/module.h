@@ -30,10 +30,14 @@
 
 namespace hc {
 
-/// Thrown by a handler, or by what a module calls, to end the module with one line and status 1.
+/// Thrown by a handler, or by what a module calls, to end the module with one line and status 1;
+/// with an error of Code::Usage with status 2, which would be the same again.
 struct ModuleError : std::runtime_error {
   using std::runtime_error::runtime_error;
-  explicit ModuleError(const Error& error) : std::runtime_error(error.text()) {}
+  explicit ModuleError(const Error& error)
+      : std::runtime_error(error.text()), is_usage(error.code == Code::Usage) {}
+
+  bool is_usage = false;
 };
 
 /// The value of a result; a failed one ends the module.

@@ -306,6 +306,19 @@ TEST(Module, DescribesItself) {
     EXPECT_NE(help.find(part), std::string::npos) << help;
 }
 
+TEST(Module, AWrongUriIsWrongUsage) {
+  Module module{"sink", "Takes."};
+  module.on(module.input("in", table<double>(), ""), [](const auto&) {});
+  for (const char* uri : {"tcp-listen:abc", "tcp:1?wait=x", "unix:"}) {
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(run(module, {"--in", uri}), 2) << uri;
+    EXPECT_TRUE(::testing::internal::GetCapturedStderr().starts_with("sink: Usage: ")) << uri;
+  }
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "file:/nowhere/at/all"}), 1);
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("NotFound"), std::string::npos);
+}
+
 TEST(Module, HandlersFailWithOneLine) {
   Module module{"broken", "Fails."};
   auto in = module.input("in", table<double>(), "");
