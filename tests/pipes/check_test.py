@@ -132,6 +132,20 @@ BROKEN = [
     " sender's\n",
     LINKED
     + '[[links]]\nfrom = "camera.left"\nto = "tcp:1?rate=2"\nrate = 3 #! tcp:1?rate=2 has rate too\n',
+    *(
+        '[modules.camera]\n[[links]] #! %s: %s\nfrom = "camera.left"\nto = "%s"\n'
+        % (uri, what, uri)
+        for uri, what in (
+            ("tcp-listen:abc", "a port is a number"),
+            ("tcp:", "a port is a number"),
+            ("tcp:99999", "a port is a number"),
+            ("unix:@", "there is no name"),
+            ("file:", "there is no name"),
+            ("tcp:1?wait=x", "option wait"),
+            ("tcp:1?wiat=3", 'tcp has no option "wiat" here'),
+            ("tcp:1?keep=some", "option keep"),
+        )
+    ),
     LINKED.replace("camera.left", "tcp-listen:1")
     + "[[links]] #! tcp-listen:1 is there twice, and two cannot listen there\n"
     'from = "camera.left"\nto = "tcp-listen:1"\n',

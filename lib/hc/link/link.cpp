@@ -75,6 +75,25 @@ Status check_options(const Uri& uri, std::string_view allowed) {
   return {};
 }
 
+std::string sink_options(const Transport& transport) {
+  std::string options(transport.sink_options);
+  return options.append(options.empty() ? "" : " ").append(internal::kPolicyOptions);
+}
+
+/// Whether an end can be where it says, and its options have values that they can have.
+Status check_end(const Uri& uri, std::string_view allowed) {
+  if (auto checked = check_options(uri, allowed); !checked) return checked;
+  if (uri.scheme.starts_with("tcp")) {
+    if (auto place = parse_host_port(uri.rest); !place) return place.error();
+  } else if (uri.scheme != "-" && (uri.rest.empty() || uri.rest == "@")) {
+    return Error{Code::Usage, "there is no name"};
+  }
+  for (const char* key : {"wait", "reconnect", "readers", "stay", "spin"})
+    if (auto number = internal::number_option(uri, key, 0); !number) return number.error();
+  auto policy = internal::parse_policy(uri);
+  return policy ? Status() : policy.error();
+}
+
 /// The options with a log whose lines begin with the link's name.
 LinkOptions with_name(LinkOptions options, const Uri& uri) {
   if (!options.log) return options;
@@ -138,11 +157,19 @@ Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& o
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
   auto transport = find_transport(uri);
   if (!transport) return transport.error();
-  std::string allowed((*transport)->sink_options);
-  allowed.append(allowed.empty() ? "" : " ").append(internal::kPolicyOptions);
-  auto checked = check_options(uri, allowed);
+  auto checked = check_options(uri, sink_options(**transport));
   if (!checked) return checked.error();
   return (*transport)->open_sink(uri, with_name(options, uri));
+}
+
+Status check_source(const Uri& uri) {
+  auto transport = find_transport(uri);
+  return transport ? check_end(uri, (*transport)->source_options) : transport.error();
+}
+
+Status check_sink(const Uri& uri) {
+  auto transport = find_transport(uri);
+  return transport ? check_end(uri, sink_options(**transport)) : transport.error();
 }
 
 Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,

@@ -168,6 +168,12 @@ struct LinkOptions {
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
 
+/// Whether a URI makes sense at a source or a sink, as far as can be told while nothing is opened.
+///
+/// Errors: Usage.
+Status check_source(const Uri& uri);
+Status check_sink(const Uri& uri);
+
 /// The schemes that open_source() and open_sink() know.
 std::vector<std::string_view> transports();
 

@@ -5,6 +5,7 @@
 
 #include <hc/base/uri.h>
 #include <hc/graph/plan/planning.h>
+#include <hc/link/link.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
@@ -72,6 +73,15 @@ class LinkCheck {
         std::find(known.begin(), known.end(), uri.scheme) == known.end())
       problems_.add(link.place, "module " + module + " has no links of the kind \"" + uri.scheme +
                                     "\"" + suggest(planning_, uri.scheme, known));
+    else if (auto checked = is_input ? check_sink(uri) : check_source(uri);
+             !checked && is_ours(uri))
+      problems_.add(link.place, outside.uri + ": " + checked.error().detail);
+  }
+
+  /// A program in another language may know transports that we do not.
+  static bool is_ours(const Uri& uri) {
+    const auto schemes = transports();
+    return std::find(schemes.begin(), schemes.end(), uri.scheme) != schemes.end();
   }
 
   /// A link from outside has its sender there; `keep` is its reader's affair in shared memory.
