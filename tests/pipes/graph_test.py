@@ -73,6 +73,15 @@ to = "brightness.image"
         path = pathlib.Path("/proc/%d/task/%d/children" % (pid, pid))
         return [int(word) for word in path.read_text().split()] if path.exists() else []
 
+    def guards_and_modules(self, pid):
+        """The processes of hc run: a guard for each module, and the module below it."""
+        guards = self.children(pid)
+        modules = [module for guard in guards for module in self.children(guard)]
+        for module in modules:
+            program = os.readlink("/proc/%d/exe" % module)
+            self.assertEqual(os.path.dirname(program), str(BUILD / "libexec/hypercolumn"))
+        return guards, modules
+
     def test_what_was_lost_is_told_with_its_reason(self):
         self.write(
             "slow.toml",
@@ -95,30 +104,37 @@ rate = 2
 
     def test_interrupt_ends_a_graph_cleanly(self):
         process = self.run_live()
-        children = self.children(process.pid)
-        self.assertEqual(len(children), 2)
+        guards, modules = self.guards_and_modules(process.pid)
+        self.assertEqual((len(guards), len(modules)), (2, 2))
         os.kill(process.pid, signal.SIGINT)
         out, err = process.communicate(timeout=WATCHDOG)
         self.assertEqual(process.returncode, 0, err)
         self.assertIn(b"graph: stopping\n", err)
         self.assertIn(b"camera.left -> brightness.image", out)
-        for child in children:
+        for child in guards + modules:
             self.assertFalse(os.path.exists("/proc/%d" % child))
 
     def test_a_killed_runner_leaves_nothing(self):
         process = self.run_live()
-        children = self.children(process.pid)
+        guards, modules = self.guards_and_modules(process.pid)
+        self.assertEqual((len(guards), len(modules)), (2, 2))
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
-        is_gone = lambda child: not os.path.exists("/proc/%d/exe" % child) or not os.readlink(
-            "/proc/%d/exe" % child
-        ).startswith(str(BUILD))
-        for child in children:
-            wait_until(lambda: is_gone(child))
+
+        def has_ended(child):
+            try:
+                state = pathlib.Path("/proc/%d/stat" % child).read_text().rpartition(")")[2]
+            except OSError:
+                return True
+            return state.split()[0] in "ZX"  # nobody has asked for its status yet
+
+        for child in guards + modules:
+            wait_until(lambda: has_ended(child))
 
     def test_a_killed_module_that_is_never_restarted_ends_the_graph(self):
         process = self.run_live("never")
-        os.kill(self.children(process.pid)[1], signal.SIGKILL)
+        _, modules = self.guards_and_modules(process.pid)
+        os.kill(modules[1], signal.SIGKILL)
         _, err = process.communicate(timeout=WATCHDOG)
         self.assertEqual(process.returncode, 1)
         self.assertIn(b"brightness: killed by signal 9\n", err)
