@@ -29,11 +29,12 @@ def free_port():
 
 
 def wait_until(condition):
-    """Waits for an event that gives no notice."""
+    """Waits for an event that gives no notice; gives what the condition gave."""
     end = time.monotonic() + WATCHDOG
-    while not condition():
+    while not (result := condition()):
         assert time.monotonic() < end, "nothing happened"
         time.sleep(0.01)
+    return result
 
 
 def listens(port):

@@ -3,11 +3,12 @@
 """Graphs while they run: what hc run tells of them, takes, and does when they change."""
 
 import os
+import pathlib
 import signal
 import unittest
 
 from graphs import GRAPH, Graphs
-from harness import WATCHDOG
+from harness import WATCHDOG, wait_until
 
 
 class Running(Graphs):
@@ -143,6 +144,44 @@ class Running(Graphs):
         self.assertEqual([module["restarts"] for module in state["modules"]], [0, 0, 0])
         self.assertEqual(self.module(state, "camera")["parameters"]["rate"], "100")
         self.stop(process)
+
+    def test_nobody_needs_to_read_what_is_told(self):
+        """A pager, or a terminal after Ctrl-S, keeps no module from being seen to."""
+        self.write(
+            """#!/bin/sh
+[ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
+yes "what talkers have to say" | head -n 50000 >&2
+exec sleep 1000
+""",
+            "talker",
+        )
+        os.chmod(self.path("talker"), 0o755)
+        self.write("[modules.talker]\nprogram = './talker'\n")
+
+        def await_state(process, condition):
+            def is_so():
+                messages = self.observe(process)  # anew, so that no lines come first
+                state = self.module(self.state(messages), "talker")
+                messages.close()
+                return condition(state) and state
+
+            return wait_until(is_so)
+
+        is_silent = lambda talker: pathlib.Path("/proc/%d/comm" % talker["pid"]).read_text() == (
+            "sleep\n"
+        )
+        for reads_again in (False, True):
+            process = self.run_graph(last="talker: started")
+            talker = await_state(process, is_silent)
+            os.kill(talker["pid"], signal.SIGKILL)
+            await_state(process, lambda talker: talker["restarts"] == 1 and is_silent(talker))
+            if reads_again:
+                lines = self.await_lines(process, "not shown")
+                self.assertRegex(lines[-1], r"^hc run: [0-9]+ lines are not shown")
+                self.stop(process)
+            else:
+                self.assertEqual(self.ask(process, "stop"), ["ok"])
+                self.assertEqual(process.wait(timeout=WATCHDOG), 0)
 
     def test_the_status_line_stands_below_all_others(self):
         self.write(GRAPH)

@@ -67,6 +67,12 @@ void allow_descriptors() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/// Says why it fails as all else was said: nobody may read that.
+[[noreturn]] void fail(StatusLine& status, const hc::Error& error) {
+  status.say("hc run: " + error.text());
+  throw Failure(Failure(error).status);
+}
+
 void run(const Options& options) {
   allow_descriptors();
   const std::string token = hc::graph_token();
@@ -89,14 +95,14 @@ void run(const Options& options) {
     return hc::Replanned{{}, {planned.error().detail}, {}};
   };
   auto report = hc::run_graph(std::move(*plan.plan), run_options);
-  status.erase();
-  if (!report) throw Failure(report.error());
+  status.finish();
+  if (!report) fail(status, report.error());
   print_links(report->state);
   std::string given_up;
   for (const auto& module : report->state.modules)
     if (module.status == hc::ModuleStatus::GivenUp)
       given_up += (given_up.empty() ? "" : ", ") + module.name;
-  if (!given_up.empty()) throw Failure(hc::Error{hc::Code::Closed, "given up: " + given_up});
+  if (!given_up.empty()) fail(status, {hc::Code::Closed, "given up: " + given_up});
 }
 
 }  // namespace

@@ -5,10 +5,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <map>
-
-#include "common.h"
 
 namespace tool {
 
@@ -30,31 +27,15 @@ std::string summary_of(const hc::GraphState& state) {
   return text;
 }
 
-StatusLine::StatusLine(bool wanted) : on_terminal_(wanted && ::isatty(STDERR_FILENO) == 1) {}
-
-void StatusLine::say(std::string_view line) {
-  if (shown_.empty()) return tool::say(line);
-  fmt::print(stderr, "\r\033[K{}\n", line);
-  draw();
-}
+StatusLine::StatusLine(bool wanted)
+    : on_terminal_(wanted && ::isatty(STDERR_FILENO) == 1), outbox_(STDERR_FILENO) {}
 
 void StatusLine::show(const hc::GraphState& state) {
   if (!on_terminal_) return;
-  shown_ = summary_of(state);
-  draw();
-}
-
-void StatusLine::draw() {
   winsize size{};
   const std::size_t width =
       ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-  fmt::print(stderr, "\r\033[K{}", shown_.substr(0, width - 1));
-}
-
-void StatusLine::erase() {
-  if (shown_.empty()) return;
-  fmt::print(stderr, "\r\033[K");
-  shown_.clear();
+  outbox_.show(summary_of(state).substr(0, width - 1));
 }
 
 }  // namespace tool

@@ -7,29 +7,28 @@
 
 #include <hc/graph/state.h>
 
+#include "outbox.h"
+
 namespace tool {
 
 /// What a graph does, in one line: "5 running, 1 given up | 1230 messages/s | focus: track".
 std::string summary_of(const hc::GraphState& state);
 
-/// Lines on standard error, and where that is a terminal, one below them that changes.
+/// Lines on standard error, and where that is a terminal, one below them that changes. Nothing but
+/// finish() waits for who reads them.
 class StatusLine {
  public:
   /// @param wanted  false: there is none.
   explicit StatusLine(bool wanted);
-  ~StatusLine() { erase(); }
-  StatusLine(const StatusLine&) = delete;
-  StatusLine& operator=(const StatusLine&) = delete;
 
-  void say(std::string_view line);
+  void say(std::string_view line) { outbox_.say(line); }
   void show(const hc::GraphState& state);
-  void erase();
+  /// Waits until the lines are written, as long as somebody reads, and takes the last one away.
+  void finish() { outbox_.finish(); }
 
  private:
-  void draw();
-
   bool on_terminal_;
-  std::string shown_;  // empty: nothing is
+  Outbox outbox_;
 };
 
 }  // namespace tool

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "outbox.h"
+
+#include <fmt/format.h>
+
+#include <condition_variable>
+#include <csignal>
+#include <mutex>
+#include <utility>
+
+#include <hc/base/program.h>
+
+namespace tool {
+
+struct Outbox::Shared {
+  explicit Shared(int number) : descriptor(number) {}
+
+  const int descriptor;
+  std::mutex mutex;
+  std::condition_variable changed;  // there is something to do, or something has been done
+  std::string waiting;              // lines
+  std::size_t dropped = 0;          // lines behind those
+  std::string below;
+  bool is_below_new = false, is_below_drawn = false;
+  bool is_writing = false, is_ending = false;
+  std::size_t pieces = 0;  // written so far
+
+  [[nodiscard]] bool has_work() const { return !waiting.empty() || dropped > 0 || is_below_new; }
+  [[nodiscard]] bool is_done() const { return !has_work() && !is_writing; }
+
+  /// What is to be written now.
+  std::string take() {
+    constexpr const char* kErase = "\r\033[K";
+    std::string text = is_below_drawn ? kErase : "";
+    text += std::exchange(waiting, {});
+    if (dropped > 0) text += fmt::format("hc run: {} lines are not shown\n", dropped);
+    dropped = 0;
+    text += below;
+    is_below_drawn = !below.empty();
+    is_below_new = false;
+    return text;
+  }
+
+  void write() {
+    // As small as what a pipe takes at once, so that it is seen whether anybody reads.
+    constexpr std::size_t kPiece = 4096;
+    std::unique_lock lock(mutex);
+    while (true) {
+      changed.wait(lock, [this] { return has_work() || is_ending; });
+      if (!has_work()) return;
+      const std::string text = take();
+      is_writing = true;
+      for (std::string_view rest = text; !rest.empty();) {
+        const auto piece = rest.substr(0, kPiece);
+        rest.remove_prefix(piece.size());
+        lock.unlock();
+        // Where nobody reads any more, lines go nowhere.
+        static_cast<void>(hc::write_all(descriptor, piece));
+        lock.lock();
+        ++pieces;
+        changed.notify_all();
+      }
+      is_writing = false;
+      changed.notify_all();
+    }
+  }
+};
+
+Outbox::Outbox(int descriptor) : shared_(std::make_shared<Shared>(descriptor)) {
+  // Signals are for the thread that looks for them.
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  writer_ = std::thread([shared = shared_] { shared->write(); });
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+Outbox::~Outbox() {
+  finish();
+  std::unique_lock lock(shared_->mutex);
+  shared_->is_ending = true;
+  shared_->changed.notify_all();
+  const bool is_stuck = !shared_->is_done();
+  lock.unlock();
+  if (is_stuck)
+    writer_.detach();
+  else
+    writer_.join();
+}
+
+void Outbox::say(std::string_view line) {
+  std::lock_guard lock(shared_->mutex);
+  if (shared_->dropped > 0 || shared_->waiting.size() + line.size() >= kMostWaiting)
+    ++shared_->dropped;
+  else
+    shared_->waiting.append(line).append("\n");
+  shared_->changed.notify_all();
+}
+
+void Outbox::show(std::string below) {
+  std::lock_guard lock(shared_->mutex);
+  if (below.empty() && shared_->below.empty()) return;
+  shared_->below = std::move(below);
+  shared_->is_below_new = true;
+  shared_->changed.notify_all();
+}
+
+void Outbox::finish() {
+  show("");
+  std::unique_lock lock(shared_->mutex);
+  const auto& shared = *shared_;
+  while (!shared.is_done() && shared.pieces != unread_) {
+    const std::size_t before = shared.pieces;
+    const bool has_moved = shared_->changed.wait_for(
+        lock, kPatience, [&] { return shared.pieces != before || shared.is_done(); });
+    if (!has_moved) unread_ = before;
+  }
+}
+
+}  // namespace tool
