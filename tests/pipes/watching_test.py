@@ -6,6 +6,7 @@ import os
 import pathlib
 import pty
 import re
+import signal
 import unittest
 
 from graphs import GRAPH, Graphs
@@ -73,6 +74,22 @@ class Watching(Graphs):
         )
         self.hc("graph restart camera" + of)
         wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))
+        self.stop_named(name, process)
+
+    def test_who_asks_a_graph_is_no_graph(self):
+        """Several may ask at once, each listening for its answer, and need not say which graph."""
+        name, process = self.run_named("asked")
+        os.kill(process.pid, signal.SIGSTOP)
+        asking = self.start("exec hc graph set camera.rate=20 --of " + name)
+        listening = lambda: [
+            line.split()[-1]
+            for line in pathlib.Path("/proc/net/unix").read_text().splitlines()
+            if line.endswith(".%d" % asking.pid)
+        ]
+        wait_until(listening)
+        self.assertRegex(listening()[0], "^@hypercolumn-answer")
+        os.kill(process.pid, signal.SIGCONT)
+        self.assertEqual(asking.wait(timeout=WATCHDOG), 0)
         self.stop_named(name, process)
 
     def test_what_does_not_run_is_told(self):

@@ -19,7 +19,7 @@
 namespace tool {
 namespace {
 
-constexpr std::string_view kPrefix = "hypercolumn.";
+constexpr std::string_view kPrefix = "hypercolumn.", kAnswerPrefix = "hypercolumn-answer.";
 constexpr std::int32_t kState = 1;                            // src of what a graph says of itself
 constexpr std::uint64_t kMostSaid = std::uint64_t{16} << 20;  // [byte]
 constexpr std::chrono::seconds kAnswerTime{10};
@@ -29,20 +29,27 @@ std::string place(const RunningGraph& graph) {
   return fmt::format("unix:@{}{}", kPrefix, graph.text());
 }
 
-/// NAME.PROCESS, which stands behind the prefix in a socket's name.
+/// NAME.PROCESS, which stands behind the prefix in a socket's name. Anybody may bind any other.
 std::optional<RunningGraph> parse(std::string_view word) {
-  auto dot = word.rfind('.');
-  if (dot == std::string_view::npos || dot == 0) return std::nullopt;
+  auto dot = word.find('.');
+  if (dot == std::string_view::npos || dot == 0 || dot > kMaxGraphName) return std::nullopt;
+  if (!std::all_of(word.begin(), word.begin() + dot, is_of_graph_name)) return std::nullopt;
   RunningGraph graph;
   graph.name = word.substr(0, dot);
   auto number = word.substr(dot + 1);
   auto [stop, status] =
       std::from_chars(number.data(), number.data() + number.size(), graph.process);
-  if (status != std::errc() || stop != number.data() + number.size()) return std::nullopt;
+  if (status != std::errc() || stop != number.data() + number.size() || graph.process <= 0)
+    return std::nullopt;
   return graph;
 }
 
 }  // namespace
+
+bool is_of_graph_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_';
+}
 
 std::vector<RunningGraph> find_running(std::string_view sockets) {
   std::vector<RunningGraph> found;
@@ -124,7 +131,7 @@ std::optional<nlohmann::json> Observer::next_measured() {
 }
 
 void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
-  const std::string answers = fmt::format("@{}answer.{}", kPrefix, ::getpid());
+  const std::string answers = fmt::format("@{}{}", kAnswerPrefix, ::getpid());
   auto source = open_source("unix-listen:" + answers, kMostSaid);
   std::vector<std::string> rows = {"reply unix:" + answers};
   rows.insert(rows.end(), commands.begin(), commands.end());

@@ -15,6 +15,10 @@
 
 namespace tool {
 
+/// Of what a graph's name is made, and how long it is at most. [byte]
+bool is_of_graph_name(char c);
+inline constexpr std::size_t kMaxGraphName = 40;
+
 /// A graph that runs: one `hc run`.
 struct RunningGraph {
   std::string name;

@@ -11,13 +11,12 @@
 
 #include "common.h"
 #include "graph.h"
+#include "observer.h"
 #include "status_line.h"
 #include "verbs.h"
 
 namespace tool {
 namespace {
-
-constexpr std::size_t kMaxName = 40;
 
 struct Options {
   GraphOptions graph;
@@ -47,13 +46,9 @@ std::string name_of(const Options& options) {
   std::string name = options.name.empty()
                          ? std::filesystem::path(options.graph.file).stem().string()
                          : options.name;
-  name.resize(std::min(name.size(), kMaxName));
+  name.resize(std::min(name.size(), kMaxGraphName));
   std::replace_if(
-      name.begin(), name.end(),
-      [](char c) {
-        return (c < 'a' || c > 'z') && (c < 'A' || c > 'Z') && (c < '0' || c > '9') && c != '-';
-      },
-      '_');
+      name.begin(), name.end(), [](char c) { return !is_of_graph_name(c); }, '_');
   return name.empty() ? "graph" : name;
 }
 
