@@ -73,6 +73,28 @@ class Running(Graphs):
         _, err = self.stop(process)
         self.assertNotIn("started", err)
 
+    def test_commands_change_the_graph_as_it_was_read_last(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        observed = self.observe(process)
+        self.write("[modules.camera\n")
+        self.await_lines(process, "graph: goes on as it was")
+        self.assertEqual(self.ask(process, "set camera.rate=20"), ["ok"])
+        self.write(GRAPH)
+        self.await_lines(process, "graph: as it was")
+        os.mkdir(self.path("elsewhere"))
+        os.link(self.path("g.toml"), self.path("elsewhere/same.toml"))
+        with open(self.path("elsewhere/same.toml"), "a") as same:  # where nobody looks
+            same.write("[modules.more]\nprogram = 'brightness'\n")
+        self.assertEqual(self.ask(process, "set camera.rate=30"), ["ok"])
+        rate = lambda state: self.module(state, "camera")["parameters"]["rate"]
+        state = self.state(observed, lambda state: rate(state) == "30")
+        self.assertIsNone(self.module(state, "more"))
+        self.write(GRAPH + "[modules.more]\nprogram = 'brightness'\n")
+        state = self.state(observed, lambda state: self.module(state, "more"))
+        self.assertEqual(rate(state), "30")
+        self.stop(process)
+
     def test_wrong_commands_are_answered(self):
         self.write(GRAPH)
         process = self.run_graph()

@@ -12,7 +12,8 @@ namespace {
 
 /// A graph that is wrong has no plan, and so nothing that could be looked for.
 std::vector<Finding> examine(const GraphOptions& options, Needs& needs) {
-  auto planned = plan_graph(options, hc::graph_token());
+  Texts texts;
+  auto planned = plan_graph(options, hc::graph_token(), texts);
   if (!planned) throw Failure(planned.error());
   std::vector<Finding> findings;
   for (const auto& problem : planned->problems) findings.push_back({Mark::Wrong, "graph", problem});

@@ -32,6 +32,13 @@ hc::Result<std::string> read_included(const std::string& name) {
   return read_text(name);
 }
 
+hc::Result<std::string> read_once(const std::string& name, Texts& texts, const hc::ReadFile& read) {
+  if (auto known = texts.find(name); known != texts.end()) return known->second;
+  auto text = read(name);
+  if (text) texts[name] = *text;
+  return text;
+}
+
 /// Names of programs become paths; one with a slash is sought from the folder of the file where it
 /// stands.
 void resolve_programs(hc::Graph& graph, hc::Problems& problems) {
@@ -78,13 +85,14 @@ void add_graph_options(CLI::App& verb, GraphOptions& options) {
 }
 
 hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
-                                     const std::vector<std::string>& commands,
+                                     Texts& texts, const std::vector<std::string>& commands,
                                      const hc::Plan* before) {
   hc::Problems problems(options.file);
   auto environment = [](const char* name) -> const char* { return std::getenv(name); };
-  auto text = read_text(options.file);
+  auto text = read_once(options.file, texts, read_text);
   if (!text) return text.error();
-  hc::Graph graph = hc::parse_graph(*text, environment, problems, read_included);
+  auto read = [&](const std::string& name) { return read_once(name, texts, read_included); };
+  hc::Graph graph = hc::parse_graph(*text, environment, problems, read);
   for (const auto& setting : options.settings) hc::set_parameter(graph, setting, problems);
   for (const auto& line : commands)
     if (auto command = hc::parse_command(line)) hc::apply_command(graph, *command, problems);
@@ -109,7 +117,13 @@ hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::str
 
 hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
                         const std::string& token) {
-  auto planned = plan_graph(options, token);
+  Texts texts;
+  return make_plan(verb, options, token, texts);
+}
+
+hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
+                        const std::string& token, Texts& texts) {
+  auto planned = plan_graph(options, token, texts);
   if (!planned) throw Failure(planned.error());
   if (planned->plan) return std::move(*planned);
   for (const auto& line : planned->problems)

@@ -2,6 +2,7 @@
 #pragma once
 // What the verbs that take a graph file share: from its name to a plan, or all that is wrong.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,23 @@ struct GraphOptions {
 };
 void add_graph_options(CLI::App& verb, GraphOptions& options);
 
-/// Reads, checks and plans a graph that commands have changed, one after the other.
+/// The texts of files that have been read, by their names.
+using Texts = std::map<std::string, std::string>;
+
+/// Checks and plans a graph that commands have changed, one after the other.
 ///
+/// @param texts  of the files that it is made of; those that are not there are read, and added.
 /// @param before  the plan by which it runs, whose numbers stay; null: it does not run.
 ///
 /// Errors: NotFound (the file). All else that is wrong stands in Replanned::problems.
 hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
-                                     const std::vector<std::string>& commands = {},
+                                     Texts& texts, const std::vector<std::string>& commands = {},
                                      const hc::Plan* before = nullptr);
 
 /// The same for a graph that does not run yet. Where something is wrong it says all of that, a line
 /// each, and fails with status 2.
+hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
+                        const std::string& token, Texts& texts);
 hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
                         const std::string& token);
 

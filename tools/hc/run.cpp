@@ -71,7 +71,8 @@ void allow_descriptors() {
 void run(const Options& options) {
   allow_descriptors();
   const std::string token = hc::graph_token();
-  auto plan = make_plan("run", options.graph, token);
+  Texts texts;  // of the plan that runs
+  auto plan = make_plan("run", options.graph, token, texts);
   StatusLine status(!options.quiet);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
@@ -84,10 +85,13 @@ void run(const Options& options) {
   run_options.name = name_of(options);
   run_options.file = options.graph.file;
   run_options.files = plan.files;
-  run_options.replan = [&](const std::vector<std::string>& commands, const hc::Plan& running) {
-    auto planned = plan_graph(options.graph, running.token, commands, &running);
-    if (planned) return std::move(*planned);
-    return hc::Replanned{{}, {planned.error().detail}, {}};
+  run_options.replan = [&](hc::Reading reading, const std::vector<std::string>& commands,
+                           const hc::Plan& running) {
+    Texts read = reading == hc::Reading::Anew ? Texts() : texts;
+    auto planned = plan_graph(options.graph, running.token, read, commands, &running);
+    if (!planned) return hc::Replanned{{}, {planned.error().detail}, {}};
+    if (planned->plan) texts = std::move(read);
+    return std::move(*planned);
   };
   auto report = hc::run_graph(std::move(*plan.plan), run_options);
   status.finish();

@@ -29,6 +29,10 @@ struct Replanned {
   std::vector<std::string> files;     ///< that it is made of: editing one makes it planned anew
 };
 
+/// What a graph is planned anew of: its files as they are now, or as they were when a plan was made
+/// of them last.
+enum class Reading { Anew, AsBefore };
+
 struct RunOptions {
   int stop = -1;  ///< descriptor that is readable when the graph is to end
   /// Hears one line for each event, and what modules say; each begins with a module's name, or
@@ -40,9 +44,11 @@ struct RunOptions {
   /// Where others find the graph: it has two links of that name (spec/graph.md). Empty: none.
   std::string name;
   std::string file;  ///< what its state calls the graph file
-  /// Plans the graph anew, with the token and the numbers of the plan that runs: of its files as
-  /// they are now, changed by commands (commands.h) one after the other. Empty: it stays as it is.
-  std::function<Replanned(const std::vector<std::string>& commands, const Plan& running)> replan;
+  /// Plans the graph anew, with the token and the numbers of the plan that runs: of its files,
+  /// changed by commands (commands.h) one after the other. Empty: it stays as it is.
+  std::function<Replanned(Reading reading, const std::vector<std::string>& commands,
+                          const Plan& running)>
+      replan;
   std::vector<std::string> files;  ///< as Replanned::files, of the first plan
   SupervisionLimits limits;
 };

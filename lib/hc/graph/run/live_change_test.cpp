@@ -22,9 +22,10 @@ class LiveChange : public Run {
  protected:
   LiveChange() {
     options_.name = "live";
-    options_.replan = [this](const Lines& commands, const Plan&) {
+    options_.replan = [this](Reading reading, const Lines& commands, const Plan&) {
       std::lock_guard lock(mutex_);
       commands_ = commands;
+      reading_ = reading;
       Replanned planned;
       if (next_)
         planned.plan = *next_;
@@ -80,6 +81,10 @@ class LiveChange : public Run {
     std::lock_guard lock(mutex_);
     return commands_;
   }
+  Reading reading() {
+    std::lock_guard lock(mutex_);
+    return reading_;
+  }
 
   std::thread thread_;  // reads what the graph is made of
 
@@ -87,6 +92,7 @@ class LiveChange : public Run {
   std::mutex mutex_;
   std::optional<Plan> next_;
   Lines commands_;
+  Reading reading_ = Reading::Anew;
 };
 
 TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
@@ -100,6 +106,7 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
     plan_next(plan_);
     EXPECT_EQ(ask({"set camera.rate=3"}), Lines{"ok"});
     EXPECT_EQ(commands(), Lines{"set camera.rate=3"});
+    EXPECT_EQ(reading(), Reading::AsBefore);
   });
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
@@ -285,6 +292,7 @@ TEST_F(LiveChange, AnEditedFileIsReadAnew) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") write();
     if (line == "graph: goes on as it was") {
+      EXPECT_EQ(reading(), Reading::Anew);
       plan_next(plan_);
       write();
     }

@@ -9,10 +9,10 @@ namespace hc::internal {
 
 void Runner::read_anew() {
   if (is_stopping_) return;
-  auto planned = options_.replan(commands_, plan_);
+  auto planned = options_.replan(Reading::Anew, commands_, plan_);
   if (!planned.plan && !commands_.empty()) {
     // Perhaps the file is right, and what was asked beside it does not go with it any more.
-    auto alone = options_.replan({}, plan_);
+    auto alone = options_.replan(Reading::Anew, {}, plan_);
     if (alone.plan) {
       for (const auto& line : planned.problems) say("graph: " + line);
       say("graph: the commands so far are forgotten");
@@ -46,7 +46,7 @@ std::vector<std::string> Runner::obey(const std::vector<std::string>& lines) {
   if (!wrong.empty()) return wrong;
   if (edits != commands_) {
     if (!options_.replan) return {"this graph cannot be changed"};
-    auto planned = options_.replan(edits, plan_);
+    auto planned = options_.replan(Reading::AsBefore, edits, plan_);
     if (!planned.plan) return planned.problems;
     commands_ = std::move(edits);
     change_to(std::move(*planned.plan));
