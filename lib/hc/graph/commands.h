@@ -28,7 +28,9 @@ Result<Command> parse_command(std::string_view line);
 /// Changes a graph as an edit says. Problems: what it names is not there, or is there already.
 void apply_command(Graph& graph, const Command& command, Problems& problems);
 
-/// Adds a command to those before it, in the place of one that it makes void.
+/// Adds an edit to those before it, each of them one that can be parsed: in the place of one that
+/// it repeats, and without those that it undoes. Whatever graph they are applied to, they do the
+/// same; so a slider, or a link that comes and goes, can be moved for ever.
 void add_command(std::vector<std::string>& commands, const std::string& line);
 
 }  // namespace hc
