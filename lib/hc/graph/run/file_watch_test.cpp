@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/graph/run/file_watch.h>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -43,6 +45,52 @@ TEST_F(FileWatchTest, WritingAndPuttingInPlaceAreNoticed) {
   await(2);
   write("sub/eye.toml");
   await(3);
+}
+
+TEST_F(FileWatchTest, ALinkIsFollowed) {
+  fs::create_symlink("sub/there.toml", folder_ / "here.toml");
+  fs::create_directory_symlink("sub", folder_ / "to_sub");
+  watch_->set_files({folder_ / "here.toml", folder_ / "to_sub/eye.toml"});
+  write("sub/there.toml");
+  await(1);
+  write("sub/eye.toml");
+  await(2);
+  fs::create_directory(folder_ / "other");
+  fs::create_directory_symlink("other", folder_ / "new");
+  fs::rename(folder_ / "new", folder_ / "to_sub");
+  await(3);
+  fs::remove(folder_ / "here.toml");
+  fs::create_symlink("sub/eye.toml", folder_ / "here.toml");
+  await(4);
+}
+
+TEST_F(FileWatchTest, AFolderMayBeReplaced) {
+  watch_->set_files({folder_ / "sub/eye.toml"});
+  fs::rename(folder_ / "sub", folder_ / "old");
+  await(1);
+  fs::create_directory(folder_ / "sub");
+  await(2);
+  write("old/eye.toml");  // it is none of ours any more
+  write("sub/eye.toml");
+  await(3);
+  fs::remove_all(folder_ / "sub");
+  await(4);
+  write("old/eye.toml");
+  fs::rename(folder_ / "old", folder_ / "sub");
+  await(5);
+  write("sub/eye.toml");
+  await(6);
+}
+
+TEST_F(FileWatchTest, WhatTheSystemDidNotNoteMayHaveBeenOurs) {
+  watch_->set_files({folder_ / "graph.toml"});
+  int most = 0;
+  std::ifstream("/proc/sys/fs/inotify/max_queued_events") >> most;
+  const std::string other[] = {folder_ / "a", folder_ / "b"};  // in turn: equal notes are one
+  for (int i = 0; i <= most; ++i)
+    ::close(::open(other[i % 2].c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
+  write("graph.toml");
+  await(1);
 }
 
 TEST_F(FileWatchTest, WhatIsDoneAtOnceIsOneCall) {
