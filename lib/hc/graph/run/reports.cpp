@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kTraffic = std::tuple_size_v<Counters>;
 constexpr std::size_t kLeftOut = kTraffic, kAge = kLeftOut + 1, kGap = kAge + 3, kEnd = kGap + 3;
+constexpr std::size_t kMostKey = 4096;  // of an end [byte]
 
 }  // namespace
 
@@ -48,7 +49,8 @@ void Reports::take_counters(const MatrixView<const std::int64_t>& rows, Monotoni
       counted_ == MonotonicTime(0) ? 0 : std::chrono::duration<double>(now - counted_).count();
   counted_ = now;
   for (std::size_t i = 0; i < std::min(rows.height(), order_.size()); ++i)
-    count(ends_[order_[i]], rows.row(i), seconds);
+    if (ends_.size() < kMostEnds || ends_.contains(order_[i]))
+      count(ends_[order_[i]], rows.row(i), seconds);
 }
 
 void Reports::count(Counted& counted, std::span<const std::int64_t> row, double seconds) {
@@ -82,8 +84,10 @@ bool Reports::take_links(const Message& message) {
     auto port = row.find(' ');
     auto uri = port == std::string::npos ? port : row.find(' ', port + 1);
     if (uri == std::string::npos) continue;
+    if (order.size() == kMostEnds) break;
     order.push_back(
-        end_key(row.starts_with("in "), row.substr(port + 1, uri - port - 1), row.substr(uri + 1)));
+        end_key(row.starts_with("in "), row.substr(port + 1, uri - port - 1), row.substr(uri + 1))
+            .substr(0, kMostKey));
   }
   has_told_links_ = true;
   return std::exchange(order_, order) != order;
@@ -93,6 +97,7 @@ bool Reports::take_parameters(const Message& message) {
   std::map<std::string, std::string> parameters;
   for (const auto& row : rows_of(message)) {
     auto equals = row.find('=');
+    if (parameters.size() == kMostParameters) break;
     if (equals != std::string::npos) parameters[row.substr(0, equals)] = row.substr(equals + 1);
   }
   return std::exchange(parameters_, parameters) != parameters;

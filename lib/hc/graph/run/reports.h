@@ -36,6 +36,9 @@ class Reports {
   /// Tells reports apart, by src.
   enum Sender : std::int32_t { kCounters = 1, kLinks, kParameters, kState };
 
+  /// What is kept of those that a module tells, whatever it tells.
+  static constexpr std::size_t kMostEnds = 4096, kMostParameters = 1024;
+
   /// @param ends  in whose order counters come, inputs first, from one that does not tell.
   explicit Reports(const std::vector<PlannedEnd>& ends) { set_ends(ends); }
   void set_ends(const std::vector<PlannedEnd>& ends);

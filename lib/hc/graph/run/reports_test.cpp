@@ -93,6 +93,26 @@ TEST_F(ReportsTest, ParametersAndModeTellOfChangesAlone) {
   EXPECT_FALSE(reports_.in_focus);
 }
 
+TEST_F(ReportsTest, OfTooManyTheFirstAreKept) {
+  std::vector<std::string> links, parameters;
+  std::vector<std::vector<std::int64_t>> counters;
+  const auto number = [](std::size_t i) { return std::to_string(i); };
+  for (std::size_t i = 0; i <= Reports::kMostEnds; ++i) {
+    links.push_back("in in unix:@" + number(i));
+    counters.push_back({1, 1});
+  }
+  for (std::size_t i = 0; i <= Reports::kMostParameters; ++i) parameters.push_back(number(i) + "=");
+  reports_.take(rows(2, links), now_);
+  count(counters);
+  EXPECT_NE(reports_.find({true, "in", "unix:@" + number(Reports::kMostEnds - 1), ""}), nullptr);
+  EXPECT_EQ(reports_.find({true, "in", "unix:@" + number(Reports::kMostEnds), ""}), nullptr);
+  reports_.take(rows(2, {"in in unix:@more"}), now_);
+  count({{1, 1}});
+  EXPECT_EQ(reports_.find({true, "in", "unix:@more", ""}), nullptr) << "nor of several reports";
+  reports_.take(rows(3, parameters), now_);
+  EXPECT_EQ(reports_.parameters().size(), Reports::kMostParameters);
+}
+
 TEST_F(ReportsTest, WhatMakesNoSenseIsPassedOver) {
   reports_.take(rows(2, {"", "in", "out x"}), now_);
   EXPECT_FALSE(reports_.take(rows(1, {"no table"}), now_));

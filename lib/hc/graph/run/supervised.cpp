@@ -18,6 +18,7 @@ constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;      // a pipe can be made to hold a MiB; source: man 7 pipe
 constexpr int kCannotExecute = 127;  // as shells say it
 constexpr int kSignal = 128;         // the status of who was killed by one is above
+constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
 
 MonotonicTime now() {
   return MonotonicClock::now().time_since_epoch();
@@ -57,8 +58,11 @@ Result<std::unique_ptr<Supervised>> Supervised::make(EventLoop& loop, PlannedMod
   std::unique_ptr<Supervised> module(
       new Supervised(loop, std::move(plan), limits, std::move(hear)));
   auto& self = *module;
-  auto manage = Intake::make(loop, self.plan_.manage_uri,
-                             [&self](const Message& message) { self.take_report(message); });
+  LinkOptions options;
+  options.limits.element_bytes = kMostReported;
+  auto manage = Intake::make(
+      loop, self.plan_.manage_uri, [&self](const Message& message) { self.take_report(message); },
+      options);
   if (!manage) return manage.error();
   self.manage_ = std::move(*manage);
   if (auto opened = self.open_control(); !opened) return opened.error();

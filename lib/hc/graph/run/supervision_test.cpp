@@ -107,12 +107,15 @@ TEST_F(Supervision, AQuietOneTellsItsLastLinesWhenItFails) {
   EXPECT_EQ(lines_[20], "a: 30");
 }
 
+std::string peer_of(const std::string& listening) {
+  return "unix" + listening.substr(listening.find(':'));
+}
+
 /// Reports, as a module does, on the thread that hears of the graph.
 class Reporter {
  public:
   explicit Reporter(const std::string& manage_uri) {
-    auto uri = parse_uri("unix" + manage_uri.substr(manage_uri.find(':')));
-    sink_ = std::move(*open_sink(*uri));
+    sink_ = std::move(*open_sink(*parse_uri(peer_of(manage_uri))));
   }
   void report(std::int32_t src, Message message) {
     message.header.src = src;
@@ -156,6 +159,27 @@ TEST_F(Supervision, CountsAreThoseOfAllProcesses) {
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
   EXPECT_EQ(report->state.links.at(0).traffic.messages, 65U);
+}
+
+TEST_F(Supervision, AReportThatIsTooLargeIsNotTaken) {
+  add("a", "exec sleep 1000");
+  options_.limits.stall = 1ms;  // tells that the next one has been taken
+  std::thread reporting;
+  heard_ = [&](std::string_view line) {
+    if (line == "a: started")
+      reporting = std::thread([uri = plan_.modules[0].manage_uri] {
+        auto large = make_rows(std::array{"large=" + std::string(std::size_t{2} << 20, 'x')});
+        large.header.src = 3;
+        // Whether all of it can be sent before we are left is a matter of luck.
+        static_cast<void>((*open_sink(*parse_uri(peer_of(uri))))->send(large));
+        Reporter(uri).count(1);
+      });
+    if (line == "a: stalled: busy") stop();
+  };
+  auto report = run();
+  reporting.join();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(module(*report, "a").parameters.empty());
 }
 
 TEST_F(Supervision, AModuleAllOfWhoseReadersHaveEndedEnds) {
