@@ -19,6 +19,8 @@ struct Attention {
   [[nodiscard]] bool in_focus() const {
     return modes.empty() || std::find(modes.begin(), modes.end(), focus) != modes.end();
   }
+  /// Whether an exclusive input takes messages of a mode: none of them while nobody has the focus.
+  [[nodiscard]] bool has_focus(std::int32_t mode) const { return mode != 0 && mode == focus; }
   /// Whether it is to do less now.
   [[nodiscard]] bool is_idle() const { return idle_rate > 0 && !in_focus(); }
   /// A rate as it is now. [Hz]

@@ -246,12 +246,16 @@ TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   ASSERT_TRUE(commands->send(in_mode(table({4.0}), 1)));
   ASSERT_TRUE(*receive(*done, message));
   EXPECT_EQ(message.view<double>()->at(0, 0), 4);
+  set_focus(0);  // nobody
+  ASSERT_TRUE(commands->send(in_mode(table({5.0}), 0)));
+  ASSERT_TRUE(commands->send(in_mode(table({6.0}), 1)));
   ASSERT_TRUE(commands->close());
   EXPECT_EQ(join(), 0);
+  EXPECT_FALSE(*receive(*done, message));
   Message counters;
   while (*reports->take(message) == Got::Message)
     if (message.header.src == static_cast<int>(internal::Report::Counters)) counters = message;
-  EXPECT_EQ(counters.view<std::int64_t>()->at(0, 0, 7), 2);
+  EXPECT_EQ(counters.view<std::int64_t>()->at(0, 0, 7), 4);
 }
 
 TEST_F(RunningModule, DoesLessWhileAnotherModeHasTheFocus) {

@@ -263,11 +263,11 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
   fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
 }
 
-/// Whether a message is handled now: one of another mode than that in focus is not where this is
-/// asked for, and of all others so many as the module does while idle.
+/// Whether a message is handled now: where it is asked for, one of the mode in focus alone is; and
+/// of all others so many as the module does while idle.
 bool Module::Loop::may_handle(internal::InputState& input, const Message& message) {
   const auto& attention = module_.attention_;
-  if (input.is_exclusive && message.header.mode != attention.focus) return false;
+  if (input.is_exclusive && !attention.has_focus(message.header.mode)) return false;
   // What is taken together is left out together.
   return input.matcher != nullptr || may_while_idle(input.handled_at);
 }
