@@ -63,7 +63,7 @@ class RunningModule : public ::testing::Test {
 Message next(Source& reports, internal::Report kind) {
   Message message;
   do {
-    EXPECT_TRUE(*receive(reports, message));
+    HC_CHECK(*receive(reports, message));
   } while (message.header.src != static_cast<int>(kind));
   return message;
 }
@@ -144,6 +144,19 @@ TEST_F(RunningModule, HasOnlyTheLinksThatItIsToldOf) {
   ASSERT_TRUE(*receive(*from, message));
   EXPECT_EQ(message.view<double>()->at(0, 0), 2);
   ASSERT_TRUE(first->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, ReportsWithoutLinksToo) {
+  Module module{"idle", "Has nothing to do yet."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  auto control = sink_of(uri("control"));
+  auto reports = source_of(uri("reports"));
+  start(module, {"--manage=" + uri("reports"), "--control=" + uri("control")});
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(next(*reports, internal::Report::Counters).header.height, 0);
+  ASSERT_TRUE(control->close());
   EXPECT_EQ(join(), 0);
 }
 

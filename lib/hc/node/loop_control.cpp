@@ -204,7 +204,8 @@ void Module::Loop::tell_counters() {
     numbers.push_back(0);
     numbers.insert(numbers.end(), 2 * kQuantileColumns, -1);
   }
-  if (!numbers.empty()) management_.tell(Report::Counters, numbers, kColumns, module_.now());
+  // Also where there is no row: that we report tells that we are not stuck.
+  management_.tell(Report::Counters, numbers, kColumns, module_.now());
 }
 
 void Module::Loop::tell_links() {

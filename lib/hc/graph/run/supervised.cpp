@@ -244,8 +244,6 @@ bool Supervised::read_piece() {
 
 void Supervised::take_report(const Message& message) {
   heard_ = now();
-  // Counters alone come all the time, and of links: a module that has none tells none.
-  has_reported_ = has_reported_ || message.header.src <= Reports::kCounters;
   const bool has_changed = reports_.take(message, heard_);
   if (status_ == ModuleStatus::Stalled) hear_.event("goes on");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting)
@@ -255,7 +253,8 @@ void Supervised::take_report(const Message& message) {
 }
 
 void Supervised::look(MonotonicTime time) {
-  if (status_ != ModuleStatus::Running || !has_reported_ || time - heard_ < limits_.stall) return;
+  if (status_ != ModuleStatus::Running || heard_ == MonotonicTime(0)) return;
+  if (time - heard_ < limits_.stall) return;
   const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
   hear_.event("stalled: " + detail_);
@@ -289,7 +288,7 @@ void Supervised::note_end() {
 
 void Supervised::forget_process() {
   reports_.end();
-  has_reported_ = false;
+  heard_ = MonotonicTime(0);
   said_.reset();
   ended_.reset();
   timer_.reset();

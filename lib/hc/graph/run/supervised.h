@@ -108,8 +108,7 @@ class Supervised {
   Restarts restarts_;
   Lines lines_;
   Reports reports_;
-  bool has_reported_ = false;  // this process has
-  MonotonicTime heard_{0};     // when it reported last
+  MonotonicTime heard_{0};  // when this process reported last; 0: it has not
   pid_t program_ = 0;
   Usage usage_;
   MonotonicTime measured_{0};
