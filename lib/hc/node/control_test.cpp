@@ -231,6 +231,85 @@ TEST_F(RunningModule, ObeysCommands) {
             "PORT=URI, finish PORT=URI, route PORT=URI WORDS\n");
 }
 
+/// The numbers of the next counters; a row for each link.
+std::vector<std::vector<std::int64_t>> next_counters(Source& reports) {
+  std::vector<std::vector<std::int64_t>> rows;
+  auto message = next(reports, internal::Report::Counters);
+  auto view = *message.view<std::int64_t>();
+  for (std::size_t i = 0; i < view.height(); ++i)
+    rows.emplace_back(view.row(i).begin(), view.row(i).end());
+  return rows;
+}
+
+TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
+  Module module{"reader", "Reads."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  auto control = sink_of(uri("control"));
+  auto reports = source_of(uri("reports"));
+  auto handled = source_of(uri("out"));
+  auto other = sink_of(uri("other"));
+  start(module, {"--in=" + uri("other"), "--out=" + uri("out"), "--manage=" + uri("reports"),
+                 "--control=" + uri("control")});
+  Message message;
+  for (double i : {1, 2, 3}) {
+    auto sink = open_sink(*parse_uri(uri("in")));
+    while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has gone
+    ASSERT_TRUE(tell(*control, "link in in=" + uri("in")));
+    ASSERT_TRUE((*sink)->send(table({i})));
+    ASSERT_TRUE(*receive(*handled, message));
+    ASSERT_TRUE((*sink)->close());
+  }
+  auto rows = next_counters(*reports);
+  while (rows.back()[0] < 3) rows = next_counters(*reports);
+  ASSERT_EQ(rows.size(), 3U) << "the other, this one, and that out";
+  EXPECT_EQ(rows[1][0], 3);
+  ASSERT_TRUE(tell(*control, "unlink in in=" + uri("in")));
+  std::vector<std::string> links;
+  while (links.size() != 2) links = rows_of(next(*reports, internal::Report::Links));
+  EXPECT_EQ(links, (std::vector{"in in " + uri("other"), "out out " + uri("out")}));
+  ASSERT_TRUE(other->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
+  Module module{"pair", "Adds."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(together(left, right), [&](const Doubles& l, const Doubles& r) {
+    out.send(table({l.matrix().at(0, 0) + r.matrix().at(0, 0)}));
+  });
+  auto control = sink_of(uri("control"));
+  auto reports = source_of(uri("reports"));
+  auto sums = source_of(uri("out"));
+  start(module, {"--out=" + uri("out"), "--manage=" + uri("reports"),
+                 "--control=" + uri("control")});
+  next(*reports, internal::Report::Links);
+  std::string place = uri("left");
+  auto l = sink_of(place), r = sink_of(uri("right"));
+  auto obeyed = [&](const std::string& command) {
+    ASSERT_TRUE(tell(*control, command));
+    next(*reports, internal::Report::Links);
+  };
+  obeyed("link in right=" + uri("right"));
+  obeyed("link in left=" + place);
+  Message message;
+  for (double i : {1, 2}) {
+    ASSERT_TRUE(l->send(table({i})));
+    ASSERT_TRUE(r->send(table({i})));
+    ASSERT_TRUE(*receive(*sums, message));
+    EXPECT_EQ(message.view<double>()->at(0, 0), 2 * i);
+    obeyed("unlink in left=" + place);
+    place += "_anew";
+    l = sink_of(place);
+    obeyed("link in left=" + place);
+  }
+  ASSERT_TRUE(l->close());
+  EXPECT_EQ(join(), 0);
+}
+
 TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   Module module{"actor", "Acts."};
   auto in = module.input("command", table<double>(), "");

@@ -81,7 +81,33 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
   link.uri = uri.text();
   link.source = std::move(*source);
   link.inputs = std::move(inputs);
+  for (auto* input : link.inputs)
+    if (input->matcher != nullptr) input->matcher->begin(input->place);
+  for (const auto& each : sources_)
+    if (each.is_same(link)) link.route = each.route;
   sources_.push_back(std::move(link));
+  join_renewed();
+}
+
+/// Has links that were made anew count on from those that have ended in their place; whether there
+/// are any.
+bool Module::Loop::join_renewed() {
+  bool any = false;
+  for (auto link = sources_.begin(); link != sources_.end();) {
+    auto renewed = link->source != nullptr
+                       ? sources_.end()
+                       : std::find_if(link + 1, sources_.end(),
+                                      [&](const auto& each) { return each.is_same(*link); });
+    if (renewed == sources_.end()) {
+      ++link;
+      continue;
+    }
+    renewed->past += link->past;
+    renewed->left_out += link->left_out;
+    link = sources_.erase(link);
+    any = true;
+  }
+  return any;
 }
 
 void Module::Loop::open_inputs(const internal::Arguments& arguments) {
@@ -106,6 +132,7 @@ void Module::Loop::run() {
     fire_timers();
     const bool any = take_each();
     end_unneeded();
+    if (join_renewed()) tell_links();
     if (any) continue;
     if (module_.generate_) {
       if (!module_.generate_()) break;
@@ -186,23 +213,26 @@ bool Module::Loop::is_linked(const internal::InputState& input) const {
 }
 
 void Module::Loop::end(LinkedSource& link) {
-  link.traffic = link.source->traffic();
+  link.past = link.traffic();
   link.source.reset();
   for (auto* input : link.inputs)
     if (input->matcher != nullptr && !is_linked(*input)) input->matcher->end(input->place);
 }
 
+/// Ends inputs that are taken together and have no link, nor can be told of one.
 void Module::Loop::end_unlinked() {
+  const bool is_told = management_.commands() != nullptr;
   for (const auto& together : module_.together_) {
     std::string unlinked;
     for (const auto& input : together->inputs) {
       if (is_linked(*input)) continue;
       unlinked = input->name;
-      together->matcher.end(input->place);
+      if (!is_told) together->matcher.end(input->place);
     }
     for (const auto& input : together->inputs)
       if (!unlinked.empty() && is_linked(*input))
-        module_.log(input->name + ": not read, since " + unlinked + " has no link");
+        module_.log(input->name + (is_told ? ": left out as long as " : ": not read, since ") +
+                    unlinked + " has no link");
   }
 }
 

@@ -25,10 +25,19 @@ struct LinkedSource {
   std::unique_ptr<Source> source;  ///< null once it has ended
   std::vector<InputState*> inputs;
   Route route;                 ///< who is at the other end
-  Traffic traffic = {};        ///< as it was when the link ended
+  Traffic past = {};           ///< of sources that have ended
   std::int64_t left_out = 0;   ///< messages that no handler got: out of focus, or while idle
   Quantiles ages, gaps;        ///< of the messages since the last report; gaps between them
   MonotonicTime last_come{0};  ///< the message before; 0: none
+
+  [[nodiscard]] Traffic traffic() const {
+    Traffic all = past;
+    if (source != nullptr) all += source->traffic();
+    return all;
+  }
+  [[nodiscard]] bool is_same(const LinkedSource& other) const {
+    return uri == other.uri && inputs == other.inputs;
+  }
 };
 
 }  // namespace internal
@@ -56,6 +65,7 @@ struct Module::Loop {
   void open_outputs(const internal::Arguments& arguments);
   void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);
+  bool join_renewed();
   void set_route(const std::string& link, const internal::Route& route);
 
   bool take_each();

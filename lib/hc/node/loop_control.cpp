@@ -134,13 +134,11 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   }
   if (is_input) {
     auto* input = module_.inputs_[link->port].get();
-    auto found = std::find_if(sources_.begin(), sources_.end(), [&](const LinkedSource& each) {
+    // What is taken together with this input waits for the next link, and is not ended.
+    const auto erased = std::erase_if(sources_, [&](const LinkedSource& each) {
       return each.uri == uri && each.inputs.front() == input;
     });
-    if (found == sources_.end()) return unknown;
-    if (found->source != nullptr) end(*found);
-    sources_.erase(found);
-    return {};
+    return erased == 0 ? Status(unknown) : Status();
   }
   auto& links = module_.outputs_[link->port]->links;
   auto found =
@@ -189,7 +187,7 @@ void Module::Loop::tell_counters() {
     numbers.insert(numbers.end(), counters.begin(), counters.end());
   };
   for (auto& link : sources_) {
-    put(link.source ? link.source->traffic() : link.traffic);
+    put(link.traffic());
     auto left_out = link.left_out;
     for (const auto& together : module_.together_)
       if (link.inputs.front()->matcher == &together->matcher) left_out += together->left_out;

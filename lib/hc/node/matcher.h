@@ -69,6 +69,8 @@ class Matcher {
 
   /// No more messages of an input come. Again is as once.
   void end(std::size_t input);
+  /// After all, they do.
+  void begin(std::size_t input) { inputs_[input].ended = false; }
 
   /// Whether no set can come any more: an input has ended, and all its messages are settled.
   [[nodiscard]] bool done() const;

@@ -270,6 +270,17 @@ TEST(Matcher, ATimeThatFallsBeginsAnew) {
   EXPECT_EQ(kept.sets.back(), (Times{150, 150}));
 }
 
+TEST(Matcher, AnInputThatHasEndedMayBeginAgain) {
+  Kept kept(2, 0);
+  kept.push(0, {10});
+  kept.matcher.end(1);
+  kept.matcher.begin(1);
+  EXPECT_FALSE(kept.matcher.done());
+  kept.push(0, {20});
+  kept.push(1, {20});
+  EXPECT_EQ(kept.sets, (Sets{{20, 20}}));
+}
+
 TEST(Matcher, ASetWhoseHandlerFailsIsTaken) {
   Matcher matcher(2, {}, [](auto) { throw std::runtime_error("no"); });
   matcher.push(0, at(1));
