@@ -310,6 +310,29 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   EXPECT_EQ(join(), 0);
 }
 
+TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
+  Module module{"busy", "Works."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  auto control = sink_of(uri("control"));
+  auto reports = source_of(uri("reports"));
+  auto one = sink_of(uri("one")), other = sink_of(uri("other"));
+  start(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other"),
+                 "--manage=" + uri("reports"), "--control=" + uri("control")});
+  next(*reports, internal::Report::State);
+  ::testing::internal::CaptureStderr();
+  ASSERT_TRUE(tell(*control, "unlink in focus=" + uri("one")));
+  ASSERT_TRUE(tell(*control, "unlink in focus=" + uri("one")));
+  next(*reports, internal::Report::Links);
+  ASSERT_TRUE(other->send(table<std::int32_t>({7})));
+  EXPECT_EQ(next(*reports, internal::Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
+  ASSERT_TRUE(control->close());
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "busy: command \"unlink in focus=" +
+                                                          uri("one") +
+                                                          "\": there is no such link\n");
+}
+
 TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   Module module{"actor", "Acts."};
   auto in = module.input("command", table<double>(), "");

@@ -51,7 +51,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   management_ = internal::Management(std::move(reports),
                                      arguments.control ? open(*arguments.control) : nullptr);
   open_inputs(arguments);
-  for (const auto& uri : arguments.focus) focus_.push_back(open(uri));
+  for (const auto& uri : arguments.focus) focus_.push_back({uri.text(), open(uri)});
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   module_.loop_ = this;
 }
@@ -331,7 +331,8 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (for_messages)
     for (const auto& link : sources_)
       if (link.source != nullptr) sources.push_back(link.source.get());
-  for (const auto& source : focus_) sources.push_back(source.get());
+  for (const auto& link : focus_)
+    if (link.source != nullptr) sources.push_back(link.source.get());
   if (management_.commands() != nullptr) sources.push_back(management_.commands());
   if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
   auto timeout = std::chrono::milliseconds(-1);

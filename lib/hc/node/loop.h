@@ -40,6 +40,12 @@ struct LinkedSource {
   }
 };
 
+/// A link that tells the mode in focus.
+struct FocusLink {
+  std::string uri;
+  std::unique_ptr<Source> source;  ///< null once it has ended
+};
+
 }  // namespace internal
 
 struct Module::Loop {
@@ -103,7 +109,7 @@ struct Module::Loop {
   LinkOptions options_;
   std::vector<internal::LinkedSource> sources_;
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;  // in the order of the command line
-  std::vector<std::unique_ptr<Source>> focus_;                // links that tell the mode in focus
+  std::vector<internal::FocusLink> focus_;
   internal::Management management_;
   MonotonicTime now_{0};      // at the last look at the clock
   std::int64_t to_wall_ = 0;  // from monotonic to wall clock, at the last report [ns]

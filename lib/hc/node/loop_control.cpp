@@ -45,15 +45,14 @@ void Module::Loop::hear_focus() {
   Message message;
   const bool was_idle = module_.attention_.is_idle();
   const auto before = module_.attention_.focus;
-  for (auto source = focus_.begin(); source != focus_.end();) {
-    auto got = (*source)->take(message);
-    if (got && *got == Got::Nothing) {
-      ++source;
-    } else if (got && *got == Got::Message) {
-      if (auto modes = message.view<std::int32_t>(); modes && !modes->empty())
+  for (auto& link : focus_) {
+    while (link.source != nullptr) {
+      auto got = link.source->take(message);
+      if (got && *got == Got::Nothing) break;
+      if (!got || *got == Got::End)
+        link.source.reset();  // the module goes on in the mode it knows
+      else if (auto modes = message.view<std::int32_t>(); modes && !modes->empty())
         module_.attention_.focus = modes->at(0, 0);
-    } else {
-      source = focus_.erase(source);  // the module goes on in the mode it knows
     }
   }
   if (was_idle && !module_.attention_.is_idle())
@@ -111,7 +110,9 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
     if (link->is_focus) {
       auto source = open_source(link->uri, options_);
       if (!source) return source.error();
-      focus_.push_back(std::move(*source));
+      const auto uri = link->uri.text();
+      std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
+      focus_.push_back({uri, std::move(*source)});
     } else if (is_input) {
       open_input(link->uri, {module_.inputs_[link->port].get()});
     } else {
@@ -129,8 +130,8 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   const Error unknown{Code::NotFound, "there is no such link"};
   auto uri = link->uri.text();
   if (link->is_focus) {
-    focus_.clear();
-    return {};
+    const auto erased = std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
+    return erased == 0 ? Status(unknown) : Status();
   }
   if (is_input) {
     auto* input = module_.inputs_[link->port].get();
@@ -155,6 +156,9 @@ Status Module::Loop::finish(const std::string& text) {
   if (!link) return link.error();
   for (auto& each : sources_)
     if (each.uri == link->uri.text() && each.source != nullptr) each.source->finish();
+  for (auto& each : focus_)
+    if (link->is_focus && each.uri == link->uri.text() && each.source != nullptr)
+      each.source->finish();
   return {};
 }
 
