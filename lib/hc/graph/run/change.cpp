@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <hc/graph/run/reports.h>
+#include <hc/base/uri.h>
 
 namespace hc::internal {
 namespace {
@@ -12,6 +12,15 @@ const PlannedEnd* find_same(const std::vector<PlannedEnd>& ends, const PlannedEn
   auto found = std::find_if(ends.begin(), ends.end(),
                             [&](const auto& end) { return is_same_end(end, wanted); });
   return found == ends.end() ? nullptr : &*found;
+}
+
+/// A URI without what is said to a writer alone before its first message: the same while readers
+/// come and go.
+std::string without_readers(const std::string& uri) {
+  auto parsed = parse_uri(uri);
+  if (!parsed) return uri;
+  std::erase_if(parsed->options, [](const auto& option) { return option.first == "readers"; });
+  return parsed->text();
 }
 
 std::string place(const PlannedEnd& end) {
@@ -48,7 +57,8 @@ void add_links(const PlannedModule& before, const PlannedModule& after, ModuleCh
 }  // namespace
 
 bool is_same_end(const PlannedEnd& one, const PlannedEnd& other) {
-  return end_key(one.is_input, one.port, one.uri) == end_key(other.is_input, other.port, other.uri);
+  return one.is_input == other.is_input && one.port == other.port &&
+         without_readers(one.uri) == without_readers(other.uri);
 }
 
 ModuleChange change_between(const PlannedModule& before, const PlannedModule& after) {

@@ -12,22 +12,47 @@ constexpr std::size_t kTraffic = std::tuple_size_v<Counters>;
 constexpr std::size_t kLeftOut = kTraffic, kAge = kLeftOut + 1, kGap = kAge + 3, kEnd = kGap + 3;
 constexpr std::size_t kMostKey = 4096;  // of an end [byte]
 
-}  // namespace
-
+/// The end of a link without its options: the same while its policy changes, and readers come and
+/// go.
 std::string end_key(bool is_input, const std::string& port, const std::string& uri) {
   std::string key = (is_input ? "in " : "out ") + port + " ";
   auto parsed = parse_uri(uri);
   if (!parsed) return key + uri;
-  std::erase_if(parsed->options, [](const auto& option) { return option.first == "readers"; });
+  parsed->options.clear();
   return key + parsed->text();
 }
 
+/// Adds a row of counters to what others say of the same end.
+void add_row(std::span<const std::int64_t> row, EndReport& sum) {
+  Counters counters{};
+  std::copy_n(row.begin(), std::min(row.size(), counters.size()), counters.begin());
+  sum.traffic += traffic_of(counters);
+  if (row.size() > kLeftOut) sum.left_out += static_cast<std::uint64_t>(row[kLeftOut]);
+  if (row.size() < kEnd || row[kGap - 1] < sum.age.back()) return;  // the others' are greater
+  std::copy_n(row.begin() + kAge, sum.age.size(), sum.age.begin());
+  std::copy_n(row.begin() + kGap, sum.gap.size(), sum.gap.begin());
+}
+
+}  // namespace
+
+/// Has what comes next count from 0.
+void Reports::Counted::end() {
+  past += std::exchange(now, {});
+  past_left_out += std::exchange(left_out_now, 0);
+  report.per_second = report.bytes_per_second = 0;
+  report.age = report.gap = {-1, -1, -1};
+}
+
 void Reports::set_ends(const std::vector<PlannedEnd>& ends) {
-  if (has_told_links_) return;
-  order_.clear();
+  auto before = std::exchange(ends_, {});
+  std::vector<std::string> order;
   for (bool is_input : {true, false})
-    for (const auto& end : ends)
-      if (end.is_input == is_input) order_.push_back(end_key(end.is_input, end.port, end.uri));
+    for (const auto& end : ends) {
+      if (end.is_input != is_input) continue;
+      order.push_back(end_key(end.is_input, end.port, end.uri));
+      ends_[order.back()] = before[order.back()];
+    }
+  if (!has_told_links_) order_ = std::move(order);
 }
 
 bool Reports::take(const Message& message, MonotonicTime now) {
@@ -48,20 +73,16 @@ void Reports::take_counters(const MatrixView<const std::int64_t>& rows, Monotoni
   const double seconds =
       counted_ == MonotonicTime(0) ? 0 : std::chrono::duration<double>(now - counted_).count();
   counted_ = now;
+  std::map<std::string, EndReport> sums;
   for (std::size_t i = 0; i < std::min(rows.height(), order_.size()); ++i)
-    if (ends_.size() < kMostEnds || ends_.contains(order_[i]))
-      count(ends_[order_[i]], rows.row(i), seconds);
+    add_row(rows.row(i), sums[order_[i]]);
+  for (const auto& [key, sum] : sums)
+    if (auto found = ends_.find(key); found != ends_.end()) count(found->second, sum, seconds);
 }
 
-void Reports::count(Counted& counted, std::span<const std::int64_t> row, double seconds) {
-  Counters counters{};
-  std::copy_n(row.begin(), std::min(row.size(), counters.size()), counters.begin());
-  Traffic now = traffic_of(counters);
-  if (now.messages < counted.now.messages) {  // the link was made anew
-    counted.past += counted.now;
-    counted.past_left_out += counted.left_out_now;
-    counted.now = {};
-  }
+void Reports::count(Counted& counted, const EndReport& row, double seconds) {
+  const Traffic& now = row.traffic;
+  if (now.messages < counted.now.messages) counted.end();  // the link was made anew
   EndReport& report = counted.report;
   auto per_second = [&](std::uint64_t after, std::uint64_t before) {
     return seconds > 0 ? static_cast<double>(after - before) / seconds : 0;
@@ -69,13 +90,13 @@ void Reports::count(Counted& counted, std::span<const std::int64_t> row, double 
   report.per_second = per_second(now.messages, counted.now.messages);
   report.bytes_per_second = per_second(now.bytes, std::min(now.bytes, counted.now.bytes));
   counted.now = now;
-  if (row.size() > kLeftOut) counted.left_out_now = static_cast<std::uint64_t>(row[kLeftOut]);
+  counted.left_out_now = row.left_out;
+  counted.is_told = true;
   report.traffic = counted.past;
   report.traffic += now;
   report.left_out = counted.past_left_out + counted.left_out_now;
-  if (row.size() < kEnd) return;
-  std::copy_n(row.begin() + kAge, report.age.size(), report.age.begin());
-  std::copy_n(row.begin() + kGap, report.gap.size(), report.gap.begin());
+  report.age = row.age;
+  report.gap = row.gap;
 }
 
 bool Reports::take_links(const Message& message) {
@@ -90,6 +111,8 @@ bool Reports::take_links(const Message& message) {
             .substr(0, kMostKey));
   }
   has_told_links_ = true;
+  for (auto& [key, counted] : ends_)
+    if (std::find(order.begin(), order.end(), key) == order.end()) counted.end();
   return std::exchange(order_, order) != order;
 }
 
@@ -114,19 +137,14 @@ bool Reports::take_state(const MatrixView<const std::int64_t>& rows) {
 }
 
 void Reports::end() {
-  for (auto& [key, counted] : ends_) {
-    counted.past += std::exchange(counted.now, {});
-    counted.past_left_out += std::exchange(counted.left_out_now, 0);
-    counted.report.per_second = counted.report.bytes_per_second = 0;
-    counted.report.age = counted.report.gap = {-1, -1, -1};
-  }
+  for (auto& [key, counted] : ends_) counted.end();
   has_told_links_ = false;
   counted_ = MonotonicTime(0);
 }
 
 const EndReport* Reports::find(const PlannedEnd& end) const {
   auto found = ends_.find(end_key(end.is_input, end.port, end.uri));
-  return found == ends_.end() ? nullptr : &found->second.report;
+  return found == ends_.end() || !found->second.is_told ? nullptr : &found->second.report;
 }
 
 }  // namespace hc::internal

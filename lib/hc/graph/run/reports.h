@@ -27,10 +27,6 @@ struct EndReport {
   std::array<std::int64_t, 3> age{-1, -1, -1}, gap{-1, -1, -1};
 };
 
-/// The end of a link without what is said to its writer alone before its first message: the same
-/// while readers come and go.
-std::string end_key(bool is_input, const std::string& port, const std::string& uri);
-
 class Reports {
  public:
   /// Tells reports apart, by src.
@@ -41,6 +37,7 @@ class Reports {
 
   /// @param ends  in whose order counters come, inputs first, from one that does not tell.
   explicit Reports(const std::vector<PlannedEnd>& ends) { set_ends(ends); }
+  /// Says which ends there are from now on. What is told of others is not counted.
   void set_ends(const std::vector<PlannedEnd>& ends);
 
   /// Takes a report. Whether it tells of a change, other than in numbers.
@@ -64,17 +61,20 @@ class Reports {
     std::uint64_t past_left_out = 0;
     Traffic now;
     std::uint64_t left_out_now = 0;
+    bool is_told = false;  // a row has come
+
+    void end();
   };
 
   void take_counters(const MatrixView<const std::int64_t>& rows, MonotonicTime now);
-  static void count(Counted& counted, std::span<const std::int64_t> row, double seconds);
+  static void count(Counted& counted, const EndReport& row, double seconds);
   bool take_links(const Message& message);
   bool take_parameters(const Message& message);
   bool take_state(const MatrixView<const std::int64_t>& rows);
 
   std::vector<std::string> order_;  // keys of ends, as the rows of counters come
   bool has_told_links_ = false;
-  std::map<std::string, Counted> ends_;  // by key
+  std::map<std::string, Counted> ends_;  // of the plan, by key
   std::map<std::string, std::string> parameters_;
   MonotonicTime counted_{0};  // when counters came last; 0: this process has told none
 };

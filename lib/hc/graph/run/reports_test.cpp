@@ -72,6 +72,44 @@ TEST_F(ReportsTest, CountsGoOnWhenItIsStartedAnew) {
   EXPECT_EQ(reports_.find(out_)->traffic.messages, 350U);
 }
 
+TEST_F(ReportsTest, CountsGoOnWhenALinkGetsAnotherPolicy) {
+  reports_.take(rows(2, {"in in unix:@t", "out out shm:t.a.out?readers=2&stay=1"}), now_);
+  count({{1, 1}, {100, 1000}});
+  PlannedEnd other{false, "out", "shm:t.a.out?readers=2&stay=1&rate=5", ""};
+  reports_.set_ends({other, in_});
+  EXPECT_EQ(reports_.find(other)->traffic.messages, 100U);
+  count({{1, 1}, {110, 1100}});  // as it is taken away
+  reports_.take(rows(2, {"in in unix:@t"}), now_);
+  count({{2, 2}});
+  reports_.take(rows(2, {"in in unix:@t", "out out shm:t.a.out?readers=2&stay=1&rate=5"}), now_);
+  count({{3, 3}, {200, 2000}});  // more than before already
+  EXPECT_EQ(reports_.find(in_)->traffic.messages, 3U);
+  EXPECT_EQ(reports_.find(other)->traffic.messages, 310U);
+}
+
+TEST_F(ReportsTest, RowsOfOneLinkAddUp) {
+  reports_.take(rows(2, {"in in unix:@t", "in in unix:@t", "out out shm:t.a.out"}), now_);
+  for (int i = 0; i < 3; ++i)
+    count({{5, 50, 0, 0, 0, 0, 0, 2}, {3, 30, 0, 0, 0, 0, 0, 1}, {7, 70, 0, 0, 0, 0, 0, 0}});
+  EXPECT_EQ(reports_.find(in_)->traffic.messages, 8U);
+  EXPECT_EQ(reports_.find(in_)->left_out, 3U);
+  EXPECT_EQ(reports_.find(in_)->per_second, 0);
+  EXPECT_EQ(reports_.find(out_)->traffic.messages, 7U);
+}
+
+TEST_F(ReportsTest, LinksThatThePlanDoesNotKnowAreForgotten) {
+  count({{1, 1}, {100, 1000}});
+  reports_.set_ends({in_});
+  EXPECT_EQ(reports_.find(out_), nullptr);
+  EXPECT_EQ(reports_.find(in_)->traffic.messages, 1U);
+  reports_.take(rows(2, {"in in unix:@t", "out out shm:t.a.out"}), now_);
+  count({{2, 2}, {110, 1100}});
+  EXPECT_EQ(reports_.find(out_), nullptr);
+  reports_.set_ends({in_, out_});
+  count({{2, 2}, {10, 100}});
+  EXPECT_EQ(reports_.find(out_)->traffic.messages, 10U);
+}
+
 TEST_F(ReportsTest, AllColumnsAreTaken) {
   count({{1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 20, 21, 22}});
   const auto* report = reports_.find(in_);
