@@ -273,6 +273,28 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   EXPECT_EQ(join(), 0);
 }
 
+TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersTold) {
+  Module module{"relay", "Sends on."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
+  auto from = source_of(uri("out")), reports = source_of(uri("reports"));
+  start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--manage=" + uri("reports"),
+                 "--control=" + uri("control")});
+  EXPECT_EQ(next_counters(*reports).size(), 2U);
+  Message message;
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(*receive(*from, message));
+  for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
+    ASSERT_TRUE(tell(*control, "unlink " + end));
+    EXPECT_EQ(next_counters(*reports).back()[0], 1);
+    next(*reports, internal::Report::Links);
+  }
+  ASSERT_TRUE(control->close());
+  EXPECT_EQ(join(), 0);
+}
+
 TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   Module module{"pair", "Adds."};
   auto left = module.input("left", table<double>(), "");

@@ -129,6 +129,7 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   if (!link) return link.error();
   const Error unknown{Code::NotFound, "there is no such link"};
   auto uri = link->uri.text();
+  tell_counters();  // the last of this link
   if (link->is_focus) {
     const auto erased = std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
     return erased == 0 ? Status(unknown) : Status();
