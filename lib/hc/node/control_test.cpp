@@ -306,8 +306,8 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   auto control = sink_of(uri("control"));
   auto reports = source_of(uri("reports"));
   auto sums = source_of(uri("out"));
-  start(module, {"--out=" + uri("out"), "--manage=" + uri("reports"),
-                 "--control=" + uri("control")});
+  start(module,
+        {"--out=" + uri("out"), "--manage=" + uri("reports"), "--control=" + uri("control")});
   next(*reports, internal::Report::Links);
   std::string place = uri("left");
   auto l = sink_of(place), r = sink_of(uri("right"));
@@ -350,9 +350,8 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   EXPECT_EQ(next(*reports, internal::Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
   ASSERT_TRUE(control->close());
   EXPECT_EQ(join(), 0);
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "busy: command \"unlink in focus=" +
-                                                          uri("one") +
-                                                          "\": there is no such link\n");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "busy: command \"unlink in focus=" + uri("one") + "\": there is no such link\n");
 }
 
 TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
@@ -431,6 +430,37 @@ TEST_F(RunningModule, AGeneratorIsSlowWhileIdleAndQuickAgainAtOnce) {
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(made, 20);
   while (*source->take(message) == Got::Message) EXPECT_EQ(message.header.mode, 1);
+}
+
+TEST_F(RunningModule, ARateMayBeAsLowAsOneLikes) {
+  Module module{"busy", "Works."};
+  auto in = module.input("in", table<double>(), "");
+  auto never = module.parameter("never", 0.0, "Hz", "");
+  auto hardly = module.parameter("hardly", 1e-10, "Hz", "");
+  int handled = 0, ticks = 0;
+  module.on(in, [&](const auto&) { ++handled; });
+  module.every(never, [&] { ++ticks; });
+  module.every(hardly, [&] { ++ticks; });
+  module.every(std::chrono::nanoseconds::max(), [&] { ++ticks; });
+  auto sink = sink_of(uri("in")), focus = sink_of(uri("focus"));
+  ASSERT_TRUE(focus->send(table<std::int32_t>({2})));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->close());
+  start(module,
+        {"--in=" + uri("in"), "--in", "focus=" + uri("focus"), "--modes=1", "--idle-rate=1e-10"});
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(handled, 1);
+  EXPECT_EQ(ticks, 0);
+}
+
+TEST_F(RunningModule, ATimerHearsOfItsRateAtOnce) {
+  Module module{"clock", "Ticks."};
+  auto rate = module.parameter("rate", 0.0, "Hz", "");
+  auto sink = sink_of(uri("control"));
+  module.every(rate, [&] { throw ModuleError("tick"); });
+  start(module, {"--control=" + uri("control")});
+  ASSERT_TRUE(tell(*sink, "set rate=1000"));
+  EXPECT_EQ(join(), 1);
 }
 
 TEST_F(RunningModule, ATasksMessagesAreOfItsModeAndGoToAnAddress) {

@@ -16,9 +16,8 @@ using internal::Stopped;
 
 constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
 
-MonotonicTime in_nanoseconds(std::chrono::duration<double> time) {
-  return std::chrono::duration_cast<MonotonicTime>(time);
-}
+/// The longest wait at a time: poll() counts in 32 bits.
+constexpr std::chrono::milliseconds kLongestWait = std::chrono::hours(1);
 
 /// What ends a module: cleanly when it was told to stop, else with the name of who failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
@@ -122,7 +121,7 @@ void Module::Loop::run() {
   end_unlinked();
   end_unneeded();
   now_ = module_.clock_.monotonic();
-  for (auto& timer : module_.timers_) timer.due = now_ + in_nanoseconds(timer.period());
+  for (auto& timer : module_.timers_) timer.last = now_;
   attend();
   if (module_.start_) module_.start_();
   while (true) {
@@ -160,17 +159,17 @@ bool Module::Loop::all_ended() const {
 
 void Module::Loop::fire_timers() {
   for (auto& timer : module_.timers_) {
-    if (timer.due > now_) continue;
+    const auto due = timer.due();
+    if (due > now_) continue;
     timer.handler();
     now_ = module_.clock_.monotonic();
-    auto period = in_nanoseconds(timer.period());
-    timer.due = std::max(timer.due, now_ - period) + period;
+    timer.last = std::max(due, now_ - timer.period());
   }
 }
 
 MonotonicTime Module::Loop::next_timer() const {
   auto next = MonotonicTime::max();
-  for (const auto& timer : module_.timers_) next = std::min(next, timer.due);
+  for (const auto& timer : module_.timers_) next = std::min(next, timer.due());
   return next;
 }
 
@@ -312,8 +311,7 @@ bool Module::Loop::may_handle(internal::TogetherState& together) {
 bool Module::Loop::may_while_idle(std::optional<MonotonicTime>& last) const {
   const auto& attention = module_.attention_;
   if (!attention.is_idle()) return true;
-  auto period = in_nanoseconds(std::chrono::duration<double>(1 / attention.idle_rate));
-  if (last && now_ - *last < period) return false;
+  if (last && now_ - *last < internal::period_of(attention.idle_rate)) return false;
   last = now_;
   return true;
 }
@@ -337,8 +335,8 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
   auto timeout = std::chrono::milliseconds(-1);
   if (until != MonotonicTime::max())
-    timeout = std::max(std::chrono::ceil<std::chrono::milliseconds>(until - now_),
-                       std::chrono::milliseconds(0));
+    timeout = std::clamp(std::chrono::ceil<std::chrono::milliseconds>(until - now_),
+                         std::chrono::milliseconds(0), kLongestWait);
   auto ready = wait_any(sources, options_.stop, timeout);
   if (!ready) fail("poll", ready.error());
   attended_ = {};  // so that one looks what woke us

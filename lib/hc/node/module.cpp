@@ -105,10 +105,7 @@ void Module::log(std::string_view line) const {
 }
 
 void Module::keep_rate(double rate) {
-  auto period = [&] {
-    return std::chrono::duration_cast<MonotonicTime>(
-        std::chrono::duration<double>(1 / attention_.rate(rate)));
-  };
+  auto period = [&] { return internal::period_of(attention_.rate(rate)); };
   loop_->pause([&] { return last_period_ ? *last_period_ + period() : MonotonicTime(0); });
   // Periods that were missed are not made up for.
   auto now = clock_.monotonic();

@@ -26,6 +26,7 @@
 
 #include <hc/base/parameter.h>
 #include <hc/node/attention.h>
+#include <hc/node/period.h>
 #include <hc/node/port.h>
 
 namespace hc {
@@ -152,12 +153,12 @@ class Module {
 
   /// Says what is done again and again, between messages: first a period after the start, and not
   /// made up for where it was missed. Does not keep a module running whose inputs have ended.
-  /// @param rate  read anew each time. [Hz]
+  /// @param rate  as it is now; 0 or less: never. [Hz]
   void every(const Parameter<double>& rate, std::function<void()> handler) {
-    add_timer([rate] { return std::chrono::duration<double>(1 / *rate); }, std::move(handler));
+    add_timer([rate] { return internal::period_of(*rate); }, std::move(handler));
   }
   void every(std::chrono::nanoseconds period, std::function<void()> handler) {
-    add_timer([period] { return std::chrono::duration<double>(period); }, std::move(handler));
+    add_timer([period] { return std::min(period, internal::kLongestPeriod); }, std::move(handler));
   }
 
   /// For generators: waits until the next period of a rate begins, counted from the first call.
@@ -192,11 +193,12 @@ class Module {
   friend void internal::send(internal::OutputState&, Message);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   struct Loop;
-  using Period = std::function<std::chrono::duration<double>()>;
+  using Period = std::function<MonotonicTime()>;
   struct Timer {
     Period period;
     std::function<void()> handler;
-    MonotonicTime due{0};
+    MonotonicTime last{0};  // when it was due, or the start
+    [[nodiscard]] MonotonicTime due() const { return last + period(); }
   };
 
   /// Whether any output has a reader left.
