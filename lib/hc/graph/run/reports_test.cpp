@@ -134,19 +134,24 @@ TEST_F(ReportsTest, ParametersAndModeTellOfChangesAlone) {
 TEST_F(ReportsTest, OfTooManyTheFirstAreKept) {
   std::vector<std::string> links, parameters;
   std::vector<std::vector<std::int64_t>> counters;
-  const auto number = [](std::size_t i) { return std::to_string(i); };
+  std::vector<PlannedEnd> ends;
+  const auto uri = [](std::size_t i) { return "unix:@" + std::to_string(i); };
   for (std::size_t i = 0; i <= Reports::kMostEnds; ++i) {
-    links.push_back("in in unix:@" + number(i));
+    ends.push_back({true, "in", uri(i), ""});
+    links.push_back("in in " + uri(i));
     counters.push_back({1, 1});
   }
-  for (std::size_t i = 0; i <= Reports::kMostParameters; ++i) parameters.push_back(number(i) + "=");
+  for (std::size_t i = 0; i <= Reports::kMostParameters; ++i)
+    parameters.push_back(std::to_string(i) + "=");
+  reports_.set_ends(ends);
   reports_.take(rows(2, links), now_);
   count(counters);
-  EXPECT_NE(reports_.find({true, "in", "unix:@" + number(Reports::kMostEnds - 1), ""}), nullptr);
-  EXPECT_EQ(reports_.find({true, "in", "unix:@" + number(Reports::kMostEnds), ""}), nullptr);
-  reports_.take(rows(2, {"in in unix:@more"}), now_);
-  count({{1, 1}});
-  EXPECT_EQ(reports_.find({true, "in", "unix:@more", ""}), nullptr) << "nor of several reports";
+  auto messages = [&](std::size_t i) {
+    const auto* report = reports_.find(ends[i]);
+    return report == nullptr ? 0 : report->traffic.messages;
+  };
+  EXPECT_EQ(messages(Reports::kMostEnds - 1), 1U);
+  EXPECT_EQ(messages(Reports::kMostEnds), 0U);
   reports_.take(rows(3, parameters), now_);
   EXPECT_EQ(reports_.parameters().size(), Reports::kMostParameters);
 }
