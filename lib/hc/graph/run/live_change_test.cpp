@@ -212,6 +212,7 @@ TEST_F(LiveChange, WhoComesToListenIsToldTheDifference) {
       plan_next(other);
       EXPECT_EQ(ask({"set camera.rate=" + std::to_string(i)}), Lines{"ok"});
     }
+    EXPECT_EQ(ask({"set camera.rate=1101"}), Lines{"ok"});  // which makes no difference
     Listener module(plan_.modules[0]);
     EXPECT_EQ(module.next(), "unlink in in=unix:@a?reconnect=1");
     EXPECT_EQ(module.next(), "set rate=1100");
@@ -223,6 +224,7 @@ TEST_F(LiveChange, WhoComesToListenIsToldTheDifference) {
   });
   ASSERT_TRUE(run());
   EXPECT_EQ(count("camera: started"), 1);
+  EXPECT_EQ(count("graph: as it was"), 1);
 }
 
 TEST_F(LiveChange, AnotherProgramMayTakeCommandsWhereTheFirstDidNot) {

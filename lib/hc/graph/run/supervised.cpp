@@ -178,7 +178,10 @@ void Supervised::ask_to_end() {
 }
 
 void Supervised::change_plan(PlannedModule plan) {
-  change_ = change_between(told_, plan);
+  // One that listens has been told all so far; another catches up, and only this plan's part is
+  // new.
+  change_ = change_between(is_heard() ? told_ : plan_, plan);
+  change_.needs_restart = change_between(told_, plan).needs_restart;
   plan_ = std::move(plan);
   if (!change_.needs_restart && is_heard()) {
     for (const auto& command : change_.unlinks) tell(command);
