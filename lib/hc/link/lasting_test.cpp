@@ -30,77 +30,73 @@ Ends ends_of(const std::string& scheme) {
 
 class LastingLink : public ::testing::TestWithParam<std::string> {
  protected:
+  /// Opens both ends, and gets a message through.
+  void begin(const std::string& sink_options, const std::string& source_options = "") {
+    sink_ = sink_of(ends_.sink + "?readers=1" + sink_options);
+    source_ = source_of(ends_.source + source_options, warnings_.options());
+    std::thread sender([&] { ASSERT_TRUE(sink_->send(numbered(0, 10))); });
+    ASSERT_TRUE(*receive(*source_, message_));
+    sender.join();
+  }
+
   const Ends ends_ = ends_of(GetParam());
+  Warnings warnings_;
+  std::unique_ptr<Sink> sink_;
+  std::unique_ptr<Source> source_;
+  Message message_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Schemes, LastingLink, ::testing::Values("tcp", "unix", "shm"),
                          [](const auto& test) { return test.param; });
 
 TEST_P(LastingLink, WhoDropsGoesOnWithoutReadersAndCounts) {
-  auto sink = sink_of(ends_.sink + "?readers=1&stay=1&keep=latest");
-  auto source = source_of(ends_.source);
-  Message message;
-  ASSERT_TRUE(sink->send(numbered(0, 10)));
-  ASSERT_TRUE(*receive(*source, message));
-  source.reset();
-  while (sink->traffic().cut == 0) ASSERT_TRUE(sink->send(numbered(1, 10)));
-  source = source_of(ends_.source);
+  begin("&stay=1&keep=latest");
+  source_.reset();
+  while (sink_->traffic().cut == 0) ASSERT_TRUE(sink_->send(numbered(1, 10)));
+  source_ = source_of(ends_.source);
   std::atomic<bool> heard = false;
   std::thread sender([&] {
-    while (!heard) ASSERT_TRUE(sink->send(numbered(2, 10)));
+    while (!heard) ASSERT_TRUE(sink_->send(numbered(2, 10)));
   });
-  ASSERT_TRUE(*receive(*source, message));
+  ASSERT_TRUE(*receive(*source_, message_));
   heard = true;
   sender.join();
-  EXPECT_EQ(message.header.seq, 2);
+  EXPECT_EQ(message_.header.seq, 2);
 }
 
 TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
-  auto sink = sink_of(ends_.sink + "?readers=1&stay=1");
-  auto source = source_of(ends_.source);
-  Message message;
-  ASSERT_TRUE(sink->send(numbered(0, 10)));
-  ASSERT_TRUE(*receive(*source, message));
-  source.reset();
+  begin("&stay=1");
+  source_.reset();
   std::atomic<bool> heard = false, done = false;
   std::thread sender([&] {  // what goes before the leave is noticed has nobody
-    while (!heard) ASSERT_TRUE(sink->send(numbered(1, 10)));
+    while (!heard) ASSERT_TRUE(sink_->send(numbered(1, 10)));
     done = true;
   });
-  source = source_of(ends_.source);
-  ASSERT_TRUE(*receive(*source, message));
+  source_ = source_of(ends_.source);
+  ASSERT_TRUE(*receive(*source_, message_));
   heard = true;
-  while (!done) ASSERT_TRUE(source->take(message));
+  while (!done) ASSERT_TRUE(source_->take(message_));
   sender.join();
-  EXPECT_LE(sink->traffic().cut, 1U);  // the one under way to who left
+  EXPECT_LE(sink_->traffic().cut, 1U);  // the one under way to who left
 }
 
 TEST_P(LastingLink, WithoutStayItEndsWithItsReaders) {
-  auto sink = sink_of(ends_.sink + "?readers=1&keep=latest");
-  auto source = source_of(ends_.source);
-  Message message;
-  ASSERT_TRUE(sink->send(numbered(0, 10)));
-  ASSERT_TRUE(*receive(*source, message));
-  source.reset();
+  begin("&keep=latest");
+  source_.reset();
   Status sent;
-  while (sent) sent = sink->send(numbered(1, 10));
+  while (sent) sent = sink_->send(numbered(1, 10));
   EXPECT_EQ(sent.error().code, Code::Closed);
 }
 
 TEST_P(LastingLink, ASourceThatIsToFinishTakesWhatIsLeftAndEnds) {
-  auto sink = sink_of(ends_.sink + "?readers=1");
-  auto source = source_of(ends_.source + "?reconnect=60");
-  Message message;
-  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
-  ASSERT_TRUE(*receive(*source, message));
-  sender.join();
-  ASSERT_TRUE(sink->send(numbered(1, 10)));
-  ASSERT_TRUE(sink->close());
-  source->finish();
-  ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(message.header.seq, 1);
-  EXPECT_FALSE(*receive(*source, message));
-  EXPECT_EQ(*source->take(message), Got::End);
+  begin("", "?reconnect=60");
+  ASSERT_TRUE(sink_->send(numbered(1, 10)));
+  ASSERT_TRUE(sink_->close());
+  source_->finish();
+  ASSERT_TRUE(*receive(*source_, message_));
+  EXPECT_EQ(message_.header.seq, 1);
+  EXPECT_FALSE(*receive(*source_, message_));
+  EXPECT_EQ(*source_->take(message_), Got::End);
 }
 
 TEST_P(LastingLink, ASourceWithoutAConnectionFinishesAtOnce) {
@@ -112,20 +108,14 @@ TEST_P(LastingLink, ASourceWithoutAConnectionFinishesAtOnce) {
 }
 
 TEST_P(LastingLink, AnEndThatIsFollowedByItsOwnIsNotTold) {
-  Warnings warnings;
-  auto sink = sink_of(ends_.sink + "?readers=1");
-  auto source = source_of(ends_.source + "?reconnect=60", warnings.options());
-  Message message;
-  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
-  ASSERT_TRUE(*receive(*source, message));
-  sender.join();
-  sink.reset();
-  while (!*source->wait(-1, std::chrono::milliseconds(0))) {
+  begin("", "?reconnect=60");
+  sink_.reset();
+  while (!*source_->wait(-1, std::chrono::milliseconds(0))) {
   }
-  ASSERT_EQ(*source->take(message), Got::Nothing);
-  source->finish();
-  EXPECT_EQ(*source->take(message), Got::End);
-  EXPECT_EQ(warnings.lines, std::vector<std::string>());
+  ASSERT_EQ(*source_->take(message_), Got::Nothing);
+  source_->finish();
+  EXPECT_EQ(*source_->take(message_), Got::End);
+  EXPECT_EQ(warnings_.lines, std::vector<std::string>());
 }
 
 TEST_P(LastingLink, StayIsYesOrNo) {
