@@ -49,25 +49,24 @@ Plan robot() {
   return plan;
 }
 
-TEST(GlobalWorkspace, IsWhatLeadsThroughTheTaskToTheActor) {
-  auto workspace = global_workspace(robot(), "track");
-  EXPECT_EQ(workspace.modules, (Names{"camera", "motion", "track", "head"}));
-  EXPECT_EQ(workspace.links, (std::set<std::size_t>{0, 3, 5, 7}));
+void expect_workspace(const Plan& plan, const std::string& mode, const Names& modules,
+                      const std::set<std::size_t>& links) {
+  auto workspace = global_workspace(plan, mode);
+  EXPECT_EQ(workspace.modules, modules) << mode;
+  EXPECT_EQ(workspace.links, links) << mode;
 }
 
-TEST(GlobalWorkspace, FollowsTheFocus) {
-  auto workspace = global_workspace(robot(), "read");
-  EXPECT_EQ(workspace.modules, (Names{"camera", "text", "read", "head"}));
-  EXPECT_EQ(workspace.links, (std::set<std::size_t>{1, 4, 6}));
+TEST(GlobalWorkspace, IsWhatLeadsThroughTheTaskToTheActorAndFollowsTheFocus) {
+  expect_workspace(robot(), "track", {"camera", "motion", "track", "head"}, {0, 3, 5, 7});
+  expect_workspace(robot(), "read", {"camera", "text", "read", "head"}, {1, 4, 6});
 }
 
 TEST(GlobalWorkspace, IsEmptyWithoutATaskThatActs) {
-  EXPECT_TRUE(global_workspace(robot(), "").modules.empty());
-  EXPECT_TRUE(global_workspace(robot(), "sleep").modules.empty());
+  expect_workspace(robot(), "", {}, {});
+  expect_workspace(robot(), "sleep", {}, {});
   Plan plan = robot();
   plan.modules[5].exclusive.clear();  // nobody acts
-  EXPECT_TRUE(global_workspace(plan, "track").modules.empty());
-  EXPECT_TRUE(global_workspace(plan, "track").links.empty());
+  expect_workspace(plan, "track", {}, {});
 }
 
 TEST(GlobalWorkspace, GoesThroughRouters) {
@@ -77,9 +76,8 @@ TEST(GlobalWorkspace, GoesThroughRouters) {
   PlannedLink& link = plan.links.emplace_back();
   link.from = "router.out";
   link.to = "head.command";
-  auto workspace = global_workspace(plan, "track");
-  EXPECT_EQ(workspace.modules, (Names{"camera", "motion", "track", "router", "head"}));
-  EXPECT_EQ(workspace.links, (std::set<std::size_t>{0, 3, 5, 7, 13}));
+  expect_workspace(plan, "track", {"camera", "motion", "track", "router", "head"},
+                   {0, 3, 5, 7, 13});
 }
 
 }  // namespace

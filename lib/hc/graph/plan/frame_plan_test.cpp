@@ -116,31 +116,27 @@ TEST(Frames, AnglesAreRollPitchAndYawAboutAxesThatStandStill) {
 }
 
 TEST(Frames, ErrorsNameTheLineAndWhatWouldBeRight) {
-  const std::string top = "[modules.source]\n[frames.a]\nparent = \"root\"\n";
-  EXPECT_EQ(wrong(top + "[frames.b]\nparent = \"aa\"\n"),
-            "g.toml:5: no frame \"aa\", did you mean \"a\"?; the root is root");
-  EXPECT_EQ(wrong("[modules.source]\n[frames.a]\nparent = \"b\"\n[frames.b]\nparent = \"a\"\n"),
-            "g.toml:3: frames form a circle: a in b in a");
-  EXPECT_EQ(wrong("[modules.source]\n[frames.a]\nparent = \"a\"\n"),
-            "g.toml:3: frames form a circle: a in a");
-  EXPECT_EQ(wrong(top + "coord = 3\n"), "g.toml:4: coordinate system 3 is head");
-  EXPECT_EQ(wrong("[modules.source]\n[frames.head]\nparent = \"root\"\ncoord = 200\n"),
-            "g.toml:4: frame head has the number 3");
-  EXPECT_EQ(wrong(top + "coord = 200\n[frames.b]\nparent = \"a\"\ncoord = 200\n"),
-            "g.toml:7: coordinate system 200 is a");
-  EXPECT_EQ(wrong(top + "moved_by = \"source.lft\"\n"),
-            "g.toml:4: module source has no output \"lft\", did you mean \"left\"?");
-  EXPECT_EQ(wrong(top + "moved_by = \"sourc.left\"\n"),
-            "g.toml:4: no module \"sourc\", did you mean \"source\"?");
-  EXPECT_EQ(wrong(top + "moved_by = \"source.left\"\ntranslation = [1, 2, 3]\n"),
-            "g.toml:5: a frame that is moved has no \"translation\"");
-  EXPECT_EQ(wrong(top + "translation = [1, 2]\n"),
-            "g.toml:4: \"translation\" is a list of 3 numbers");
-  EXPECT_EQ(wrong(top + "rotation = [1, 2, nan]\n"),
-            "g.toml:4: \"rotation\" is a list of 3 numbers");
-  EXPECT_EQ(wrong(top + "quaternion = [1, 1, 0, 0]\n"),
-            "g.toml:4: \"quaternion\" has the length 1");
-  EXPECT_EQ(wrong("[modules.source]\n[frames.a]\n"), "g.toml:2: \"parent\" is missing");
+  auto expect = [](const std::string& rest, const std::string& wanted) {
+    EXPECT_EQ(wrong("[modules.source]\n[frames.a]\n" + rest), "g.toml:" + wanted);
+  };
+  const std::string top = "parent = \"root\"\n";
+  expect("", "2: \"parent\" is missing");
+  expect("parent = \"a\"\n", "3: frames form a circle: a in a");
+  expect("parent = \"b\"\n[frames.b]\nparent = \"a\"\n", "3: frames form a circle: a in b in a");
+  expect(top + "[frames.b]\nparent = \"aa\"\n",
+         "5: no frame \"aa\", did you mean \"a\"?; the root is root");
+  expect(top + "coord = 3\n", "4: coordinate system 3 is head");
+  expect(top + "[frames.head]\nparent = \"root\"\ncoord = 200\n", "6: frame head has the number 3");
+  expect(top + "coord = 200\n[frames.b]\nparent = \"a\"\ncoord = 200\n",
+         "7: coordinate system 200 is a");
+  expect(top + "moved_by = \"source.lft\"\n",
+         "4: module source has no output \"lft\", did you mean \"left\"?");
+  expect(top + "moved_by = \"sourc.left\"\n", "4: no module \"sourc\", did you mean \"source\"?");
+  expect(top + "moved_by = \"source.left\"\ntranslation = [1, 2, 3]\n",
+         "5: a frame that is moved has no \"translation\"");
+  expect(top + "translation = [1, 2]\n", "4: \"translation\" is a list of 3 numbers");
+  expect(top + "rotation = [1, 2, nan]\n", "4: \"rotation\" is a list of 3 numbers");
+  expect(top + "quaternion = [1, 1, 0, 0]\n", "4: \"quaternion\" has the length 1");
 }
 
 }  // namespace
