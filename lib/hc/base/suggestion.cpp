@@ -2,25 +2,28 @@
 #include <hc/base/suggestion.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace hc {
 namespace {
 
-/// Letters to change, add or leave out until one word is the other.
-/// Source: Levenshtein's distance, by the usual table of which one row is kept.
+/// Letters to change, add or leave out, and neighbours to swap, until one word is the other.
+/// Source: optimal string alignment, by the usual table of which three rows are kept.
 std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  std::vector<std::size_t> before, last, row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
+    before = std::exchange(last, row);
+    row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+      std::size_t changed = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({changed, last[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
     }
   }
-  return row[b.size()];
+  return row.back();
 }
 
 }  // namespace
@@ -28,14 +31,12 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kNear = 3;
   const std::string* best = nullptr;
-  std::size_t least = std::min(kNear, name.size() / 2 + 1);
-  for (const auto& word : known) {
-    std::size_t away = distance(name.substr(0, 64), word);
-    if (away < least || (away == least && best == nullptr && away < name.size())) {
-      least = away;
+  std::size_t beyond = std::min(kNear, (name.size() + 1) / 3) + 1;  // a third of its letters
+  for (const auto& word : known)
+    if (std::size_t away = distance(name.substr(0, 64), word); away < beyond) {
+      beyond = away;
       best = &word;
     }
-  }
   return best == nullptr ? "" : ", did you mean \"" + *best + "\"?";
 }
 

@@ -9,6 +9,14 @@ namespace {
 TEST(Suggestion, IsNearOrNothing) {
   EXPECT_EQ(suggestion("camra", {"depth", "camera"}), ", did you mean \"camera\"?");
   EXPECT_EQ(suggestion("wheel", {"depth", "camera"}), "");
+  EXPECT_EQ(suggestion("raet", {"rare", "rate"}), ", did you mean \"rate\"?");  // swapped
+  EXPECT_EQ(suggestion("pos", {"port", "pose"}), ", did you mean \"pose\"?");
+  EXPECT_EQ(suggestion("brihtnes", {"brightness"}), ", did you mean \"brightness\"?");
+}
+
+TEST(Suggestion, IsNotAnotherWordOfThatLength) {
+  for (const char* name : {"", "x", "foo", "left", "speed"})
+    EXPECT_EQ(suggestion(name, {"y", "to", "keep", "least", "depth"}), "") << name;
 }
 
 }  // namespace
