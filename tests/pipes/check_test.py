@@ -28,6 +28,8 @@ BROKEN = [
     '[modules.camera]\nparameters.source = "\\u007e" #! write ~ itself, not its \\u escape\n',
     'module = 1 #! no key "module" at the top of a graph, did you mean "modules"?\n',
     '[modules.camera]\n[graph] #! no key "graph" at the top of a graph\n',
+    "[modules.k\u00e4mera] #! Error while parsing table header: expected ']', saw a character that is"
+    ' for strings and comments\nprogram = "camera"\n',
     "modules = 3 #! a graph has a table [modules.NAME] for each module\n",
     # Modules.
     '[modules.Camera] #! a module\'s name is snake_case, not "Camera"\nprogram = "camera"\n',
@@ -37,6 +39,9 @@ BROKEN = [
     ' "program"?\n',
     '[modules.a] #! no program "camra", did you mean "camera"?\nprogram = "camra"\n',
     '[modules.camera]\nprogram = 3 #! "program" is a string\n[modules.b] #! no program "b"\n',
+    '[modules.a] #! /etc is a folder, not a program\nprogram = "/etc"\n',
+    '[modules.a] #! /dev/null may not be executed\nprogram = "/dev/null"\n',
+    '[modules.a] #! no program "./camera"\nprogram = "./camera"\n',
     '[modules.a] #! no program "./nowhere"\nprogram = "./nowhere"\n',
     '[modules.a] #! ./plain may not be executed\nprogram = "./plain"\n',
     "[modules.a] #! module a: /bin/true --describe prints no description of a module\n"
@@ -311,6 +316,21 @@ class Check(Pipes):
         self.assertEqual(
             self.err, 'hc check: Usage: parts/ring.toml:5: no module "x_c", did you mean "x_a"?\n'
         )
+
+    def test_what_is_no_text_file_is_told_in_one_line(self):
+        for verb in "check", "run":
+            self.shell("hc %s ." % verb, 1)
+            self.assertEqual(self.err, "hc %s: NotFound: .: is a folder, not a file\n" % verb)
+            pathlib.Path(self.path("latin.toml")).write_bytes(b"[modules.camera]\n# \xe4\n")
+            self.shell("hc %s latin.toml" % verb, 2)
+            self.assertEqual(
+                self.err,
+                "hc %s: Usage: latin.toml:2: a graph file is UTF-8, which this line is not\n"
+                % verb,
+            )
+            self.write("part.toml", "[modules\n")
+            self.shell("hc %s part.toml --set camera.width=3" % verb, 2)
+            self.assertEqual(len(self.err.splitlines()), 1, self.err)
 
     def test_settings_are_checked_too(self):
         self.write("g.toml", LINKED)

@@ -16,7 +16,13 @@
 namespace tool {
 namespace {
 
+bool is_folder(const std::string& name) {
+  std::error_code missing;
+  return std::filesystem::is_directory(name, missing);
+}
+
 hc::Result<std::string> read_text(const std::string& name) {
+  if (is_folder(name)) return hc::Error{hc::Code::NotFound, name + ": is a folder, not a file"};
   std::ifstream file(name, std::ios::binary);
   if (!file) return hc::Error{hc::Code::NotFound, name + ": cannot be read"};
   std::string text(hc::kMaxGraphBytes + 1, '\0');
@@ -27,7 +33,8 @@ hc::Result<std::string> read_text(const std::string& name) {
 
 /// What is included is a file, so that nothing is waited for.
 hc::Result<std::string> read_included(const std::string& name) {
-  if (!std::filesystem::is_regular_file(name))
+  std::error_code missing;
+  if (!std::filesystem::is_regular_file(name, missing) && !is_folder(name))
     return hc::Error{hc::Code::NotFound, name + ": cannot be read"};
   return read_text(name);
 }
@@ -39,6 +46,16 @@ hc::Result<std::string> read_once(const std::string& name, Texts& texts, const h
   return text;
 }
 
+/// @param path  what `program` stands for, where it has a slash.
+std::string why_no_program(const std::string& program, const std::string& path) {
+  std::error_code missing;
+  if (path.find('/') == std::string::npos)
+    return fmt::format("no program \"{}\"{}", program, hc::suggestion(program, module_names()));
+  if (is_folder(path)) return path + " is a folder, not a program";
+  if (std::filesystem::exists(path, missing)) return path + " may not be executed";
+  return fmt::format("no program \"{}\"", program);
+}
+
 /// Names of programs become paths; one with a slash is sought from the folder of the file where it
 /// stands.
 void resolve_programs(hc::Graph& graph, hc::Problems& problems) {
@@ -48,11 +65,7 @@ void resolve_programs(hc::Graph& graph, hc::Problems& problems) {
       name =
           (std::filesystem::path(problems.file(module.place.file)).parent_path() / name).string();
     std::string program = find_program(name);
-    if (program.empty())
-      problems.add(module.place, std::filesystem::is_regular_file(name)
-                                     ? name + " may not be executed"
-                                     : fmt::format("no program \"{}\"{}", module.program,
-                                                   hc::suggestion(module.program, module_names())));
+    if (program.empty()) problems.add(module.place, why_no_program(module.program, name));
     module.program = program;
   }
 }

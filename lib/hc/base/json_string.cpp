@@ -2,10 +2,8 @@
 #include <hc/base/json_string.h>
 
 namespace hc {
-namespace {
 
-/// Bytes of the well-formed UTF-8 character at the start of `text`; 0 when there is none.
-/// Source: The Unicode Standard, table 3-7.
+// Source: The Unicode Standard, table 3-7.
 std::size_t utf8_length(std::string_view text) {
   auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -24,8 +22,6 @@ std::size_t utf8_length(std::string_view text) {
   }
   return 0;
 }
-
-}  // namespace
 
 void append_json_string(std::string_view text, std::string& json) {
   constexpr std::string_view kHex = "0123456789abcdef";

@@ -147,6 +147,7 @@ void set_parameter(Graph& graph, std::string_view assignment, Problems& problems
     return problems.add({}, quoted_name(assignment) + " is not MODULE.PARAMETER=VALUE");
   std::string name{assignment.substr(0, dot)};
   GraphModule* module = graph.find(name);
+  if (module == nullptr && graph.modules.empty() && !problems.empty()) return;  // nothing was read
   if (module == nullptr)
     return problems.add({}, "no module " + quoted_name(name) + " in " + graph.file +
                                 suggestion(name, names_of(graph)));

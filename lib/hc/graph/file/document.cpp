@@ -5,6 +5,7 @@
 #include <charconv>
 #include <tuple>
 
+#include <hc/base/json_string.h>
 #include <hc/graph/graph_file.h>
 
 // toml++ before 3.4 asserts, or assumes, what hostile text can break (a line end in a table's
@@ -32,6 +33,16 @@ std::string ascii_only(std::string_view text) {
       result.append({'~', kHex[byte >> 4], kHex[byte & 15]});
   }
   return result;
+}
+
+/// Where a byte is no UTF-8; npos: nowhere.
+std::size_t find_no_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t length = utf8_length(text.substr(at));
+    if (length == 0) return at;
+    at += length;
+  }
+  return std::string_view::npos;
 }
 
 /// Where ~ stands as an escape, \u007e, which original() would take for one of ours; npos: nowhere.
@@ -98,6 +109,15 @@ std::string original(std::string_view text) {
   return result;
 }
 
+/// What stands for a letter outside ASCII is not what somebody has written.
+std::string with_odd_character(std::string_view description) {
+  constexpr std::string_view kOurs = "saw '~'";
+  std::string text(description);
+  if (auto at = text.find(kOurs); at != std::string::npos)
+    text.replace(at, kOurs.size(), "saw a character that is for strings and comments");
+  return text;
+}
+
 Node convert(const toml::node& from, int file) {
   Node node;
   node.place = {std::max(static_cast<int>(from.source().begin.line), 1), file};
@@ -144,6 +164,8 @@ std::optional<Node> read_document(std::string_view text, int file, Problems& pro
     return std::nullopt;
   };
   if (text.size() > kMaxGraphBytes) return refuse_at(0, "a graph file has at most 1048576 bytes");
+  if (auto odd = find_no_utf8(text); odd != std::string_view::npos)
+    return refuse_at(odd, "a graph file is UTF-8, which this line is not");
   if (auto escape = find_escaped_tilde(text); escape != std::string_view::npos)
     return refuse_at(escape, "write ~ itself, not its \\u escape");
   if (auto deep = find_too_deep(text); deep != std::string_view::npos)
@@ -153,7 +175,7 @@ std::optional<Node> read_document(std::string_view text, int file, Problems& pro
     return convert(toml::parse(ascii_only(text), problems.file(file)), file);
   } catch (const toml::parse_error& error) {
     problems.add({std::max(static_cast<int>(error.source().begin.line), 1), file},
-                 original(error.description()));
+                 original(with_odd_character(error.description())));
     return std::nullopt;
   }
 }
