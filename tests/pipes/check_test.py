@@ -28,6 +28,7 @@ BROKEN = [
     '[modules.camera]\nparameters.source = "\\u007e" #! write ~ itself, not its \\u escape\n',
     'module = 1 #! no key "module" at the top of a graph, did you mean "modules"?\n',
     '[modules.camera]\n[graph] #! no key "graph" at the top of a graph\n',
+    '[Modules.camera] #! no key "Modules" at the top of a graph, did you mean "modules"?\n',
     "[modules.k\u00e4mera] #! Error while parsing table header: expected ']', saw a character that is"
     ' for strings and comments\nprogram = "camera"\n',
     "modules = 3 #! a graph has a table [modules.NAME] for each module\n",
@@ -39,6 +40,9 @@ BROKEN = [
     ' "program"?\n',
     '[modules.a] #! no program "camra", did you mean "camera"?\nprogram = "camra"\n',
     '[modules.camera]\nprogram = 3 #! "program" is a string\n[modules.b] #! no program "b"\n',
+    '[modules.a]\nprogram = 3 #! "program" is a string\n',
+    '[modules.a]\nprogram = "" #! "program" is empty\n',
+    '[modules."two words"] #! a module\'s name is snake_case, not "two words"\n',
     '[modules.a] #! /etc is a folder, not a program\nprogram = "/etc"\n',
     '[modules.a] #! /dev/null may not be executed\nprogram = "/dev/null"\n',
     '[modules.a] #! no program "./camera"\nprogram = "./camera"\n',
@@ -61,6 +65,10 @@ BROKEN = [
     '[modules.camera]\nparameters.source = "${NO_SUCH_EYE}" #! the environment has no variable'
     " NO_SUCH_EYE; ${NO_SUCH_EYE:-VALUE} gives a default\n",
     '[modules.camera]\nparameters.source = "${EYE" #! no } after ${\n',
+    '[modules.camera]\nparameters.source = "${}" #! no name in ${}, which stands for a variable of the'
+    " environment\n",
+    '[modules.camera]\nparameters.width = "${NO_SUCH_EYE}" #! the environment has no variable'
+    " NO_SUCH_EYE; ${NO_SUCH_EYE:-VALUE} gives a default\n",
     # Addresses and encodings.
     '[modules.camera]\naddresses = 3 #! "addresses" is a table\n',
     "[modules.camera]\naddresses.left = -1 #! an address is a whole number from 0 to 2147483647\n",
@@ -115,6 +123,13 @@ BROKEN = [
     '[modules.relay]\nprogram = "./relay"\nidle_rate = 2 #! module relay cannot have "idle_rate": its'
     " program knows no --control\n",
     ACTOR + '[workspace] #! "module" is missing\n',
+    ACTOR + 'exclusive = ["command"]\n[workspace] #! "module" is missing\n',
+    ACTOR
+    + '[workspace]\nmodul = "actor" #! no key "modul" in the workspace, did you mean "module"?\n',
+    '[modules.relay]\nprogram = "./relay"\nmode = "x" #! module relay cannot have "mode": its program'
+    " knows no --control\n",
+    ACTOR
+    + 'to.pose = "" #! "to" is an address from -2147483647 to 2147483647 without 0, or a name\n',
     ACTOR + '[workspace]\nmodule = "acto" #! no module "acto", did you mean "actor"?\n',
     ACTOR + '[workspace]\nmodule = "actor" #! module actor has no output "focus"\n',
     ACTOR + '[workspace]\nmodul = 3 #! no key "modul" in the workspace, did you mean "module"?'
@@ -132,6 +147,9 @@ BROKEN = [
         "[[links]]",
         '[[links]] #! module brightness has no links of the kind "tpc", did you mean "tcp"?',
     ).replace("camera.left", "tpc:1"),
+    LINKED.replace(
+        "[[links]]", '[[links]] #! module brightness has no links of the kind "inproc"'
+    ).replace("camera.left", "inproc:x"),
     LINKED.replace("camera.left", "tcp:1")
     + "rate = 3 #! a link from outside has no rate: that is its"
     " sender's\n",
@@ -174,6 +192,7 @@ BROKEN = [
     ACTOR
     + '[frames.a]\nparent = "b" #! frames form a circle: a in b in a\n[frames.b]\nparent = "a"\n',
     FRAME + 'coord = 1000 #! "coord" is a whole number from 1 to 999\n',
+    FRAME + "coord = 4 #! frame head has the number 3\n",
     FRAME + '[frames.nose]\nparent = "head"\ncoord = 3 #! coordinate system 3 is head\n',
     # Graphs within graphs.
     '[graphs.a]\nfile = "none.toml" #! none.toml: cannot be read\n',
@@ -206,6 +225,20 @@ BROKEN = [
     LINKED + 'keep = "some" #! option keep is all, latest, or how many messages\n',
     LINKED + "keep = 0 #! option keep is all, latest, or how many messages\n",
     LINKED + "keep = 1.5 #! keep is a whole number or a string\n",
+    LINKED + 'rate = "" #! option rate has no value\n',
+    LINKED + "rate = -1 #! option rate is a whole number from 1 to 4294967296\nburst = 3\n",
+    LINKED + "rate = 1.5 #! rate is a whole number or a string\nburst = 3\n",
+    LINKED
+    + 'memory = "1X" #! option memory is a whole number from 1 to 4294967296, also as K, M or G\n',
+    LINKED.replace("from =", "form =").replace(
+        'left"', 'left" #! no key "form" in a link, did you mean "from"?'
+    ),
+    LINKED.replace("camera.left", "camra.left").replace(
+        "[[links]]", '[[links]] #! no module "camra", did you mean "camera"?'
+    )
+    + LINK.replace("camera.left", "camra.left").replace(
+        "[[links]]", "[[links]] #! the link from camra.left to brightness.image is there twice"
+    ),
     LINKED + "burst = 3 #! option burst wants rate beside it\n",
     LINKED + 'memory = "1M" #! memory is at least 1576960 bytes where it is shared, not 1048576\n',
     '[modules.a]\nprogram = "brightness"\n[modules.view]\n'

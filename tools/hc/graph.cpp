@@ -61,6 +61,7 @@ std::string why_no_program(const std::string& program, const std::string& path) 
 void resolve_programs(hc::Graph& graph, hc::Problems& problems) {
   for (auto& module : graph.modules) {
     std::string name = module.program;
+    if (name.empty()) continue;  // what is wrong has been told
     if (name.find('/') != std::string::npos && !name.starts_with('/'))
       name =
           (std::filesystem::path(problems.file(module.place.file)).parent_path() / name).string();

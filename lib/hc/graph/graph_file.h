@@ -64,7 +64,7 @@ struct GraphPort {
 /// A link, from an output to an input.
 struct GraphLink {
   GraphPort from, to;
-  /// `keep`, `rate` and so on, as in a link's URI.
+  /// `keep`, `rate` and so on, as in a link's URI; empty: it is wrong, which has been told.
   std::map<std::string, Lined<std::string>> policy;
   /// Whom messages are for that go here; nothing: as computed.
   std::optional<Lined<std::vector<std::int64_t>>> route;
@@ -104,7 +104,8 @@ struct Graph {
   std::vector<GraphGroup> groups;
   std::vector<GraphMode> modes;
   std::vector<GraphFrame> frames;
-  std::optional<Lined<std::string>> workspace;  ///< the module that says which mode is in focus
+  /// The module that says which mode is in focus; empty: it is wrong, which has been told.
+  std::optional<Lined<std::string>> workspace;
 
   /// The module of that name; null where there is none.
   [[nodiscard]] GraphModule* find(std::string_view name);

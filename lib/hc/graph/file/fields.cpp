@@ -29,6 +29,12 @@ void Fields::check_keys(const Node& table, const std::vector<std::string>& known
       add(node, "no key " + quoted_name(node.key) + " " + where + suggestion(node.key, known));
 }
 
+bool Fields::misspells(const Node& table, std::string_view key) {
+  return std::any_of(table.nodes.begin(), table.nodes.end(), [&](const Node& node) {
+    return !suggestion(node.key, {std::string(key)}).empty();
+  });
+}
+
 void Fields::each(const Node& parent, std::string_view key,
                   const std::function<void(const std::string&, const Node&)>& take) const {
   const Node* node = parent.find(key);
@@ -46,7 +52,7 @@ std::optional<Lined<std::string>> Fields::text_if_there(const Node& parent,
 std::optional<Lined<std::string>> Fields::text(const Node& parent, std::string_view key) const {
   const Node* node = parent.find(key);
   if (node == nullptr) {
-    add(parent, quoted_name(key) + " is missing");
+    if (!misspells(parent, key)) add(parent, quoted_name(key) + " is missing");
     return std::nullopt;
   }
   if (const auto* text = node->as<std::string>()) return Lined<std::string>{*text, node->place};
@@ -108,7 +114,8 @@ std::optional<Addressee> Fields::addressee(const Node& node, std::string_view wh
   const auto* number = node.as<std::int64_t>();
   if (number != nullptr && *number != 0 && *number >= -kMost && *number <= kMost)
     return Addressee{{}, *number};
-  if (const auto* text = node.as<std::string>()) return Addressee{*text, 0};
+  const auto* text = node.as<std::string>();
+  if (text != nullptr && !text->empty()) return Addressee{*text, 0};
   add(node,
       std::string(what) + " is an address from -2147483647 to 2147483647 without 0, or a name");
   return std::nullopt;
@@ -133,10 +140,15 @@ std::optional<GraphPort> Fields::port(const Node& node, const std::string& text,
 /// Puts variables of the environment in.
 std::optional<std::string> Fields::expand(const Node& node, std::string_view text) const {
   std::string result;
+  bool is_right = true;
+  auto refuse = [&](std::string what) {
+    add(node, std::move(what));
+    is_right = false;
+  };
   while (true) {
     auto begin = text.find("${");
     result += text.substr(0, begin);
-    if (begin == std::string_view::npos) return result;
+    if (begin == std::string_view::npos) return is_right ? std::optional(result) : std::nullopt;
     auto end = text.find('}', begin);
     if (end == std::string_view::npos) {
       add(node, "no } after ${");
@@ -150,9 +162,11 @@ std::optional<std::string> Fields::expand(const Node& node, std::string_view tex
       variable.resize(split);
     }
     const char* value = environment_(variable.c_str());
-    if (value == nullptr && !otherwise)
-      add(node, "the environment has no variable " + variable + "; ${" + variable +
-                    ":-VALUE} gives a default");
+    if (variable.empty())
+      refuse("no name in ${}, which stands for a variable of the environment");
+    else if (value == nullptr && !otherwise)
+      refuse("the environment has no variable " + variable + "; ${" + variable +
+             ":-VALUE} gives a default");
     result += value != nullptr && *value != '\0' ? value : otherwise.value_or("");
   }
 }

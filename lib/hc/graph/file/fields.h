@@ -33,6 +33,9 @@ class Fields {
   void check_keys(const Node& table, const std::vector<std::string>& known,
                   const std::string& where) const;
 
+  /// Whether a table has a key that nearly is that one, which check_keys() has told.
+  static bool misspells(const Node& table, std::string_view key);
+
   /// Calls `take` with each entry of the table of that key, which may be missing.
   void each(const Node& parent, std::string_view key,
             const std::function<void(const std::string& name, const Node& value)>& take) const;

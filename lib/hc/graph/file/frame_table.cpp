@@ -28,7 +28,8 @@ void read_rotation(const Fields& fields, const Node& table, GraphFrame& frame) {
   double length = std::hypot(std::hypot((*quaternion)[0], (*quaternion)[1]),
                              std::hypot((*quaternion)[2], (*quaternion)[3]));
   if (angles)
-    fields.add(*table.find("quaternion"), R"(a frame has "rotation" or "quaternion", not both)");
+    return fields.add(*table.find("quaternion"),
+                      R"(a frame has "rotation" or "quaternion", not both)");
   if (std::abs(length - 1) > kTolerance)
     return fields.add(*table.find("quaternion"), R"("quaternion" has the length 1)");
   for (std::size_t i = 0; i < 4; ++i) frame.rotation[i] = (*quaternion)[i] / length;

@@ -46,7 +46,8 @@ Graph with_prefix(Graph graph, const std::string& name) {
     if (frames.contains(frame.parent.value)) frame.parent.value = prefix + frame.parent.value;
     if (frame.moved_by) rename_port(frame.moved_by->value);
   }
-  if (graph.workspace) graph.workspace->value = prefix + graph.workspace->value;
+  if (graph.workspace && !graph.workspace->value.empty())
+    graph.workspace->value = prefix + graph.workspace->value;
   return graph;
 }
 

@@ -15,6 +15,13 @@ std::optional<GraphPort> read_end(const Fields& fields, const Node& table, std::
 void read_policy(const Fields& fields, const Node& table, const std::vector<std::string>& keys,
                  GraphLink& link) {
   Uri policy;  // of the keys so far: each burst stands behind its rate in `keys`
+  // What is wrong has been told, so that it stands as empty, and as right for what needs it.
+  auto refuse = [&](const Node& value, std::string& text, std::string what) {
+    fields.add(value, std::move(what));
+    text.clear();
+    policy.options.back().second = "1";
+    if (!parse_policy(policy)) policy.options.pop_back();
+  };
   for (const auto& key : keys) {
     const Node* value = table.find(key);
     if (value == nullptr) continue;
@@ -23,15 +30,14 @@ void read_policy(const Fields& fields, const Node& table, const std::vector<std:
       text = std::to_string(*number);
     } else if (const auto* given = value->as<std::string>()) {
       text = *given;
-    } else {
-      fields.add(*value, key + " is a whole number or a string");
-      continue;
     }
     policy.options.emplace_back(key, text);
-    if (auto valid = parse_policy(policy); !valid) {
-      fields.add(*value, valid.error().detail);
-      policy.options.pop_back();
-    }
+    if (value->as<std::int64_t>() == nullptr && value->as<std::string>() == nullptr)
+      refuse(*value, text, key + " is a whole number or a string");
+    else if (text.empty())
+      refuse(*value, text, "option " + key + " has no value");
+    else if (auto valid = parse_policy(policy); !valid)
+      refuse(*value, text, valid.error().detail);
     link.policy[key] = {text, value->place};
   }
 }

@@ -35,7 +35,13 @@ void read_module(const Fields& fields, const std::string& name, const Node& node
                     {"program", "parameters", "addresses", "encodings", "to", "restart", "mode",
                      "modes", "idle_rate", "exclusive"},
                     "in module " + name);
-  if (auto program = fields.text_if_there(node, "program")) module.program = program->value;
+  if (const Node* program = node.find("program")) {
+    module.program = fields.text(node, "program").value_or(Lined<std::string>()).value;
+    if (module.program.empty() && program->as<std::string>() != nullptr)
+      fields.add(*program, "\"program\" is empty");
+  } else if (!is_name(name)) {
+    module.program.clear();  // the name has been told
+  }
   fields.each(node, "parameters", [&](const std::string& key, const Node& value) {
     if (auto text = fields.parameter(value)) module.parameters[key] = {*text, value.place};
   });
@@ -79,7 +85,7 @@ Restart read_restart(const Fields& fields, const Node& table, Restart otherwise)
 void read_modules(const Fields& fields, const Node& root, Restart restart, Graph& graph) {
   const Node* modules = root.find("modules");
   if (modules == nullptr) {
-    if (root.find("module") == nullptr && root.find("graphs") == nullptr)
+    if (!Fields::misspells(root, "modules") && root.find("graphs") == nullptr)
       fields.add(root, "a graph has a table [modules.NAME] for each module");
   } else if (const auto* table = modules->table()) {
     for (const Node& node : *table) read_module(fields, node.key, node, restart, graph);

@@ -33,9 +33,13 @@ void read_modes(const Fields& fields, const Node& root, Graph& graph) {
 void read_workspace(const Fields& fields, const Node& root, Graph& graph) {
   const Node* node = root.find("workspace");
   if (node == nullptr) return;
+  graph.workspace = Lined<std::string>{"", node->place};  // until it has a module
   if (node->table() == nullptr) return fields.add(*node, "\"workspace\" is a table");
   fields.check_keys(*node, {"module"}, "in the workspace");
-  graph.workspace = fields.text(*node, "module");
+  auto module = fields.text(*node, "module");
+  if (!module) return;
+  if (module->value.empty()) fields.add(*node->find("module"), "\"module\" is empty");
+  graph.workspace = module;
 }
 
 }  // namespace hc::internal

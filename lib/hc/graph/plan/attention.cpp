@@ -19,7 +19,7 @@ class Attention {
       if (link.to.port == kFocus) linked_.insert(link.to.text());
     for (const auto& module : graph_.modules)
       if (PlannedModule* planned = planning_.planned(module.name)) {
-        tell(module, *planned);
+        if (planning_.description_of(module.name)->control) tell(module, *planned);
         if (workspace && module.name != graph_.workspace->value && wants_focus(module))
           link_focus(module);
       }
@@ -47,7 +47,7 @@ class Attention {
 
   /// Whether there is a workspace that tells the focus.
   bool check_workspace() {
-    if (!graph_.workspace) return false;
+    if (!graph_.workspace || graph_.workspace->value.empty()) return false;
     const auto& [name, place] = *graph_.workspace;
     planning_.plan.workspace = name;
     if (!planning_.names.contains(name)) {

@@ -44,14 +44,14 @@ class Frames {
     for (const auto& frame : graph_.frames) {
       if (frame.coord.value == 0) continue;
       auto [other, is_new] = names.emplace(frame.coord.value, frame.name);
-      if (!is_new && other->second != frame.name)
-        planning_.problems.add(
-            frame.coord.place,
-            "coordinate system " + std::to_string(frame.coord.value) + " is " + other->second);
       auto standard = kStandard.find(frame.name);
       if (standard != kStandard.end() && standard->second != frame.coord.value)
         planning_.problems.add(frame.coord.place, "frame " + frame.name + " has the number " +
                                                       std::to_string(standard->second));
+      else if (!is_new && other->second != frame.name)
+        planning_.problems.add(
+            frame.coord.place,
+            "coordinate system " + std::to_string(frame.coord.value) + " is " + other->second);
     }
   }
 

@@ -16,22 +16,28 @@ class LinkCheck {
  public:
   explicit LinkCheck(Planning& planning) : planning_(planning), problems_(planning.problems) {}
 
-  void check(const GraphLink& link) {
-    if (!linked_.insert(link.from.text() + " " + link.to.text()).second)
+  /// Whether more may be said of it.
+  bool check(const GraphLink& link) {
+    if (!linked_.insert(link.from.text() + " " + link.to.text()).second) {
       problems_.add(link.place, "the link from " + link.from.text() + " to " + link.to.text() +
                                     " is there twice");
+      return false;
+    }
     const DescribedPort* from = end(link, link.from, false);
     const DescribedPort* to = end(link, link.to, true);
     if (link.route) check_route(link);
     if (!link.from.uri.empty()) check_outer_policy(link);
-    if (from == nullptr || to == nullptr) return;
-    if (!fits(*from, *to))
+    if (from == nullptr || to == nullptr) return true;
+    const bool right = fits(*from, *to);
+    if (!right)
       problems_.add(link.place, link.from.text() + " gives " + in_words(from->types) + ", " +
                                     link.to.text() + " takes " + in_words(to->types));
-    if (auto memory = link.policy.find("memory");
-        memory != link.policy.end() && knows(link.from, "shm") && knows(link.to, "shm"))
+    if (auto memory = link.policy.find("memory"); memory != link.policy.end() &&
+                                                  !memory->second.value.empty() &&
+                                                  knows(link.from, "shm") && knows(link.to, "shm"))
       if (auto enough = check_shm_memory({"shm", "", {{"memory", memory->second.value}}}); !enough)
         problems_.add(memory->second.place, enough.error().detail);
+    return right;
   }
 
  private:
@@ -62,15 +68,15 @@ class LinkCheck {
     if (uri.scheme.ends_with("-listen") && !listening_.insert(uri.scheme + ":" + uri.rest).second)
       problems_.add(link.place, outside.uri + " is there twice, and two cannot listen there");
     for (const auto& [key, value] : link.policy)
-      if (!uri.option(key, "").empty())
+      if (!uri.option(key, "").empty() && !value.value.empty())
         problems_.add(value.place, outside.uri + " has " + key + " too");
     const std::string& module = is_input ? link.from.module : link.to.module;
     const Description* description = planning_.description_of(module);
     if (description == nullptr) return;
     std::vector<std::string> known = {"file", "tcp", "tcp-listen", "unix", "unix-listen"};
     if (description->transports) known = *description->transports;
-    if (uri.scheme == "-" || uri.scheme == "inproc" ||
-        std::find(known.begin(), known.end(), uri.scheme) == known.end())
+    std::erase_if(known, [](const auto& each) { return each == "-" || each == "inproc"; });
+    if (std::find(known.begin(), known.end(), uri.scheme) == known.end())
       problems_.add(link.place, "module " + module + " has no links of the kind \"" + uri.scheme +
                                     "\"" + suggest(planning_, uri.scheme, known));
     else if (auto checked = is_input ? check_sink(uri) : check_source(uri);
@@ -87,7 +93,7 @@ class LinkCheck {
   /// A link from outside has its sender there; `keep` is its reader's affair in shared memory.
   void check_outer_policy(const GraphLink& link) {
     for (const auto& [key, value] : link.policy)
-      if (key != "keep" || !link.from.uri.starts_with("shm:"))
+      if (!value.value.empty() && (key != "keep" || !link.from.uri.starts_with("shm:")))
         problems_.add(value.place, "a link from outside has no " + key + ": that is its sender's");
   }
 
@@ -122,7 +128,7 @@ std::string way_in_words(const std::vector<const GraphLink*>& way, const std::st
 
 void check_links(Planning& planning) {
   LinkCheck check(planning);
-  for (const auto& link : planning.graph.links) check.check(link);
+  std::erase_if(planning.graph.links, [&](const auto& link) { return !check.check(link); });
 }
 
 /// A message that comes back to where it came from, and makes another, does so as fast as the
