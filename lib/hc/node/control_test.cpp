@@ -13,15 +13,12 @@ TEST_F(RunningModule, ObeysCommands) {
   auto factor = module.parameter("factor", 2.0, "", "", {.least = 0, .most = 10});
   auto title = module.parameter("title", "a", "", "", {.fixed = true});
   module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0) * *factor})); });
-  auto control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
   auto first = sink_of(uri("first"));
-  start(module, {"--in=" + uri("first"), "--out=" + uri("out"), "--manage=" + uri("reports"),
-                 "--control=" + uri("control")});
-  next(*reports, internal::Report::Parameters);
+  start_managed(module, {"--in=" + uri("first"), "--out=" + uri("out")});
+  next(*reports_, internal::Report::Parameters);
   ::testing::internal::CaptureStderr();
-  ASSERT_TRUE(tell(*control, "set factor=5"));
-  EXPECT_EQ(rows_of(next(*reports, internal::Report::Parameters))[0], "factor=5");
+  ASSERT_TRUE(tell(*control_, "set factor=5"));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Parameters))[0], "factor=5");
   auto from = source_of(uri("out"));
   ASSERT_TRUE(first->send(table({2.0})));
   Message message;
@@ -30,19 +27,19 @@ TEST_F(RunningModule, ObeysCommands) {
 
   auto second = sink_of(uri("second"));
   auto other = source_of(uri("other"));
-  ASSERT_TRUE(tell(*control, "link in in=" + uri("second")));
-  next(*reports, internal::Report::Links);
-  ASSERT_TRUE(tell(*control, "link out out=" + uri("other")));
-  EXPECT_EQ(rows_of(next(*reports, internal::Report::Links)).size(), 4U);
+  ASSERT_TRUE(tell(*control_, "link in in=" + uri("second")));
+  next(*reports_, internal::Report::Links);
+  ASSERT_TRUE(tell(*control_, "link out out=" + uri("other")));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Links)).size(), 4U);
   ASSERT_TRUE(second->send(table({3.0})));
   for (auto* each : {from.get(), other.get()}) {
     ASSERT_TRUE(*receive(*each, message));
     EXPECT_EQ(message.view<double>()->at(0, 0), 15);
   }
-  ASSERT_TRUE(tell(*control, "unlink in in=" + uri("first")));
-  next(*reports, internal::Report::Links);
-  ASSERT_TRUE(tell(*control, "unlink out out=" + uri("out")));
-  EXPECT_EQ(rows_of(next(*reports, internal::Report::Links)),
+  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("first")));
+  next(*reports_, internal::Report::Links);
+  ASSERT_TRUE(tell(*control_, "unlink out out=" + uri("out")));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Links)),
             (std::vector<std::string>{"in in " + uri("second"), "out out " + uri("other")}));
   ASSERT_TRUE(second->send(table({1.0})));
   ASSERT_TRUE(*receive(*other, message));
@@ -51,16 +48,16 @@ TEST_F(RunningModule, ObeysCommands) {
   // What is wrong changes nothing, and is told.
   for (const char* line : {"set factor=-1", "set factor", "set colour=1", "set title=b", "link up",
                            "unlink out out=inproc:nowhere", "route out=x via=y", "jump"})
-    ASSERT_TRUE(tell(*control, line));
-  ASSERT_TRUE(tell(*control, "set factor=7"));
-  EXPECT_EQ(rows_of(next(*reports, internal::Report::Parameters)),
+    ASSERT_TRUE(tell(*control_, line));
+  ASSERT_TRUE(tell(*control_, "set factor=7"));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Parameters)),
             (std::vector<std::string>{"factor=7", "title=a"}));
   // One whose inputs have all been unlinked waits for others.
-  ASSERT_TRUE(tell(*control, "unlink in in=" + uri("second")));
-  next(*reports, internal::Report::Links);
+  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("second")));
+  next(*reports_, internal::Report::Links);
   auto third = sink_of(uri("third"));
   ASSERT_TRUE(third->close());
-  ASSERT_TRUE(tell(*control, "link in in=" + uri("third")));
+  ASSERT_TRUE(tell(*control_, "link in in=" + uri("third")));
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(*title, "a");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
@@ -111,10 +108,7 @@ TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   ASSERT_TRUE(commands->close());
   EXPECT_EQ(join(), 0);
   EXPECT_FALSE(*receive(*done, message));
-  Message counters;
-  while (*reports->take(message) == Got::Message)
-    if (message.header.src == static_cast<int>(internal::Report::Counters)) counters = message;
-  EXPECT_EQ(counters.view<std::int64_t>()->at(0, 0, 7), 4);
+  EXPECT_EQ(last_counters(*reports).at(0).at(7), 4);
 }
 
 TEST_F(RunningModule, DoesLessWhileAnotherModeHasTheFocus) {

@@ -42,10 +42,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   ASSERT_TRUE(sink->close());
   start(module, {"--in=" + uri("in"), "--manage=" + uri("reports")});
   EXPECT_EQ(join(), 0);
-  Message message, last;
-  while (*reports->take(message) == Got::Message)
-    if (message.header.src == static_cast<int>(internal::Report::Counters)) last = message;
-  auto row = last.view<std::int64_t>()->row(0);
+  const auto row = last_counters(*reports).at(0);
   ASSERT_EQ(row.size(), 14U);
   EXPECT_EQ(row[0], 3);
   EXPECT_EQ(row[7], 0);                  // left out
@@ -61,15 +58,13 @@ TEST_F(RunningModule, HasOnlyTheLinksThatItIsToldOf) {
   auto in = module.input("in", table<double>(), "");
   auto out = module.output("out", table<double>(), "");
   module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
-  auto control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
-  start(module, {"--manage=" + uri("reports"), "--control=" + uri("control")});
+  start_managed(module);
   // Neither standard input, which may have ended, nor standard output.
-  EXPECT_TRUE(rows_of(next(*reports, internal::Report::Links)).empty());
+  EXPECT_TRUE(rows_of(next(*reports_, internal::Report::Links)).empty());
   auto first = sink_of(uri("first"));
   auto from = source_of(uri("out"));
-  ASSERT_TRUE(tell(*control, "link out out=" + uri("out")));
-  ASSERT_TRUE(tell(*control, "link in in=" + uri("first")));
+  ASSERT_TRUE(tell(*control_, "link out out=" + uri("out")));
+  ASSERT_TRUE(tell(*control_, "link in in=" + uri("first")));
   ASSERT_TRUE(first->send(table({2.0})));
   Message message;
   ASSERT_TRUE(*receive(*from, message));
@@ -82,12 +77,10 @@ TEST_F(RunningModule, ReportsWithoutLinksToo) {
   Module module{"idle", "Has nothing to do yet."};
   auto in = module.input("in", table<double>(), "");
   module.on(in, [](const auto&) {});
-  auto control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
-  start(module, {"--manage=" + uri("reports"), "--control=" + uri("control")});
+  start_managed(module);
   for (int i = 0; i < 2; ++i)
-    EXPECT_EQ(next(*reports, internal::Report::Counters).header.height, 0);
-  ASSERT_TRUE(control->close());
+    EXPECT_EQ(next(*reports_, internal::Report::Counters).header.height, 0);
+  ASSERT_TRUE(control_->close());
   EXPECT_EQ(join(), 0);
 }
 
@@ -96,28 +89,25 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   auto in = module.input("in", table<double>(), "");
   auto out = module.output("out", table<double>(), "");
   module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
-  auto control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
   auto handled = source_of(uri("out"));
   auto other = sink_of(uri("other"));
-  start(module, {"--in=" + uri("other"), "--out=" + uri("out"), "--manage=" + uri("reports"),
-                 "--control=" + uri("control")});
+  start_managed(module, {"--in=" + uri("other"), "--out=" + uri("out")});
   Message message;
   for (double i : {1, 2, 3}) {
     auto sink = open_sink(*parse_uri(uri("in")));
     while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has gone
-    ASSERT_TRUE(tell(*control, "link in in=" + uri("in")));
+    ASSERT_TRUE(tell(*control_, "link in in=" + uri("in")));
     ASSERT_TRUE((*sink)->send(table({i})));
     ASSERT_TRUE(*receive(*handled, message));
     ASSERT_TRUE((*sink)->close());
   }
-  auto rows = next_counters(*reports);
-  while (rows.back()[0] < 3) rows = next_counters(*reports);
+  auto rows = next_counters(*reports_);
+  while (rows.back()[0] < 3) rows = next_counters(*reports_);
   ASSERT_EQ(rows.size(), 3U) << "the other, this one, and that out";
   EXPECT_EQ(rows[1][0], 3);
-  ASSERT_TRUE(tell(*control, "unlink in in=" + uri("in")));
+  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("in")));
   std::vector<std::string> links;
-  while (links.size() != 2) links = rows_of(next(*reports, internal::Report::Links));
+  while (links.size() != 2) links = rows_of(next(*reports_, internal::Report::Links));
   EXPECT_EQ(links, (std::vector{"in in " + uri("other"), "out out " + uri("out")}));
   ASSERT_TRUE(other->close());
   EXPECT_EQ(join(), 0);
@@ -128,20 +118,19 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersTold) {
   auto in = module.input("in", table<double>(), "");
   auto out = module.output("out", table<double>(), "");
   module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
-  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
-  auto from = source_of(uri("out")), reports = source_of(uri("reports"));
-  start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--manage=" + uri("reports"),
-                 "--control=" + uri("control")});
-  EXPECT_EQ(next_counters(*reports).size(), 2U);
+  auto sink = sink_of(uri("in"));
+  auto from = source_of(uri("out"));
+  start_managed(module, {"--in=" + uri("in"), "--out=" + uri("out")});
+  EXPECT_EQ(next_counters(*reports_).size(), 2U);
   Message message;
   ASSERT_TRUE(sink->send(table({1.0})));
   ASSERT_TRUE(*receive(*from, message));
   for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
-    ASSERT_TRUE(tell(*control, "unlink " + end));
-    EXPECT_EQ(next_counters(*reports).back()[0], 1);
-    next(*reports, internal::Report::Links);
+    ASSERT_TRUE(tell(*control_, "unlink " + end));
+    EXPECT_EQ(next_counters(*reports_).back()[0], 1);
+    next(*reports_, internal::Report::Links);
   }
-  ASSERT_TRUE(control->close());
+  ASSERT_TRUE(control_->close());
   EXPECT_EQ(join(), 0);
 }
 
@@ -153,17 +142,14 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   module.on(together(left, right), [&](const Doubles& l, const Doubles& r) {
     out.send(table({l.matrix().at(0, 0) + r.matrix().at(0, 0)}));
   });
-  auto control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
   auto sums = source_of(uri("out"));
-  start(module,
-        {"--out=" + uri("out"), "--manage=" + uri("reports"), "--control=" + uri("control")});
-  next(*reports, internal::Report::Links);
+  start_managed(module, {"--out=" + uri("out")});
+  next(*reports_, internal::Report::Links);
   std::string place = uri("left");
   auto l = sink_of(place), r = sink_of(uri("right"));
   auto obeyed = [&](const std::string& command) {
-    ASSERT_TRUE(tell(*control, command));
-    next(*reports, internal::Report::Links);
+    ASSERT_TRUE(tell(*control_, command));
+    next(*reports_, internal::Report::Links);
   };
   obeyed("link in right=" + uri("right"));
   obeyed("link in left=" + place);
@@ -186,19 +172,16 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   Module module{"busy", "Works."};
   auto in = module.input("in", table<double>(), "");
   module.on(in, [](const auto&) {});
-  auto control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
   auto one = sink_of(uri("one")), other = sink_of(uri("other"));
-  start(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other"),
-                 "--manage=" + uri("reports"), "--control=" + uri("control")});
-  next(*reports, internal::Report::State);
+  start_managed(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other")});
+  next(*reports_, internal::Report::State);
   ::testing::internal::CaptureStderr();
-  ASSERT_TRUE(tell(*control, "unlink in focus=" + uri("one")));
-  ASSERT_TRUE(tell(*control, "unlink in focus=" + uri("one")));
-  next(*reports, internal::Report::Links);
+  ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
+  ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
+  next(*reports_, internal::Report::Links);
   ASSERT_TRUE(other->send(table<std::int32_t>({7})));
-  EXPECT_EQ(next(*reports, internal::Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
-  ASSERT_TRUE(control->close());
+  EXPECT_EQ(next(*reports_, internal::Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
+  ASSERT_TRUE(control_->close());
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
             "busy: command \"unlink in focus=" + uri("one") + "\": there is no such link\n");

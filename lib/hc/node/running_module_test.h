@@ -52,11 +52,20 @@ class RunningModule : public ::testing::Test {
       status_ = module.run(static_cast<int>(arguments.size()), arguments.data());
     });
   }
+  /// The same for one that reports and is told.
+  void start_managed(Module& module, std::vector<std::string> words = {}) {
+    control_ = sink_of(uri("control"));
+    reports_ = source_of(uri("reports"));
+    words.insert(words.end(), {"--manage=" + uri("reports"), "--control=" + uri("control")});
+    start(module, std::move(words));
+  }
   int join() {
     thread_.join();
     return status_;
   }
 
+  std::unique_ptr<Sink> control_;
+  std::unique_ptr<Source> reports_;
   std::thread thread_;
   int status_ = -1;
 };
@@ -76,14 +85,25 @@ inline Status tell(Sink& control, const std::string& line) {
 
 using Doubles = MessageOf<Kind<MatrixType::Table, double>>;
 
-/// The numbers of the next counters; a row for each link.
-inline std::vector<std::vector<std::int64_t>> next_counters(Source& reports) {
-  std::vector<std::vector<std::int64_t>> rows;
-  auto message = next(reports, internal::Report::Counters);
+/// Numbers of counters; a row for each link.
+using CounterRows = std::vector<std::vector<std::int64_t>>;
+
+inline CounterRows counters_of(const Message& message) {
+  CounterRows rows;
   auto view = *message.view<std::int64_t>();
   for (std::size_t i = 0; i < view.height(); ++i)
     rows.emplace_back(view.row(i).begin(), view.row(i).end());
   return rows;
+}
+inline CounterRows next_counters(Source& reports) {
+  return counters_of(next(reports, internal::Report::Counters));
+}
+/// The last of a module that has ended.
+inline CounterRows last_counters(Source& reports) {
+  Message message, last;
+  while (*reports.take(message) == Got::Message)
+    if (message.header.src == static_cast<int>(internal::Report::Counters)) last = message;
+  return counters_of(last);
 }
 
 }  // namespace hc
