@@ -64,7 +64,8 @@ std::string_view name(ModuleStatus status) {
 std::string GraphState::focus_name() const {
   auto found = std::find_if(modes.begin(), modes.end(),
                             [&](const auto& mode) { return mode.second == focus; });
-  return found == modes.end() ? "" : found->first;
+  if (found != modes.end()) return found->first;
+  return focus == 0 ? "" : std::to_string(focus);
 }
 
 std::string to_json(const GraphState& state) {

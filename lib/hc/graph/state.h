@@ -69,7 +69,7 @@ struct GraphState {
   std::map<std::string, std::int64_t> groups;     ///< their addresses
   std::map<std::string, std::int64_t> addresses;  ///< of inputs, "MODULE.PORT"
 
-  /// Name of the mode in focus; empty: none.
+  /// Name of the mode in focus, its number where it has none; empty: none.
   [[nodiscard]] std::string focus_name() const;
 };
 

@@ -46,6 +46,15 @@ TEST(State, IsOneLineOfJson) {
       R"("modes":{"read":2,"track":1},"groups":{},"addresses":{"eyes.command":21}})");
 }
 
+TEST(State, AFocusWithoutANameIsItsNumber) {
+  GraphState state;
+  state.focus = 7;
+  state.modes = {{"read", 2}};
+  EXPECT_NE(to_json(state).find(R"("focus":{"mode":"7","number":7})"), std::string::npos);
+  state.focus = 0;
+  EXPECT_EQ(state.focus_name(), "");
+}
+
 TEST(State, WhatIsNoUtf8IsReplaced) {
   GraphState state;
   state.file = "\xff";
