@@ -73,7 +73,7 @@ nlohmann::json some_state(int modules) {
                               {"per_second", 30.0},
                               {"bytes_per_second", 43.2e6},
                               {"lost", {{"superseded", i}}},
-                              {"left_out", 0},
+                              {"left_out", i == 0 ? 1234 : 0},
                               {"age", {0.0021, 0.0102, 0.5}},
                               {"in_workspace", i == 1}});
   }
@@ -89,9 +89,9 @@ TEST(Screen, ShowsWhatFitsAndWhatIsWrongFirst) {
             "module_0             3.1%  1.23 MB   0         running\n"
             "module_1             3.1%  1.23 MB   1 track   running\n"
             "\n"
-            "LINK                                            1/s     B/s    AGE    p99   LOST\n"
-            "module_0.left → tcp:robot:7000                   30  43.2MB 2.10ms 10.2ms      -\n"
-            "module_1.left → tcp:robot:7000 ≤30/s             30  43.2MB 2.10ms 10.2ms      1\n");
+            "LINK                                     1/s    B/s    AGE    p99  LOST LEFT OUT\n"
+            "module_0.left → tcp:robot:7000            30 43.2MB 2.10ms 10.2ms     -    1.23k\n"
+            "module_1.left → tcp:robot:7000 ≤30/s      30 43.2MB 2.10ms 10.2ms     1        -\n");
   std::string some = draw(some_state(50), {80, 24, true});
   EXPECT_EQ(std::count(some.begin(), some.end(), '\n'), 24);
   EXPECT_NE(some.find("given up: failed with status 1"), std::string::npos);

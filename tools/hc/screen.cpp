@@ -18,7 +18,8 @@ using nlohmann::json;
 constexpr std::string_view kBold = "\x1b[1m", kRed = "\x1b[31m", kDim = "\x1b[2m",
                            kNormal = "\x1b[0m";
 
-constexpr std::size_t kName = 18;  // of a module [character]
+constexpr std::size_t kName = 18;     // of a module [character]
+constexpr std::size_t kNumbers = 42;  // of a link: the width of all columns but the first
 
 struct Line {
   std::string text;
@@ -46,6 +47,10 @@ std::string short_time(double seconds) {
 
 std::string quantile(const json& times, std::size_t index) {
   return times.is_null() ? "-" : short_time(times.at(index).get<double>());
+}
+
+std::string short_count(std::uint64_t count) {
+  return count == 0 ? "-" : short_number(static_cast<double>(count));
 }
 
 bool is_wrong(const std::string& status) {
@@ -91,13 +96,13 @@ Line link_line(const json& link, std::size_t width) {
   Line line;
   std::uint64_t lost = 0;
   for (const auto& count : link.at("lost")) lost += count.get<std::uint64_t>();
-  lost += link.at("left_out").get<std::uint64_t>();
   line.is_bold = link.at("in_workspace").get<bool>();
   auto fixed = fmt::format(
-      " {:>6} {:>7} {:>6} {:>6} {:>6}", short_number(link.at("per_second").get<double>()),
+      " {:>5} {:>6} {:>6} {:>6} {:>5} {:>8}", short_number(link.at("per_second").get<double>()),
       short_number(link.at("bytes_per_second").get<double>()) + "B", quantile(link.at("age"), 0),
-      quantile(link.at("age"), 1), lost == 0 ? "-" : short_number(static_cast<double>(lost)));
-  auto name = width > fixed.size() + 10 ? width - fixed.size() : 10;
+      quantile(link.at("age"), 1), short_count(lost),
+      short_count(link.at("left_out").get<std::uint64_t>()));
+  auto name = width > kNumbers + 10 ? width - kNumbers : 10;
   auto rate = link.at("rate").get<double>();  // that the link does not exceed
   auto limit = rate > 0 ? " ≤" + short_number(rate) + "/s" : "";
   line.text =
@@ -154,9 +159,9 @@ std::string draw(const json& state, const Screen& screen) {
   add_some(std::move(modules), for_modules, lines);
   if (!links.empty()) {
     lines.push_back({});
-    auto column = screen.width > 46 ? screen.width - 36 : 10;
-    lines.push_back(
-        {fitted("LINK", column) + "    1/s     B/s    AGE    p99   LOST", false, false, true});
+    auto column = screen.width > kNumbers + 10 ? screen.width - kNumbers : 10;
+    lines.push_back({fitted("LINK", column) + "   1/s    B/s    AGE    p99  LOST LEFT OUT", false,
+                     false, true});
     add_some(std::move(links), room - for_modules, lines);
   }
   std::string text;
