@@ -76,6 +76,20 @@ class Watching(Graphs):
         wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))
         self.stop_named(name, process)
 
+    def test_who_waits_for_a_reader_is_not_stalled(self):
+        end = "unix-listen:@hc_%d" % os.getpid()
+        text = GRAPH.replace("brightness.image", end).replace("[modules.brightness]\n", "")
+        name, process = self.run_named("waits", text, "camera: started")
+        wait_until(lambda: re.search("camera .* waits for a reader\n", self.hc("top " + name)))
+        self.assertIn("camera  (waits for a reader)\n", self.hc("graph --of " + name))
+        self.assertRegex(self.hc("ps"), name + " .* 1/1 .* running\n")
+        camera = self.module(self.state(self.observe(process, name), lambda state: True), "camera")
+        os.kill(camera["pid"], signal.SIGSTOP)
+        wait_until(lambda: "stalled: stopped by a signal" in self.hc("top " + name))
+        os.kill(camera["pid"], signal.SIGCONT)
+        wait_until(lambda: "waits for a reader" in self.hc("top " + name))
+        self.stop_named(name, process)
+
     def test_who_asks_a_graph_is_no_graph(self):
         """Several may ask at once, each listening for its answer, and need not say which graph."""
         name, process = self.run_named("asked")

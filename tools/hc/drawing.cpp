@@ -58,12 +58,13 @@ Drawing drawing_of(const nlohmann::json& state) {
   for (const auto& module : state.at("modules")) {
     Drawing::Box box;
     box.name = module.at("name");
-    const std::string status = module.at("status");
+    const std::string status = module.at("status"), detail = module.at("detail");
     box.is_bold = module.at("in_workspace");
     box.is_wrong = status != "running" && status != "starting" && status != "ended";
     box.is_idle = !module.at("in_focus").get<bool>() || status == "ended";
-    box.words = status == "running" ? fmt::format("{:.1f} %", 100 * module.at("cpu").get<double>())
-                                    : status;
+    box.words = status != "running" ? status
+                : detail.empty()    ? fmt::format("{:.1f} %", 100 * module.at("cpu").get<double>())
+                                    : detail;
     drawing.boxes.push_back(std::move(box));
   }
   for (const auto& link : state.at("links"))

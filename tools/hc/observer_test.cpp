@@ -106,6 +106,13 @@ TEST(Screen, ShowsWhatFitsAndWhatIsWrongFirst) {
   }
 }
 
+TEST(Screen, TellsWhatARunningModuleWaitsFor) {
+  auto state = some_state(1);
+  state["modules"][0]["detail"] = "waits for a reader";
+  EXPECT_NE(draw(state, {80, 0, true}).find("waits for a reader\n"), std::string::npos);
+  EXPECT_EQ(drawing_of(state).boxes.at(0).words, "waits for a reader");
+}
+
 TEST(Screen, IsMadeOfAnySize) {
   for (std::size_t width : {1U, 20U, 40U, 300U})
     for (std::size_t height : {1U, 2U, 5U, 6U, 100U})

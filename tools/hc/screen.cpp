@@ -77,8 +77,9 @@ Line module_line(const json& module, std::size_t width) {
   Line line;
   auto status = module.at("status").get<std::string>();
   auto detail = module.at("detail").get<std::string>();
-  if (!module.at("in_focus").get<bool>() && status == "running") status = "idle";
-  if (!detail.empty()) status += ": " + detail;
+  const bool is_running = status == "running";
+  if (is_running && !module.at("in_focus").get<bool>()) status = "idle";
+  if (!detail.empty()) status = is_running ? detail : status + ": " + detail;
   line.is_red = is_wrong(module.at("status"));
   line.is_bold = module.at("in_workspace").get<bool>();
   line.is_dim = !module.at("in_focus").get<bool>();

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -124,6 +125,9 @@ struct LinkOptions {
   /// that use the link's end; may be empty.
   LogSink log;
   int stop = -1;  ///< descriptor that is readable when waiting is to end; -1: none
+  /// Hears when a sink that readers come to begins to wait for one, and has waited, on the thread
+  /// that sends; may be empty.
+  std::function<void(bool awaits)> awaits_reader = {};
 };
 
 /// Opens the end of a link where messages come out, or go in.

@@ -53,12 +53,15 @@ void ListeningSink::let_in() {
 }
 
 Status ListeningSink::await(std::size_t readers) {
-  while (true) {
-    let_in();
-    if (peers_.size() >= readers) return {};
+  let_in();
+  const bool awaits = peers_.size() < readers && options_.awaits_reader;
+  if (awaits) options_.awaits_reader(true);
+  for (; peers_.size() < readers; let_in()) {
     auto come = wait_for(acceptor_->descriptor(), POLLIN, options_.stop);
     if (!come) return come.error();
   }
+  if (awaits) options_.awaits_reader(false);
+  return {};
 }
 
 void ListeningSink::leave(std::size_t peer) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The links of a module that runs: what it reports of them, and how they come and go.
+#include <unistd.h>
+
 #include <hc/node/running_module_test.h>
 
 namespace hc {
@@ -22,9 +24,34 @@ TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
             (std::vector<std::string>{"factor=4", "title=a b"}));
   auto state = next(*reports, internal::Report::State);
   auto numbers = state.view<std::int64_t>()->row(0);
-  EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1}));
+  EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1, 0}));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, TellsThatItWaitsForAReader) {
+  const std::string name = "early." + std::to_string(::getpid());
+  for (const auto& [listens, comes] :
+       {std::pair("shm:" + name, "shm:" + name), {"unix-listen:@" + name, "unix:@" + name}}) {
+    Module module{"early", "Sends at once."};
+    auto out = module.output("out", table<double>(), "");
+    module.generate([&] {
+      out.send(table({1.0}));
+      return false;
+    });
+    auto reports = source_of(uri("reports"));
+    auto awaits_reader = [&] {
+      return next(*reports, internal::Report::State).view<std::int64_t>()->at(0, 0, 3);
+    };
+    start(module, {"--out=" + listens, "--manage=" + uri("reports")});
+    EXPECT_EQ(awaits_reader(), 0);
+    EXPECT_EQ(awaits_reader(), 1);
+    auto reader = source_of(comes);
+    EXPECT_EQ(awaits_reader(), 0);
+    Message message;
+    EXPECT_TRUE(*receive(*reader, message));
+    EXPECT_EQ(join(), 0);
+  }
 }
 
 TEST_F(RunningModule, ReportsAgesAndGaps) {

@@ -56,7 +56,9 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
 }
 
 std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri) {
-  auto sink = open_sink(uri, options_);
+  auto options = options_;
+  options.awaits_reader = [this](bool awaits) { tell_state(awaits); };
+  auto sink = open_sink(uri, options);
   if (!sink) fail(uri.text(), sink.error());
   auto link = std::make_shared<LinkedSink>();
   link->uri = uri.text();

@@ -103,7 +103,7 @@ struct Module::Loop {
   void tell_counters();
   void tell_links();
   void tell_parameters();
-  void tell_state();
+  void tell_state(bool awaits_reader = false);
 
   Module& module_;
   LinkOptions options_;

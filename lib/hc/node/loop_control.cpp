@@ -232,9 +232,10 @@ void Module::Loop::tell_parameters() {
   management_.tell(Report::Parameters, lines, module_.now());
 }
 
-void Module::Loop::tell_state() {
+void Module::Loop::tell_state(bool awaits_reader) {
   const auto& attention = module_.attention_;
-  const std::int64_t state[] = {attention.own, attention.focus, attention.in_focus() ? 1 : 0};
+  const std::int64_t state[] = {attention.own, attention.focus, attention.in_focus() ? 1 : 0,
+                                awaits_reader ? 1 : 0};
   management_.tell(Report::State, state, std::size(state), module_.now());
 }
 

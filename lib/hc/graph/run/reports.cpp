@@ -133,12 +133,13 @@ bool Reports::take_state(const MatrixView<const std::int64_t>& rows) {
   mode = numbers[0];
   focus = numbers[1];
   in_focus = numbers[2] != 0;
+  awaits_reader = numbers.size() > 3 && numbers[3] != 0;
   return before != std::tuple(mode, focus, in_focus);
 }
 
 void Reports::end() {
   for (auto& [key, counted] : ends_) counted.end();
-  has_told_links_ = false;
+  has_told_links_ = awaits_reader = false;
   counted_ = MonotonicTime(0);
 }
 

@@ -53,6 +53,7 @@ class Reports {
   std::int64_t mode = 0;
   std::int64_t focus = 0;  ///< last heard; 0: none
   bool in_focus = true;
+  bool awaits_reader = false;  ///< one of its outputs does, and so the module
 
  private:
   struct Counted {

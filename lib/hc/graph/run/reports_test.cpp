@@ -126,6 +126,9 @@ TEST_F(ReportsTest, ParametersAndModeTellOfChangesAlone) {
   EXPECT_EQ(reports_.parameters().at("text"), "a = b");
   EXPECT_TRUE(reports_.take(table(4, {{2, 1, 0}}), now_));
   EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0}}), now_));
+  EXPECT_FALSE(reports_.awaits_reader);
+  EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0, 1}}), now_));  // told only when it lasts
+  EXPECT_TRUE(reports_.awaits_reader);
   EXPECT_EQ(reports_.mode, 2);
   EXPECT_EQ(reports_.focus, 1);
   EXPECT_FALSE(reports_.in_focus);

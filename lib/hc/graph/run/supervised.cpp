@@ -249,16 +249,22 @@ void Supervised::take_report(const Message& message) {
   heard_ = now();
   const bool has_changed = reports_.take(message, heard_);
   if (status_ == ModuleStatus::Stalled) hear_.event("goes on");
-  if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting)
+  if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
+      status_ == ModuleStatus::Running)
     change(ModuleStatus::Running);
-  else if (has_changed)
-    hear_.changed();
+  if (has_changed) hear_.changed();
 }
 
 void Supervised::look(MonotonicTime time) {
-  if (status_ != ModuleStatus::Running || heard_ == MonotonicTime(0)) return;
-  if (time - heard_ < limits_.stall) return;
+  const bool is_stalled = status_ == ModuleStatus::Stalled, awaits = reports_.awaits_reader;
+  if (status_ != ModuleStatus::Running && !(is_stalled && awaits)) return;
+  if (heard_ == MonotonicTime(0) || time - heard_ < limits_.stall) return;
   const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
+  if (awaits && !is_stopped) {
+    if (is_stalled) hear_.event("goes on");
+    return change(ModuleStatus::Running, "waits for a reader");
+  }
+  if (is_stalled) return;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
   hear_.event("stalled: " + detail_);
 }

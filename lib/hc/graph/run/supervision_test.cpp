@@ -121,11 +121,15 @@ class Reporter {
     message.header.src = src;
     ASSERT_TRUE(sink_->send(message));
   }
-  void count(std::int64_t messages) {
-    Draft draft = Draft::make({MatrixType::Table, 2, Scalar::I64, Encoding::Binary}, 1, 1);
-    draft.view<std::int64_t>().at(0, 0, 0) = messages;
-    draft.view<std::int64_t>().at(0, 0, 1) = 10 * messages;
-    report(1, std::move(draft).finish());
+  void count(std::int64_t messages) { report(1, std::array{messages, 10 * messages}); }
+  void tell_state(bool awaits_reader) {
+    report(4, std::array<std::int64_t, 4>{0, 0, 1, awaits_reader ? 1 : 0});
+  }
+  template <std::size_t kSize>
+  void report(std::int32_t src, const std::array<std::int64_t, kSize>& numbers) {
+    Draft draft = Draft::make({MatrixType::Table, kSize, Scalar::I64, Encoding::Binary}, 1, 1);
+    std::copy(numbers.begin(), numbers.end(), draft.view<std::int64_t>().numbers().begin());
+    report(src, std::move(draft).finish());
   }
 
  private:
@@ -147,6 +151,35 @@ TEST_F(Supervision, OneThatIsStoppedIsShownAsStalledAndGoesOn) {
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
   EXPECT_TRUE(said("a: goes on"));
+}
+
+TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
+  options_.limits.stall = 50ms;
+  add("a", "echo $$ >&2; exec sleep 1000");
+  std::unique_ptr<Reporter> reporter;
+  pid_t process = 0;
+  heard_ = [&](std::string_view line) {
+    if (line == "a: started") {
+      reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
+      reporter->tell_state(true);
+    }
+    if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9')
+      process = std::stoi(std::string(line.substr(3)));
+    if (line == "a: stalled: busy") stop();
+  };
+  std::vector<std::string> seen;
+  options_.state = [&](const GraphState& state) {
+    const auto& detail = state.modules.at(0).detail;
+    if (detail.empty() || process == 0 || (!seen.empty() && seen.back() == detail)) return;
+    seen.push_back(detail);
+    const bool is_stopped = state.modules.at(0).status == ModuleStatus::Stalled;
+    if (is_stopped || seen.size() == 1) ::kill(process, is_stopped ? SIGCONT : SIGSTOP);
+    if (seen.size() == 3) reporter->tell_state(false);
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(seen, (std::vector<std::string>{"waits for a reader", "stopped by a signal",
+                                            "waits for a reader"}));
 }
 
 TEST_F(Supervision, CountsAreThoseOfAllProcesses) {

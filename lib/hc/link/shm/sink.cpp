@@ -64,7 +64,8 @@ class ShmSink final : public Sink {
         stays_(stays),
         keep_(keep),
         log_(std::move(options.log)),
-        stop_(options.stop) {}
+        stop_(options.stop),
+        awaits_reader_(std::move(options.awaits_reader)) {}
   ~ShmSink() override { end(); }
 
   Status begin(ListeningSocket socket) {
@@ -107,6 +108,7 @@ class ShmSink final : public Sink {
   std::uint64_t keep_;
   LogSink log_;
   int stop_;
+  std::function<void(bool)> awaits_reader_;
 
   std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
   std::array<Slot*, kCells> slot_of_cell_{};
@@ -153,12 +155,15 @@ bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
 }
 
 Status ShmSink::await_readers(std::size_t count) {
-  while (true) {
-    refresh();
-    if (present_ >= count) return {};
+  refresh();
+  const bool awaits = present_ < count && awaits_reader_;
+  if (awaits) awaits_reader_(true);
+  for (; present_ < count; refresh()) {
     auto changed = wait_for(readers_->event(), POLLIN, stop_);
     if (!changed) return changed.error();
   }
+  if (awaits) awaits_reader_(false);
+  return {};
 }
 
 /// Waits until `has_room()`, or the readers that were counted have left.
