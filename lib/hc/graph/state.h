@@ -50,6 +50,7 @@ struct LinkState {
   std::string transport;   ///< "shm", "unix", …
   std::string keep, rate;  ///< as the graph gives them; rate empty: none
   Traffic traffic;         ///< of its sender, with what its reader has lost
+  /// Of what its reader has taken, where that tells.
   double per_second = 0, bytes_per_second = 0;
   std::uint64_t left_out = 0;                ///< not handled by its reader: out of focus or idle
   std::optional<std::array<double, 3>> age;  ///< p50, p99, greatest [s]

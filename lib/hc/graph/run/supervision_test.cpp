@@ -194,6 +194,32 @@ TEST_F(Supervision, CountsAreThoseOfAllProcesses) {
   EXPECT_EQ(report->state.links.at(0).traffic.messages, 65U);
 }
 
+TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
+  const std::string uri = "unix-listen:@" + token_ + ".out";
+  add("writer", "exec sleep 1000").ends = {{false, "out", uri, ""}};
+  add("reader", "exec sleep 1000").ends = {{true, "in", peer_of(uri), ""}};
+  plan_.links = {{"writer.out", "reader.in", uri, peer_of(uri), "all", {}, false}};
+  std::vector<Reporter> reporters;
+  heard_ = [&](std::string_view line) {
+    if (!line.ends_with(": started")) return;
+    reporters.emplace_back(plan_.modules[reporters.size()].manage_uri);
+    const std::int64_t bytes = line.starts_with("reader") ? 7 : 10;  // of a message
+    for (std::int64_t i = 1; i <= 2; ++i)
+      reporters.back().report(1, std::array<std::int64_t, 4>{9 * i, 9 * i * bytes, 0, i});
+  };
+  LinkState link;
+  options_.state = [&](const GraphState& state) {
+    if (state.links.at(0).traffic.superseded < 4) return;
+    link = state.links.at(0);
+    stop();
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_GT(link.per_second, 0);
+  EXPECT_DOUBLE_EQ(link.bytes_per_second, 7 * link.per_second);
+  EXPECT_EQ(link.traffic.bytes, 180U);
+}
+
 TEST_F(Supervision, AReportThatIsTooLargeIsNotTaken) {
   add("a", "exec sleep 1000");
   options_.limits.stall = 1ms;  // tells that the next one has been taken
