@@ -41,7 +41,9 @@ class Watching(Graphs):
         for line in top.splitlines():
             self.assertLessEqual(len(line), 80)
         text = self.hc("graph --of %s.%d" % (name, process.pid))
-        self.assertRegex(text, r"camera  \([0-9.]+ %\)\n  left → brightness.image  [0-9.]+/s\n")
+        self.assertRegex(
+            text, r"camera  \([0-9.]+ %\)\n  left → brightness.image  [0-9.]+/s, keep latest\n"
+        )
         self.assertIn(
             '"camera" -> "brightness" [taillabel="left"', self.hc("graph --dot --of " + name)
         )

@@ -67,10 +67,14 @@ Drawing drawing_of(const nlohmann::json& state) {
                                     : detail;
     drawing.boxes.push_back(std::move(box));
   }
-  for (const auto& link : state.at("links"))
-    drawing.arrows.push_back({link.at("from"), link.at("to"),
-                              short_number(link.at("per_second").get<double>()) + "/s",
-                              link.at("in_workspace").get<bool>()});
+  for (const auto& link : state.at("links")) {
+    auto words = short_number(link.at("per_second").get<double>()) + "/s";
+    if (const std::string keep = link.at("keep"); keep != "all") words += ", keep " + keep;
+    if (auto rate = link.at("rate").get<double>(); rate > 0)
+      words += fmt::format(", rate {}", rate);
+    drawing.arrows.push_back(
+        {link.at("from"), link.at("to"), words, link.at("in_workspace").get<bool>()});
+  }
   return drawing;
 }
 

@@ -69,6 +69,7 @@ nlohmann::json some_state(int modules) {
                                 {"parameters", nlohmann::json::object()}});
     state["links"].push_back({{"from", "module_" + std::to_string(i) + ".left"},
                               {"to", "tcp:robot:7000"},
+                              {"keep", i == 1 ? "latest" : "all"},
                               {"rate", i == 1 ? 30.0 : 0.0},
                               {"per_second", 30.0},
                               {"bytes_per_second", 43.2e6},
@@ -124,12 +125,12 @@ TEST(Drawing, HasPortsRatesAndTheWorkspaceInBold) {
   EXPECT_EQ(as_text(drawing, true),
             "head, focus: track\n"
             "\nmodule_0  (3.1 %)\n  left → tcp:robot:7000  30/s\n"
-            "\nmodule_1  (3.1 %)\n  left → tcp:robot:7000  30/s\n");
+            "\nmodule_1  (3.1 %)\n  left → tcp:robot:7000  30/s, keep latest, rate 30\n");
   EXPECT_NE(as_text(drawing, false).find("\x1b[1mmodule_1\x1b[0m"), std::string::npos);
   auto dot = as_dot(drawing);
   EXPECT_NE(dot.find("\"module_1\" [label=\"module_1\n3.1 %\", penwidth=3];"), std::string::npos);
   EXPECT_NE(dot.find("\"module_1\" -> \"tcp:robot:7000\" [taillabel=\"left\", headlabel=\"\", "
-                     "label=\"30/s\", penwidth=3, color=black];"),
+                     "label=\"30/s, keep latest, rate 30\", penwidth=3, color=black];"),
             std::string::npos)
       << dot;
 }
