@@ -92,6 +92,21 @@ class Watching(Graphs):
         wait_until(lambda: "waits for a reader" in self.hc("top " + name))
         self.stop_named(name, process)
 
+    def test_help_says_what_each_word_is(self):
+        for verb, words in (
+            ("add", ["MODULE", "PROGRAM", "PARAMETER=VALUE"]),
+            ("remove", ["MODULE"]),
+            ("restart", ["MODULE"]),
+            ("link", ["FROM", "TO", "KEY=VALUE"]),
+            ("unlink", ["FROM", "TO"]),
+            ("set", ["MODULE.PARAMETER=VALUE"]),
+        ):
+            text = self.hc("graph %s --help" % verb)
+            for word in words:
+                self.assertRegex(
+                    text, r"\n  %s TEXT( REQUIRED| \.{3})\s+[a-z].* [a-z]" % re.escape(word)
+                )
+
     def test_who_asks_a_graph_is_no_graph(self):
         """Several may ask at once, each listening for its answer, and need not say which graph."""
         name, process = self.run_named("asked")

@@ -50,16 +50,21 @@ void draw(const Options& options) {
     print(options.as_dot ? as_dot(drawing) : as_text(drawing, ::isatty(STDOUT_FILENO) == 0));
 }
 
+struct Word {
+  std::string name, doc;
+};
+
 /// A verb of `hc graph` whose words go to the running graph as they are.
+/// @param more_words  of which there may be any number; without a name: there are none.
 void add_change(CLI::App& verb, Options& options, const std::string& name, const std::string& doc,
-                const std::vector<std::string>& words, bool has_more) {
+                const std::vector<Word>& words, const Word& more_words = {}) {
   auto given = std::make_shared<std::vector<std::string>>(words.size());
   auto more = std::make_shared<std::vector<std::string>>();
   auto* change = verb.add_subcommand(name, doc);
   change->fallthrough();  // --of may stand behind it
   for (std::size_t i = 0; i < words.size(); ++i)
-    change->add_option(words[i], (*given)[i])->required();
-  if (has_more) change->add_option("KEY=VALUE", *more);
+    change->add_option(words[i].name, (*given)[i], words[i].doc)->required();
+  if (!more_words.name.empty()) change->add_option(more_words.name, *more, more_words.doc);
   change->callback([&options, name, given, more] {
     std::string command = name;
     for (const auto* list : {given.get(), more.get()})
@@ -80,13 +85,21 @@ void add_graph(CLI::App& app) {
   verb->add_option("--of", options.running, "which running graph, where there are several (hc ps)");
   verb->add_option("--svg", options.svg, "write a picture to this file, by Graphviz");
   verb->add_flag("--dot", options.as_dot, "print the drawing in Graphviz's language");
-  add_change(*verb, options, "add", "Start another module", {"MODULE", "PROGRAM"}, true);
-  add_change(*verb, options, "remove", "End a module, and take its links away", {"MODULE"}, false);
-  add_change(*verb, options, "restart", "End a module, and start it again", {"MODULE"}, false);
-  add_change(*verb, options, "link", "Add a link", {"FROM", "TO"}, true);
-  add_change(*verb, options, "unlink", "Take a link away", {"FROM", "TO"}, false);
-  add_change(*verb, options, "set", "Set a parameter", {"MODULE.PARAMETER=VALUE"}, false);
-  add_change(*verb, options, "stop", "End the graph", {}, false);
+  const Word module = {"MODULE", "its name in the graph"};
+  const Word from = {"FROM", "an output, MODULE.PORT, or a URI of the world outside"};
+  const Word to = {"TO", "an input, MODULE.PORT, or a URI of the world outside"};
+  add_change(*verb, options, "add", "Start another module",
+             {{"MODULE", "a name that no module of the graph has"},
+              {"PROGRAM", "what it runs: a module's name, or the path of a program"}},
+             {"PARAMETER=VALUE", "values of its parameters; otherwise the defaults"});
+  add_change(*verb, options, "remove", "End a module, and take its links away", {module});
+  add_change(*verb, options, "restart", "End a module, and start it again", {module});
+  add_change(*verb, options, "link", "Add a link, or give one another policy", {from, to},
+             {"KEY=VALUE", "its policy: keep, rate, burst, byte_rate, byte_burst, memory"});
+  add_change(*verb, options, "unlink", "Take a link away", {from, to});
+  add_change(*verb, options, "set", "Set a parameter",
+             {{"MODULE.PARAMETER=VALUE", "which parameter, and its new value"}});
+  add_change(*verb, options, "stop", "End the graph", {});
   verb->callback([verb] {
     if (verb->get_subcommands().empty()) draw(options);
   });
