@@ -113,6 +113,43 @@ class Running(Graphs):
             self.assertNotIn("ok", rows)
         self.stop(process)
 
+    def ask_for_a_program_that_hangs(self, process):
+        """Who asks for a module whose program does not answer, and the number of that."""
+        self.write("#!/bin/sh\necho $$ > asked\nexec sleep 1000\n", "hang")
+        os.chmod(self.path("hang"), 0o700)
+        asking = self.start("exec hc graph add z ./hang --of g.%d" % process.pid)
+        asked = pathlib.Path(self.path("asked"))
+        return asking, int(wait_until(lambda: asked.exists() and asked.read_text()))
+
+    @staticmethod
+    def has_ended(pid):
+        try:
+            stat = pathlib.Path("/proc/%d/stat" % pid).read_text()
+        except OSError:
+            return True
+        return stat.rpartition(")")[2].split()[0] in "ZX"  # nobody has asked for its status yet
+
+    def test_a_program_that_hangs_holds_nothing_up(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        observed = self.observe(process)
+        asking, hangs = self.ask_for_a_program_that_hangs(process)
+        os.kill(self.module(self.state(observed), "camera")["pid"], signal.SIGKILL)
+        self.state(observed, lambda state: self.module(state, "camera")["restarts"] == 1)
+        self.assertEqual(self.ask(process, "restart brightness"), ["ok"])
+        self.state(observed, lambda state: self.module(state, "brightness")["restarts"] == 1)
+        self.stop(process)
+        _, err = asking.communicate(timeout=WATCHDOG)
+        self.assertEqual(err, b"hc graph: Usage: the graph is stopping\n")
+        self.assertTrue(self.has_ended(hangs))
+
+    def test_a_program_that_hangs_does_not_outlive_a_killed_graph(self):
+        self.write(GRAPH)
+        process = self.run_graph()
+        _, hangs = self.ask_for_a_program_that_hangs(process)
+        os.kill(process.pid, signal.SIGKILL)
+        wait_until(lambda: self.has_ended(hangs))
+
     def test_a_killed_module_comes_back_and_messages_flow_again(self):
         self.write(GRAPH)
         process = self.run_graph()

@@ -73,7 +73,7 @@ void resolve_programs(hc::Graph& graph, hc::Problems& problems) {
 
 /// What a program says of itself. It is asked once, and again when its file is another: a graph
 /// that is planned anew while it runs is not to wait for what is known.
-hc::Result<std::string> describe_once(const std::string& program) {
+hc::Result<std::string> describe_once(const std::string& program, int stop) {
   struct Known {
     std::filesystem::file_time_type time;
     std::uintmax_t size;
@@ -86,7 +86,7 @@ hc::Result<std::string> describe_once(const std::string& program) {
   auto known = all.find(program);
   if (!missing && known != all.end() && known->second.time == time && known->second.size == size)
     return known->second.description;
-  auto description = hc::describe_program(program);
+  auto description = hc::describe_program(program, stop);
   if (description && !missing) all[program] = {time, size, *description};
   return description;
 }
@@ -100,10 +100,11 @@ void add_graph_options(CLI::App& verb, GraphOptions& options) {
 
 hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
                                      Texts& texts, const std::vector<std::string>& commands,
-                                     const hc::Plan* before) {
+                                     const hc::Plan* before, int stop) {
   hc::Problems problems(options.file);
   auto environment = [](const char* name) -> const char* { return std::getenv(name); };
-  auto text = read_once(options.file, texts, read_text);
+  // What a graph that runs is made of is a file, too: nobody need write into a pipe once more.
+  auto text = read_once(options.file, texts, before == nullptr ? read_text : read_included);
   if (!text) return text.error();
   auto read = [&](const std::string& name) { return read_once(name, texts, read_included); };
   hc::Graph graph = hc::parse_graph(*text, environment, problems, read);
@@ -114,7 +115,8 @@ hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::str
   std::map<std::string, hc::Result<std::string>> described;
   auto describe = [&](const std::string& program) {
     auto known = described.find(program);
-    if (known == described.end()) known = described.emplace(program, describe_once(program)).first;
+    if (known == described.end())
+      known = described.emplace(program, describe_once(program, stop)).first;
     return known->second;
   };
   hc::Replanned planned;

@@ -26,11 +26,12 @@ using Texts = std::map<std::string, std::string>;
 ///
 /// @param texts  of the files that it is made of; those that are not there are read, and added.
 /// @param before  the plan by which it runs, whose numbers stay; null: it does not run.
+/// @param stop  descriptor that is readable when no program is to be waited for any more.
 ///
 /// Errors: NotFound (the file). All else that is wrong stands in Replanned::problems.
 hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::string& token,
                                      Texts& texts, const std::vector<std::string>& commands = {},
-                                     const hc::Plan* before = nullptr);
+                                     const hc::Plan* before = nullptr, int stop = -1);
 
 /// The same for a graph that does not run yet. Where something is wrong it says all of that, a line
 /// each, and fails with status 2.

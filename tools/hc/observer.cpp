@@ -23,6 +23,7 @@ constexpr std::string_view kPrefix = "hypercolumn.", kAnswerPrefix = "hypercolum
 constexpr std::int32_t kState = 1;                            // src of what a graph says of itself
 constexpr std::uint64_t kMostSaid = std::uint64_t{16} << 20;  // [byte]
 constexpr std::chrono::seconds kAnswerTime{10};
+constexpr int kMostWaits = 12;                       // so long
 constexpr std::chrono::milliseconds kSilence{5000};  // a graph speaks twice a second
 
 std::string place(const RunningGraph& graph) {
@@ -140,6 +141,7 @@ void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
   send(*sink, hc::make_rows(rows), where);
   if (auto closed = sink->close(); !closed) throw Failure(where, closed.error());
   hc::Message message;
+  int waits = 0;
   while (true) {
     auto got = source->take(message);
     if (!got) throw Failure(graph.text(), got.error());
@@ -147,7 +149,10 @@ void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
     std::array<int, 1> descriptors = {source->descriptor()};
     auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kAnswerTime);
     if (!ready) throw Failure(ready.error());
-    if (*ready == 1) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " does not answer"});
+    if (*ready == 0) continue;
+    // It may be asking a program that is slow; and has others to ask before.
+    if (++waits == kMostWaits || !Observer(graph).next())
+      throw Failure(hc::Error{hc::Code::Closed, graph.text() + " does not answer"});
   }
   auto answer = hc::rows_of(message);
   if (answer == std::vector<std::string>{"ok"}) return;

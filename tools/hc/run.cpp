@@ -86,9 +86,9 @@ void run(const Options& options) {
   run_options.file = options.graph.file;
   run_options.files = plan.files;
   run_options.replan = [&](hc::Reading reading, const std::vector<std::string>& commands,
-                           const hc::Plan& running) {
+                           const hc::Plan& running, int stop) {
     Texts read = reading == hc::Reading::Anew ? Texts() : texts;
-    auto planned = plan_graph(options.graph, running.token, read, commands, &running);
+    auto planned = plan_graph(options.graph, running.token, read, commands, &running, stop);
     if (!planned) return hc::Replanned{{}, {planned.error().detail}, {}};
     if (planned->plan) texts = std::move(read);
     return std::move(*planned);

@@ -45,9 +45,10 @@ struct RunOptions {
   std::string name;
   std::string file;  ///< what its state calls the graph file
   /// Plans the graph anew, with the token and the numbers of the plan that runs: of its files,
-  /// changed by commands (commands.h) one after the other. Empty: it stays as it is.
+  /// changed by commands (commands.h) one after the other. Empty: it stays as it is. It is called
+  /// on another thread, and fails soon when the descriptor `stop` is readable.
   std::function<Replanned(Reading reading, const std::vector<std::string>& commands,
-                          const Plan& running)>
+                          const Plan& running, int stop)>
       replan;
   std::vector<std::string> files;  ///< as Replanned::files, of the first plan
   SupervisionLimits limits;
@@ -61,8 +62,8 @@ Result<RunReport> run_graph(Plan plan, const RunOptions& options);
 
 /// What `program --describe` prints, at most 1 MiB, within 10 s.
 ///
-/// Errors: NotFound (no such program), System (it failed).
-Result<std::string> describe_program(const std::string& program);
+/// Errors: NotFound (no such program), System (it failed), Stopped (`stop` is readable).
+Result<std::string> describe_program(const std::string& program, int stop = -1);
 
 /// A word for make_plan() that no other running graph has.
 std::string graph_token();

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxDescription = std::size_t{1} << 20;
 
 }  // namespace
 
-Result<std::string> describe_program(const std::string& program) {
+Result<std::string> describe_program(const std::string& program, int stop) {
   auto process = Process::start({program, "--describe"}, Process::Capture::Output);
   if (!process) return process.error();
   std::string text;
@@ -30,7 +30,7 @@ Result<std::string> describe_program(const std::string& program) {
   auto wait = [&](int descriptor) -> Status {
     auto left = std::chrono::ceil<milliseconds>(give_up - MonotonicClock::now());
     std::array<int, 1> descriptors = {descriptor};
-    auto ready = wait_readable(descriptors, -1, std::max(left, milliseconds(0)));
+    auto ready = wait_readable(descriptors, stop, std::max(left, milliseconds(0)));
     if (!ready) return ready.error();
     if (*ready == 1) return Error{Code::System, program + " --describe does not end"};
     return {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
+#include <poll.h>
 
 #include <mutex>
 #include <optional>
@@ -22,7 +23,8 @@ class LiveChange : public Run {
  protected:
   LiveChange() {
     options_.name = "live";
-    options_.replan = [this](Reading reading, const Lines& commands, const Plan&) {
+    options_.replan = [this](Reading reading, const Lines& commands, const Plan&, int stop) {
+      if (plans_) plans_(commands, stop);
       std::lock_guard lock(mutex_);
       commands_ = commands;
       reading_ = reading;
@@ -44,8 +46,8 @@ class LiveChange : public Run {
   }
 
   /// Asks the graph that runs; gives its answer.
-  static Lines ask(const Lines& commands) {
-    const std::string place = "@live-answer-" + std::to_string(::getpid());
+  static Lines ask(const Lines& commands, const std::string& who = "answer") {
+    const std::string place = "@live-" + who + "-" + std::to_string(::getpid());
     auto answers = open_source({"unix-listen", place, {}});
     HC_CHECK(answers, answers.error().detail);
     Lines rows = {"reply unix:" + place};
@@ -86,7 +88,8 @@ class LiveChange : public Run {
     return reading_;
   }
 
-  std::thread thread_;  // reads what the graph is made of
+  std::function<void(const Lines& commands, int stop)> plans_;  // hears that it is planned
+  std::thread thread_;                                          // reads what the graph is made of
 
  private:
   std::mutex mutex_;
@@ -111,6 +114,67 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
   EXPECT_EQ(count("camera: started"), 1);
+}
+
+/// Waits until somebody does not want to wait any more.
+void await(int stop) {
+  pollfd polled{stop, POLLIN, 0};
+  HC_CHECK(::poll(&polled, 1, -1) == 1, "poll");
+}
+
+TEST_F(LiveChange, TheGraphGoesOnWhileAChangeIsPlanned) {
+  add("a");
+  internal::Descriptor again{::eventfd(0, EFD_CLOEXEC)};
+  plans_ = [&](const Lines& commands, int) {
+    if (commands == Lines{"set a.b=1"}) await(again.get());
+  };
+  heard_ = [&](std::string_view) {
+    if (count("a: started") == 2) ::eventfd_write(again.get(), 1);
+  };
+  beside([&] {
+    plan_next(plan_);
+    std::thread slow([&] { EXPECT_EQ(ask({"set a.b=1"}, "slow"), Lines{"ok"}); });
+    std::thread next([&] { EXPECT_EQ(ask({"set a.c=1", "restart a"}, "next"), Lines{"ok"}); });
+    EXPECT_EQ(ask({"restart a"}), Lines{"ok"});
+    slow.join();
+    next.join();
+    EXPECT_EQ(commands().size(), 2U);
+  });
+  ASSERT_TRUE(run());
+}
+
+TEST_F(LiveChange, AGraphEndsAtOnceWhileAChangeIsPlanned) {
+  add("a");
+  plans_ = [&](const Lines&, int stop) {
+    Run::stop();
+    await(stop);
+  };
+  thread_ = std::thread([&] { EXPECT_EQ(ask({"set a.b=1"}), Lines{"the graph is stopping"}); });
+  auto report = run();
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->stopped);
+}
+
+TEST_F(LiveChange, AnotherEditTakesThePlaceOfTheOneThatIsRead) {
+  const std::string file = ::testing::TempDir() + token_ + ".toml";
+  auto write = [&] { ::close(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600)); };
+  write();
+  options_.files = {file};
+  add("a");
+  int plans = 0;
+  plans_ = [&](const Lines&, int stop) {
+    if (++plans > 1) return plan_next(plan_);
+    write();
+    await(stop);
+  };
+  heard_ = [&](std::string_view line) {
+    if (line == "a: started") write();
+  };
+  stop_at_ = "graph: as it was";
+  ASSERT_TRUE(run());
+  ::unlink(file.c_str());
+  EXPECT_EQ(plans, 2);
+  EXPECT_FALSE(said("graph: goes on as it was"));
 }
 
 TEST_F(LiveChange, ModulesComeAndGo) {

@@ -70,11 +70,14 @@ void Observation::take_commands(const Message& message) const {
     reply = commands.front().substr(kReply.size());
     commands.erase(commands.begin());
   }
-  std::vector<std::string> answer = {"there is no command"};
-  if (!commands.empty()) answer = asked_.obey(commands);
-  if (answer.empty()) answer = {"ok"};
-  // Who has gone meanwhile does not want to know.
-  if (!reply.empty()) static_cast<void>(say_at_once(reply, make_rows(answer)));
+  auto answer = [reply](const std::vector<std::string>& wrong) {
+    // Who has gone meanwhile does not want to know.
+    if (!reply.empty())
+      static_cast<void>(
+          say_at_once(reply, make_rows(wrong.empty() ? std::vector<std::string>{"ok"} : wrong)));
+  };
+  if (commands.empty()) return answer({"there is no command"});
+  asked_.obey(commands, answer);
 }
 
 }  // namespace hc::internal

@@ -16,10 +16,12 @@ namespace hc::internal {
 
 class Observation {
  public:
+  using Answer = std::function<void(const std::vector<std::string>& wrong)>;
   struct Asked {
     std::function<GraphState()> state;
-    /// Does what commands say, all of them or none; gives what is wrong with them, if anything.
-    std::function<std::vector<std::string>(const std::vector<std::string>& commands)> obey;
+    /// Does what commands say, all of them or none; then or later it tells what is wrong with them,
+    /// if anything.
+    std::function<void(const std::vector<std::string>& commands, Answer answer)> obey;
   };
 
   /// @param name  of the graph. Errors: System (another graph of this process has the name).

@@ -31,6 +31,7 @@ Result<RunReport> Runner::run() {
     if (auto turned = loop_->turn(); !turned) return turned.error();
     settle();
   }
+  refuse_changes();
   if (!outcome_) return outcome_.error();
   return RunReport{state(), is_stopped_};
 }
@@ -43,7 +44,8 @@ Status Runner::begin() {
   if (!options_.name.empty()) {
     auto observation = Observation::make(
         *loop_, options_.name,
-        {[this] { return state(); }, [this](const auto& lines) { return obey(lines); }});
+        {[this] { return state(); },
+         [this](const auto& lines, auto answer) { obey(lines, std::move(answer)); }});
     if (!observation) return observation.error();
     observation_ = std::move(*observation);
   }
@@ -55,6 +57,11 @@ Status Runner::begin() {
     });
     if (!watched) return watched.error();
     stop_ = std::move(*watched);
+  }
+  if (options_.replan) {
+    auto planning = Aside::make(*loop_);
+    if (!planning) return planning.error();
+    planning_ = std::move(*planning);
   }
   if (options_.replan && !options_.files.empty()) {
     auto files = FileWatch::make(*loop_, [this] { read_anew(); });
@@ -162,6 +169,7 @@ void Runner::settle_failures() {
 void Runner::end_all() {
   if (std::exchange(is_stopping_, true)) return;
   if (is_stopped_) say("graph: stopping");
+  refuse_changes();
   for (auto& [name, module] : modules_) module->end();
 }
 

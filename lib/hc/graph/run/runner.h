@@ -3,14 +3,17 @@
 // A graph at work: its modules, the links between them, and what others ask of it. Internal to
 // graph.
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <hc/graph/run.h>
+#include <hc/graph/run/aside.h>
 #include <hc/graph/run/event_loop.h>
 #include <hc/graph/run/file_watch.h>
 #include <hc/graph/run/observation.h>
@@ -29,6 +32,15 @@ class Runner {
   struct Failure {
     std::string module;
     int status;
+  };
+  struct Change {                       // that is wanted
+    std::vector<std::string> commands;  // none: a file was edited
+    Observation::Answer answer;
+  };
+  struct Planned {
+    std::vector<std::string> edits;
+    Replanned changed;
+    std::optional<Replanned> alone;  // without the edits, where the files may be right
   };
 
   Status begin();
@@ -50,7 +62,12 @@ class Runner {
   [[nodiscard]] bool is_over() const;
 
   void read_anew();
-  std::vector<std::string> obey(const std::vector<std::string>& lines);
+  void obey(const std::vector<std::string>& lines, Observation::Answer answer);
+  void carry_out(const std::vector<std::string>& lines);
+  void plan_next();
+  void take_planned(Planned& planned);
+  void take_edit(Planned& planned);
+  void refuse_changes();
   void read_what_ends(const Plan& next);
   void change_to(Plan plan);
   void add(const PlannedModule& module);
@@ -67,9 +84,11 @@ class Runner {
   std::vector<Failure> failures_;
   Status outcome_;
   std::vector<std::string> commands_;  // that have changed the graph
+  std::deque<Change> changes_;         // the first of them is being planned
   std::unique_ptr<EventLoop> loop_;
   std::unique_ptr<Observation> observation_;
   std::unique_ptr<FileWatch> files_;
+  std::unique_ptr<Aside> planning_;
   std::map<LinkName, std::unique_ptr<Intake>>
       stand_ins_;                                // for readers that are over; null: failed
   std::vector<std::unique_ptr<Intake>> ending_;  // read links that are taken away

@@ -6,60 +6,117 @@
 #include <algorithm>
 
 namespace hc::internal {
+namespace {
+
+constexpr const char* kIsStopping = "the graph is stopping";
+
+}  // namespace
 
 void Runner::read_anew() {
   if (is_stopping_) return;
-  auto planned = options_.replan(Reading::Anew, commands_, plan_);
-  if (!planned.plan && !commands_.empty()) {
-    // Perhaps the file is right, and what was asked beside it does not go with it any more.
-    auto alone = options_.replan(Reading::Anew, {}, plan_);
-    if (alone.plan) {
-      for (const auto& line : planned.problems) say("graph: " + line);
-      say("graph: the commands so far are forgotten");
-      commands_.clear();
-      planned = std::move(alone);
-    }
-  }
-  files_->set_files(planned.files.empty() ? options_.files : planned.files);
-  if (planned.plan) return change_to(std::move(*planned.plan));
-  for (const auto& line : planned.problems) say("graph: " + line);
-  say("graph: goes on as it was");
+  auto is_edit = [](const Change& change) { return change.commands.empty(); };
+  // One that waits reads what is there then; what is being read is not what is there any more.
+  if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_edit)) return;
+  if (!changes_.empty() && is_edit(changes_.front())) planning_->stop();
+  changes_.push_back({});
+  plan_next();
 }
 
-/// Does what all of some commands say, or nothing; gives what is wrong.
-std::vector<std::string> Runner::obey(const std::vector<std::string>& lines) {
+/// Does what all of some commands say, or nothing.
+void Runner::obey(const std::vector<std::string>& lines, Observation::Answer answer) {
   std::vector<std::string> wrong;
-  std::vector<Command> commands;
-  auto edits = commands_;
+  bool has_edits = false;
   for (const auto& line : lines) {
     auto command = parse_command(line);
     if (!command) {
       wrong.push_back(command.error().detail);
       continue;
     }
-    if (command->is_edit()) add_command(edits, line);
+    has_edits = has_edits || command->is_edit();
     if (command->verb == Command::Verb::Restart && find(command->words[0]) == nullptr)
       wrong.push_back("no module \"" + command->words[0] + "\"");
-    commands.push_back(std::move(*command));
   }
-  if (is_stopping_) wrong.emplace_back("the graph is stopping");
-  if (!wrong.empty()) return wrong;
-  if (edits != commands_) {
-    if (!options_.replan) return {"this graph cannot be changed"};
-    auto planned = options_.replan(Reading::AsBefore, edits, plan_);
-    if (!planned.plan) return planned.problems;
-    commands_ = std::move(edits);
-    change_to(std::move(*planned.plan));
+  if (is_stopping_) wrong.emplace_back(kIsStopping);
+  if (wrong.empty() && has_edits && !options_.replan)
+    wrong.emplace_back("this graph cannot be changed");
+  if (!wrong.empty()) return answer(wrong);
+  if (!has_edits) {
+    carry_out(lines);
+    return answer({});
   }
-  for (const auto& command : commands) {
-    if (command.verb == Command::Verb::Restart) {
-      if (auto* module = find(command.words[0])) module->restart();
-    } else if (command.verb == Command::Verb::Stop) {
+  changes_.push_back({lines, std::move(answer)});
+  plan_next();
+}
+
+/// Does what commands say that change nothing in the plan.
+void Runner::carry_out(const std::vector<std::string>& lines) {
+  for (const auto& line : lines) {
+    const auto command = parse_command(line);
+    if (command->verb == Command::Verb::Restart) {
+      if (auto* module = find(command->words[0])) module->restart();
+    } else if (command->verb == Command::Verb::Stop) {
       is_stopped_ = true;
       end_all();
     }
   }
-  return {};
+}
+
+/// Begins to plan the first change, beside the loop: a program that is not known yet is asked for
+/// its --describe, and may be slow to answer.
+void Runner::plan_next() {
+  if (changes_.empty() || planning_->is_busy()) return;
+  const auto& lines = changes_.front().commands;
+  auto planned = std::make_shared<Planned>();
+  planned->edits = commands_;
+  for (const auto& line : lines)
+    if (parse_command(line)->is_edit()) add_command(planned->edits, line);
+  const auto reading = lines.empty() ? Reading::Anew : Reading::AsBefore;
+  auto work = [this, planned, reading](int stop) {
+    planned->changed = options_.replan(reading, planned->edits, plan_, stop);
+    // Perhaps the file is right, and what was asked beside it does not go with it any more.
+    if (!planned->changed.plan && reading == Reading::Anew && !planned->edits.empty())
+      planned->alone = options_.replan(reading, {}, plan_, stop);
+  };
+  planning_->begin(std::move(work), [this, planned] { take_planned(*planned); });
+}
+
+void Runner::take_planned(Planned& planned) {
+  if (is_stopping_) return;
+  const auto change = std::move(changes_.front());
+  changes_.pop_front();
+  if (change.commands.empty()) {
+    take_edit(planned);
+  } else if (planned.changed.plan) {
+    commands_ = std::move(planned.edits);
+    change_to(std::move(*planned.changed.plan));
+    carry_out(change.commands);
+    change.answer({});
+  } else {
+    change.answer(planned.changed.problems);
+  }
+  plan_next();
+}
+
+void Runner::take_edit(Planned& planned) {
+  auto& [edits, changed, alone] = planned;
+  if (!changed.plan && planning_->is_stopped()) return;  // there is another edit
+  if (alone && alone->plan) {
+    for (const auto& line : changed.problems) say("graph: " + line);
+    say("graph: the commands so far are forgotten");
+    commands_.clear();
+    changed = std::move(*alone);
+  }
+  files_->set_files(changed.files.empty() ? options_.files : changed.files);
+  if (changed.plan) return change_to(std::move(*changed.plan));
+  for (const auto& line : changed.problems) say("graph: " + line);
+  say("graph: goes on as it was");
+}
+
+/// Answers who has asked for changes that will not be made.
+void Runner::refuse_changes() {
+  if (planning_) planning_->stop();
+  for (const auto& change : std::exchange(changes_, {}))
+    if (change.answer) change.answer({kIsStopping});
 }
 
 /// Reads links that the next plan has no more until their writers have been told so: one that waits

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Work that may take its time, done beside a loop. Internal to graph.
+
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include <hc/graph/run/event_loop.h>
+
+namespace hc::internal {
+
+/// Does one piece of work at a time on a thread of its own, while the loop goes on.
+class Aside {
+ public:
+  /// Ends as soon as it can when the descriptor `stop` is readable.
+  using Work = std::function<void(int stop)>;
+
+  /// Errors: System.
+  static Result<std::unique_ptr<Aside>> make(EventLoop& loop);
+  /// Has the work stop, and waits for that. What follows it is not called any more.
+  ~Aside();
+  Aside(const Aside&) = delete;
+  Aside& operator=(const Aside&) = delete;
+
+  /// Begins work when there is none; `done` is called in the turn of the loop that follows it.
+  void begin(Work work, std::function<void()> done);
+  /// Asks the work that is under way, if any, to stop; `done` is called all the same.
+  void stop();
+  [[nodiscard]] bool is_busy() const { return thread_.joinable(); }
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+
+ private:
+  Aside(Descriptor stop, Descriptor ended) : stop_(std::move(stop)), ended_(std::move(ended)) {}
+
+  void finish();
+
+  Descriptor stop_, ended_;  // of eventfd
+  bool is_stopped_ = false;
+  std::function<void()> done_;
+  EventLoop::Handle watch_;
+  std::thread thread_;
+};
+
+}  // namespace hc::internal
