@@ -16,9 +16,9 @@
 
 namespace hc::internal {
 
-/// Calls when one of some files has been written, or another put in its place, as most editors do:
-/// so it is their folders that are watched, and those of the links that lead there. Folders may
-/// come and go. What comes in quick succession is one call.
+/// Calls when one of some files has been written or taken away, or another put in its place, as
+/// most editors do: so it is their folders that are watched, and those of the links that lead
+/// there. Folders may come and go. What comes in quick succession is one call.
 class FileWatch {
  public:
   /// How long nothing more is to happen before the call.

@@ -47,6 +47,16 @@ TEST_F(FileWatchTest, WritingAndPuttingInPlaceAreNoticed) {
   await(3);
 }
 
+TEST_F(FileWatchTest, TakingAwayIsNoticed) {
+  write("graph.toml");
+  write("sub/eye.toml");
+  watch_->set_files({folder_ / "graph.toml", folder_ / "sub/eye.toml"});
+  fs::remove(folder_ / "graph.toml");
+  await(1);
+  fs::rename(folder_ / "sub/eye.toml", folder_ / "sub/eye.old");
+  await(2);
+}
+
 TEST_F(FileWatchTest, ALinkIsFollowed) {
   fs::create_symlink("sub/there.toml", folder_ / "here.toml");
   fs::create_directory_symlink("sub", folder_ / "to_sub");

@@ -380,6 +380,32 @@ TEST_F(LiveChange, AnEditedFileIsReadAnew) {
   EXPECT_EQ(count("a: started"), 1);
 }
 
+TEST_F(LiveChange, AFileThatIsTakenAwayIsToldOnce) {
+  const std::string file = ::testing::TempDir() + token_ + ".toml";
+  auto write = [&] { ::close(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600)); };
+  write();
+  options_.files = {file};
+  add("a");
+  plan_next(plan_);
+  const std::string is_gone = "graph: " + file + " is gone; it runs on as it was";
+  heard_ = [&](std::string_view line) {
+    if (line == "a: started") ::unlink(file.c_str());
+    if (line != is_gone) return;
+    write();
+    ::unlink(file.c_str());
+  };
+  int states = 0;
+  options_.state = [&](const GraphState&) {
+    // By the second it has been noticed that the file was there, and is gone again.
+    if (said(is_gone) && ++states == 3) write();
+  };
+  stop_at_ = "graph: as it was";
+  ASSERT_TRUE(run());
+  ::unlink(file.c_str());
+  EXPECT_EQ(lines_,
+            (Lines{"a: started", is_gone, "graph: as it was", "graph: stopping", "a: ended"}));
+}
+
 TEST_F(LiveChange, TheStateIsToldAsJson) {
   add("camera").mode = "track";
   plan_.modes = {{"track", 1}};

@@ -80,6 +80,7 @@ class Runner {
   MonotonicTime begun_{0};
   int ticks_ = 0;
   bool is_stopping_ = false, is_stopped_ = false;
+  bool is_file_gone_ = false;  // the graph's own
   bool is_unsettled_ = false;  // a module has started or ended, or links have changed
   std::vector<Failure> failures_;
   Status outcome_;

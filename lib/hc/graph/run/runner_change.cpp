@@ -4,9 +4,12 @@
 #include <hc/graph/run/runner.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace hc::internal {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* kIsStopping = "the graph is stopping";
 
@@ -14,6 +17,12 @@ constexpr const char* kIsStopping = "the graph is stopping";
 
 void Runner::read_anew() {
   if (is_stopping_) return;
+  const auto& file = options_.files.front();
+  std::error_code failed;
+  const bool is_gone = fs::status(file, failed).type() == fs::file_type::not_found;
+  if (is_gone && !is_file_gone_) say("graph: " + file + " is gone; it runs on as it was");
+  is_file_gone_ = is_gone;
+  if (is_gone) return;
   auto is_edit = [](const Change& change) { return change.commands.empty(); };
   // One that waits reads what is there then; what is being read is not what is there any more.
   if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_edit)) return;
