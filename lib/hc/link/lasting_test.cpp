@@ -64,6 +64,22 @@ TEST_P(LastingLink, WhoDropsGoesOnWithoutReadersAndCounts) {
   EXPECT_EQ(message_.header.seq, 2);
 }
 
+TEST_P(LastingLink, WhatWaitsWhenItIsAbandonedIsLost) {
+  auto sink = sink_of(ends_.sink + "?keep=2&byte_rate=1");
+  auto source = source_of(ends_.source);
+  Message message;
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 0);
+  sink->abandon();
+  const auto traffic = sink->traffic();
+  EXPECT_EQ(traffic.messages, 4U);
+  EXPECT_EQ(traffic.cut, 2U);
+  EXPECT_EQ(traffic.over_rate, 1U);
+  sink.reset();
+  EXPECT_FALSE(*receive(*source, message));
+}
+
 TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   begin("&stay=1");
   source_.reset();

@@ -114,6 +114,10 @@ class Sink {
   /// Ends the link: the reader finds End behind the last message. Errors as send().
   virtual Status close() = 0;
 
+  /// Ends the link and waits for nobody: what is still on its way to a reader is lost, and counted
+  /// (Traffic::cut), unless the reader has the memory where it stands. Nothing is sent any more.
+  virtual void abandon() {}
+
   /// What send() has taken so far; a message to several readers counts once.
   [[nodiscard]] virtual Traffic traffic() const = 0;
 };

@@ -165,6 +165,10 @@ Status ListeningSink::close() {
   return awaited;
 }
 
+void ListeningSink::abandon() {
+  for (auto& peer : peers_) peer->abandon();
+}
+
 Traffic ListeningSink::traffic() const {
   Traffic all = traffic_;
   for (const auto& peer : peers_) add_losses(all, peer->losses());

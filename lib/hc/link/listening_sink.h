@@ -25,6 +25,7 @@ class ListeningSink final : public Sink {
 
   Status send(const Message& message) override;
   Status close() override;
+  void abandon() override;
   [[nodiscard]] Traffic traffic() const override;
 
  private:

@@ -283,6 +283,13 @@ Status Outlet::close(bool patient) {
   return closed;
 }
 
+void Outlet::abandon() {
+  std::lock_guard lock(mutex_);
+  if (failed_) return;
+  if (connected()) static_cast<void>(writer_.write());
+  fail({Code::Closed, "the link was closed"});
+}
+
 Traffic Outlet::losses() const {
   std::lock_guard lock(mutex_);
   return losses_;

@@ -83,6 +83,8 @@ class Outlet {
   /// Waits until all has been written, unless it is not `patient`, and ends the stream.
   /// Errors: as Sink::close.
   Status close(bool patient = true);
+  /// Ends the link with what can be written at once; the rest is lost.
+  void abandon();
 
   /// What was lost or kept back, and nothing of what was sent.
   [[nodiscard]] Traffic losses() const;

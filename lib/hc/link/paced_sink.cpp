@@ -50,6 +50,12 @@ class PacedSink final : public Sink {
     return closed;
   }
 
+  void abandon() override {
+    std::lock_guard lock(mutex_);
+    lost_.cut += outbox_.clear();
+    sink_->abandon();
+  }
+
   [[nodiscard]] Traffic traffic() const override {
     std::lock_guard lock(mutex_);
     Traffic traffic = sink_->traffic();

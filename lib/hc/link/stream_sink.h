@@ -28,6 +28,7 @@ class StreamSink final : public Sink {
 
   Status send(const Message& message) override;
   Status close() override;
+  void abandon() override { outlet_->abandon(); }
   [[nodiscard]] Traffic traffic() const override;
 
  private:

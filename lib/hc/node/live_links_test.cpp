@@ -161,6 +161,33 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersTold) {
   EXPECT_EQ(join(), 0);
 }
 
+TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
+  Module module{"relay", "Sends on."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  const std::string place = "shm:waits-" + std::to_string(::getpid());
+  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
+  auto reports = source_of(uri("reports"));
+  ::testing::internal::CaptureStderr();
+  start(module, {"--in=" + uri("in"), "--out=" + place + "?keep=2&byte_rate=1",
+                 "--manage=" + uri("reports"), "--control=" + uri("control")});
+  auto from = source_of(place + "?wait=60");
+  for (double i : {1, 2, 3}) ASSERT_TRUE(sink->send(table({i})));
+  while (next_counters(*reports).back()[0] < 3) {
+  }
+  ASSERT_TRUE(tell(*control, "unlink out out=" + place + "?keep=2&byte_rate=1"));
+  auto row = next_counters(*reports).back();
+  while (row[6] == 0) row = next_counters(*reports).back();
+  EXPECT_EQ(row[0], 3);
+  EXPECT_EQ(row[6], 2);
+  ASSERT_TRUE(control->close());
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "relay: out: 2 waiting, lost with the link\n");
+}
+
 TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   Module module{"pair", "Adds."};
   auto left = module.input("left", table<double>(), "");

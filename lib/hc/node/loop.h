@@ -98,6 +98,7 @@ struct Module::Loop {
   Status set_parameter(const std::string& assignment);
   Status link(bool is_input, const std::string& text);
   Status unlink(bool is_input, const std::string& text);
+  Status unlink_output(internal::OutputState& output, const std::string& uri);
   Status finish(const std::string& text);
   void report();
   void tell_counters();

@@ -24,6 +24,10 @@ std::string text_of(const std::string& port, const std::string& uri) {
 constexpr std::size_t kQuantileColumns = 3;
 constexpr std::size_t kColumns = std::tuple_size_v<Counters> + 1 + 2 * kQuantileColumns;
 
+Status unknown_link() {
+  return Error{Code::NotFound, "there is no such link"};
+}
+
 void add_quantiles(const internal::Quantiles& quantiles, std::vector<std::int64_t>& row) {
   const bool none = quantiles.empty();
   for (double part : {0.5, 0.99}) row.push_back(none ? -1 : quantiles.quantile(part));
@@ -127,26 +131,34 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
 Status Module::Loop::unlink(bool is_input, const std::string& text) {
   auto link = internal::parse_port_link(module_, is_input, text);
   if (!link) return link.error();
-  const Error unknown{Code::NotFound, "there is no such link"};
   auto uri = link->uri.text();
+  if (!is_input) return unlink_output(*module_.outputs_[link->port], uri);
   tell_counters();  // the last of this link
   if (link->is_focus) {
     const auto erased = std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
-    return erased == 0 ? Status(unknown) : Status();
+    return erased == 0 ? unknown_link() : Status();
   }
-  if (is_input) {
-    auto* input = module_.inputs_[link->port].get();
-    // What is taken together with this input waits for the next link, and is not ended.
-    const auto erased = std::erase_if(sources_, [&](const LinkedSource& each) {
-      return each.uri == uri && each.inputs.front() == input;
-    });
-    return erased == 0 ? Status(unknown) : Status();
-  }
-  auto& links = module_.outputs_[link->port]->links;
+  auto* input = module_.inputs_[link->port].get();
+  // What is taken together with this input waits for the next link, and is not ended.
+  const auto erased = std::erase_if(sources_, [&](const LinkedSource& each) {
+    return each.uri == uri && each.inputs.front() == input;
+  });
+  return erased == 0 ? unknown_link() : Status();
+}
+
+Status Module::Loop::unlink_output(internal::OutputState& output, const std::string& uri) {
+  auto& links = output.links;
   auto found =
       std::find_if(links.begin(), links.end(), [&](const auto& each) { return each->uri == uri; });
-  if (found == links.end()) return unknown;
+  if (found == links.end()) return unknown_link();
   // Closing would wait for who is slow; nobody is to have these messages any more.
+  if (auto* sink = (*found)->sink.get()) {
+    const auto before = sink->traffic().cut;
+    sink->abandon();
+    if (const auto lost = sink->traffic().cut - before; lost > 0)
+      module_.log(output.name + ": " + std::to_string(lost) + " waiting, lost with the link");
+  }
+  tell_counters();  // the last of this link
   sinks_.erase(std::find(sinks_.begin(), sinks_.end(), *found));
   links.erase(found);
   return {};
