@@ -49,6 +49,20 @@ TEST_F(RunningModule, ObeysCommands) {
   for (const char* line : {"set factor=-1", "set factor", "set colour=1", "set title=b", "link up",
                            "unlink out out=inproc:nowhere", "route out=x via=y", "jump"})
     ASSERT_TRUE(tell(*control_, line));
+  for (const char* wrong :
+       {"\"set factor=-1\": parameter factor: \"-1\" is not from 0 to 10",
+        "\"set factor\": no parameter \"factor\", or no value",
+        "\"set colour=1\": no parameter \"colour\", or no value",
+        "\"set title=b\": parameter title is fixed while the module runs",
+        "\"link up\": a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish "
+        "PORT=URI, "
+        "route PORT=URI WORDS",
+        "\"unlink out out=inproc:nowhere\": there is no such link",
+        "\"route out=x via=y\": a route is to=ADDRESS,… and peer=NAME, not \"via\"",
+        "\"jump\": a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, "
+        "route PORT=URI WORDS"})
+    EXPECT_EQ(rows_of(next(*reports_, internal::Report::Refusal)),
+              std::vector{"command " + std::string(wrong)});
   ASSERT_TRUE(tell(*control_, "set factor=7"));
   EXPECT_EQ(rows_of(next(*reports_, internal::Report::Parameters)),
             (std::vector<std::string>{"factor=7", "title=a"}));
@@ -60,18 +74,21 @@ TEST_F(RunningModule, ObeysCommands) {
   ASSERT_TRUE(tell(*control_, "link in in=" + uri("third")));
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(*title, "a");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(RunningModule, WhoReportsToNobodyTellsOnStandardErrorWhatIsWrong) {
+  Module module{"gauge", "Waits."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
+  ::testing::internal::CaptureStderr();
+  ASSERT_TRUE(tell(*control, "set colour=1"));
+  ASSERT_TRUE(sink->close());
+  start(module, {"--in=" + uri("in"), "--control=" + uri("control")});
+  EXPECT_EQ(join(), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
-            "gauge: command \"set factor=-1\": parameter factor: \"-1\" is not from 0 to 10\n"
-            "gauge: command \"set factor\": no parameter \"factor\", or no value\n"
-            "gauge: command \"set colour=1\": no parameter \"colour\", or no value\n"
-            "gauge: command \"set title=b\": parameter title is fixed while the module runs\n"
-            "gauge: command \"link up\": a command is set NAME=VALUE, link or unlink in|out "
-            "PORT=URI, finish PORT=URI, route PORT=URI WORDS\n"
-            "gauge: command \"unlink out out=inproc:nowhere\": there is no such link\n"
-            "gauge: command \"route out=x via=y\": a route is to=ADDRESS,… and peer=NAME, not "
-            "\"via\"\n"
-            "gauge: command \"jump\": a command is set NAME=VALUE, link or unlink in|out "
-            "PORT=URI, finish PORT=URI, route PORT=URI WORDS\n");
+            "gauge: command \"set colour=1\": no parameter \"colour\", or no value\n");
 }
 
 TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {

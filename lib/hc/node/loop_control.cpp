@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A module's loop: what it is told by who runs it, and what it reports.
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include <hc/node/loop.h>
@@ -67,7 +68,12 @@ void Module::Loop::hear_focus() {
 void Module::Loop::obey(const std::string& command) {
   if (command.empty()) return;
   auto done = carry_out(command);
-  if (!done) module_.log("command \"" + command + "\": " + done.error().detail);
+  if (done) return;
+  const std::string line = "command \"" + command + "\": " + done.error().detail;
+  if (management_.is_heard())
+    management_.tell(Report::Refusal, std::array{line}, module_.now());
+  else
+    module_.log(line);
 }
 
 Status Module::Loop::carry_out(const std::string& command) {

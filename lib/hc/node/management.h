@@ -13,7 +13,7 @@
 namespace hc::internal {
 
 /// What a module reports, by the src of the message.
-enum class Report : std::int32_t { Counters = 1, Links, Parameters, State };
+enum class Report : std::int32_t { Counters = 1, Links, Parameters, State, Refusal };
 
 /// The two links, of which either may be missing. When one breaks, the module goes on without.
 class Management {
@@ -29,7 +29,7 @@ class Management {
   /// The commands that have come, a line each. Never waits.
   std::vector<std::string> take_commands();
 
-  /// Sends lines (links, parameters). Never waits for who does not listen.
+  /// Sends lines (links, parameters, a refusal). Never waits for who does not listen.
   void tell(Report report, std::span<const std::string> lines, std::int64_t time);
   /// Sends numbers: (rows, 1, columns), row by row.
   void tell(Report report, std::span<const std::int64_t> numbers, std::size_t columns,

@@ -264,6 +264,20 @@ TEST_F(LiveChange, AModuleThatListensIsTold) {
   EXPECT_TRUE(said("camera: set rate=10"));
 }
 
+TEST_F(LiveChange, ACommandThatAModuleRefusesIsTold) {
+  add("camera");
+  stop_at_ = "camera: command \"set rate=-1\": too small";
+  thread_ = std::thread([&] {
+    auto reports = open_sink(*parse_uri(peer_of(plan_.modules[0].manage_uri) + "?wait=60"));
+    HC_CHECK(reports, reports.error().detail);
+    Message message = make_rows(Lines{"command \"set rate=-1\": too small"});
+    message.header.src = 5;
+    EXPECT_TRUE((*reports)->send(message));
+  });
+  options_.tells_lines = false;
+  ASSERT_TRUE(run());
+}
+
 TEST_F(LiveChange, WhoComesToListenIsToldTheDifference) {
   auto& camera = add("camera");
   camera.parameters = {{"rate", "0"}};

@@ -30,7 +30,7 @@ struct EndReport {
 class Reports {
  public:
   /// Tells reports apart, by src.
-  enum Sender : std::int32_t { kCounters = 1, kLinks, kParameters, kState };
+  enum Sender : std::int32_t { kCounters = 1, kLinks, kParameters, kState, kRefusal };
 
   /// What is kept of those that a module tells, whatever it tells.
   static constexpr std::size_t kMostEnds = 4096, kMostParameters = 1024;

@@ -248,6 +248,8 @@ bool Supervised::read_piece() {
 void Supervised::take_report(const Message& message) {
   heard_ = now();
   const bool has_changed = reports_.take(message, heard_);
+  if (message.header.src == Reports::kRefusal && message.header.info.type == MatrixType::String)
+    for (const auto& line : rows_of(message)) hear_.event(line);
   if (status_ == ModuleStatus::Stalled) hear_.event("goes on");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
       status_ == ModuleStatus::Running)
