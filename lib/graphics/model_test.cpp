@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graphics/model.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace hc::graphics {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Models : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "modelXXXXXX").string();
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  }
+
+  fs::path folder;
+};
+
+constexpr const char* kSquare =
+    "mtllib square.mtl\nv 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "usemtl paint\nf 1/1 2/2 3/3 4/4\n";
+
+TEST_F(Models, a_file_gives_its_triangles_and_colours) {
+  write("square.mtl", "newmtl paint\nKd 1.0 0.5 0.0\n");
+  auto parts = read_model(write("square.obj", kSquare));
+  ASSERT_TRUE(parts) << parts.error().text();
+  ASSERT_EQ(parts->size(), 1U);
+  const Part& part = parts->front();
+  EXPECT_EQ(part.mesh.indices.size(), 6U);
+  EXPECT_EQ(part.texture.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 128, 0));
+  for (const auto& vertex : part.mesh.vertices) {
+    EXPECT_EQ(vertex.normal, Eigen::Vector3f(0, 0, 1));
+    // A file counts texture rows from below, a picture from above.
+    EXPECT_FLOAT_EQ(vertex.texture.y(), 1 - vertex.position.y() / 3);
+  }
+}
+
+TEST_F(Models, a_texture_lies_beside_the_file) {
+  cv::imwrite((folder / "blue.png").string(), cv::Mat(4, 4, CV_8UC3, cv::Scalar(255, 0, 0)));
+  write("square.mtl", "newmtl paint\nmap_Kd blue.png\n");
+  auto parts = read_model(write("square.obj", kSquare));
+  ASSERT_TRUE(parts) << parts.error().text();
+  EXPECT_EQ(parts->front().texture.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 255));
+  write("square.mtl", "newmtl paint\nmap_Kd none.png\n");
+  parts = read_model((folder / "square.obj").string());
+  ASSERT_FALSE(parts);
+  EXPECT_NE(parts.error().detail.find("none.png: is no picture"), std::string::npos);
+}
+
+TEST_F(Models, what_is_no_model_is_refused) {
+  EXPECT_EQ(read_model((folder / "none.obj").string()).error().code, Code::NotFound);
+  EXPECT_EQ(read_model(folder.string()).error().code, Code::NotFound);
+  for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+           {"empty.obj", ""},
+           {"points.obj", "v 0 0 0\nv 1 0 0\np 1 2\n"},
+           {"wild.obj", "v 0 0 0\nf 1 2 99999999\n"},
+           {"empty.glb", "glTF"},
+           {"void.gltf", R"({"asset": {"version": "2.0"}, "meshes": [{"primitives": [{}]}]})"},
+           {"noise.stl", std::string(200, '\xff')},
+           {"cut.obj", "v 0 0 0\nv 1 0"}}) {
+    auto parts = read_model(write(name, text));
+    ASSERT_FALSE(parts) << name;
+    EXPECT_EQ(parts.error().code, Code::Malformed) << name;
+    EXPECT_EQ(parts.error().detail.find('\n'), std::string::npos) << parts.error().detail;
+  }
+  // assimp would read this one's vertices for hours, though there are none.
+  EXPECT_EQ(read_model(write("cut.ply",
+                             "ply\nformat binary_little_endian 1.0\nelement vertex "
+                             "4000000000\nproperty float x\nend_header\n"))
+                .error()
+                .code,
+            Code::Unsupported);
+}
+
+}  // namespace
+}  // namespace hc::graphics

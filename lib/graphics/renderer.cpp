@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#define GL_GLEXT_PROTOTYPES
+#include <graphics/renderer.h>
+
+#include <GL/glcorearb.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <graphics/context.h>
+#include <opencv2/imgproc.hpp>
+
+namespace hc::graphics {
+namespace {
+
+constexpr const char* kVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 texture_place;
+uniform mat4 projection;      // of a camera's frame
+uniform mat4 T_camera_object;
+uniform vec3 to_light;        // camera's frame
+uniform float ambient, diffuse;
+out vec2 place;
+out float brightness;
+void main() {
+  gl_Position = projection * (T_camera_object * vec4(position, 1.0));
+  place = texture_place;
+  brightness = ambient + diffuse * max(dot(mat3(T_camera_object) * normal, to_light), 0.0);
+}
+)";
+
+constexpr const char* kFragmentShader = R"(#version 330 core
+in vec2 place;
+in float brightness;
+uniform sampler2D picture;
+layout(location = 0) out vec4 colour;
+void main() { colour = vec4(texture(picture, place).rgb * brightness, 1.0); }
+)";
+
+Result<GLuint> compile(GLenum kind, const char* source) {
+  GLuint shader = glCreateShader(kind);
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  GLint done = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
+  if (done != 0) return shader;
+  char log[256] = "";
+  glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+  return Error{Code::Unsupported, std::string("graphics: shader: ") + log};
+}
+
+Result<GLuint> link_program() {
+  auto vertex = compile(GL_VERTEX_SHADER, kVertexShader);
+  if (!vertex) return vertex.error();
+  auto fragment = compile(GL_FRAGMENT_SHADER, kFragmentShader);
+  if (!fragment) return fragment.error();
+  GLuint program = glCreateProgram();
+  for (GLuint shader : {*vertex, *fragment}) {
+    glAttachShader(program, shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(program);
+  GLint done = 0;
+  glGetProgramiv(program, GL_LINK_STATUS, &done);
+  if (done != 0) return program;
+  char log[256] = "";
+  glGetProgramInfoLog(program, sizeof log, nullptr, log);
+  return Error{Code::Unsupported, std::string("graphics: shaders: ") + log};
+}
+
+/// From a camera's frame to OpenGL's clip space. Rows come out from the top down, as OpenGL's first
+/// row is that of clip coordinate -1.
+Eigen::Matrix4f projection(const PinholeCamera& camera) {
+  const double w = camera.width, h = camera.height, n = camera.near, f = camera.far;
+  Eigen::Matrix4d matrix;
+  matrix << 2 * camera.fx / w, 0, 2 * (camera.cx + 0.5) / w - 1, 0,  //
+      0, 2 * camera.fy / h, 2 * (camera.cy + 0.5) / h - 1, 0,        //
+      0, 0, (f + n) / (f - n), -2 * f * n / (f - n),                 //
+      0, 0, 1, 0;
+  return matrix.cast<float>();
+}
+
+struct Surface {
+  GLuint vertices = 0, corners = 0, indices = 0, texture = 0;
+  GLsizei count = 0;
+};
+
+/// Where is drawn to.
+struct Target {
+  int width = 0, height = 0;
+  GLuint frame = 0, colour = 0, depth = 0;
+};
+
+}  // namespace
+
+struct Renderer::State {
+  std::unique_ptr<Context> context;
+  GLuint program = 0;
+  GLint projection = 0, T_camera_object = 0, to_light = 0, ambient = 0, diffuse = 0;
+  std::vector<Surface> surfaces;
+  Target target;
+  cv::Mat rgba, raw_depth;
+
+  Status aim(int width, int height);
+};
+
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+// What OpenGL holds goes with its context.
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::make() {
+  auto context = Context::make();
+  if (!context) return context.error();
+  auto state = std::make_unique<State>();
+  state->context = std::move(*context);
+  auto program = link_program();
+  if (!program) return program.error();
+  state->program = *program;
+  glUseProgram(*program);
+  auto place = [&](const char* name) { return glGetUniformLocation(state->program, name); };
+  state->projection = place("projection");
+  state->T_camera_object = place("T_camera_object");
+  state->to_light = place("to_light");
+  state->ambient = place("ambient");
+  state->diffuse = place("diffuse");
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  glFrontFace(GL_CW);  // as y is turned over
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
+}
+
+SurfaceId Renderer::add(const Mesh& mesh, const cv::Mat& texture) {
+  static_assert(sizeof(Vertex) == 8 * sizeof(float));
+  Surface surface;
+  surface.count = static_cast<GLsizei>(mesh.indices.size());
+  glGenVertexArrays(1, &surface.vertices);
+  glBindVertexArray(surface.vertices);
+  glGenBuffers(1, &surface.corners);
+  glBindBuffer(GL_ARRAY_BUFFER, surface.corners);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
+               mesh.vertices.data(), GL_STATIC_DRAW);
+  glGenBuffers(1, &surface.indices);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, surface.indices);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
+               mesh.indices.data(), GL_STATIC_DRAW);
+  const std::pair<GLint, std::size_t> attributes[] = {{3, offsetof(Vertex, position)},
+                                                      {3, offsetof(Vertex, normal)},
+                                                      {2, offsetof(Vertex, texture)}};
+  GLuint number = 0;
+  for (auto [size, offset] : attributes) {
+    glEnableVertexAttribArray(number);
+    glVertexAttribPointer(number++, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                          reinterpret_cast<const void*>(offset));
+  }
+  glGenTextures(1, &surface.texture);
+  state_->surfaces.push_back(surface);
+  set_texture(state_->surfaces.size() - 1, texture);
+  return state_->surfaces.size() - 1;
+}
+
+void Renderer::set_texture(SurfaceId surface, const cv::Mat& texture) {
+  const cv::Mat packed = texture.isContinuous() ? texture : texture.clone();
+  glBindTexture(GL_TEXTURE_2D, state_->surfaces.at(surface).texture);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, packed.cols, packed.rows, 0, GL_RGB, GL_UNSIGNED_BYTE,
+               packed.data);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glGenerateMipmap(GL_TEXTURE_2D);
+}
+
+Status Renderer::State::aim(int width, int height) {
+  if (target.width == width && target.height == height) return {};
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
+  if (width < 1 || height < 1 || width > most || height > most)
+    return Error{Code::Unsupported, "graphics: a picture of " + std::to_string(width) + " x " +
+                                        std::to_string(height) + " cannot be drawn, " +
+                                        std::to_string(most) + " is the most"};
+  if (target.frame == 0) {
+    glGenFramebuffers(1, &target.frame);
+    glGenRenderbuffers(1, &target.colour);
+    glGenRenderbuffers(1, &target.depth);
+    glBindFramebuffer(GL_FRAMEBUFFER, target.frame);
+  }
+  glBindRenderbuffer(GL_RENDERBUFFER, target.colour);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.colour);
+  glBindRenderbuffer(GL_RENDERBUFFER, target.depth);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth);
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    return Error{Code::Unsupported, "graphics: OpenGL does not draw into memory here"};
+  glViewport(0, 0, width, height);
+  target.width = width;
+  target.height = height;
+  return {};
+}
+
+Status Renderer::draw(std::span<const Item> items, const PinholeCamera& camera,
+                      const Eigen::Isometry3d& T_world_camera, const Light& light, cv::Mat& rgb,
+                      cv::Mat* depth) {
+  if (auto aimed = state_->aim(camera.width, camera.height); !aimed) return aimed;
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const Eigen::Isometry3f T_camera_world = T_world_camera.inverse().cast<float>();
+  glUniformMatrix4fv(state_->projection, 1, GL_FALSE, projection(camera).eval().data());
+  const Eigen::Vector3f to_light = T_camera_world.linear() * light.to_light.normalized();
+  glUniform3fv(state_->to_light, 1, to_light.data());
+  glUniform1f(state_->ambient, light.ambient * light.exposure);
+  glUniform1f(state_->diffuse, light.diffuse * light.exposure);
+  for (const auto& item : items) {
+    const Surface& surface = state_->surfaces.at(item.surface);
+    const Eigen::Matrix4f T_camera_object = (T_camera_world * item.T_world_object).matrix();
+    glUniformMatrix4fv(state_->T_camera_object, 1, GL_FALSE, T_camera_object.data());
+    glBindTexture(GL_TEXTURE_2D, surface.texture);
+    glBindVertexArray(surface.vertices);
+    glDrawElements(GL_TRIANGLES, surface.count, GL_UNSIGNED_INT, nullptr);
+  }
+  state_->rgba.create(camera.height, camera.width, CV_8UC4);
+  glReadPixels(0, 0, camera.width, camera.height, GL_RGBA, GL_UNSIGNED_BYTE, state_->rgba.data);
+  cv::cvtColor(state_->rgba, rgb, cv::COLOR_RGBA2RGB);
+  if (depth == nullptr) return {};
+  depth->create(camera.height, camera.width, CV_32F);
+  state_->raw_depth.create(camera.height, camera.width, CV_32F);
+  glReadPixels(0, 0, camera.width, camera.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+               state_->raw_depth.data);
+  // d = (1 + clip z / clip w) / 2, turned round.
+  const auto near = static_cast<float>(camera.near), far = static_cast<float>(camera.far);
+  for (int row = 0; row < camera.height; ++row) {
+    const float* from = state_->raw_depth.ptr<float>(row);
+    float* to = depth->ptr<float>(row);
+    for (int column = 0; column < camera.width; ++column)
+      to[column] = from[column] >= 1 ? 0 : near * far / (far - from[column] * (far - near));
+  }
+  return {};
+}
+
+}  // namespace hc::graphics
