@@ -21,6 +21,7 @@ ALLOWED = {
     "vision": {"base"},
     "graphics": {"base"},
     "sound": {"base"},
+    "drivers": {"base"},
     "modules": {"base", "wire", "compress", "node", "adapter", "drivers"} | PACKAGES,
     "tools": {"base", "wire", "compress", "link", "graph"},
 }

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "paint.h"
+
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+constexpr int kCell = 8;  // of a plate [px]
+
+}  // namespace
+
+cv::Mat paint_grains(int width, int height, const cv::Scalar& rgb, double strength,
+                     std::uint64_t seed) {
+  cv::RNG random(seed + 1);
+  cv::Mat sum(height, width, CV_32F, cv::Scalar(0));
+  double weight = 0.5;
+  for (int cells : {8, 32, 128, 512}) {
+    cv::Mat coarse(std::max(2, std::min(cells, height)), std::max(2, std::min(cells, width)),
+                   CV_32F);
+    random.fill(coarse, cv::RNG::UNIFORM, -1.0, 1.0);
+    cv::Mat fine;
+    cv::resize(coarse, fine, sum.size(), 0, 0, cv::INTER_LINEAR);
+    sum += weight * fine;
+    weight *= 0.8;
+  }
+  std::vector<cv::Mat> planes(3);
+  for (int channel = 0; channel < 3; ++channel)
+    sum.convertTo(planes[static_cast<std::size_t>(channel)], CV_8U, strength, rgb[channel]);
+  cv::Mat picture;
+  cv::merge(planes, picture);
+  return picture;
+}
+
+cv::Mat paint_planks(int width, int height, std::uint64_t seed) {
+  cv::RNG random(seed + 2);
+  cv::Mat picture = paint_grains(width, height, {150, 128, 104}, 18, seed);
+  cv::resize(picture(cv::Rect(0, 0, width / 8, height)), picture, {width, height});
+  const int plank = std::max(4, height / 12);
+  for (int y = 0; y < height; y += plank) {
+    cv::Mat row = picture(cv::Rect(0, y, width, std::min(plank, height - y)));
+    row += cv::Scalar::all(random.uniform(-22, 22));
+    cv::line(picture, {0, y}, {width, y}, {70, 60, 50}, 1);
+    for (int x = random.uniform(0, width / 2); x < width; x += random.uniform(width / 4, width / 2))
+      cv::line(picture, {x, y}, {x, std::min(y + plank, height)}, {70, 60, 50}, 1);
+  }
+  return picture;
+}
+
+cv::Mat paint_poster(int width, int height, std::uint64_t seed) {
+  cv::RNG random(seed + 3);
+  cv::Mat picture(height, width, CV_8UC3, cv::Scalar(214, 210, 196));
+  for (int i = 0; i < 60; ++i) {
+    // Greys, blues and ochres, of little saturation.
+    const int base = random.uniform(40, 200), tint = random.uniform(-25, 25);
+    const cv::Scalar colour(base + tint, base, base - tint);
+    const cv::Point a(random.uniform(0, width), random.uniform(0, height));
+    const int size = random.uniform(width / 30, width / 8);
+    if (i % 2 == 0)
+      cv::circle(picture, a, size, colour, cv::FILLED, cv::LINE_AA);
+    else
+      cv::rectangle(picture, a, a + cv::Point(size, 2 * size), colour, cv::FILLED);
+  }
+  cv::rectangle(picture, {0, 0}, {width - 1, height - 1}, {50, 50, 55}, width / 50 + 1);
+  return picture;
+}
+
+cv::Mat paint_plate(const std::string& dictionary, int id) {
+  const auto words = cv::aruco::getPredefinedDictionary(
+      dictionary == "aruco" ? cv::aruco::DICT_6X6_250 : cv::aruco::DICT_APRILTAG_36h11);
+  // cv::Ptr in OpenCV 4.6, a value in 4.7 and later.
+  const auto& all = [](const auto& each) -> const cv::aruco::Dictionary& {
+    if constexpr (requires { each.get(); })
+      return *each;
+    else
+      return each;
+  }(words);
+  const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
+      all.bytesList.rowRange(id, id + 1), all.markerSize);
+  // A black edge of one cell around the bits, and a white one around that.
+  cv::Mat cells(all.markerSize + 4, all.markerSize + 4, CV_8U, cv::Scalar(255));
+  cells(cv::Rect(1, 1, all.markerSize + 2, all.markerSize + 2)) = cv::Scalar(0);
+  cells(cv::Rect(2, 2, all.markerSize, all.markerSize)) = bits * 255;
+  cv::Mat picture;
+  cv::resize(cells, picture, {}, kCell, kCell, cv::INTER_NEAREST);
+  cv::cvtColor(picture, picture, cv::COLOR_GRAY2RGB);
+  return picture;
+}
+
+cv::Mat paint_marker(const cv::Scalar& rgb) {
+  cv::Mat picture(96, 96, CV_8UC3, cv::Scalar(255, 255, 255));
+  picture(cv::Rect(16, 16, 64, 64)) = rgb;
+  return picture;
+}
+
+cv::Mat paint_board(const std::string& text, int width, int height) {
+  cv::Mat picture(height, width, CV_8UC3, cv::Scalar(245, 245, 240));
+  std::vector<std::string> lines;
+  std::string line;
+  for (std::istringstream all(text); std::getline(all, line);) {
+    for (char& letter : line)
+      if (letter < ' ' || letter > '~') letter = '?';
+    lines.push_back(line);
+  }
+  const int margin = width / 20, font = cv::FONT_HERSHEY_DUPLEX;
+  const int room = (height - 2 * margin) / std::max(1, static_cast<int>(lines.size()));
+  double scale = 1e9;
+  int below = 0;
+  for (const auto& each : lines) {
+    const auto size = cv::getTextSize(each, font, 10, 1, &below);
+    if (size.width > 0) scale = std::min(scale, 10.0 * (width - 2 * margin) / size.width);
+    scale = std::min(scale, 10.0 * 0.8 * room / (size.height + below));
+  }
+  int top = margin;
+  for (const auto& each : lines) {
+    const int stroke = std::max(1, static_cast<int>(2.6 * scale));
+    const auto size = cv::getTextSize(each, font, scale, stroke, &below);
+    cv::putText(picture, each, {(width - size.width) / 2, top + (room + size.height) / 2}, font,
+                scale, {20, 20, 25}, stroke, cv::LINE_AA);
+    top += room;
+  }
+  return picture;
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "paint.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+TEST(Paint, a_plate_is_found_by_who_looks_for_it) {
+  for (const auto& [name, id] : {std::pair("aruco", 23), std::pair("aruco", 40)}) {
+    cv::Mat picture, around(400, 400, CV_8UC3, cv::Scalar::all(255));
+    cv::resize(paint_plate(name, id), picture, {200, 200}, 0, 0, cv::INTER_NEAREST);
+    picture.copyTo(around(cv::Rect(100, 100, 200, 200)));
+    std::vector<std::vector<cv::Point2f>> corners;
+    std::vector<int> ids;
+    cv::aruco::detectMarkers(around, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250),
+                             corners, ids);
+    ASSERT_EQ(ids, std::vector<int>{id});
+    EXPECT_NEAR(corners[0][0].x, 120, 1);  // a margin of one cell of ten
+    EXPECT_NEAR(corners[0][0].y, 120, 1);
+  }
+}
+
+TEST(Paint, a_board_has_its_letters_within_and_others_for_another_text) {
+  const cv::Mat one = paint_board("HELLO", 400, 100), other = paint_board("HULLO", 400, 100);
+  EXPECT_GT(cv::norm(one, other, cv::NORM_L1), 0);
+  EXPECT_EQ(cv::norm(one.col(5), one.col(399), cv::NORM_INF), 0);  // the margin
+  EXPECT_LT(cv::mean(one)[0], 235);
+  EXPECT_GT(cv::mean(paint_board("", 400, 100))[0], 240);
+  EXPECT_EQ(
+      cv::norm(paint_board("A\xc3\xa4", 400, 100), paint_board("A??", 400, 100), cv::NORM_INF), 0);
+}
+
+TEST(Paint, the_same_seed_gives_the_same_bytes) {
+  EXPECT_EQ(cv::norm(paint_poster(64, 48, 3), paint_poster(64, 48, 3), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(paint_poster(64, 48, 3), paint_poster(64, 48, 4), cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(paint_planks(64, 48, 3), paint_planks(64, 48, 3), cv::NORM_INF), 0);
+}
+
+}  // namespace

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What two ears hear of a source in the room. Pure.
+
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Core>
+
+inline constexpr std::int32_t kSoundRate = 16000;  ///< sample frames a second
+inline constexpr double kSpeedOfSound = 343;       ///< in air of 20 °C [m/s]
+
+/// The source: a chirp from 500 to 2000 Hz of 0.15 s, twice a second, its loudness 1 at 1 m.
+///
+/// @param t  since the start [s]; silent before 0.
+double source_sound(double t);
+
+/// What an ear hears: later and weaker with its distance.
+///
+/// @param first  number of the first sample since the start.
+/// @param distance  of ear and source, over 0.1 m nothing grows louder [m].
+/// @param[out] samples  i16; every `stride`-th is written.
+void hear(std::int64_t first, double distance, std::span<std::int16_t> samples, std::size_t stride);

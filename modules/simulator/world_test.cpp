@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world.h"
+
+#include <gtest/gtest.h>
+
+#include "ball.h"
+#include "head.h"
+
+namespace {
+
+class Room : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = hc::graphics::Renderer::make();
+    ASSERT_TRUE(made) << made.error().text();
+    renderer = std::move(*made);
+    world = std::make_unique<World>(*renderer, 1, "HELLO");
+  }
+
+  /// The left eye's picture with pan and tilt [rad].
+  cv::Mat look(double pan, double tilt, const Eigen::Vector3d& ball, cv::Mat* depth = nullptr) {
+    using Eigen::AngleAxisd, Eigen::Vector3d;
+    const Eigen::Isometry3d T_world_head = Eigen::Translation3d(0, 0, kNeckHeight) *
+                                           AngleAxisd(pan, Vector3d::UnitZ()) *
+                                           Eigen::Isometry3d(AngleAxisd(tilt, Vector3d::UnitY()));
+    T_world_left = T_world_head * Head{}.left_eye();
+    cv::Mat rgb;
+    EXPECT_TRUE(
+        renderer->draw(world->items(ball), camera, T_world_left, world->light(), rgb, depth));
+    return rgb;
+  }
+
+  [[nodiscard]] Eigen::Vector2d pixel_of(const Eigen::Vector3d& p_world) const {
+    return camera.project(T_world_left.inverse() * p_world);
+  }
+
+  std::unique_ptr<hc::graphics::Renderer> renderer;
+  std::unique_ptr<World> world;
+  hc::graphics::PinholeCamera camera;
+  Eigen::Isometry3d T_world_left;
+};
+
+TEST_F(Room, the_eyes_look_forward_left_up_as_the_head_does) {
+  look(0, 0, {9, 9, 9});
+  EXPECT_LT(pixel_of({3, 1, kNeckHeight}).x(), camera.cx);      // left
+  EXPECT_LT(pixel_of({3, 0, kNeckHeight + 1}).y(), camera.cy);  // above
+  look(0.3, 0, {9, 9, 9});
+  EXPECT_NEAR(pixel_of({3 * std::cos(0.3), 3 * std::sin(0.3), 1.25}).x(), camera.cx, 12);
+  look(0, 0.2, {9, 9, 9});
+  EXPECT_GT(pixel_of({3, 0, 0.2}).y(), 0);  // down
+  EXPECT_LT(pixel_of({3, 0, 0.2}).y(), camera.height);
+}
+
+TEST_F(Room, the_ball_is_red_where_it_should_be_and_its_depth_true) {
+  const Eigen::Vector3d ball = Ball({"still", 0, 0, 1}).at(0).position;
+  cv::Mat depth;
+  const cv::Mat rgb = look(0, 0.2, ball, &depth);
+  const auto pixel = pixel_of(ball);
+  const auto colour = rgb.at<cv::Vec3b>(int(pixel.y()), int(pixel.x()));
+  EXPECT_GT(colour[0], 4 * colour[1]);
+  EXPECT_GT(colour[0], 4 * colour[2]);
+  const double range = (T_world_left.inverse() * ball).norm();
+  EXPECT_NEAR(depth.at<float>(int(pixel.y()), int(pixel.x())), range - kBallRadius, 0.02);
+}
+
+TEST_F(Room, the_screen_hides_the_ball_as_its_truth_says) {
+  for (double angle : {kScreenAngle, kScreenAngle + 0.1, kScreenAngle + 0.15, 0.3}) {
+    const Eigen::Vector3d ball(kArcRadius * std::cos(angle), kArcRadius * std::sin(angle),
+                               kArcHeight + kBallRadius);
+    const cv::Mat rgb = look(angle, 0.2, ball);
+    int red = 0;
+    for (int v = 0; v < rgb.rows; ++v)
+      for (int u = 0; u < rgb.cols; ++u) {
+        const auto& c = rgb.at<cv::Vec3b>(v, u);
+        if (c[0] > 60 && c[0] > 3 * c[1] && c[0] > 3 * c[2]) ++red;
+      }
+    const double radius = camera.fx * kBallRadius / (T_world_left.inverse() * ball).z();
+    EXPECT_NEAR(red / (3.14159 * radius * radius),
+                world->share_seen(ball, T_world_left.translation()), 0.08)
+        << angle;
+  }
+}
+
+TEST_F(Room, every_plate_is_seen_from_the_neck) {
+  ASSERT_EQ(world->plates().size(), 7U);
+  for (const auto& plate : world->plates()) {
+    const Eigen::Vector3d p = plate.T_world_plate.translation();
+    const double pan = std::atan2(p.y(), p.x());
+    cv::Mat depth;
+    look(pan, 0, {9, 9, 9}, &depth);
+    const auto pixel = pixel_of(p);
+    const double z = (T_world_left.inverse() * p).z();
+    EXPECT_NEAR(depth.at<float>(int(std::lround(pixel.y())), int(std::lround(pixel.x()))), z, 0.01)
+        << plate.kind << " " << plate.id;
+    // It faces who looks at it.
+    EXPECT_GT(plate.T_world_plate.linear().col(2).dot(p - T_world_left.translation()), 0);
+  }
+}
+
+}  // namespace
