@@ -7,7 +7,7 @@ import re
 import sys
 
 # Library packages: over other libraries, without messages.
-PACKAGES = {"frames", "vision", "graphics", "sound"}
+PACKAGES = {"frames", "vision", "graphics", "sound", "gaze"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
     "base": set(),
@@ -19,6 +19,7 @@ ALLOWED = {
     "adapter": {"base", "wire", "frames"},
     "frames": {"base"},
     "vision": {"base"},
+    "gaze": {"base"},
     "graphics": {"base"},
     "sound": {"base"},
     "drivers": {"base"},
@@ -48,7 +49,7 @@ def layer_of(path):
 def layer_of_include(name):
     inner = name[1:-1]
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|sound|drivers)/", inner
+        r"(frames|vision|graphics|sound|gaze|drivers)/", inner
     )
     return match[1] if match else None
 

@@ -182,7 +182,7 @@ void World::add_plates() {
       {"aruco", 23, 0.18, near(2.9, -0.55, 1.75), -0.2 + random(-0.2, 0.2)},
       {"aruco", 40, 0.14, near(2.1, 1.75, 1.2), 0.7 + random(-0.2, 0.2)},
       {"colour", 300, 0.14, near(2.6, 0.35, 1.75), 0.1 + random(-0.2, 0.2)},
-      {"colour", 180, 0.12, near(2.3, -1.65, 1.1), -0.6 + random(-0.2, 0.2)},
+      {"colour", 180, 0.12, near(2.1, -2.1, 1.25), -0.75 + random(-0.2, 0.2)},
       {"colour", 120, 0.12, near(2.2, 0.75, 1.0), 0.3 + random(-0.2, 0.2)},
   };
   for (const auto& wish : wishes) {

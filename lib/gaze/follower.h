@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What moves, as it is seen with noise and late: where it is now and will be. Pure.
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include <gaze/aim.h>
+
+namespace hc::gaze {
+
+/// What is known of how a target moves and is seen.
+struct FollowerOptions {
+  double noise = 0.003;       ///< standard deviation of an angle as it is seen, over 0 [rad]
+  double acceleration = 2.0;  ///< standard deviation of what speeds it up, over 0 [rad/s²]
+  double gap = 0.5;           ///< after so long unseen, it is another [s]
+};
+
+/// A target's angles and their rates.
+struct Motion {
+  Angles angles;
+  double pan_rate = 0, tilt_rate = 0;  ///< [rad/s]
+};
+
+/// Follows one target: a Kalman filter of constant velocity for each axis.
+/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking, 2001, 6.2.
+class Follower {
+ public:
+  explicit Follower(const FollowerOptions& options) : options_(options) {}
+
+  /// Takes in where the target was.
+  ///
+  /// @param time  [s], of any origin; one that is not after the last is left out.
+  void see(double time, const Angles& angles);
+  /// When it was last seen [s].
+  [[nodiscard]] std::optional<double> last() const { return last_; }
+  /// Where it is taken to be at a time, its last rates going on. Nothing: never seen.
+  [[nodiscard]] std::optional<Motion> at(double time) const;
+  void forget() { last_.reset(); }
+
+ private:
+  /// One angle and its rate.
+  struct Axis {
+    Eigen::Vector2d state;
+    Eigen::Matrix2d covariance;
+    void begin(double angle, const FollowerOptions& options);
+    void step(double dt, const FollowerOptions& options);
+    void correct(double angle, const FollowerOptions& options);
+  };
+
+  FollowerOptions options_;
+  std::optional<double> last_;
+  Axis pan_{}, tilt_{};
+};
+
+/// By how much a command has to be ahead of a place that moves at `rate`, for a unit that brakes to
+/// stand still where it is sent: its braking distance. [rad]
+///
+/// @param rate  [rad/s]. @param acceleration  of the unit, over 0 [rad/s²].
+/// Source: v² / 2a.
+inline double braking(double rate, double acceleration) {
+  return rate * (rate < 0 ? -rate : rate) / (2 * acceleration);
+}
+
+}  // namespace hc::gaze

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gaze/follower.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace hc::gaze {
+namespace {
+
+TEST(Follower, finds_place_and_rate_of_what_moves_evenly) {
+  Follower follower({});
+  for (int i = 0; i < 20; ++i) {
+    const double t = 100 + 0.05 * i;
+    follower.see(t, {0.35 * (t - 100), -0.1});
+  }
+  const auto motion = follower.at(101.05);  // 0.1 s after it was seen
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR(motion->angles.pan, 0.35 * 1.05, 1e-3);
+  EXPECT_NEAR(motion->pan_rate, 0.35, 1e-2);
+  EXPECT_NEAR(motion->angles.tilt, -0.1, 1e-6);
+}
+
+TEST(Follower, is_quieter_than_what_it_sees) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.01);
+  Follower follower({0.01, 0.5, 0.5});
+  double seen = 0, followed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 0.05 * i, truth = 0.3 * std::sin(0.5 * t), error = noise(random);
+    follower.see(t, {truth + error, 0});
+    if (i < 20) continue;
+    seen += error * error;
+    followed += std::pow(follower.at(t)->angles.pan - truth, 2);
+  }
+  EXPECT_LT(std::sqrt(followed), 0.8 * std::sqrt(seen));
+}
+
+TEST(Follower, begins_anew_after_a_gap_and_leaves_the_past_alone) {
+  Follower follower({});
+  EXPECT_FALSE(follower.at(1));
+  for (int i = 0; i < 10; ++i) follower.see(0.05 * i, {0.02 * i, 0});
+  follower.see(0.2, {9, 9});  // older than the last
+  EXPECT_NEAR(follower.at(0.45)->angles.pan, 0.18, 1e-2);
+  follower.see(2, {-0.5, 0.2});
+  EXPECT_DOUBLE_EQ(follower.at(2)->angles.pan, -0.5);
+  EXPECT_DOUBLE_EQ(follower.at(2)->pan_rate, 0);
+  follower.forget();
+  EXPECT_FALSE(follower.at(2));
+}
+
+TEST(Follower, braking_is_what_a_unit_needs_to_stand_still) {
+  EXPECT_DOUBLE_EQ(braking(2, 4), 0.5);
+  EXPECT_DOUBLE_EQ(braking(-2, 4), -0.5);
+}
+
+}  // namespace
+}  // namespace hc::gaze
