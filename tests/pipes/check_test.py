@@ -114,6 +114,7 @@ BROKEN = [
     ' "track"\n',
     TRACK + "read = 1 #! the modes track and read have the same number\n" + READER,
     ACTOR + 'idle_rate = -1 #! "idle_rate" is a number from 0 to 1000000 [Hz]\n',
+    ACTOR + 'ends_graph = 1 #! "ends_graph" is true or false\n',
     ACTOR
     + 'exclusive = ["command"] #! an exclusive input wants a [workspace], which says what is in'
     " focus\n",

@@ -51,6 +51,7 @@ struct GraphModule {
   std::vector<Lined<std::string>> modes;        ///< it works in; empty: all
   std::optional<Lined<std::string>> idle_rate;  ///< [Hz] out of focus
   std::vector<Lined<std::string>> exclusive;    ///< inputs that take the mode in focus alone
+  bool ends_graph = false;                      ///< when it has ended with status 0
   Place place;
 };
 

@@ -23,6 +23,7 @@ class ModulePlanner {
     planned_.program = module_.program;
     planned_.options = {"--name", module_.name};
     planned_.restart = module_.restart;
+    planned_.ends_graph = module_.ends_graph;
     planned_.manage_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name + ".manage";
     if (description.control)
       planned_.control_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name +

@@ -36,6 +36,7 @@ struct PlannedModule {
   std::string mode;                 ///< of a task; empty: none
   std::vector<std::string> modes;   ///< it works in; empty: all
   std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
+  bool ends_graph = false;          ///< when it has ended with status 0
 
   /// Program and arguments, as it is started.
   [[nodiscard]] std::vector<std::string> command() const;

@@ -33,7 +33,7 @@ void read_module(const Fields& fields, const std::string& name, const Node& node
     return fields.add(node, "a module is a table [modules." + name + "]");
   fields.check_keys(node,
                     {"program", "parameters", "addresses", "encodings", "to", "restart", "mode",
-                     "modes", "idle_rate", "exclusive"},
+                     "modes", "idle_rate", "exclusive", "ends_graph"},
                     "in module " + name);
   if (const Node* program = node.find("program")) {
     module.program = fields.text(node, "program").value_or(Lined<std::string>()).value;
@@ -65,6 +65,11 @@ void read_module(const Fields& fields, const std::string& name, const Node& node
   module.modes = fields.texts(node, "modes");
   module.idle_rate = read_idle_rate(fields, node);
   module.exclusive = fields.texts(node, "exclusive");
+  if (const Node* ends = node.find("ends_graph")) {
+    const auto* flag = ends->as<bool>();
+    if (flag == nullptr) return fields.add(*ends, R"("ends_graph" is true or false)");
+    module.ends_graph = *flag;
+  }
 }
 
 }  // namespace

@@ -149,6 +149,8 @@ bool Runner::is_over() const {
 /// Does what follows of what has happened in a turn.
 void Runner::settle() {
   if (!failures_.empty()) settle_failures();
+  for (const auto& [name, module] : modules_)
+    if (module->plan().ends_graph && module->status() == ModuleStatus::Ended) end_all();
   while (std::exchange(is_unsettled_, false)) settle_links();
   std::erase_if(leaving_, [](const auto& entry) { return entry.second->is_over(); });
 }

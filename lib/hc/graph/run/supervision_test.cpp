@@ -253,6 +253,18 @@ TEST_F(Supervision, AModuleAllOfWhoseReadersHaveEndedEnds) {
   for (const auto& each : report->state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
 }
 
+TEST_F(Supervision, AModuleThatEndsTheGraphTakesAllOthersWithIt) {
+  add("score", "exit 0").ends_graph = true;
+  add("writer", "exec sleep 1000");
+  add("reader", "exec sleep 1000");
+  plan_.links = {{"writer.out", "reader.in", "", "", "", {}, false},
+                 {"reader.out", "writer.in", "", "", "", {}, false}};
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_FALSE(report->stopped);
+  for (const auto& each : report->state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
+}
+
 TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
   add("writer", "trap 'exit 7' TERM; echo ready >&2; while :; do sleep 0.01; done", Restart::Never);
   add("reader", "trap 'exit 0' TERM; echo $$ >&2; while :; do sleep 0.01; done");
