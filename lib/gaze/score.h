@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// How well a ball is followed, of which is known where it is and whether it can be seen. Pure.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace hc::gaze {
+
+/// One look at the truth.
+struct TrackSample {
+  double time;   ///< [s], of any origin
+  double error;  ///< angle between the gaze and the ball [rad]
+  double share;  ///< of the ball that is seen, 0 … 1
+};
+
+struct TrackScore {
+  double rms = 0;                  ///< error while the ball is seen and had been acquired [rad]
+  std::optional<double> acquired;  ///< from the first time that the ball is seen [s]
+  std::vector<double> again;       ///< the same each time that it comes back; below 0: never [s]
+  std::size_t samples = 0;         ///< of which rms is
+};
+
+/// @param samples  in the order of time.
+/// @param within  an error up to this has acquired the ball [rad].
+///
+/// A ball is seen from a share of a half on, and hidden from a tenth down. After it has come back,
+/// errors count again when it is acquired again, or after 1 s.
+TrackScore score_tracking(const std::vector<TrackSample>& samples, double within);
+
+}  // namespace hc::gaze

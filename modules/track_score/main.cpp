@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a head follows a ball, by the truth of a simulation.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <gaze/score.h>
+#include <hc/adapter/eigen.h>
+#include <hc/adapter/pose.h>
+#include <hc/node/module.h>
+
+int main(int argc, char** argv) {
+  constexpr std::int32_t kWorld = 1, kWorldHead = 1003;
+  hc::Module module{"track_score", "Compares where a head looks with where a ball is."};
+  auto head = module.input("head_pose", hc::transformation<double>(4, 4).in(kWorldHead),
+                           "truth: T_world_head");
+  auto ball = module.input("ball", hc::position<double>(6).in(kWorld), "truth: of the ball [m]");
+  auto seen = module.input("ball_seen", hc::table<double>(),
+                           "truth, 1 x 4: of which the last is the share that is seen");
+  auto result = module.output("score", hc::table<double>(),
+                              "1 x 5: RMS error [rad], time to acquire it [s], times that it came "
+                              "back, longest time to acquire it then [s], samples");
+  auto duration =
+      module.parameter("duration", 20.0, "s", "how long it is scored", {.least = 0.1, .most = 1e6});
+  auto within = module.parameter("within", 0.0524, "rad", "an error up to this has acquired it",
+                                 {.least = 1e-4, .most = 1});
+  auto forward = module.parameter("forward", 0.06, "m", "of the eyes from the unit's axes");
+  auto up = module.parameter("up", 0.05, "m", "of the eyes from the unit's axes");
+
+  std::vector<hc::gaze::TrackSample> samples;
+  module.on(
+      hc::together(head, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {
+        const auto T_world_head = hc::value_or_end(hc::pose_of(pose)).T_to_from;
+        const auto p = place.matrix().numbers();
+        const Eigen::Vector3d to = T_world_head.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
+                                   Eigen::Vector3d(*forward, 0, *up);
+        samples.push_back({static_cast<double>(pose.header.time) * 1e-9,
+                           std::atan2(to.tail<2>().norm(), to.x()), share.matrix().numbers()[3]});
+      });
+  module.generate([&] {
+    constexpr double kLook = 50;  // [Hz]
+    module.keep_rate(kLook);
+    if (samples.empty() || samples.back().time - samples.front().time < *duration) return true;
+    const auto score = hc::gaze::score_tracking(samples, *within);
+    const double longest =
+        score.again.empty() ? 0 : *std::max_element(score.again.begin(), score.again.end());
+    const bool is_lost =
+        std::any_of(score.again.begin(), score.again.end(), [](double took) { return took < 0; });
+    result.send(
+        hc::table({score.rms, score.acquired.value_or(-1), static_cast<double>(score.again.size()),
+                   is_lost ? -1 : longest, static_cast<double>(score.samples)}));
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "RMS error %.2f°, acquired after %.2f s, came back %zu times, acquired again "
+                  "after %.2f s at most, of %zu pictures",
+                  score.rms * 180 / M_PI, score.acquired.value_or(-1), score.again.size(),
+                  is_lost ? -1 : longest, score.samples);
+    module.log(line);
+    return false;
+  });
+  return module.run(argc, argv);
+}
