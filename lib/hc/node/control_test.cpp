@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a module is told while it runs: commands, modes, routes, timers.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+
 #include <hc/compress/compress.h>
 #include <hc/node/running_module_test.h>
 
@@ -267,6 +273,35 @@ TEST_F(RunningModule, TimersGoOnBetweenMessages) {
   EXPECT_EQ(join(), 0);
   EXPECT_GE(ticks, 10);
   EXPECT_EQ(counted, 0);
+}
+
+TEST_F(RunningModule, IsWokenByADescriptorOfItsOwn) {
+  Module module{"device", "Reads."};
+  auto in = module.input("in", table<double>(), "");
+  auto sink = sink_of(uri("in"));
+  std::array<int, 2> pipe = {};
+  ASSERT_EQ(::pipe2(pipe.data(), O_NONBLOCK | O_CLOEXEC), 0);
+  std::string read;
+  std::atomic<bool> is_first_read = false;
+  module.on(in, [&](const auto&) { ASSERT_EQ(::write(pipe[1], "a", 1), 1); });
+  module.on_readable([] { return -1; }, [] {});  // none now
+  module.on_readable([&] { return read == "ab" ? -1 : pipe[0]; },
+                     [&] {
+                       char byte = 0;
+                       if (::read(pipe[0], &byte, 1) < 1) return;
+                       read += byte;
+                       is_first_read = true;
+                       if (read == "ab") {
+                         ASSERT_TRUE(sink->close());
+                       }
+                     });
+  ASSERT_TRUE(sink->send(table({1.0})));
+  start(module, {"--in=" + uri("in")});
+  while (!is_first_read) std::this_thread::yield();
+  ASSERT_EQ(::write(pipe[1], "b", 1), 1);  // nothing but this wakes it
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(read, "ab");
+  for (int end : pipe) ::close(end);
 }
 
 }  // namespace

@@ -131,6 +131,7 @@ void Module::Loop::run() {
     now_ = module_.clock_.monotonic();
     attend();
     fire_timers();
+    for (auto& watch : module_.watches_) watch.handler();
     const bool any = take_each();
     end_unneeded();
     if (join_renewed()) tell_links();
@@ -325,12 +326,17 @@ void Module::Loop::measure(LinkedSource& link, const Message& message) {
   link.last_come = now_;
 }
 
-/// Waits for a command, a report that is due, or a time; and, perhaps, for messages.
+/// Waits for a command, a report that is due, or a time; and, perhaps, for messages and what else
+/// the module reads.
 void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   std::vector<Source*> sources;
-  if (for_messages)
+  std::vector<internal::WatchedDescriptor> watched;
+  if (for_messages) {
     for (const auto& link : sources_)
       if (link.source != nullptr) sources.push_back(link.source.get());
+    for (const auto& watch : module_.watches_) watched.emplace_back(watch.descriptor());
+    for (auto& each : watched) sources.push_back(&each);
+  }
   for (const auto& link : focus_)
     if (link.source != nullptr) sources.push_back(link.source.get());
   if (management_.commands() != nullptr) sources.push_back(management_.commands());

@@ -46,6 +46,18 @@ struct FocusLink {
   std::unique_ptr<Source> source;  ///< null once it has ended
 };
 
+/// A descriptor that the module reads by itself, to be waited for beside the links.
+class WatchedDescriptor final : public Source {
+ public:
+  explicit WatchedDescriptor(int number) : number_(number) {}
+  Result<Got> take(Message&) override { return Got::Nothing; }
+  [[nodiscard]] int descriptor() const override { return number_; }
+  [[nodiscard]] Traffic traffic() const override { return {}; }
+
+ private:
+  int number_;
+};
+
 }  // namespace internal
 
 struct Module::Loop {

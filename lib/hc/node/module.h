@@ -161,6 +161,15 @@ class Module {
     add_timer([period] { return std::min(period, internal::kLongestPeriod); }, std::move(handler));
   }
 
+  /// Says what is done when a descriptor of the module's own can be read, such as a device's,
+  /// between messages. Does not keep a module running whose inputs have ended; a generator is not
+  /// woken by it.
+  /// @param descriptor  asked each time before the module waits; below 0: none now.
+  /// @param handler  takes what is there without waiting; called when nothing is, too.
+  void on_readable(std::function<int()> descriptor, std::function<void()> handler) {
+    watches_.push_back({std::move(descriptor), std::move(handler)});
+  }
+
   /// For generators: waits until the next period of a rate begins, counted from the first call.
   /// Slower while the module is idle, since another mode has the focus. A module that is told to
   /// stop ends here. @param rate [Hz]
@@ -200,6 +209,10 @@ class Module {
     MonotonicTime last{0};  // when it was due, or the start
     [[nodiscard]] MonotonicTime due() const { return last + period(); }
   };
+  struct Watch {
+    std::function<int()> descriptor;
+    std::function<void()> handler;
+  };
 
   /// Whether any output has a reader left.
   [[nodiscard]] bool is_read() const;
@@ -228,6 +241,7 @@ class Module {
   std::function<void()> start_, end_;
   std::function<bool()> generate_;
   std::vector<Timer> timers_;
+  std::vector<Watch> watches_;
   bool routes_ = false;
   const Clock& clock_;
   internal::Attention attention_;
