@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/pan_tilt/conversation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace hc::pan_tilt {
+namespace {
+
+constexpr std::array<const char*, 12> kQuestions = {"pr", "tr", "pn", "px", "tn", "tx",
+                                                    "pu", "tu", "ps", "ts", "pa", "ta"};
+constexpr double kArcsecond = std::numbers::pi / 180 / 3600;  // [rad]
+constexpr double kSlack = 50;  // of a place beyond what the greatest speed allows [position]
+
+Error garbage(const std::string& text) {
+  return {Code::Malformed, "garbage: \"" + text + "\" answers nothing that was asked"};
+}
+
+int bounded(double value, double least, double most) {
+  return static_cast<int>(std::lround(std::clamp(value, least, most)));
+}
+
+}  // namespace
+
+void Conversation::begin(MonotonicTime now) {
+  end();
+  tries_ = 0;
+  is_known_ = false;
+  try_anew(now);
+}
+
+void Conversation::end() {
+  phase_ = Phase::Closed;
+  awaited_.clear();
+  bytes_.clear();
+  wanted_.reset();
+  quiet_at_.reset();
+  is_heading_sure_ = false;
+}
+
+void Conversation::try_anew(MonotonicTime now) {
+  end();
+  if (++tries_ > kTries) {
+    phase_ = Phase::Lost;
+    return;
+  }
+  phase_ = Phase::Begins;
+  reader_ = {};
+  place_.reset();
+  asked_ = 0;
+  overdue_ = now + kTimeOut;
+  bytes_ = pan_tilt::command("ft") + pan_tilt::command("ed") + pan_tilt::command("ci") +
+           pan_tilt::command(kQuestions[0]);
+}
+
+/// Begins anew: at once where nothing came, else when no more garbage comes.
+void Conversation::fail(MonotonicTime now, Error error) {
+  const bool is_silent = error.code == Code::Closed;
+  fault_ = std::move(error);
+  if (is_silent) return try_anew(now);
+  end();
+  phase_ = Phase::Begins;
+  quiet_at_ = now + kQuiet;
+  overdue_ = now + kTimeOut;
+}
+
+void Conversation::take(MonotonicTime now, std::string_view bytes) {
+  if (phase_ == Phase::Closed || phase_ == Phase::Lost) return;
+  if (quiet_at_) {
+    quiet_at_ = now + kQuiet;
+    return;
+  }
+  reader_.feed(bytes);
+  while (auto reply = reader_.next()) {
+    // What echo and an older talk have left comes before the first answer.
+    const bool is_first = phase_ == Phase::Begins && asked_ == 0;
+    if (!*reply && is_first) continue;
+    if (!*reply) return fail(now, reply->error());
+    const Reply& said = **reply;
+    if (said.kind == Reply::Kind::PanLimit || said.kind == Reply::Kind::TiltLimit) {
+      remark_ = said.kind == Reply::Kind::PanLimit ? "pan has run into its limit"
+                                                   : "tilt has run into its limit";
+      continue;
+    }
+    phase_ == Phase::Begins ? hear_at_begin(now, said) : hear(now, said);
+    if (quiet_at_) return;
+  }
+}
+
+void Conversation::hear_at_begin(MonotonicTime now, const Reply& reply) {
+  const auto value = number(reply.text);
+  const bool is_number = reply.kind == Reply::Kind::Result && value;
+  if (asked_ == 0) {
+    if (!is_number || *value <= 0 || (is_known_ && reply.text != resolution_)) return;
+    tries_ = is_known_ ? 0 : tries_;
+    if (is_known_) return become_ready(now);
+    resolution_ = reply.text;
+  } else if (!is_number) {
+    return fail(now, garbage(reply.text));
+  }
+  if (asked_ == kSettings) {
+    // The first question again: an answer to another would show that one of them got lost.
+    if (reply.text != resolution_) return fail(now, garbage(reply.text));
+    return become_ready(now);
+  }
+  settings_[asked_++] = *value;
+  overdue_ = now + kTimeOut;
+  bytes_ += pan_tilt::command(kQuestions[asked_ % kSettings]);
+}
+
+void Conversation::become_ready(MonotonicTime now) {
+  const auto& s = settings_;
+  const bool is_sound = s[kPR] > 0 && s[kTR] > 0 && s[kPN] < s[kPX] && s[kTN] < s[kTX] &&
+                        s[kPU] > 0 && s[kTU] > 0 &&
+                        std::all_of(s.begin(), s.end(), [](double v) { return std::abs(v) < 1e6; });
+  if (!is_sound) return fail(now, {Code::Malformed, "garbage: limits that make no sense"});
+  phase_ = Phase::Ready;
+  tries_ = 0;
+  const Pace told = {bounded(s[kPS], 1, 1e6), bounded(s[kTS], 1, 1e6), bounded(s[kPA], 1, 1e6),
+                     bounded(s[kTA], 1, 1e6)};
+  if (!own_pace_) own_pace_ = told;
+  // One that was switched off and on meanwhile has forgotten its pace.
+  pace_.reset();
+  if (!is_known_) pace_ = told;
+  is_known_ = true;
+  send_pace(now);
+}
+
+void Conversation::say(MonotonicTime now, const std::string& bytes,
+                       std::initializer_list<Awaits> answers) {
+  if (awaited_.empty()) overdue_ = now + kTimeOut;
+  bytes_ += bytes;
+  awaited_.insert(awaited_.end(), answers);
+}
+
+bool Conversation::awaits(Awaits answer) const {
+  return std::find(awaited_.begin(), awaited_.end(), answer) != awaited_.end();
+}
+
+void Conversation::look(MonotonicTime now) {
+  if (phase_ != Phase::Ready || awaits(Awaits::Tilt)) return;
+  looked_ = now;
+  say(now, pan_tilt::command("pp") + pan_tilt::command("tp"), {Awaits::Pan, Awaits::Tilt});
+}
+
+bool Conversation::command(MonotonicTime now, double pan, double tilt) {
+  if (phase_ != Phase::Ready) return false;
+  const auto& s = settings_;
+  commanded_ = now;
+  wanted_ = {bounded(pan / step(0), s[kPN], s[kPX]), bounded(-tilt / step(1), s[kTN], s[kTX])};
+  send_wanted(now);
+  return true;
+}
+
+void Conversation::send_wanted(MonotonicTime now) {
+  if (!wanted_ || awaits(Awaits::TiltSet)) return;
+  const Places places = *std::exchange(wanted_, std::nullopt);
+  if (is_heading_sure_ && heading_ == places) return;
+  heading_ = places;
+  heading_since_ = now;
+  is_heading_sure_ = true;
+  say(now, pan_tilt::command("pp", places[0]) + pan_tilt::command("tp", places[1]),
+      {Awaits::PanSet, Awaits::TiltSet});
+}
+
+void Conversation::set_pace(double speed, double acceleration) {
+  speed_ = speed;
+  acceleration_ = acceleration;
+}
+
+void Conversation::send_pace(MonotonicTime now) {
+  if (awaits(Awaits::PaceSet)) return;
+  const auto& s = settings_;
+  Pace pace = *own_pace_;
+  for (std::size_t axis : {0U, 1U}) {
+    const double size = step(static_cast<int>(axis));
+    if (speed_ > 0) pace[axis] = bounded(speed_ / size, 1, s[kPU + axis]);
+    if (acceleration_ > 0) pace[2 + axis] = bounded(acceleration_ / size, 1, 1e6);
+  }
+  if (pace_ == pace) return;
+  pace_ = pace;
+  std::string bytes;
+  for (std::size_t i = 0; i < pace.size(); ++i)
+    bytes += pan_tilt::command(kQuestions[kPS + i], pace[i]);
+  say(now, bytes, {Awaits::PaceSet, Awaits::PaceSet, Awaits::PaceSet, Awaits::PaceSet});
+}
+
+void Conversation::hear(MonotonicTime now, const Reply& reply) {
+  const bool is_place =
+      !awaited_.empty() && (awaited_.front() == Awaits::Pan || awaited_.front() == Awaits::Tilt);
+  const auto fitting = is_place ? Reply::Kind::Result : Reply::Kind::Done;
+  const bool is_refusal = reply.kind == Reply::Kind::Refused;
+  if (awaited_.empty() || (reply.kind != fitting && !is_refusal))
+    return fail(now, garbage((is_refusal ? "! " : "* ") + reply.text));
+  const Awaits awaited = awaited_.front();
+  awaited_.pop_front();
+  overdue_ = now + kTimeOut;
+  if (is_refusal) {
+    remark_ = "refused: " + reply.text;
+    if (awaited == Awaits::PanSet || awaited == Awaits::TiltSet) is_heading_sure_ = false;
+    if (is_place) return fail(now, garbage("! " + reply.text));
+  } else if (awaited == Awaits::Halted && !awaits(Awaits::TiltSet)) {
+    heading_.reset();
+  } else if (is_place) {
+    hear_place(now, awaited == Awaits::Pan ? 0 : 1, reply.text);
+  }
+  if (phase_ == Phase::Ready) send_wanted(now);
+}
+
+void Conversation::hear_place(MonotonicTime now, int axis, const std::string& text) {
+  const auto value = number(text);
+  if (!value) return fail(now, value.error());
+  const auto i = static_cast<std::size_t>(axis);
+  const double seconds = std::chrono::duration<double>(now - place_time_).count();
+  const double most = settings_[kPU + i] * seconds + kSlack;
+  if (std::abs(*value) > 1e6 || std::trunc(*value) != *value ||
+      (place_ && std::abs(*value - (*place_)[i]) > most))
+    return fail(now, {Code::Malformed, "garbage: it cannot be at " + text});
+  heard_[i] = static_cast<int>(*value);
+  if (axis == 0) return;
+  place_ = heard_;
+  place_time_ = looked_;
+  gaze_ = Gaze{heard_[0] * step(0), -heard_[1] * step(1), looked_ + (now - looked_) / 2};
+}
+
+/// Whether the unit has been seen where it was commanded to go.
+bool Conversation::arrived() const {
+  return place_ && place_time_ > heading_since_ && std::abs((*place_)[0] - (*heading_)[0]) <= 1 &&
+         std::abs((*place_)[1] - (*heading_)[1]) <= 1;
+}
+
+void Conversation::pass(MonotonicTime now) {
+  if (phase_ == Phase::Begins) {
+    const bool is_quiet = quiet_at_ && now >= *quiet_at_;
+    if (!quiet_at_ && now >= overdue_) fault_ = Error{Code::Closed, "the unit does not answer"};
+    if (is_quiet || now >= overdue_) try_anew(now);
+  }
+  if (phase_ != Phase::Ready) return;
+  if (!awaited_.empty() && now >= overdue_)
+    return fail(now, {Code::Closed, "the unit does not answer"});
+  send_pace(now);
+  const bool is_late = hold_.count() > 0 && now - commanded_ > hold_;
+  if (!is_late || !heading_ || awaits(Awaits::Halted) || arrived()) return;
+  wanted_.reset();
+  is_heading_sure_ = false;  // and is no heading any more once the answer has come
+  say(now, pan_tilt::command("h"), {Awaits::Halted});
+}
+
+double Conversation::step(int axis) const {
+  return settings_[static_cast<std::size_t>(axis)] * kArcsecond;
+}
+
+std::string Conversation::character() const {
+  const auto& s = settings_;
+  const auto degrees = [&](int axis, double positions) {
+    return positions * step(axis) * 180 / std::numbers::pi;
+  };
+  std::array<char, 128> text = {};
+  std::snprintf(text.data(), text.size(),
+                "pan from %.1f to %.1f, tilt from %.1f (up) to %.1f (down) degrees",
+                degrees(0, s[kPN]), degrees(0, s[kPX]), -degrees(1, s[kTX]), -degrees(1, s[kTN]));
+  return text.data();
+}
+
+}  // namespace hc::pan_tilt

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The host's side of the talk with a pan-tilt unit: who asked what, which answer belongs to it, and
+// what to do when none comes or it makes no sense. Pure: bytes in, bytes out, at a time that is
+// given and does not fall.
+
+#include <array>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <drivers/pan_tilt/protocol.h>
+#include <hc/base/clock.h>
+
+namespace hc::pan_tilt {
+
+/// Where a head looks [rad]: pan > 0 to the left, tilt > 0 down. (The unit's own tilt is up.)
+struct Gaze {
+  double pan = 0, tilt = 0;
+  MonotonicTime time{0};  ///< between question and answer
+};
+
+/// Begins with `ft ed ci`, asks what the unit is like, and is ready then. At most one question
+/// (both positions), one command (both axes), one pace and one halt are without answer at a time;
+/// of commands that come meanwhile the newest is sent. A line that brings garbage or no answer for
+/// kTimeOut is begun anew; what was commanded before is not sent again.
+class Conversation {
+ public:
+  static constexpr std::chrono::milliseconds kTimeOut{500};
+  static constexpr std::chrono::milliseconds kQuiet{60};  ///< behind garbage, before a new try
+  static constexpr int kTries = 3;                        ///< before the line is lost
+
+  enum class Phase {
+    Closed,  ///< there is no line
+    Begins,  ///< it is being found out what is there
+    Ready,   ///< commands are taken
+    Lost,    ///< nothing sensible came in kTries tries: open the line anew
+  };
+  [[nodiscard]] Phase phase() const { return phase_; }
+
+  /// The line has been opened, or has gone.
+  void begin(MonotonicTime now);
+  void end();
+
+  /// What came.
+  void take(MonotonicTime now, std::string_view bytes);
+  /// Time passes: answers are overdue, motions are halted. To be called every few ms.
+  void pass(MonotonicTime now);
+
+  /// Asks where the unit looks, unless it was asked and has not answered.
+  void look(MonotonicTime now);
+  /// Has it turn there, or to the nearest it can; false when it is not ready, and nothing is done
+  /// then. The angles are finite [rad].
+  bool command(MonotonicTime now, double pan, double tilt);
+  /// How fast it turns [rad/s, rad/s²]; 0: as it did when it was met.
+  void set_pace(double speed, double acceleration);
+  /// Halts a motion that was commanded when no command came for so long; 0: never.
+  void set_hold(std::chrono::nanoseconds hold) { hold_ = hold; }
+  /// What ends the motion that was commanded, if there may be one: for the end of a program.
+  [[nodiscard]] std::string last_words() const { return heading_ ? "h " : ""; }
+
+  // What is to be done now; each is given once.
+  std::string bytes() { return std::exchange(bytes_, {}); }           ///< to be written
+  std::optional<Gaze> gaze() { return std::exchange(gaze_, {}); }     ///< the unit has told
+  std::optional<Error> fault() { return std::exchange(fault_, {}); }  ///< why it is begun anew
+  std::string remark() { return std::exchange(remark_, {}); }         ///< the unit refused that
+
+  /// "pan -158.9 … 158.9 degrees, …", once it has been ready.
+  [[nodiscard]] std::string character() const;
+
+ private:
+  // In the order in which they are asked.
+  enum Setting { kPR, kTR, kPN, kPX, kTN, kTX, kPU, kTU, kPS, kTS, kPA, kTA, kSettings };
+  enum class Awaits { Pan, Tilt, PanSet, TiltSet, PaceSet, Halted };
+  using Places = std::array<int, 2>;  // pan, tilt [position]
+  using Pace = std::array<int, 4>;    // PS TS PA TA
+
+  void fail(MonotonicTime now, Error error);
+  void try_anew(MonotonicTime now);
+  void hear_at_begin(MonotonicTime now, const Reply& reply);
+  void become_ready(MonotonicTime now);
+  void hear(MonotonicTime now, const Reply& reply);
+  void hear_place(MonotonicTime now, int axis, const std::string& text);
+  void say(MonotonicTime now, const std::string& bytes, std::initializer_list<Awaits> answers);
+  void send_wanted(MonotonicTime now);
+  void send_pace(MonotonicTime now);
+  [[nodiscard]] bool awaits(Awaits answer) const;
+  [[nodiscard]] bool arrived() const;
+  [[nodiscard]] double step(int axis) const;  // [rad]
+
+  Phase phase_ = Phase::Closed;
+  ReplyReader reader_;
+  std::string bytes_, remark_;
+  std::optional<Gaze> gaze_;
+  std::optional<Error> fault_;
+
+  int tries_ = 0;
+  std::size_t asked_ = 0;   // while it begins: the setting that is being asked
+  bool is_known_ = false;   // settings have been heard on this line
+  std::string resolution_;  // as the unit told it
+  std::array<double, kSettings> settings_ = {};
+  std::optional<Pace> own_pace_, pace_;  // as it was met; as it is
+  double speed_ = 0, acceleration_ = 0;
+  std::optional<MonotonicTime> quiet_at_;  // a new try, once nothing comes any more
+
+  std::deque<Awaits> awaited_;
+  MonotonicTime overdue_{0};  // when the oldest answer is
+  MonotonicTime looked_{0}, heading_since_{0}, commanded_{0};
+  std::optional<Places> wanted_, heading_, place_;
+  bool is_heading_sure_ = false;  // the unit has taken the command
+  Places heard_ = {};
+  MonotonicTime place_time_{0};  // when place_ was asked
+  std::chrono::nanoseconds hold_{0};
+};
+
+}  // namespace hc::pan_tilt

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/pan_tilt/neck.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hc::pan_tilt {
+namespace {
+
+constexpr std::size_t kMostRemarks = 10;  // since all was well: garbage may look like many
+
+}  // namespace
+
+using Phase = Conversation::Phase;
+
+void Neck::set_device(MonotonicTime now, const std::string& device, int baud, bool stays) {
+  if (device == device_ && baud == baud_) return;
+  if (serial_) close(now, {Code::Stopped, device.empty() ? "has been taken away" : "is left"});
+  device_ = device;
+  baud_ = baud;
+  stays_ = stays;
+  pause_ = kFirstPause;
+  if (!device_.empty()) open(now);
+}
+
+void Neck::open(MonotonicTime now) {
+  auto opened = Serial::open(device_, baud_);
+  if (!opened) {
+    tell_fault(opened.error());
+    if (!stays_) device_.clear();
+    try_at_ = now + pause_;
+    pause_ = std::min<std::chrono::nanoseconds>(2 * pause_, kLongestPause);
+    return;
+  }
+  serial_ = std::move(*opened);
+  conversation_.begin(now);
+  work(now);
+}
+
+void Neck::close(MonotonicTime now, const Error& why) {
+  tell_fault(why);
+  serial_.reset();
+  conversation_.end();
+  if (why.code == Code::Closed && !stays_) device_.clear();
+  try_at_ = now + pause_;
+  pause_ = std::min<std::chrono::nanoseconds>(2 * pause_, kLongestPause);
+}
+
+void Neck::tell_fault(const Error& error) {
+  well_since_ = MonotonicTime::max();
+  const bool is_garbage = error.code == Code::Malformed || error.code == Code::TooLarge;
+  if (told_.insert(is_garbage ? "garbage" : error.detail).second)
+    tell_(device_ + ": " + error.detail);
+}
+
+void Neck::read(MonotonicTime now) {
+  std::array<char, 512> room = {};
+  while (serial_) {
+    auto bytes = serial_->read(room);
+    if (!bytes) return close(now, bytes.error());
+    if (bytes->empty()) return;
+    conversation_.take(now, *bytes);
+    work(now);
+  }
+}
+
+/// Does what the conversation asks for.
+void Neck::work(MonotonicTime now) {
+  if (auto fault = conversation_.fault()) tell_fault(*fault);
+  if (auto remark = conversation_.remark();
+      !remark.empty() && remarks_.size() < kMostRemarks && remarks_.insert(remark).second)
+    tell_(device_ + ": " + remark);
+  if (conversation_.phase() == Phase::Lost) return close(now, {Code::Stopped, "is opened anew"});
+  if (conversation_.phase() == Phase::Ready && well_since_ == MonotonicTime::max())
+    well_since_ = now;
+  if (const auto bytes = conversation_.bytes(); !bytes.empty() && serial_)
+    if (auto written = serial_->write(bytes); !written) close(now, written.error());
+}
+
+void Neck::pass(MonotonicTime now) {
+  if (!serial_ && !device_.empty() && now >= try_at_) open(now);
+  conversation_.pass(now);
+  work(now);
+  if (conversation_.phase() != Phase::Ready) return;
+  if (!was_ready_ || now - well_since_ >= kSettled) pause_ = kFirstPause;
+  if (was_ready_ && (told_.empty() || now - well_since_ < kSettled)) return;
+  tell_(device_ + ": " + (was_ready_ ? "answers again" : conversation_.character()));
+  was_ready_ = true;
+  told_.clear();
+  remarks_.clear();
+}
+
+void Neck::look(MonotonicTime now) {
+  conversation_.look(now);
+  work(now);
+}
+
+bool Neck::command(MonotonicTime now, double pan, double tilt) {
+  const bool is_taken = conversation_.command(now, pan, tilt);
+  work(now);
+  return is_taken;
+}
+
+void Neck::leave() {
+  if (serial_) static_cast<void>(serial_->write(conversation_.last_words()));
+  serial_.reset();
+  conversation_.end();
+}
+
+}  // namespace hc::pan_tilt

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/pan_tilt/neck.h>
+
+#include <vector>
+
+#include <drivers/pan_tilt/pseudo_terminal_test.h>
+#include <drivers/pan_tilt/unit.h>
+
+namespace hc::pan_tilt {
+namespace {
+
+using std::chrono::milliseconds;
+using Phase = Conversation::Phase;
+
+/// A neck whose clock is turned by hand, and a unit at the other end of a pseudo-terminal.
+class NeckTest : public ::testing::Test {
+ protected:
+  void run(milliseconds duration) {
+    for (const auto end = now_ + duration; now_ < end;) {
+      now_ += milliseconds(1);
+      if (terminal_) {
+        const auto said =
+            unit_.take(std::chrono::duration<double>(now_).count(), terminal_->read());
+        if (!is_silent_) terminal_->write(said);
+      }
+      neck_.read(now_);
+      neck_.pass(now_);
+      if (now_.count() % 20'000'000 == 0) neck_.look(now_);
+    }
+  }
+  void plug() { terminal_.emplace(); }
+  void open(bool stays = true) { neck_.set_device(now_, terminal_->path(), 9600, stays); }
+  [[nodiscard]] std::string path() const { return terminal_->path(); }
+
+  MonotonicTime now_{milliseconds(1000)};
+  std::optional<PseudoTerminal> terminal_;
+  Unit unit_;
+  bool is_silent_ = false;
+  std::vector<std::string> told_;
+  Neck neck_{[this](std::string_view line) { told_.emplace_back(line); }};
+};
+
+TEST_F(NeckTest, finds_the_unit_and_commands_it) {
+  plug();
+  open();
+  run(milliseconds(100));
+  EXPECT_TRUE(neck_.command(now_, 0.5, 0.1));
+  run(milliseconds(1000));
+  EXPECT_NEAR(unit_.pan(9), 557, 0.5);
+  EXPECT_NEAR(unit_.tilt(9), -111, 0.5);
+  EXPECT_EQ(told_, std::vector<std::string>{
+                       path() +
+                       ": pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees"});
+}
+
+TEST_F(NeckTest, tells_once_that_there_is_no_device_and_tries_on) {
+  neck_.set_device(now_, "/no/such/device", 9600, true);
+  run(milliseconds(10'000));
+  EXPECT_EQ(told_, std::vector<std::string>{"/no/such/device: open: No such file or directory"});
+}
+
+TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_told_again) {
+  plug();
+  open(false);
+  run(milliseconds(100));
+  const std::string old = path();
+  terminal_.reset();
+  run(milliseconds(100));
+  EXPECT_EQ(neck_.descriptor(), -1);
+  plug();  // it may well get the same number
+  run(milliseconds(5000));
+  EXPECT_EQ(neck_.descriptor(), -1);
+  open(false);
+  run(milliseconds(1500));
+  ASSERT_EQ(told_.size(), 3U);
+  EXPECT_EQ(told_[1], old + ": the device has gone");
+  EXPECT_EQ(told_[2], path() + ": answers again");
+}
+
+TEST_F(NeckTest, a_silent_unit_is_told_once_and_so_is_its_return) {
+  plug();
+  open();
+  run(milliseconds(100));
+  told_.clear();
+  is_silent_ = true;
+  run(milliseconds(20'000));
+  EXPECT_EQ(told_, (std::vector<std::string>{path() + ": the unit does not answer",
+                                             path() + ": is opened anew"}));
+  told_.clear();
+  is_silent_ = false;
+  run(milliseconds(5000));
+  EXPECT_EQ(told_, std::vector<std::string>{path() + ": answers again"});
+}
+
+TEST_F(NeckTest, a_new_rate_opens_the_line_anew) {
+  plug();
+  open();
+  run(milliseconds(100));
+  neck_.set_device(now_, path(), 38400, true);
+  run(milliseconds(1500));
+  EXPECT_EQ(told_.back(), path() + ": answers again");
+}
+
+TEST_F(NeckTest, halts_what_it_has_begun_when_it_leaves) {
+  plug();
+  open();
+  run(milliseconds(100));
+  neck_.command(now_, 2, 0);
+  run(milliseconds(20));
+  neck_.leave();
+  EXPECT_NE(terminal_->read().find("h "), std::string::npos);
+  EXPECT_EQ(neck_.descriptor(), -1);
+}
+
+}  // namespace
+}  // namespace hc::pan_tilt

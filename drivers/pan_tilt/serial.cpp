@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/pan_tilt/serial.h>
+
+#include <fcntl.h>
+#include <linux/serial.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace hc::pan_tilt {
+namespace {
+
+struct Rate {
+  int baud;
+  speed_t code;
+};
+constexpr std::array<Rate, 18> kRates = {{{300, B300},
+                                          {600, B600},
+                                          {1200, B1200},
+                                          {2400, B2400},
+                                          {4800, B4800},
+                                          {9600, B9600},
+                                          {19200, B19200},
+                                          {38400, B38400},
+                                          {57600, B57600},
+                                          {115200, B115200},
+                                          {230400, B230400},
+                                          {460800, B460800},
+                                          {500000, B500000},
+                                          {921600, B921600},
+                                          {1000000, B1000000},
+                                          {2000000, B2000000},
+                                          {3000000, B3000000},
+                                          {4000000, B4000000}}};
+
+Error failure(std::string_view call) {
+  const int number = errno;
+  const Code code = number == ENOENT                                       ? Code::NotFound
+                    : number == EIO || number == ENXIO || number == ENODEV ? Code::Closed
+                    : number == ENOTTY                                     ? Code::Unsupported
+                                                                           : Code::System;
+  if (code == Code::Closed) return {code, "the device has gone"};
+  if (code == Code::Unsupported) return {code, "is no serial line"};
+  return {code, std::string(call) + ": " + std::strerror(number)};
+}
+
+/// Has the kernel hand over bytes as they come; some adapters gather them for 16 ms otherwise. What
+/// cannot do so is none the worse.
+void hurry(int number) {
+  serial_struct settings = {};
+  if (ioctl(number, TIOCGSERIAL, &settings) != 0) return;
+  settings.flags |= ASYNC_LOW_LATENCY;
+  static_cast<void>(ioctl(number, TIOCSSERIAL, &settings));
+}
+
+}  // namespace
+
+Result<Serial> Serial::open(const std::string& device, int baud) {
+  speed_t code = B0;
+  for (const Rate& rate : kRates)
+    if (rate.baud == baud) code = rate.code;
+  if (code == B0)
+    return Error{Code::Unsupported, "there is no rate of " + std::to_string(baud) + " baud"};
+  int number = -1;
+  do {
+    number = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  } while (number < 0 && errno == EINTR);
+  if (number < 0) return failure("open");
+  Serial serial(number);
+  termios settings = {};
+  if (tcgetattr(number, &settings) != 0) return failure("tcgetattr");
+  cfmakeraw(&settings);
+  settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cc[VMIN] = 1;  // so that none is EAGAIN, and 0 that the device has gone
+  settings.c_cc[VTIME] = 0;
+  if (cfsetspeed(&settings, code) != 0 || tcsetattr(number, TCSANOW, &settings) != 0)
+    return failure("tcsetattr");
+  if (tcflush(number, TCIOFLUSH) != 0) return failure("tcflush");
+  hurry(number);
+  return serial;
+}
+
+Serial& Serial::operator=(Serial&& other) noexcept {
+  std::swap(number_, other.number_);
+  return *this;
+}
+
+Serial::~Serial() {
+  if (number_ >= 0) ::close(number_);
+}
+
+Result<std::string_view> Serial::read(std::span<char> room) {
+  const ssize_t got = ::read(number_, room.data(), room.size());
+  if (got > 0) return std::string_view(room.data(), static_cast<std::size_t>(got));
+  if (got == 0) return Error{Code::Closed, "the device has gone"};
+  if (errno == EAGAIN || errno == EINTR) return std::string_view();
+  return failure("read");
+}
+
+Status Serial::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(number_, bytes.data(), bytes.size());
+    if (put > 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(put));
+      continue;
+    }
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0 && errno != EAGAIN) return failure("write");
+    return Error{Code::System, "takes no more bytes"};
+  }
+  return {};
+}
+
+}  // namespace hc::pan_tilt

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A serial line: eight bits, no parity, one stop bit, no flow control, never waiting.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <hc/base/result.h>
+
+namespace hc::pan_tilt {
+
+/// An open tty, closed with its life. Errors do not say which it is.
+class Serial {
+ public:
+  /// @param device  "/dev/ttyUSB0", or a pseudo-terminal's path. @param baud  300 … 4000000.
+  ///
+  /// Errors: NotFound (no such device), Unsupported (a rate that there is not; no serial line),
+  /// System.
+  static Result<Serial> open(const std::string& device, int baud);
+  Serial(Serial&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Serial& operator=(Serial&& other) noexcept;
+  ~Serial();
+
+  /// For poll().
+  [[nodiscard]] int descriptor() const { return number_; }
+
+  /// Reads what has come; none is nothing.
+  ///
+  /// Errors: Closed (the device has gone), System.
+  Result<std::string_view> read(std::span<char> room);
+
+  /// Writes all at once.
+  ///
+  /// Errors: Closed (the device has gone), System (it takes no more: nobody reads at its end).
+  Status write(std::string_view bytes);
+
+ private:
+  explicit Serial(int number) : number_(number) {}
+
+  int number_;
+};
+
+}  // namespace hc::pan_tilt
