@@ -1,0 +1,315 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The driver of a pan-tilt unit against a simulated one, with every fault that the line can have."""
+
+import math
+import os
+import signal
+import socket
+import threading
+import time
+import unittest
+
+from harness import BUILD, Pipes, wait_until
+
+STEP = math.radians(185.1428 / 3600)  # of the unit [rad]
+PROGRAMS = os.path.join(BUILD, "libexec/hypercolumn/")
+
+
+class Reader:
+    """Messages in text that come out of a link, as they come: (time, coord, rows)."""
+
+    def __init__(self, name):
+        self.socket = connected(name)
+        self.messages = []
+        threading.Thread(target=self.read, daemon=True).start()
+
+    def read(self):
+        stream = self.socket.makefile()
+        while line := self.line(stream):
+            header = [int(word) for word in line.split()]
+            rows = [[float(w) for w in self.line(stream).split()] for _ in range(header[10])]
+            if all(rows):
+                self.messages.append((header[5], header[8], rows))
+
+    @staticmethod
+    def line(stream):
+        try:
+            return stream.readline()
+        except ConnectionResetError:  # the writer was killed
+            return ""
+
+    def wait(self, count=1):
+        """The message that is so many behind those that have come."""
+        end = len(self.messages) + count
+        wait_until(lambda: len(self.messages) >= end)
+        return self.messages[end - 1]
+
+    def angles(self):
+        """Tilt and pan of all messages."""
+        return [rows[0][1:] for _, _, rows in self.messages]
+
+
+def connected(name):
+    link = socket.socket(socket.AF_UNIX)
+
+    def tries():
+        try:
+            link.connect("\0" + name)
+            return True
+        except ConnectionRefusedError:
+            return False
+
+    wait_until(tries)
+    return link
+
+
+class Program:
+    """A module that runs: its lines, and a link to tell it."""
+
+    def __init__(self, process, control):
+        self.process, self.lines = process, []
+        threading.Thread(target=self.read, daemon=True).start()
+        self.control = connected(control)
+
+    def read(self):
+        for line in self.process.stderr:
+            self.lines.append(line.decode().rstrip())
+
+    def set(self, assignment):
+        text = "set " + assignment
+        self.control.sendall(b"1 1 0 0 8 0 60100 0 0 %d 1\n%s\n" % (len(text), text.encode()))
+
+    def wait_line(self, part, begin=0):
+        wait_until(lambda: any(part in line for line in self.lines[begin:]))
+
+    def count(self, part):
+        return sum(part in line for line in self.lines)
+
+
+class PanTilt(Pipes):
+    def setUp(self):
+        super().setUp()
+        self.environment["TMPDIR"] = self.folder.name
+        self.name = os.path.basename(self.folder.name) + "-"
+
+    def start_fake(self, words=""):
+        name = self.name
+        self.fake = Program(
+            self.start(
+                "exec %sfake_pan_tilt --control unix-listen:@%scontrol_fake"
+                " --out 'device=unix-listen:@%sdevice?stay=1&keep=latest'"
+                " --out 'motion=unix-listen:@%smotion?stay=1&keep=latest' %s"
+                % (PROGRAMS, name, name, name, words)
+            ),
+            name + "control_fake",
+        )
+        self.motion = Reader(name + "motion")
+
+    def start_neck(self, words=""):
+        name = self.name
+        self.neck = Program(
+            self.start(
+                "exec %span_tilt --control unix-listen:@%scontrol_neck"
+                " --in 'device=unix:@%sdevice?reconnect=600' --in command=unix-listen:@%scommand"
+                " --out 'gaze=unix-listen:@%sgaze?stay=1&keep=latest'"
+                " --out 'pose=unix-listen:@%spose?stay=1&keep=latest' %s"
+                % (PROGRAMS, name, name, name, name, name, words)
+            ),
+            name + "control_neck",
+        )
+        self.gaze = Reader(name + "gaze")
+        self.pose = Reader(name + "pose")
+        self.commands = connected(name + "command")
+        self.gaze.wait()
+
+    def start_both(self, neck="", fake=""):
+        self.start_fake(fake)
+        self.start_neck(neck)
+
+    def command(self, pan, tilt, seconds=0.0, timed=True):
+        """Commands a gaze as one who lives so many seconds later."""
+        stamp = time.time_ns() + int(seconds * 1e9) if timed else 0
+        row = "0 %r %r" % (tilt, pan)
+        self.commands.sendall(b"1 1 0 0 8 %d 20390 0 13 1 1\n%s\n" % (stamp, row.encode()))
+
+    def wait_motion(self, pan, tilt=0.0):
+        def is_there():
+            now_tilt, now_pan = self.motion.angles()[-1]
+            return abs(now_pan - pan) < STEP and abs(now_tilt - tilt) < STEP
+
+        wait_until(is_there)
+
+    def wait_rest(self):
+        """Waits until the unit stands still; gives its pan."""
+
+        def stands():
+            begin = len(self.motion.messages)
+            self.motion.wait(20)
+            last = [pan for _, pan in self.motion.angles()[begin:]]
+            return min(last) == max(last)
+
+        wait_until(stands)
+        return self.motion.angles()[-1][1]
+
+    def answers_again(self, begin):
+        self.neck.wait_line("answers again", begin)
+        self.gaze.wait(3)
+
+    def test_turns_and_tells_where_it_looks(self):
+        self.start_both("--hold 0", "--pan 0.3 --tilt -0.1")
+        self.assertAlmostEqual(self.gaze.angles()[0][1], 0.3, delta=STEP)
+        self.assertAlmostEqual(self.gaze.angles()[0][0], -0.1, delta=STEP)
+        self.command(-0.5, 0.2)
+        self.wait_motion(-0.5, 0.2)
+        stamp, coord, ((roll, tilt, pan),) = self.gaze.wait(3)
+        self.assertEqual((coord, roll), (13, 0))
+        self.assertAlmostEqual(pan, -0.5, delta=STEP)
+        self.assertAlmostEqual(tilt, 0.2, delta=STEP)
+        self.assertLess(abs(time.time_ns() - stamp), 60e9)
+        wait_until(lambda: self.pose.messages[-1][0] >= stamp)
+        coord, rows = self.pose.messages[-1][1:]
+        self.assertEqual(coord, 2003)
+        forward = [row[0] for row in rows]  # where the head's x axis points to
+        expected = [math.cos(tilt) * math.cos(pan), math.cos(tilt) * math.sin(pan), -math.sin(tilt)]
+        for one, other in zip(forward, expected + [0]):
+            self.assertAlmostEqual(one, other)
+        self.assertEqual([row[3] for row in rows], [0, 0, 0, 1])
+        self.assertAlmostEqual(rows[0][1], -math.sin(pan))
+
+    def test_gaze_on_the_way_is_of_its_time(self):
+        self.start_both("--hold 0 --rate 100", "--bytes_per_second 960")
+        self.command(1.0, 0.0)
+        self.wait_motion(1.0)
+        self.gaze.wait(2)
+        truth = [(stamp, rows[0][2]) for stamp, _, rows in self.motion.messages]
+        errors = []
+        for stamp, _, ((_, _, pan),) in self.gaze.messages:
+            nearest = min(truth, key=lambda each: abs(each[0] - stamp))
+            if abs(nearest[0] - stamp) < 6e6 and 0.1 < pan < 0.9:
+                errors.append(abs(nearest[1] - pan))
+        self.assertGreater(len(errors), 3)
+        # A question of 6 bytes and two answers of 8: 23 ms at 0.9 rad/s.
+        self.assertLess(sorted(errors)[len(errors) // 2], 0.03)
+
+    def test_commands_beyond_the_limits_go_to_the_limit(self):
+        self.start_both("--hold 0 --speed 2.5")
+        self.command(9.0, 9.0, timed=False)
+        self.wait_motion(3090 * STEP, 907 * STEP)
+        self.assertEqual(self.neck.count("refused"), 0)
+
+    def test_stale_commands_and_wrong_ones_are_not_carried_out(self):
+        self.start_both("--hold 0 --age 0.5")
+        self.command(-1.0, 0.0, -30)
+        self.command(-1.0, 0.0, +30)
+        self.command(float("nan"), 0.0)
+        self.command(0.3, 0.0)
+        self.wait_motion(0.3)
+        self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), 0)
+        self.assertEqual(self.neck.count("left out, as others"), 2)
+        self.neck.process.terminate()
+        self.neck.wait_line("left out: 2 of another time, 0 while there was no unit, 1 without")
+        self.assertEqual(self.neck.process.wait(), 0)
+
+    def test_the_unit_stops_when_commands_end(self):
+        self.start_both()
+        self.command(2.5, 0.0)
+        wait_until(lambda: self.motion.angles()[-1][1] > 0.05)
+        self.assertLess(self.wait_rest(), 2.0)
+        self.command(-2.5, 0.0, timed=False)
+        wait_until(lambda: self.motion.angles()[-1][1] < 0)
+        self.assertGreater(self.wait_rest(), -2.0)
+
+    def test_the_unit_stops_when_the_driver_ends(self):
+        self.start_both("--hold 0")
+        self.command(2.5, 0.0)
+        wait_until(lambda: self.motion.angles()[-1][1] > 0.05)
+        self.neck.process.terminate()
+        self.assertEqual(self.neck.process.wait(), 0)
+        self.assertLess(self.wait_rest(), 2.4)
+
+    def test_unplugged_and_plugged_in_again(self):
+        self.start_both("--hold 0")
+        for _ in range(2):
+            begin = len(self.neck.lines)
+            self.fake.set("unplugged=true")
+            wait_until(lambda: len(self.neck.lines) > begin)
+            self.assertRegex(self.neck.lines[begin], "the device has gone|has been taken away")
+            self.command(1.0, 0.0)
+            self.fake.set("unplugged=false")
+            self.answers_again(begin)
+            self.assertLess(max(abs(pan) for _, pan in self.motion.angles()), STEP)
+            self.assertLessEqual(len(self.neck.lines) - begin, 4, self.neck.lines)
+        self.command(0.2, 0.0)
+        self.wait_motion(0.2)
+
+    def test_silent(self):
+        self.start_both("--hold 0.2")
+        self.command(0.1, 0.0)
+        self.wait_motion(0.1)
+        begin = len(self.neck.lines)
+        self.fake.set("silent=true")
+        self.neck.wait_line("does not answer", begin)
+        self.neck.wait_line("opened anew", begin)
+        self.command(1.0, 0.0)
+        self.fake.set("silent=false")
+        self.answers_again(begin)
+        self.assertLess(max(pan for _, pan in self.motion.angles()), 0.1 + STEP)
+        self.assertEqual(len(self.neck.lines) - begin, 4, self.neck.lines)
+
+    def test_late(self):
+        self.start_both("--hold 0")
+        begin = len(self.neck.lines)
+        self.fake.set("answer_delay=0.3")
+        self.gaze.wait(4)
+        self.command(0.2, 0.0)
+        self.wait_motion(0.2)
+        self.assertEqual(self.neck.lines[begin:], [])
+        self.fake.set("answer_delay=0.8")
+        self.neck.wait_line("does not answer", begin)
+        self.fake.set("answer_delay=0")
+        self.answers_again(begin)
+        for tilt, pan in self.gaze.angles():
+            self.assertTrue(-STEP <= pan <= 0.2 + STEP and abs(tilt) <= STEP, (pan, tilt))
+
+    def test_garbage(self):
+        self.start_both("--hold 0")
+        begin = len(self.neck.lines)
+        self.fake.set("garbage=0.02")
+        self.neck.wait_line("garbage", begin)
+        self.gaze.wait(20)
+        self.assertLess(len(self.neck.lines) - begin, 10, self.neck.lines)
+        self.fake.set("garbage=0")
+        self.answers_again(begin)
+        self.command(0.2, 0.0)
+        self.wait_motion(0.2)
+
+    def test_no_device(self):
+        process = self.start("exec %span_tilt --device /dev/null --in - --out gaze.mtp" % PROGRAMS)
+        self.assertIn(b"/dev/null: is no serial line", process.stderr.readline())
+        process.terminate()
+        self.assertEqual(process.wait(), 0)
+
+    def test_either_killed_leaves_nothing_and_is_found_again(self):
+        self.start_both("--hold 0")
+        self.gaze.wait()
+        self.neck.process.send_signal(signal.SIGKILL)
+        self.neck.process.wait()
+        self.start_neck("--hold 0")
+        self.command(0.2, 0.0)
+        self.wait_motion(0.2)
+        begin = len(self.neck.lines)
+        self.fake.process.send_signal(signal.SIGKILL)
+        self.fake.process.wait()
+        self.neck.wait_line("has gone", begin)
+        self.start_fake("--pan -0.4")
+        self.answers_again(begin)
+        self.assertAlmostEqual(self.gaze.angles()[-1][1], -0.4, delta=STEP)
+        for each in self.fake, self.neck:
+            each.process.send_signal(signal.SIGKILL)
+            each.process.wait()
+        self.assertEqual(os.listdir(self.folder.name), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
