@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/marker_finder.h>
+
+#include <algorithm>
+
+#include <opencv2/aruco.hpp>
+
+namespace hc::vision {
+namespace {
+
+namespace aruco = cv::aruco;
+
+// PREDEFINED_DICTIONARY_NAME in OpenCV 4.6, PredefinedDictionaryType in 4.7 and later.
+using DictionaryName = decltype(aruco::DICT_6X6_250);
+
+struct Named {
+  const char* name;
+  DictionaryName number;
+};
+
+constexpr Named kDictionaries[] = {
+    {"4X4_50", aruco::DICT_4X4_50},     {"4X4_100", aruco::DICT_4X4_100},
+    {"4X4_250", aruco::DICT_4X4_250},   {"4X4_1000", aruco::DICT_4X4_1000},
+    {"5X5_50", aruco::DICT_5X5_50},     {"5X5_100", aruco::DICT_5X5_100},
+    {"5X5_250", aruco::DICT_5X5_250},   {"5X5_1000", aruco::DICT_5X5_1000},
+    {"6X6_50", aruco::DICT_6X6_50},     {"6X6_100", aruco::DICT_6X6_100},
+    {"6X6_250", aruco::DICT_6X6_250},   {"6X6_1000", aruco::DICT_6X6_1000},
+    {"7X7_50", aruco::DICT_7X7_50},     {"7X7_100", aruco::DICT_7X7_100},
+    {"7X7_250", aruco::DICT_7X7_250},   {"7X7_1000", aruco::DICT_7X7_1000},
+    {"ARUCO_ORIGINAL", aruco::DICT_ARUCO_ORIGINAL},
+};
+
+/// A dictionary as detectMarkers takes it: OpenCV 4.6 gives a cv::Ptr, 4.7 and later a value.
+template <typename Given>
+cv::Ptr<aruco::Dictionary> pointer_to(const Given& given) {
+  if constexpr (requires { given.get(); })
+    return given;
+  else
+    return cv::makePtr<aruco::Dictionary>(given);
+}
+
+}  // namespace
+
+struct ArucoFinder::Words {
+  cv::Ptr<aruco::Dictionary> dictionary;
+  cv::Ptr<aruco::DetectorParameters> parameters = cv::makePtr<aruco::DetectorParameters>();
+};
+
+ArucoFinder::ArucoFinder(std::unique_ptr<Words> words) : words_(std::move(words)) {}
+ArucoFinder::ArucoFinder(ArucoFinder&&) noexcept = default;
+ArucoFinder& ArucoFinder::operator=(ArucoFinder&&) noexcept = default;
+ArucoFinder::~ArucoFinder() = default;
+
+Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
+  const auto* named = std::find_if(std::begin(kDictionaries), std::end(kDictionaries),
+                                   [&](const Named& each) { return dictionary == each.name; });
+  if (named == std::end(kDictionaries))
+    return Error{Code::NotFound, "there is no ArUco dictionary \"" + dictionary + "\""};
+  auto words = std::make_unique<Words>();
+  // A margin of one cell is closer to its marker than 0.05, the default; it would be taken instead.
+  words->parameters->minMarkerDistanceRate = 0.01;
+  words->dictionary = pointer_to(aruco::getPredefinedDictionary(named->number));
+  return ArucoFinder(std::move(words));
+}
+
+std::vector<Marker> ArucoFinder::find(const cv::Mat& grey) const {
+  std::vector<std::vector<cv::Point2f>> corners;
+  std::vector<int> ids;
+  aruco::detectMarkers(grey, words_->dictionary, corners, ids, words_->parameters);
+  std::vector<Marker> markers;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    Marker marker{MarkerKind::Aruco, ids[i], {}};
+    std::copy_n(corners[i].begin(), 4, marker.corners.begin());
+    refine_corners(grey, marker.corners);
+    // The inside and the outside of an edge may be two markers to OpenCV.
+    const bool is_known = std::any_of(markers.begin(), markers.end(), [&](const Marker& other) {
+      return other.id == marker.id &&
+             cv::norm(other.corners[0] - marker.corners[0]) < marker.mean_side() / 4;
+    });
+    if (!is_known) markers.push_back(marker);
+  }
+  return markers;
+}
+
+}  // namespace hc::vision

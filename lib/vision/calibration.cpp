@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/calibration.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
+namespace {
+
+using Corners = std::vector<cv::Point2f>;
+
+/// A board that is small in its picture is found in one of twice the size.
+bool find_corners(const cv::Mat& picture, const Board& board, Corners& corners) {
+  cv::Mat grey = picture;
+  if (picture.channels() == 3) cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
+  const cv::Size size(board.columns, board.rows);
+  // Where there is surely no board, this says so in a tenth of the time.
+  constexpr int kHow = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  if (!cv::findChessboardCorners(grey, size, corners, kHow | cv::CALIB_CB_FAST_CHECK)) {
+    cv::Mat larger;
+    cv::resize(grey, larger, {}, 2, 2, cv::INTER_LINEAR);
+    if (!cv::findChessboardCorners(larger, size, corners, kHow | cv::CALIB_CB_FAST_CHECK))
+      return false;
+    // The middle of the top left pixel is at (0.5, 0.5) in the larger one.
+    for (auto& corner : corners) corner = (corner - cv::Point2f(0.5F, 0.5F)) * 0.5F;
+  }
+  // The window reaches half a square, so that no other corner is in it.
+  double least = grey.cols;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column + 1 < board.columns; ++column) {
+      const auto at = static_cast<std::size_t>(row * board.columns + column);
+      least = std::min(least, cv::norm(corners[at + 1] - corners[at]));
+    }
+  const int half = std::clamp(static_cast<int>(least / 2), 2, 11);
+  cv::cornerSubPix(grey, corners, {half, half}, {-1, -1},
+                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3});
+  return true;
+}
+
+std::vector<cv::Point3f> object_points(const Board& board) {
+  std::vector<cv::Point3f> points;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column)
+      points.emplace_back(static_cast<float>(column * board.square),
+                          static_cast<float>(row * board.square), 0.0F);
+  return points;
+}
+
+const cv::TermCriteria kUntil(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-7);
+
+struct Points {
+  std::vector<std::vector<cv::Point3f>> object;
+  std::vector<Corners> left, right;
+};
+
+Calibrated solve(const Points& points, cv::Size size, std::vector<double>& errors) {
+  Calibrated result;
+  auto& c = result.calibration;
+  c.size = size;
+  cv::Mat M1, M2, D1, D2, R, T, E, F, per_view;
+  std::vector<cv::Mat> turns, shifts;
+  result.rms_left =
+      cv::calibrateCamera(points.object, points.left, size, M1, D1, turns, shifts, 0, kUntil);
+  result.rms_right =
+      cv::calibrateCamera(points.object, points.right, size, M2, D2, turns, shifts, 0, kUntil);
+  R = cv::Mat::eye(3, 3, CV_64F);
+  T = cv::Mat::zeros(3, 1, CV_64F);
+  c.rms = cv::stereoCalibrate(points.object, points.left, points.right, M1, D1, M2, D2, size, R, T,
+                              E, F, per_view, cv::CALIB_USE_INTRINSIC_GUESS, kUntil);
+  c.M1 = M1;
+  c.M2 = M2;
+  c.D1.assign(D1.begin<double>(), D1.end<double>());
+  c.D2.assign(D2.begin<double>(), D2.end<double>());
+  c.R = R;
+  c.T = cv::Vec3d(T.reshape(1, 3));
+  result.views = points.object.size();
+  errors.clear();
+  for (int view = 0; view < per_view.rows; ++view)
+    errors.push_back(std::hypot(per_view.at<double>(view, 0), per_view.at<double>(view, 1)));
+  return result;
+}
+
+/// Mean difference of the rows of corresponding corners, rectified.
+double epipolar_error(const StereoCalibration& c, const Points& points) {
+  double sum = 0, count = 0;
+  for (std::size_t view = 0; view < points.left.size(); ++view) {
+    Corners left, right;
+    cv::undistortPoints(points.left[view], left, c.M1, c.D1, c.R1, c.P1);
+    cv::undistortPoints(points.right[view], right, c.M2, c.D2, c.R2, c.P2);
+    for (std::size_t i = 0; i < left.size(); ++i) sum += std::abs(left[i].y - right[i].y);
+    count += static_cast<double>(left.size());
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+StereoCalibration ideal_pair(cv::Size size, double focal, double baseline) {
+  StereoCalibration c;
+  const double cx = (size.width - 1) / 2.0, cy = (size.height - 1) / 2.0;
+  c.size = size;
+  c.M1 = c.M2 = {focal, 0, cx, 0, focal, cy, 0, 0, 1};
+  c.T = {-baseline, 0, 0};
+  c.P1 = {focal, 0, cx, 0, 0, focal, cy, 0, 0, 0, 1, 0};
+  c.P2 = c.P1;
+  c.P2(0, 3) = -focal * baseline;
+  c.Q = {1, 0, 0, -cx, 0, 1, 0, -cy, 0, 0, 0, focal, 0, 0, 1 / baseline, 0};
+  return c;
+}
+
+void rectify(StereoCalibration& c) {
+  CV_Assert(c.size.area() > 0);
+  cv::Mat R1, R2, P1, P2, Q;
+  cv::stereoRectify(c.M1, c.D1, c.M2, c.D2, c.size, c.R, c.T, R1, R2, P1, P2, Q,
+                    cv::CALIB_ZERO_DISPARITY, 0, c.size);
+  c.R1 = R1;
+  c.R2 = R2;
+  c.P1 = P1;
+  c.P2 = P2;
+  c.Q = Q;
+}
+
+std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right,
+                                    const Board& board) {
+  BoardView view;
+  if (!find_corners(left, board, view.left) || !find_corners(right, board, view.right))
+    return std::nullopt;
+  // Either end of a board may come first: the same one in both pictures.
+  const cv::Point2f along_left = view.left.back() - view.left.front();
+  const cv::Point2f along_right = view.right.back() - view.right.front();
+  if (along_left.dot(along_right) < 0) std::reverse(view.right.begin(), view.right.end());
+  return view;
+}
+
+double difference(const BoardView& a, const BoardView& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.left.size(); ++i)
+    sum += cv::norm(a.left[i] - b.left[i]) + cv::norm(a.right[i] - b.right[i]);
+  return sum / static_cast<double>(2 * a.left.size());
+}
+
+Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& board, cv::Size size) {
+  if (board.columns < 3 || board.rows < 3 || board.columns == board.rows || !(board.square > 0))
+    return Error{Code::Usage,
+                 "a board has 3 corners a row and a column at least, and not the same number"};
+  if (views.size() < kLeastViews)
+    return Error{Code::Usage, std::to_string(views.size()) + " views of the board, at least " +
+                                  std::to_string(kLeastViews) + " are needed"};
+  Points points;
+  for (const auto& view : views) {
+    points.object.push_back(object_points(board));
+    points.left.push_back(view.left);
+    points.right.push_back(view.right);
+  }
+  try {
+    std::vector<double> errors;
+    Calibrated result = solve(points, size, errors);
+    const auto least = std::max(kLeastViews, (2 * views.size() + 2) / 3);
+    constexpr double kOutlier = 3;  // times the median
+    while (points.object.size() > least) {
+      auto sorted = errors;
+      std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+      const auto worst = std::max_element(errors.begin(), errors.end()) - errors.begin();
+      if (errors[static_cast<std::size_t>(worst)] <= kOutlier * sorted[sorted.size() / 2]) break;
+      points.object.erase(points.object.begin() + worst);
+      points.left.erase(points.left.begin() + worst);
+      points.right.erase(points.right.begin() + worst);
+      result = solve(points, size, errors);
+    }
+    rectify(result.calibration);
+    // What is written has to be what can be read.
+    auto checked = calibration_of(text_of(result.calibration));
+    if (!checked) return checked.error();
+    result.epipolar = epipolar_error(result.calibration, points);
+    return result;
+  } catch (const cv::Exception& e) {
+    return Error{Code::Malformed, "the views do not determine the cameras: " + e.err};
+  }
+}
+
+}  // namespace hc::vision

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/marker.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
+namespace {
+
+/// The grey level between pixels; what is outside is as the rim.
+double level(const cv::Mat& grey, double x, double y) {
+  x = std::clamp(x, 0.0, grey.cols - 1.001);
+  y = std::clamp(y, 0.0, grey.rows - 1.001);
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const double right_share = x - left, bottom_share = y - top;
+  const auto* above = grey.ptr<std::uint8_t>(top) + left;
+  const auto* below = grey.ptr<std::uint8_t>(top + 1) + left;
+  return (1 - bottom_share) * ((1 - right_share) * above[0] + right_share * above[1]) +
+         bottom_share * ((1 - right_share) * below[0] + right_share * below[1]);
+}
+
+struct Line {
+  cv::Point2d at, along;
+};
+
+/// The edge near a side: the steepest places of rays across it, and a line through them.
+std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d to,
+                              double most) {
+  const cv::Point2d side = to - from;
+  const double length = cv::norm(side);
+  const cv::Point2d along = side / length, across(-along.y, along.x);
+  // Not as far as what is drawn beside the rim.
+  const double reach = std::clamp(0.15 * length, 1.5, most);
+  const int rays = std::clamp(static_cast<int>(length / 2), 6, 40);
+  constexpr double kStep = 0.5;  // along a ray [px]
+  const int steps = static_cast<int>(std::ceil(reach / kStep));
+  std::vector<cv::Point2d> places;
+  std::vector<double> slopes(static_cast<std::size_t>(2 * steps + 1));
+  double direction = 0;  // of all slopes: the rim is darker, or lighter, all along
+  std::vector<std::pair<double, double>> found;  // where along the side, and how far across it
+  for (int pass : {0, 1}) {
+    for (int ray = 0; ray < rays; ++ray) {
+      // Where two sides meet an edge is round.
+      const double share = 0.12 + 0.76 * (ray + 0.5) / rays;
+      const cv::Point2d middle = from + share * side;
+      for (int i = -steps; i <= steps; ++i) {
+        const cv::Point2d out = middle + (i * kStep + 1) * across, in = out - 2 * across;
+        slopes[static_cast<std::size_t>(i + steps)] =
+            level(grey, out.x, out.y) - level(grey, in.x, in.y);
+      }
+      if (pass == 0) {
+        const auto [least, most] = std::minmax_element(slopes.begin(), slopes.end());
+        direction += *most > -*least ? *most : *least;
+        continue;
+      }
+      for (auto& slope : slopes) slope *= direction;
+      const auto best = std::max_element(slopes.begin(), slopes.end()) - slopes.begin();
+      constexpr double kLeastSlope = 8;  // grey levels over two pixels
+      if (best == 0 || best == 2 * steps || slopes[static_cast<std::size_t>(best)] < kLeastSlope)
+        continue;
+      // The centre of the slope's peak, which noise moves less than its top.
+      const double half = slopes[static_cast<std::size_t>(best)] / 2;
+      double sum = 0, moment = 0;
+      for (auto i = best; i >= 0 && slopes[static_cast<std::size_t>(i)] > half; --i) {
+        sum += slopes[static_cast<std::size_t>(i)] - half;
+        moment += (slopes[static_cast<std::size_t>(i)] - half) * static_cast<double>(i);
+      }
+      for (auto i = best + 1; i <= 2 * steps && slopes[static_cast<std::size_t>(i)] > half; ++i) {
+        sum += slopes[static_cast<std::size_t>(i)] - half;
+        moment += (slopes[static_cast<std::size_t>(i)] - half) * static_cast<double>(i);
+      }
+      found.emplace_back(share * length, (moment / sum - steps) * kStep);
+    }
+    if (pass == 0) direction = direction > 0 ? 1 : -1;
+  }
+  if (found.size() < 4) return std::nullopt;
+  // Huber's line, by weights; what is far off is another edge.
+  double slope = 0, offset = 0;
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    double w = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const auto& [s, d] : found) {
+      const double off = std::abs(d - offset - slope * s);
+      const double weight = iteration == 0 ? 1 : 1 / std::max(0.15, off);
+      w += weight;
+      x += weight * s;
+      y += weight * d;
+      xx += weight * s * s;
+      xy += weight * s * d;
+    }
+    const double scatter = xx * w - x * x;
+    if (!(scatter > 0)) return std::nullopt;
+    slope = (xy * w - x * y) / scatter;
+    offset = (y - slope * x) / w;
+  }
+  return Line{from + offset * across, along + slope * across};
+}
+
+std::optional<cv::Point2d> meet(const Line& a, const Line& b) {
+  const double turned = a.along.cross(b.along);
+  if (std::abs(turned) < 1e-6) return std::nullopt;
+  return a.at + (b.at - a.at).cross(b.along) / turned * a.along;
+}
+
+}  // namespace
+
+double Marker::mean_side() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) sum += cv::norm(corners[i] - corners[(i + 1) % 4]);
+  return sum / 4;
+}
+
+cv::Mat grey_of(const cv::Mat& picture) {
+  if (picture.channels() == 1) return picture;
+  cv::Mat grey;
+  cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
+  return grey;
+}
+
+bool refine_corners(const cv::Mat& grey, std::array<cv::Point2d, 4>& corners, double reach) {
+  std::array<Line, 4> sides;
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto edge = edge_near(grey, corners[i], corners[(i + 1) % 4], reach);
+    if (!edge) return false;
+    sides[i] = *edge;
+  }
+  auto refined = corners;
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto corner = meet(sides[(i + 3) % 4], sides[i]);
+    // Farther is another corner.
+    if (!corner || cv::norm(*corner - corners[i]) > 2 * reach) return false;
+    refined[i] = *corner;
+  }
+  corners = refined;
+  return true;
+}
+
+std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camera& camera) {
+  const auto& p = camera.pinhole;
+  const cv::Matx33d M(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1);
+  const double half = side / 2;
+  // OpenCV's order and frame, in which y is up and z comes out of the plate.
+  const std::vector<cv::Point3d> square = {
+      {-half, half, 0}, {half, half, 0}, {half, -half, 0}, {-half, -half, 0}};
+  const std::vector<cv::Point2d> seen(marker.corners.begin(), marker.corners.end());
+  std::vector<cv::Mat> turns, shifts;
+  try {
+    cv::solvePnPGeneric(square, seen, M, camera.distortion, turns, shifts, false,
+                        cv::SOLVEPNP_IPPE_SQUARE);
+    // OpenCV's IPPE fails on a square that faces the camera: this one is a third candidate.
+    cv::Mat turn, shift;
+    if (cv::solvePnP(square, seen, M, camera.distortion, turn, shift, false,
+                     cv::SOLVEPNP_ITERATIVE)) {
+      turns.push_back(turn);
+      shifts.push_back(shift);
+    }
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+  std::optional<MarkerPose> best;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    cv::Mat turn = turns[i], shift = shifts[i];
+    if (!cv::checkRange(turn) || !cv::checkRange(shift) || shift.at<double>(2) <= 0) continue;
+    cv::solvePnPRefineLM(square, seen, M, camera.distortion, turn, shift);
+    std::vector<cv::Point2d> projected;
+    cv::projectPoints(square, turn, shift, M, camera.distortion, projected);
+    double squares = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const cv::Point2d off = projected[k] - seen[k];
+      squares += off.dot(off);
+    }
+    const double error = std::sqrt(squares / 4);
+    if (!std::isfinite(error) || shift.at<double>(2) <= 0 || (best && best->error <= error))
+      continue;
+    cv::Matx33d R;
+    cv::Rodrigues(turn, R);
+    best = MarkerPose{R * cv::Matx33d(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                      {shift.at<double>(0), shift.at<double>(1), shift.at<double>(2)},
+                      error};
+  }
+  return best;
+}
+
+}  // namespace hc::vision

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/rectifier.h>
+
+#include <algorithm>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
+
+Result<Rectifier> Rectifier::make(const StereoCalibration& calibration, Eye eye, cv::Size size) {
+  const auto& c = calibration;
+  if (c.size.area() > 0 && c.size != size)
+    return Error{Code::Unsupported, "a picture of " + std::to_string(size.width) + " x " +
+                                        std::to_string(size.height) + ", the calibration is for " +
+                                        std::to_string(c.size.width) + " x " +
+                                        std::to_string(c.size.height)};
+  const bool is_left = eye == Eye::Left;
+  const auto& M = is_left ? c.M1 : c.M2;
+  const auto& D = is_left ? c.D1 : c.D2;
+  const auto& R = is_left ? c.R1 : c.R2;
+  const cv::Matx33d P = (is_left ? c.P1 : c.P2).get_minor<3, 3>(0, 0);
+  Rectifier rectifier;
+  rectifier.size_ = size;
+  const bool is_straight = std::all_of(D.begin(), D.end(), [](double k) { return k == 0; });
+  if (is_straight && R == cv::Matx33d::eye() && P == M) return rectifier;
+  cv::initUndistortRectifyMap(M, D, R, P, size, CV_16SC2, rectifier.whole_, rectifier.part_);
+  return rectifier;
+}
+
+void Rectifier::rectify(const cv::Mat& picture, cv::Mat& rectified) const {
+  CV_Assert(picture.size() == size_);
+  if (whole_.empty())
+    picture.copyTo(rectified);
+  else
+    cv::remap(picture, rectified, whole_, part_, cv::INTER_LINEAR);
+}
+
+}  // namespace hc::vision

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The largest blob of a colour.
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include <hc/adapter/opencv.h>
+#include <hc/node/module.h>
+#include <vision/blob.h>
+
+int main(int argc, char** argv) {
+  hc::Module module{"blob", "Finds the largest blob of a colour in pictures."};
+  auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "pictures");
+  auto point = module.input("point", hc::position<double>(),
+                            "x, y in the next picture [px]: the colour there is the one from then "
+                            "on, until the parameter hue is changed");
+  auto target = module.output("target", hc::position<double>(),
+                              "x, y of the blob's middle, its radius [px], in the coordinate "
+                              "system of the picture; nothing while there is none");
+  auto area = module.output("area", hc::table<double>(), "area of the blob [px²]");
+  auto hue = module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue",
+                              {.least = 0, .most = 1});
+  auto hue_width = module.parameter("hue_width", 0.05, "", "how far a pixel's may be from it",
+                                    {.least = 0, .most = 0.5});
+  auto saturation = module.parameter("saturation", 0.5, "", "least saturation of a pixel",
+                                     {.least = 0, .most = 1});
+  auto value =
+      module.parameter("value", 0.2, "", "least value of a pixel", {.least = 0, .most = 1});
+  auto least_area = module.parameter("least_area", 60.0, "px²", "a smaller blob is none",
+                                     {.least = 0, .most = 1e9});
+
+  std::optional<hc::vision::BlobFinder> finder;
+  std::optional<cv::Point2d> pointed;                   // at the next picture
+  std::optional<hc::vision::BlobColour> taken;          // by pointing
+  double hue_then = 0;                                  // when it was taken
+  auto take = [&](const cv::Mat& picture) {
+    const cv::Point at(static_cast<int>(std::lround(pointed->x)),
+                       static_cast<int>(std::lround(pointed->y)));
+    pointed.reset();
+    char line[120];
+    if (!cv::Rect(0, 0, picture.cols, picture.rows).contains(at)) {
+      module.log("point: there is no such pixel");
+      return;
+    }
+    auto colour = hc::vision::colour_at(picture, at);
+    if (!colour) {
+      std::snprintf(line, sizeof line, "point: there is no colour at %d, %d", at.x, at.y);
+    } else {
+      colour->hue_width = *hue_width;
+      taken = colour;
+      hue_then = *hue;
+      std::snprintf(line, sizeof line, "point: hue %.3f, saturation %.2f and value %.2f at least",
+                    colour->hue, colour->least_saturation, colour->least_value);
+    }
+    module.log(line);
+  };
+  module.on(point, [&](const auto& message) {
+    auto numbers = message.matrix().numbers();
+    constexpr double kFar = 1e6;
+    if (numbers.empty() || !(std::abs(numbers[0]) < kFar) || !(std::abs(numbers[1]) < kFar))
+      module.log("point: there is no such pixel");
+    else
+      pointed = {numbers[0], numbers[1]};
+  });
+  module.on(image, [&](const auto& message) {
+    const cv::Mat picture = hc::value_or_end(hc::as_mat(message));
+    if (pointed) take(picture);
+    if (taken && *hue != hue_then) taken.reset();
+    const auto colour =
+        taken.value_or(hc::vision::BlobColour{*hue, *hue_width, *saturation, *value});
+    if (!finder || !(finder->colour() == colour)) finder.emplace(colour);
+    const auto blob = finder->find(picture, *least_area);
+    if (!blob) return;
+    auto position = hc::position(blob->x, blob->y, blob->radius);
+    position.header.coord = message.header.coord;
+    target.send(position);
+    area.send(hc::table({blob->area}));
+  });
+  return module.run(argc, argv);
+}

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the markers are that an eye sees.
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <hc/adapter/opencv.h>
+#include <hc/node/module.h>
+#include <vision/calibration.h>
+#include <vision/marker.h>
+#include <vision/marker_finder.h>
+
+#include "names.h"
+
+namespace {
+
+using hc::vision::Camera;
+using hc::vision::Marker;
+
+constexpr std::int32_t kLeftEye = 4, kRightEye = 5;
+constexpr std::int32_t kRightImage = 8, kLeftRectified = 9, kRightRectified = 10;
+
+/// A camera, and the turn from its pictures' axes to those of its eye.
+struct View {
+  Camera camera;
+  cv::Matx33d R_eye_camera = cv::Matx33d::eye();
+};
+
+/// What took pictures of a coordinate system (spec/mtp-1.md, R44), by a calibration.
+View view_of(const hc::vision::StereoCalibration& c, std::int32_t coord) {
+  const bool is_right = coord == kRightImage || coord == kRightRectified;
+  if (coord == kLeftRectified || coord == kRightRectified) {
+    const auto& P = is_right ? c.P2 : c.P1;
+    return {{{P(0, 0), P(1, 1), P(0, 2), P(1, 2)}, {}}, (is_right ? c.R2 : c.R1).t()};
+  }
+  const auto& M = is_right ? c.M2 : c.M1;
+  return {{{M(0, 0), M(1, 1), M(0, 2), M(1, 2)}, is_right ? c.D2 : c.D1}};
+}
+
+struct Found {
+  Marker marker;
+  double side = 0;
+  hc::vision::MarkerPose pose;
+  std::int32_t frame = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"marker", "Finds ArUco, AprilTag and coloured square markers, and their poses."};
+  auto image = module.input("image", hc::any_of(hc::rgb_image<std::uint8_t>(),
+                                                hc::intensity_image<std::uint8_t>()),
+                            "picture of an eye; of the left one unless its coordinate system is "
+                            "the right one's");
+  auto poses = module.output("poses", hc::transformation<double>(4, 4),
+                             "T_eye_marker, one a marker: x right, y down, z into the plate as "
+                             "seen by who looks at it, origin in its middle [m]");
+  auto markers = module.output(
+      "markers", hc::table<double>(),
+      "12 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
+      "side [m], x y z [m] and qx qy qz qw in the eye, reprojection error, mean side [px]");
+  auto frames = module.parameter("marker_frames", "", "",
+                                 "numbers of markers' frames, as in \"aruco:23=101 colour:300=103\"");
+  auto sides = module.parameter("sides", "", "m", "of single markers, as in \"aruco:23=0.18\"");
+  auto side = module.parameter("side", 0.1, "m", "of all other markers' black or coloured square",
+                               {.least = 1e-4, .most = 100});
+  auto use_aruco = module.parameter("aruco", true, "", "look for ArUco markers");
+  auto dictionary = module.parameter("dictionary", "6X6_250", "",
+                                     "of the ArUco markers, as 4X4_50 or ARUCO_ORIGINAL",
+                                     {.fixed = true});
+  auto use_apriltag = module.parameter("apriltag", true, "", "look for AprilTags (36h11)");
+  auto decimate = module.parameter(
+      "decimate", 1.0, "", "AprilTags: 2 is three times as fast, and misses some",
+      {.least = 1, .most = 8, .fixed = true});
+  auto use_colour = module.parameter("colour", true, "", "look for coloured squares on white");
+  auto file = module.parameter("calibration_file", "", "",
+                               "what stereo_calibration wrote; without it focal, cx, cy hold",
+                               {.fixed = true});
+  auto focal = module.parameter("focal", 800.0, "px", "focal length", {.least = 1e-3, .most = 1e6});
+  auto cx = module.parameter("cx", -1.0, "px", "where the optical axis is, -1: in the middle",
+                             {.least = -1, .most = 65535});
+  auto cy = module.parameter("cy", -1.0, "px", "the same downwards", {.least = -1, .most = 65535});
+
+  std::optional<hc::vision::StereoCalibration> calibration;
+  std::optional<hc::vision::ArucoFinder> aruco;
+  std::optional<hc::vision::AprilTagFinder> apriltag;
+  std::string frames_read, sides_read;
+  std::vector<NamedMarker> frame_names, side_names;
+  auto read_parameters = [&] {
+    // They may be set while the module runs.
+    if (frames_read != *frames)
+      frame_names = hc::value_or_end(read_names(frames_read = *frames, 1, 999, true));
+    if (sides_read != *sides)
+      side_names = hc::value_or_end(read_names(sides_read = *sides, 1e-4, 100, false));
+  };
+  module.on_start([&] {
+    read_parameters();
+    aruco = hc::value_or_end(hc::vision::ArucoFinder::make(*dictionary));
+    apriltag.emplace(*decimate);
+    if (!file->empty()) calibration = hc::value_or_end(hc::vision::read_calibration(*file));
+  });
+
+  auto look = [&](const cv::Mat& picture) {
+    const cv::Mat grey = hc::vision::grey_of(picture);
+    std::vector<Marker> all;
+    auto add = [&](const std::vector<Marker>& some) {
+      all.insert(all.end(), some.begin(), some.end());
+    };
+    if (*use_aruco) add(aruco->find(grey));
+    if (*use_apriltag) add(apriltag->find(grey));
+    if (*use_colour && picture.channels() == 3) add(hc::vision::find_colour_markers(picture));
+    return all;
+  };
+  auto send_poses = [&](const std::vector<Found>& all, std::int32_t eye) {
+    for (const auto& found : all) {
+      auto draft = poses.loan(4, 4);
+      auto numbers = draft.matrix().numbers();
+      for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+          numbers[static_cast<std::size_t>(4 * row + column)] =
+              row == 3 ? (column == 3 ? 1 : 0)
+                       : (column == 3 ? found.pose.t[row] : found.pose.R(row, column));
+      if (found.frame != 0) draft.header.coord = 1000 * eye + found.frame;
+      poses.send(std::move(draft));
+    }
+  };
+  auto send_table = [&](const std::vector<Found>& all) {
+    constexpr std::size_t kColumns = 12;
+    auto draft = markers.loan(kColumns, static_cast<std::int32_t>(all.size()));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto& [marker, metres, pose, frame] = all[i];
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(pose.R.val);
+      Eigen::Quaterniond q(Eigen::Matrix3d{R});
+      if (q.w() < 0) q.coeffs() *= -1;
+      const double row[kColumns] = {static_cast<double>(marker.kind), double(marker.id), metres,
+                                    pose.t[0], pose.t[1], pose.t[2], q.x(), q.y(), q.z(), q.w(),
+                                    pose.error, marker.mean_side()};
+      std::copy(std::begin(row), std::end(row), draft.matrix().row(i).begin());
+    }
+    markers.send(std::move(draft));
+  };
+
+  module.on(image, [&](const hc::Message& message) {
+    read_parameters();
+    const cv::Mat picture = hc::value_or_end(hc::as_mat(message));
+    if (picture.empty()) return;
+    const auto& header = message.header;
+    View view{{{*focal, *focal, *cx < 0 ? (picture.cols - 1) / 2.0 : *cx,
+                *cy < 0 ? (picture.rows - 1) / 2.0 : *cy},
+               {}}};
+    if (calibration) {
+      if (calibration->size.area() > 0 && calibration->size != picture.size())
+        throw hc::ModuleError("the calibration is for pictures of another size");
+      view = view_of(*calibration, header.coord);
+    }
+    std::vector<Found> all;
+    for (auto& marker : look(picture)) {
+      Found found{marker, *side, {}, 0};
+      const auto its_side = find_name(side_names, marker.kind, marker.id);
+      const auto its_frame = find_name(frame_names, marker.kind, marker.id);
+      if (its_side) found.side = its_side->value;
+      if (its_frame) found.frame = static_cast<std::int32_t>(its_frame->value);
+      // A hue as it is named, and not as the light has made it.
+      if (its_frame || its_side) found.marker.id = its_frame ? its_frame->id : its_side->id;
+      auto pose = hc::vision::pose_of(marker, found.side, view.camera);
+      if (!pose) continue;
+      pose->R = view.R_eye_camera * pose->R;
+      pose->t = view.R_eye_camera * pose->t;
+      found.pose = *pose;
+      all.push_back(found);
+    }
+    if (all.empty()) return;
+    const bool is_right = header.coord == kRightImage || header.coord == kRightRectified;
+    if (poses.linked()) send_poses(all, is_right ? kRightEye : kLeftEye);
+    if (markers.linked()) send_table(all);
+  });
+  return module.run(argc, argv);
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures of both eyes, rectified.
+#include <optional>
+
+#include <hc/adapter/opencv.h>
+#include <hc/node/module.h>
+#include <vision/calibration.h>
+#include <vision/rectifier.h>
+
+namespace {
+
+constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kLeftRectified = 9, kRightRectified = 10;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using hc::vision::Eye, hc::vision::Rectifier;
+  hc::Module module{"rectify", "Turns the pictures of two cameras into a rectified pair."};
+  auto left =
+      module.input("left", hc::rgb_image<std::uint8_t>().in(kLeftImage), "picture of the left eye");
+  auto right = module.input("right", hc::rgb_image<std::uint8_t>().in(kRightImage),
+                            "picture of the right eye");
+  auto left_rectified = module.output("left", hc::rgb_image<std::uint8_t>().in(kLeftRectified),
+                                      "rectified picture of the left eye");
+  auto right_rectified = module.output("right", hc::rgb_image<std::uint8_t>().in(kRightRectified),
+                                       "rectified picture of the right eye");
+  auto intrinsics = module.output("intrinsics", hc::table<double>(),
+                                  "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
+                                  "the first picture and then once a second");
+  auto file = module.parameter("calibration_file", "", "",
+                               "what stereo_calibration wrote; without it an ideal pair is assumed",
+                               {.positional = true, .fixed = true});
+  auto focal = module.parameter("focal", 800.0, "px", "focal length of an ideal pair",
+                                {.least = 1e-3, .most = 1e6, .fixed = true});
+  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes of an ideal pair",
+                                   {.least = 1e-6, .most = 1000, .fixed = true});
+
+  std::optional<hc::vision::StereoCalibration> calibration;
+  std::optional<Rectifier> rectifiers[2];
+  std::int64_t time = 0;  // of the last picture
+  auto tell = [&] {
+    if (!calibration || time == 0) return;
+    const auto camera = calibration->rectified();
+    auto numbers =
+        hc::table({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()});
+    numbers.header.time = time;
+    intrinsics.send(numbers);
+  };
+  auto rectify = [&](const auto& picture, auto& output, Eye eye) {
+    const cv::Size size(picture.header.width, picture.header.height);
+    auto& rectifier = rectifiers[eye == Eye::Left ? 0 : 1];
+    if (!rectifier || rectifier->size() != size) {
+      if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, *baseline);
+      rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
+    }
+    const bool is_first = time == 0;
+    time = picture.header.time;
+    if (is_first) tell();
+    if (!output.linked()) return;
+    auto draft = output.loan(size.width, size.height);
+    cv::Mat rectified = hc::value_or_end(hc::as_mat(draft));
+    rectifier->rectify(hc::value_or_end(hc::as_mat(picture)), rectified);
+    output.send(std::move(draft));
+  };
+  module.on_start([&] {
+    if (!file->empty()) calibration = hc::value_or_end(hc::vision::read_calibration(*file));
+  });
+  module.on(left, [&](const auto& picture) { rectify(picture, left_rectified, Eye::Left); });
+  module.on(right, [&](const auto& picture) { rectify(picture, right_rectified, Eye::Right); });
+  module.every(std::chrono::seconds(1), tell);
+  return module.run(argc, argv);
+}
