@@ -147,7 +147,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
     return Error{Code::Usage,
                  "a board has 3 corners a row and a column at least, and not the same number"};
   if (views.size() < kLeastViews)
-    return Error{Code::Usage, std::to_string(views.size()) + " views of the board, at least " +
+    return Error{Code::NotFound, std::to_string(views.size()) + " views of the board, at least " +
                                   std::to_string(kLeastViews) + " are needed"};
   Points points;
   for (const auto& view : views) {
@@ -158,6 +158,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
   try {
     std::vector<double> errors;
     Calibrated result = solve(points, size, errors);
+    const double rms_all = result.calibration.rms;
     const auto least = std::max(kLeastViews, (2 * views.size() + 2) / 3);
     constexpr double kOutlier = 3;  // times the median
     while (points.object.size() > least) {
@@ -174,6 +175,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
     // What is written has to be what can be read.
     auto checked = calibration_of(text_of(result.calibration));
     if (!checked) return checked.error();
+    result.rms_all = rms_all;
     result.epipolar = epipolar_error(result.calibration, points);
     return result;
   } catch (const cv::Exception& e) {

@@ -89,6 +89,7 @@ double difference(const BoardView& a, const BoardView& b);
 struct Calibrated {
   StereoCalibration calibration;
   std::size_t views = 0;     ///< that were used
+  double rms_all = 0;        ///< reprojection error before views were left out [px]
   double rms_left = 0;       ///< reprojection error of the left camera alone [px]
   double rms_right = 0;      ///< [px]
   double epipolar = 0;       ///< mean distance of corresponding rows, rectified [px]
@@ -99,7 +100,7 @@ inline constexpr std::size_t kLeastViews = 3;  ///< that a calibration takes
 /// Finds the geometry of two cameras: each alone, then both together. Views whose error is more
 /// than three times the median's are left out, as long as two thirds stay.
 ///
-/// Errors: Usage (fewer than kLeastViews; a board that is not so); Malformed (views that do not
+/// Errors: NotFound (fewer than kLeastViews); Usage (a board that is not so); Malformed (views that do not
 /// determine the cameras, as when all are the same).
 /// Cost: 0.1 to 1 s.
 /// Source: Zhang, A Flexible New Technique for Camera Calibration, 2000 (as in OpenCV).

@@ -56,9 +56,9 @@ std::optional<Quad> quad_of(const std::vector<cv::Point>& outline, double least_
     if (corners.size() <= 4) break;
   }
   if (corners.size() != 4 || !cv::isContourConvex(corners)) return std::nullopt;
-  // It fills its corners, and the corners fill it: a disc's do not.
+  // Its corners are nearly all of it; four on the rim of a disc are 0.64 of that.
   const double inside = cv::contourArea(corners);
-  if (inside < 0.88 * cv::contourArea(hull)) return std::nullopt;
+  if (inside < 0.8 * cv::contourArea(hull)) return std::nullopt;
   Quad quad;
   std::copy_n(corners.begin(), 4, quad.begin());
   if ((quad[1] - quad[0]).cross(quad[2] - quad[1]) < 0) std::reverse(quad.begin(), quad.end());

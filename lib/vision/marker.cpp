@@ -28,12 +28,12 @@ struct Line {
 
 /// The edge near a side: the steepest places of rays across it, and a line through them.
 std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d to,
-                              double most) {
+                              double farthest) {
   const cv::Point2d side = to - from;
   const double length = cv::norm(side);
   const cv::Point2d along = side / length, across(-along.y, along.x);
   // Not as far as what is drawn beside the rim.
-  const double reach = std::clamp(0.15 * length, 1.5, most);
+  const double reach = std::clamp(0.15 * length, 1.5, farthest);
   const int rays = std::clamp(static_cast<int>(length / 2), 6, 40);
   constexpr double kStep = 0.5;  // along a ray [px]
   const int steps = static_cast<int>(std::ceil(reach / kStep));

@@ -37,13 +37,13 @@ int main(int argc, char** argv) {
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<Rectifier> rectifiers[2];
-  std::int64_t time = 0;  // of the last picture
+  std::optional<std::int64_t> time;  // of the last picture
   auto tell = [&] {
-    if (!calibration || time == 0) return;
+    if (!time) return;
     const auto camera = calibration->rectified();
     auto numbers =
         hc::table({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()});
-    numbers.header.time = time;
+    numbers.header.time = *time;
     intrinsics.send(numbers);
   };
   auto rectify = [&](const auto& picture, auto& output, Eye eye) {
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
       if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, *baseline);
       rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
     }
-    const bool is_first = time == 0;
+    const bool is_first = !time;
     time = picture.header.time;
     if (is_first) tell();
     if (!output.linked()) return;

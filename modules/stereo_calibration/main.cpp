@@ -69,7 +69,8 @@ int main(int argc, char** argv) {
     module.log(line + *file);
   };
   module.on_start([&] {
-    if (*columns == *rows) throw hc::ModuleError("columns and rows are the same number");
+    if (*columns == *rows)
+      throw hc::ModuleError(hc::Error{hc::Code::Usage, "columns and rows are the same number"});
     board = {static_cast<int>(*columns), static_cast<int>(*rows), *square};
   });
   module.on(hc::together(left, right), [&](const hc::Message& l, const hc::Message& r) {
