@@ -81,8 +81,9 @@ int in_front(const State& state, const std::vector<Vector3d>& a, const std::vect
 
 /// Gauss and Newton, by Huber's weights.
 void refine(State& state, const std::vector<Vector3d>& a, const std::vector<Vector3d>& b,
-            double focal) {
+            double focal, bool is_known) {
   constexpr int kSteps = 12;
+  const int freedoms = is_known ? 3 : 5;
   constexpr double kStep = 1e-6;
   double damping = 1e-4;
   auto weigh = [](const Eigen::VectorXd& e) {
@@ -91,17 +92,19 @@ void refine(State& state, const std::vector<Vector3d>& a, const std::vector<Vect
   };
   auto e = errors(state, a, b, focal);
   for (int step = 0; step < kSteps; ++step) {
-    Eigen::Matrix<double, Eigen::Dynamic, 5> J(e.size(), 5);
-    for (int k = 0; k < 5; ++k) {
+    Eigen::MatrixXd J(e.size(), freedoms);
+    for (int k = 0; k < freedoms; ++k) {
       Eigen::Matrix<double, 5, 1> by = Eigen::Matrix<double, 5, 1>::Zero();
       by(k) = kStep;
       J.col(k) = (errors(state.moved(by), a, b, focal) - e) / kStep;
     }
     const Eigen::VectorXd w = weigh(e);
-    Eigen::Matrix<double, 5, 5> H = J.transpose() * w.asDiagonal() * J;
-    const Eigen::Matrix<double, 5, 1> g = J.transpose() * w.asDiagonal() * e;
+    Eigen::MatrixXd H = J.transpose() * w.asDiagonal() * J;
+    const Eigen::VectorXd g = J.transpose() * w.asDiagonal() * e;
     H.diagonal() *= 1 + damping;
-    const State next = state.moved(-H.ldlt().solve(g));
+    Eigen::Matrix<double, 5, 1> by = Eigen::Matrix<double, 5, 1>::Zero();
+    by.head(freedoms) = -H.ldlt().solve(g);
+    const State next = state.moved(by);
     const auto next_e = errors(next, a, b, focal);
     if (next_e.cwiseAbs().cwiseMin(kAgrees * 3).sum() < e.cwiseAbs().cwiseMin(kAgrees * 3).sum()) {
       state = next;
@@ -153,7 +156,7 @@ Matches match(const cv::Mat& a, const cv::Mat& b, const Intrinsics& camera, cons
 }
 
 std::optional<RelativePose> relative_pose(const Matches& matches, const Intrinsics& camera,
-                                          const Matrix3d& R_a_b, const Vector3d& t) {
+                                          const Matrix3d& R_a_b, const Vector3d& t, bool is_known) {
   std::vector<Vector3d> a, b;
   for (std::size_t i = 0; i < matches.a.size(); ++i) {
     auto ray = [&](const cv::Point2f& p) {
@@ -166,7 +169,7 @@ std::optional<RelativePose> relative_pose(const Matches& matches, const Intrinsi
   // Again without those that do not agree.
   for (double within : {8.0, 2.0, kAgrees}) {
     if (a.size() < kLeast) return std::nullopt;
-    refine(state, a, b, camera.focal);
+    refine(state, a, b, camera.focal, is_known);
     const auto e = errors(state, a, b, camera.focal);
     std::vector<Vector3d> kept_a, kept_b;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -178,7 +181,7 @@ std::optional<RelativePose> relative_pose(const Matches& matches, const Intrinsi
     b = std::move(kept_b);
   }
   if (a.size() < kLeast) return std::nullopt;
-  refine(state, a, b, camera.focal);
+  refine(state, a, b, camera.focal, is_known);
   const State other{state.R, -state.t};
   if (in_front(other, a, b) > in_front(state, a, b)) state = other;
   const auto e = errors(state, a, b, camera.focal);

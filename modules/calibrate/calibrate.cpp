@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -29,50 +30,88 @@ hc::Error too_little(const std::string& where) {
   return {hc::Code::NotFound, "too little is seen in both pictures " + where};
 }
 
-/// How one eye sits in the head.
-hc::Result<Matrix3d> sit(const std::vector<HeadView>& views, cv::Mat HeadView::*eye,
-                         const hc::vision::Intrinsics& camera, const Vector3d& middle) {
-  const Matrix3d M0 = optical(), U0 = hc::gaze::rotation(views[0].unit).matrix();
-  Matrix3d sum = Matrix3d::Zero();
-  for (std::size_t k = 1; k < views.size(); ++k) {
-    const Matrix3d U = U0.transpose() * hc::gaze::rotation(views[k].unit).matrix();
-    const Matrix3d guess = M0.transpose() * U * M0;
-    const auto matches = hc::vision::match(views[0].*eye, views[k].*eye, camera, guess);
-    const auto pose =
-        hc::vision::relative_pose(matches, camera, guess, M0.transpose() * (U * middle - middle));
-    if (!pose) return too_little("of turn " + std::to_string(k));
-    sum += turn_of(U) * turn_of(pose->R_a_b).transpose();
+/// A turn of the head as its axes and as an eye tell it: w in the head's frame, u in the eye's.
+struct Turn {
+  Vector3d w, u;
+};
+
+/// One eye.
+struct Eye {
+  cv::Mat HeadView::*picture;
+  Vector3d built;          // where it is in the head if nothing is wrong [m]
+  Matrix3d M = optical();  // how it sits in the head, as far as it is known
+  Vector3d place = built;
+  std::vector<hc::vision::Matches> matches = {};  // of the first stand with each other one
+  std::vector<Turn> turns = {};
+
+  /// The turns from the first stand to each other one, as this eye sees them.
+  hc::Status see(const std::vector<HeadView>& views, const hc::vision::Intrinsics& camera) {
+    turns.clear();
+    const Matrix3d U0 = hc::gaze::rotation(views[0].unit).matrix();
+    for (std::size_t k = 1; k < views.size(); ++k) {
+      const Matrix3d U = U0.transpose() * hc::gaze::rotation(views[k].unit).matrix();
+      const Matrix3d guess = M.transpose() * U * M;
+      if (matches.size() < k)
+        matches.push_back(hc::vision::match(views[0].*picture, views[k].*picture, camera, guess));
+      const auto pose = hc::vision::relative_pose(matches[k - 1], camera, guess,
+                                                  M.transpose() * (U * place - place), true);
+      if (!pose) return too_little("of turn " + std::to_string(k));
+      turns.push_back({turn_of(U), turn_of(pose->R_a_b)});
+    }
+    return {};
   }
+};
+
+/// The rotation M of which w = M u, nearly, for all.
+Matrix3d align(const std::vector<Turn>& turns) {
+  Matrix3d sum = Matrix3d::Zero();
+  for (const auto& turn : turns) sum += turn.w * turn.u.transpose();
   const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3d sign(1, 1, 1);
-  sign.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return Matrix3d(svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose());
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
 
 }  // namespace
 
 hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
-                                      const hc::vision::Intrinsics& camera,
-                                      const Vector3d& middle) {
+                                      const hc::vision::Intrinsics& camera, const Vector3d& middle,
+                                      double baseline) {
   HeadCalibration found;
-  const Matrix3d none = Matrix3d::Identity();
-  const auto matches = hc::vision::match(views[0].first, views[0].second, camera, none);
-  const auto eyes = hc::vision::relative_pose(matches, camera, none, Vector3d::UnitX());
+  const auto matches =
+      hc::vision::match(views[0].first, views[0].second, camera, Matrix3d::Identity());
+  auto eyes = hc::vision::relative_pose(matches, camera, Matrix3d::Identity(), Vector3d::UnitX());
   if (!eyes) return too_little("of the eyes");
-  found.rms = eyes->rms;
   // The right eye is on the right of the left one.
   found.swapped = eyes->t.x() < 0;
-  auto first = sit(views, &HeadView::first, camera, middle);
-  if (!first) return first.error();
-  auto second = sit(views, &HeadView::second, camera, middle);
-  if (!second) return second.error();
-  const Matrix3d left = found.swapped ? *second : *first, right = found.swapped ? *first : *second;
-  const Vector3d forward = left.col(2);
+  const Vector3d aside(0, baseline / 2, 0);
+  Eye left{&HeadView::first, middle + aside}, right{&HeadView::second, middle - aside};
+  if (found.swapped) std::swap(left.picture, right.picture);
+  Vector3d offset;
+  // Where an eye moves as the head turns is known once it is known how it sits.
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    for (Eye* eye : {&left, &right})
+      if (auto seen = eye->see(views, camera); !seen) return seen.error();
+    // What both eyes see at once tells how one sits to the other.
+    const Eye &first = found.swapped ? right : left, &second = found.swapped ? left : right;
+    const Vector3d to_second = first.M.transpose() * (second.place - first.place);
+    eyes = hc::vision::relative_pose(matches, camera, eyes->R_a_b, to_second, true);
+    if (!eyes) return too_little("of the eyes");
+    const Matrix3d R_left_right = found.swapped ? Matrix3d(eyes->R_a_b.transpose()) : eyes->R_a_b;
+    offset = turn_of(R_left_right);
+    // The right eye's turns, as the left one would see them.
+    auto turns = left.turns;
+    for (const auto& turn : right.turns) turns.push_back({turn.w, R_left_right * turn.u});
+    left.M = align(turns);
+    right.M = left.M * R_left_right;
+    // The eyes sit on one bar, which looks where the left one does.
+    for (Eye* eye : {&left, &right}) eye->place = left.M * optical().transpose() * eye->built;
+  }
+  found.rms = eyes->rms;
+  found.offset_pitch = offset.x();
+  found.offset_yaw = offset.y();
+  found.offset_roll = offset.z();
+  const Vector3d forward = left.M.col(2);
   found.zero = {std::atan2(forward.y(), forward.x()), -std::asin(forward.z())};
-  const Matrix3d offset = left.transpose() * right;
-  const Vector3d turn = turn_of(offset);
-  found.offset_pitch = turn.x();
-  found.offset_yaw = turn.y();
-  found.offset_roll = turn.z();
   return found;
 }

@@ -26,7 +26,7 @@ struct HeadCalibration {
 
 /// @param views  the first straight ahead; others a pan or a tilt away, so that pictures overlap by
 ///     half; at least one of each.
-/// @param middle  of the eyes in the head, about [m].
+/// @param middle  of the eyes in the head, about [m]. @param baseline  their distance [m].
 ///
 /// The unit's axes are seen as those that the pictures turn about: of each turn of the unit, by the
 /// vector w in the head's frame, an eye sees the turn u = Mᵀ w, and M, which is how the eye sits in
@@ -36,4 +36,4 @@ struct HeadCalibration {
 /// Errors: NotFound (two pictures in which too little is found that is the same).
 hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
                                       const hc::vision::Intrinsics& camera,
-                                      const Eigen::Vector3d& middle);
+                                      const Eigen::Vector3d& middle, double baseline);

@@ -82,7 +82,7 @@ TEST(Calibrate, finds_how_the_eyes_sit_and_which_is_the_left) {
       const cv::Mat one = eye(0.05, Eigen::Matrix3d::Identity()), other = eye(-0.05, offset);
       views.push_back({unit, swapped ? other : one, swapped ? one : other});
     }
-    const auto found = calibrate(views, {}, middle);
+    const auto found = calibrate(views, {}, middle, 0.1);
     ASSERT_TRUE(found) << found.error().text();
     EXPECT_EQ(found->swapped, swapped);
     EXPECT_NEAR(found->zero.pan / kDegree, 2, 0.1);
@@ -96,7 +96,7 @@ TEST(Calibrate, finds_how_the_eyes_sit_and_which_is_the_left) {
 
 TEST(Calibrate, says_when_too_little_is_seen) {
   const cv::Mat dark(600, 800, CV_8U, cv::Scalar(0));
-  const auto found = calibrate({{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}}, {}, {0, 0, 0});
+  const auto found = calibrate({{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}}, {}, {0, 0, 0}, 0.1);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().detail, "too little is seen in both pictures of the eyes");
 }

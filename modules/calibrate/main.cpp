@@ -33,12 +33,13 @@ int main(int argc, char** argv) {
                               "1 x 7: eyes swapped 0/1, pan and tilt of the left eye with the unit "
                               "at 0, roll, pitch, yaw of the right eye to the left one [rad], "
                               "distance from epipolar lines, RMS [px]");
-  auto turn = module.parameter("turn", 0.25, "rad", "how far the head turns to each side",
+  auto turn = module.parameter("turn", 0.28, "rad", "how far the head turns to each side",
                                {.least = 0.05, .most = 0.6});
   auto salience = module.parameter("salience", 0.9, "", "of the bid", {.least = 0, .most = 1});
   auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes", {.least = 1});
   auto cx = module.parameter("cx", 399.5, "px", "middle of the pictures");
   auto cy = module.parameter("cy", 299.5, "px", "middle of the pictures");
+  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes", {.least = 0.001});
   auto forward = module.parameter("forward", 0.06, "m", "of the eyes from the unit's axes");
   auto up = module.parameter("up", 0.05, "m", "of the eyes from the unit's axes");
 
@@ -49,17 +50,13 @@ int main(int argc, char** argv) {
   bool is_done = false;
 
   module.on_start([&] {
-    stands = {{0, 0},
-              {*turn, 0},
-              {-*turn, 0},
-              {0, *turn / 2},
-              {0, -*turn / 2},
-              {*turn / 2, *turn / 2},
-              {-*turn / 2, -*turn / 2}};
+    const double t = *turn;
+    stands = {{0, 0},         {t, 0},           {-t, 0},         {0, t},         {0, -t},
+              {t / 2, t / 2}, {-t / 2, -t / 2}, {t / 2, -t / 2}, {-t / 2, t / 2}};
   });
   auto finish = [&] {
     is_done = true;
-    auto found = calibrate(views, {*focal, *cx, *cy}, {*forward, 0, *up});
+    auto found = calibrate(views, {*focal, *cx, *cy}, {*forward, 0, *up}, *baseline);
     views.clear();
     if (!found) return module.log("not calibrated: " + found.error().detail);
     auto message =

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a head has been calibrated, by what a simulation was told to have wrong.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <hc/node/module.h>
+
+int main(int argc, char** argv) {
+  hc::Module module{"calibrate_score", "Compares a head's calibration with the truth."};
+  auto result = module.input("result", hc::table<double>(), "what calibrate has found");
+  auto score = module.output("score", hc::table<double>(),
+                             "1 x 3: left and right told apart 0/1, error of the zero, of the "
+                             "right eye's offset [rad]");
+  auto swapped = module.parameter("swapped", false, "", "truth: the eyes are");
+  auto zero_pan = module.parameter("zero_pan", 0.0, "rad", "truth");
+  auto zero_tilt = module.parameter("zero_tilt", 0.0, "rad", "truth");
+  auto offset_roll = module.parameter("offset_roll", 0.0, "rad", "truth");
+  auto offset_pitch = module.parameter("offset_pitch", 0.0, "rad", "truth");
+  auto offset_yaw = module.parameter("offset_yaw", 0.0, "rad", "truth");
+  auto patience = module.parameter("patience", 60.0, "s", "after so long without a result it failed",
+                                   {.least = 1, .most = 3600});
+
+  bool is_done = false;
+  module.on(result, [&](const auto& message) {
+    const auto found = message.matrix().numbers();
+    if (found.size() < 6) throw hc::ModuleError("the result is not one of calibrate");
+    const bool is_right = (found[0] != 0) == *swapped;
+    const double zero = std::hypot(found[1] - *zero_pan, found[2] - *zero_tilt);
+    const double offset = std::hypot(found[3] - *offset_roll, found[4] - *offset_pitch,
+                                     found[5] - *offset_yaw);
+    score.send(hc::table({is_right ? 1.0 : 0.0, zero, offset}));
+    char line[160];
+    std::snprintf(line, sizeof line, "left and right %s, zero off by %.3f°, camera offset by %.3f°",
+                  is_right ? "told apart" : "MIXED UP", zero * 180 / M_PI, offset * 180 / M_PI);
+    module.log(line);
+    is_done = true;
+  });
+  std::int64_t looks = 0;
+  module.generate([&] {
+    constexpr double kLook = 20;  // [Hz]
+    module.keep_rate(kLook);
+    if (static_cast<double>(++looks) > *patience * kLook)
+      throw hc::ModuleError("there was no result");
+    return !is_done;
+  });
+  return module.run(argc, argv);
+}
