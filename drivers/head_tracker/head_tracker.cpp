@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/head_tracker/head_tracker.h>
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <system_error>
+#include <utility>
+
+namespace hc {
+namespace {
+
+constexpr int kMostAtOnce = 10000;  // so that a flood does not keep the module from all else
+
+Error failed(const std::string& what) {
+  return {Code::System, what + ": " + std::generic_category().message(errno)};
+}
+
+/// When the kernel got a packet; now, where it does not say.
+std::int64_t arrival(msghdr& message) {
+  timespec time{};
+  ::clock_gettime(CLOCK_REALTIME, &time);
+  for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part))
+    if (part->cmsg_level == SOL_SOCKET && part->cmsg_type == SCM_TIMESTAMPNS)
+      std::memcpy(&time, CMSG_DATA(part), sizeof time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+int port_of(int socket) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  return ntohs(address.ss_family == AF_INET6
+                   ? reinterpret_cast<const sockaddr_in6*>(&address)->sin6_port
+                   : reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
+}
+
+}  // namespace
+
+Result<HeadTracker> HeadTracker::open(const std::string& host, int port) {
+  addrinfo hints{};
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_DGRAM;
+  hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  if (int status = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+      status != 0)
+    return Error{Code::Usage, "host \"" + host + "\": " + ::gai_strerror(status)};
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> addresses(found, ::freeaddrinfo);
+  const std::string where = "UDP port " + std::to_string(port) + " of " + host;
+  const int socket = ::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket < 0) return failed(where);
+  HeadTracker tracker(socket, port);
+  // Without SO_REUSEADDR, which would let a second program take the packets of the first.
+  if (::bind(socket, found->ai_addr, found->ai_addrlen) != 0) return failed(where);
+  const int on = 1;
+  if (::setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) != 0) return failed(where);
+  tracker.port_ = port_of(socket);
+  return tracker;
+}
+
+HeadTracker::HeadTracker(HeadTracker&& other) noexcept
+    : socket_(std::exchange(other.socket_, -1)),
+      port_(other.port_),
+      ignored_(other.ignored_),
+      why_ignored_(std::move(other.why_ignored_)) {}
+
+HeadTracker::~HeadTracker() {
+  if (socket_ >= 0) ::close(socket_);
+}
+
+Result<std::optional<TimedHeadPose>> HeadTracker::receive(std::chrono::milliseconds timeout,
+                                                          int stop) {
+  std::optional<TimedHeadPose> newest;
+  std::array<pollfd, 2> waiting = {pollfd{socket_, POLLIN, 0}, pollfd{stop, POLLIN, 0}};
+  if (::poll(waiting.data(), waiting.size(), static_cast<int>(timeout.count())) <= 0) return newest;
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    std::array<std::byte, kHeadPacketBytes + 1> bytes{};
+    alignas(cmsghdr) std::array<char, 256> control{};
+    iovec part{bytes.data(), bytes.size()};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    const ssize_t size = ::recvmsg(socket_, &message, MSG_TRUNC);  // gives the whole size
+    if (size < 0) {
+      if (errno == EAGAIN || errno == EWOULDBLOCK) break;
+      if (errno == EINTR || errno == ECONNREFUSED) continue;
+      return failed("recvmsg");
+    }
+    const auto whole = static_cast<std::size_t>(size);
+    auto pose = whole > bytes.size()
+                    ? Result<HeadPose>(
+                          Error{Code::Malformed, "a packet of " + std::to_string(whole) + " bytes"})
+                    : read_head_packet(std::span(bytes).first(whole));
+    if (pose) {
+      newest = TimedHeadPose{*pose, arrival(message)};
+    } else {
+      ++ignored_;
+      why_ignored_ = pose.error().detail;
+    }
+  }
+  return newest;
+}
+
+Presence::Change Presence::look(MonotonicTime now, bool heard, std::chrono::nanoseconds silence) {
+  if (heard) {
+    last_ = now;
+    return std::exchange(state_, State::There) == State::There ? Change::None : Change::Came;
+  }
+  if (state_ == State::Gone || now - last_ < silence) return Change::None;
+  state_ = State::Gone;
+  return Change::Silent;
+}
+
+}  // namespace hc

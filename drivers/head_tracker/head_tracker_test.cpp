@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/head_tracker/head_tracker.h>
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using hc::HeadTracker;
+using hc::Presence;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kWatchdog{30000};
+
+class Sender {
+ public:
+  explicit Sender(int port) : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(port));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(socket_, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+  }
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
+  ~Sender() { ::close(socket_); }
+  void send(const void* data, std::size_t size) const {
+    EXPECT_EQ(::send(socket_, data, size, 0), static_cast<ssize_t>(size));
+  }
+  void send(const std::array<double, 6>& numbers) const { send(numbers.data(), 48); }
+
+ private:
+  int socket_;
+};
+
+HeadTracker opened() {
+  auto tracker = HeadTracker::open("127.0.0.1", 0);
+  EXPECT_TRUE(tracker);
+  return std::move(*tracker);
+}
+
+TEST(HeadTracker, gives_the_newest_pose_with_its_time) {
+  auto tracker = opened();
+  const Sender sender(tracker.port());
+  const std::int64_t before = hc::SystemClock().wall();
+  sender.send({0, 0, -100, 0, 0, 0});
+  sender.send({0, 0, -200, 0, 0, 0});
+  auto got = tracker.receive(kWatchdog);
+  ASSERT_TRUE(got);
+  ASSERT_TRUE(*got);
+  EXPECT_DOUBLE_EQ((*got)->pose.p.x(), 2);
+  EXPECT_GE((*got)->time, before);
+  EXPECT_LE((*got)->time, hc::SystemClock().wall());
+  EXPECT_EQ(tracker.ignored(), 0);
+  got = tracker.receive(milliseconds(0));
+  ASSERT_TRUE(got);
+  EXPECT_FALSE(*got);
+}
+
+TEST(HeadTracker, ignores_and_counts_garbage) {
+  auto tracker = opened();
+  const Sender sender(tracker.port());
+  const std::vector<char> large(9000, 'x');
+  sender.send("", 0);
+  sender.send("hello", 5);
+  sender.send(large.data(), large.size());
+  sender.send(large.data(), 49);
+  sender.send({0, 0, 0, std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  auto got = tracker.receive(kWatchdog);
+  ASSERT_TRUE(got);
+  EXPECT_FALSE(*got);
+  EXPECT_EQ(tracker.ignored(), 5);
+  EXPECT_EQ(tracker.why_ignored(), "a packet whose yaw is nan");
+  sender.send({0, 100, 0, 0, 0, 0});
+  sender.send("bye", 3);
+  got = tracker.receive(kWatchdog);
+  ASSERT_TRUE(got && *got);
+  EXPECT_DOUBLE_EQ((*got)->pose.p.z(), 1);
+  EXPECT_EQ(tracker.ignored(), 6);
+}
+
+TEST(HeadTracker, says_that_the_port_is_in_use) {
+  auto tracker = opened();
+  auto second = HeadTracker::open("127.0.0.1", tracker.port());
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().detail,
+            "UDP port " + std::to_string(tracker.port()) + " of 127.0.0.1: Address already in use");
+}
+
+TEST(HeadTracker, says_that_a_host_is_none) {
+  auto tracker = HeadTracker::open("999.0.0.1.", 0);
+  ASSERT_FALSE(tracker);
+  EXPECT_EQ(tracker.error().code, hc::Code::Usage);
+  auto elsewhere = HeadTracker::open("192.0.2.1", 0);  // an address that this machine has not
+  ASSERT_FALSE(elsewhere);
+  EXPECT_EQ(elsewhere.error().code, hc::Code::System);
+}
+
+TEST(HeadTracker, ends_to_wait_when_told_to_stop) {
+  auto tracker = opened();
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "x", 1), 1);
+  auto got = tracker.receive(milliseconds(-1), ends[0]);
+  ASSERT_TRUE(got);
+  EXPECT_FALSE(*got);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST(Presence, tells_each_change_once) {
+  using Change = Presence::Change;
+  Presence presence{seconds(100)};
+  EXPECT_EQ(presence.look(seconds(100), false, seconds(1)), Change::None);
+  EXPECT_EQ(presence.look(seconds(101), false, seconds(1)), Change::Silent);
+  EXPECT_EQ(presence.look(seconds(102), false, seconds(1)), Change::None);
+  EXPECT_EQ(presence.look(seconds(103), true, seconds(1)), Change::Came);
+  EXPECT_EQ(presence.look(seconds(105), true, seconds(1)), Change::None);
+  EXPECT_EQ(presence.look(milliseconds(105900), false, seconds(1)), Change::None);
+  EXPECT_EQ(presence.look(seconds(106), false, seconds(1)), Change::Silent);
+  EXPECT_EQ(presence.look(seconds(107), true, seconds(1)), Change::Came);
+}
+
+}  // namespace

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/head_tracker/pose.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+
+namespace hc {
+namespace {
+
+constexpr double kMostCentimetres = 1e5, kMostDegrees = 3600;
+constexpr const char* kNames[] = {"x", "y", "z", "yaw", "pitch", "roll"};
+
+double little_endian(std::span<const std::byte> bytes) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < 8; ++i) bits |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+  return std::bit_cast<double>(bits);
+}
+
+Eigen::Matrix3d turned(double roll, double pitch, double yaw) {
+  using Turn = Eigen::AngleAxisd;
+  return (Turn(yaw, Eigen::Vector3d::UnitZ()) * Turn(pitch, Eigen::Vector3d::UnitY()) *
+          Turn(roll, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+}  // namespace
+
+HeadPose HeadPose::relative_to(const HeadPose& zero) const {
+  return {zero.R.transpose() * R, zero.R.transpose() * (p - zero.p)};
+}
+
+Eigen::Vector3d HeadPose::angles() const {
+  return {std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
+          std::atan2(R(1, 0), R(0, 0))};
+}
+
+Result<HeadPose> read_head_packet(std::span<const std::byte> packet) {
+  if (packet.size() != kHeadPacketBytes)
+    return Error{Code::Malformed, "a packet of " + std::to_string(packet.size()) + " bytes, not " +
+                                      std::to_string(kHeadPacketBytes)};
+  std::array<double, 6> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = little_endian(packet.subspan(8 * i, 8));
+    // Written so that not-a-number fails too.
+    if (!(std::abs(numbers[i]) <= (i < 3 ? kMostCentimetres : kMostDegrees)))
+      return Error{Code::Malformed, std::string("a packet whose ") + kNames[i] + " is " +
+                                        std::to_string(numbers[i])};
+  }
+  const auto [x, y, z, yaw, pitch, roll] = numbers;
+  constexpr double kRadians = std::numbers::pi / 180, kMetres = 0.01;
+  return HeadPose{turned(roll * kRadians, -pitch * kRadians, -yaw * kRadians),
+                  Eigen::Vector3d(-z, -x, y) * kMetres};
+}
+
+}  // namespace hc
