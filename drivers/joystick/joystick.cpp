@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/joystick/joystick.h>
+
+#include <SDL2/SDL.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace hc {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int kMostAxes = 32, kMostButtons = 64;
+constexpr milliseconds kWatched{20}, kUnwatched{1}, kNoJoystick{100};
+
+double as_number(Sint16 value) {
+  return std::max(value / 32767.0, -1.0);
+}
+
+template <typename T>
+bool put(std::vector<T>& all, int at, T value) {
+  if (at < 0 || static_cast<std::size_t>(at) >= all.size()) return false;
+  return std::exchange(all[static_cast<std::size_t>(at)], value) != value;
+}
+
+}  // namespace
+
+/// The joystick that is held: SDL's, and its device file as what wakes us.
+struct Joystick::Device {
+  SDL_GameController* controller = nullptr;  // null for a joystick without a mapping
+  SDL_Joystick* joystick = nullptr;
+  SDL_JoystickID id = -1;
+  int file = -1;
+
+  ~Device() {
+    close_file();
+    if (controller != nullptr)
+      SDL_GameControllerClose(controller);
+    else if (joystick != nullptr)
+      SDL_JoystickClose(joystick);
+  }
+  /// Each who opens a device file gets all events, so SDL misses none that are taken here.
+  void open_file() {
+    const char* path = SDL_JoystickPath(joystick);
+    if (path != nullptr && std::string_view(path).starts_with("/dev/"))
+      file = ::open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  }
+  void drain_file() {
+    std::array<char, 4096> bytes;
+    ssize_t size = 0;
+    while (file >= 0 && (size = ::read(file, bytes.data(), bytes.size())) > 0) continue;
+    if (size == 0 || (errno != EAGAIN && errno != EINTR)) close_file();  // unplugged
+  }
+  void close_file() {
+    if (file >= 0) ::close(std::exchange(file, -1));
+  }
+};
+
+Joystick::Joystick() = default;
+
+Result<std::unique_ptr<Joystick>> Joystick::open() {
+  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // there is no window to be in front
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+  if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0)
+    return Error{Code::System, std::string("SDL: ") + SDL_GetError()};
+  std::unique_ptr<Joystick> joystick(new Joystick());
+  joystick->attach_any();
+  return joystick;
+}
+
+Joystick::~Joystick() {
+  device_.reset();
+  SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
+}
+
+milliseconds Joystick::pace() const {
+  if (device_ == nullptr) return kNoJoystick;
+  return device_->file >= 0 ? kWatched : kUnwatched;
+}
+
+bool Joystick::wait(milliseconds timeout, int stop) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + timeout;
+  while (true) {
+    if (take_events()) return true;
+    const auto left = std::chrono::ceil<milliseconds>(end - Clock::now());
+    if (left.count() <= 0) return false;
+    const int file = device_ == nullptr ? -1 : device_->file;
+    std::array<pollfd, 2> waiting = {pollfd{stop, POLLIN, 0}, pollfd{file, POLLIN, 0}};
+    ::poll(waiting.data(), waiting.size(), static_cast<int>(std::min(left, pace()).count()));
+    if (waiting[0].revents != 0) return false;
+    if (waiting[1].revents != 0) device_->drain_file();
+  }
+}
+
+/// Takes events up to one that is to be told by itself; whether the state has changed.
+bool Joystick::take_events() {
+  bool changed = false;
+  SDL_Event event;
+  while (SDL_PollEvent(&event) != 0) {
+    const bool is_controller = device_ != nullptr && device_->controller != nullptr;
+    const auto is_ours = [&](SDL_JoystickID id, bool of_controller) {
+      return device_ != nullptr && device_->id == id && is_controller == of_controller;
+    };
+    switch (event.type) {
+      case SDL_JOYDEVICEADDED:
+        if (device_ == nullptr && attach_any()) return true;
+        break;
+      case SDL_JOYDEVICEREMOVED:
+        if (device_ == nullptr || device_->id != event.jdevice.which) break;
+        detach();
+        attach_any();  // a second one may be there
+        return true;
+      case SDL_CONTROLLERAXISMOTION:
+        if (is_ours(event.caxis.which, true))
+          changed |= put(state_.axes, event.caxis.axis, as_number(event.caxis.value));
+        break;
+      case SDL_JOYAXISMOTION:
+        if (is_ours(event.jaxis.which, false))
+          changed |= put(state_.axes, event.jaxis.axis, as_number(event.jaxis.value));
+        break;
+      case SDL_CONTROLLERBUTTONDOWN:
+      case SDL_CONTROLLERBUTTONUP:
+        if (is_ours(event.cbutton.which, true) &&
+            put(state_.buttons, event.cbutton.button, event.cbutton.state))
+          return true;
+        break;
+      case SDL_JOYBUTTONDOWN:
+      case SDL_JOYBUTTONUP:
+        if (is_ours(event.jbutton.which, false) &&
+            put(state_.buttons, event.jbutton.button, event.jbutton.state))
+          return true;
+        break;
+      default:
+        break;
+    }
+  }
+  return changed;
+}
+
+/// Takes the first joystick that can be opened, game controllers before others.
+bool Joystick::attach_any() {
+  for (bool wants_controller : {true, false})
+    for (int i = 0; i < SDL_NumJoysticks(); ++i) {
+      if ((SDL_IsGameController(i) == SDL_TRUE) != wants_controller) continue;
+      auto device = std::make_unique<Device>();
+      if (wants_controller) {
+        device->controller = SDL_GameControllerOpen(i);
+        device->joystick = SDL_GameControllerGetJoystick(device->controller);
+      } else {
+        device->joystick = SDL_JoystickOpen(i);
+      }
+      if (device->joystick == nullptr) continue;
+      device->id = SDL_JoystickInstanceID(device->joystick);
+      device->open_file();
+      const char* name = SDL_JoystickName(device->joystick);
+      state_.name = name == nullptr || *name == '\0' ? "joystick" : name;
+      auto* controller = device->controller;
+      const int axes = controller != nullptr
+                           ? SDL_CONTROLLER_AXIS_MAX
+                           : std::min(SDL_JoystickNumAxes(device->joystick), kMostAxes);
+      const int buttons = controller != nullptr
+                              ? SDL_CONTROLLER_BUTTON_MAX
+                              : std::min(SDL_JoystickNumButtons(device->joystick), kMostButtons);
+      state_.axes.clear();
+      state_.buttons.clear();
+      for (int k = 0; k < axes; ++k)
+        state_.axes.push_back(as_number(
+            controller != nullptr
+                ? SDL_GameControllerGetAxis(controller, static_cast<SDL_GameControllerAxis>(k))
+                : SDL_JoystickGetAxis(device->joystick, k)));
+      for (int k = 0; k < buttons; ++k)
+        state_.buttons.push_back(
+            controller != nullptr
+                ? SDL_GameControllerGetButton(controller, static_cast<SDL_GameControllerButton>(k))
+                : SDL_JoystickGetButton(device->joystick, k));
+      device_ = std::move(device);
+      return true;
+    }
+  return false;
+}
+
+/// Lets go of what has gone, and of what it held.
+void Joystick::detach() {
+  device_.reset();
+  state_.name.clear();
+  std::fill(state_.axes.begin(), state_.axes.end(), 0.0);
+  std::fill(state_.buttons.begin(), state_.buttons.end(), std::uint8_t{0});
+}
+
+}  // namespace hc

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// With SDL's virtual joysticks, which are in the process alone.
+#include <drivers/joystick/joystick.h>
+
+#include <SDL2/SDL.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using hc::Joystick;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kWatchdog{30000};
+
+class JoystickTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto opened = Joystick::open();
+    ASSERT_TRUE(opened);
+    joystick = std::move(*opened);
+    if (!joystick->state().name.empty()) GTEST_SKIP() << "a real joystick is plugged in";
+  }
+  void TearDown() override {
+    while (SDL_NumJoysticks() > 0 && SDL_JoystickIsVirtual(0) == SDL_TRUE)
+      SDL_JoystickDetachVirtual(0);
+  }
+  /// Plugs a controller in, and gives SDL's other end of it.
+  SDL_Joystick* plug_in(SDL_JoystickType type = SDL_JOYSTICK_TYPE_GAMECONTROLLER) {
+    const int index = SDL_JoystickAttachVirtual(type, 6, 15, 0);
+    EXPECT_GE(index, 0) << SDL_GetError();
+    EXPECT_TRUE(joystick->wait(kWatchdog));
+    EXPECT_FALSE(joystick->state().name.empty());
+    return SDL_JoystickFromInstanceID(SDL_JoystickGetDeviceInstanceID(index));
+  }
+
+  std::unique_ptr<Joystick> joystick;
+};
+
+TEST_F(JoystickTest, none_is_no_error) {
+  EXPECT_FALSE(joystick->wait(milliseconds(0)));
+  EXPECT_EQ(joystick->state(), hc::JoystickState{});
+}
+
+TEST_F(JoystickTest, axes_are_numbers) {
+  SDL_Joystick* pad = plug_in();
+  ASSERT_EQ(joystick->state().axes.size(), 6);
+  SDL_JoystickSetVirtualAxis(pad, 0, -32768);
+  SDL_JoystickSetVirtualAxis(pad, 1, 32767);
+  EXPECT_TRUE(joystick->wait(kWatchdog));
+  while (joystick->state().axes[1] == 0) ASSERT_TRUE(joystick->wait(kWatchdog));
+  EXPECT_EQ(joystick->state().axes[0], -1);
+  EXPECT_EQ(joystick->state().axes[1], 1);
+}
+
+TEST_F(JoystickTest, each_press_and_release_is_told) {
+  SDL_Joystick* pad = plug_in();
+  for (int i = 0; i < 3; ++i)
+    for (Uint8 pressed : {Uint8{1}, Uint8{0}}) {
+      SDL_JoystickSetVirtualButton(pad, 1, pressed);
+      SDL_JoystickUpdate();  // the event is made, and nobody has taken it
+    }
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_TRUE(joystick->wait(kWatchdog));
+    EXPECT_EQ(joystick->state().buttons[1], i % 2 == 0 ? 1 : 0) << i;
+  }
+  EXPECT_FALSE(joystick->wait(milliseconds(0)));
+}
+
+TEST_F(JoystickTest, one_that_goes_lets_everything_go_and_comes_back) {
+  SDL_Joystick* pad = plug_in();
+  SDL_JoystickSetVirtualAxis(pad, 0, 20000);
+  SDL_JoystickSetVirtualButton(pad, 0, 1);
+  while (joystick->state().axes[0] == 0 || joystick->state().buttons[0] == 0)
+    ASSERT_TRUE(joystick->wait(kWatchdog));
+  SDL_JoystickDetachVirtual(0);
+  const auto& state = joystick->state();
+  while (!state.name.empty()) ASSERT_TRUE(joystick->wait(kWatchdog));  // SDL lets go of it first
+  EXPECT_EQ(state.axes.size(), 6);
+  EXPECT_EQ(std::count(state.axes.begin(), state.axes.end(), 0.0), 6);
+  EXPECT_EQ(std::count(state.buttons.begin(), state.buttons.end(), 1), 0);
+  EXPECT_FALSE(joystick->wait(milliseconds(0)));
+
+  pad = plug_in();
+  SDL_JoystickSetVirtualAxis(pad, 0, 32767);
+  while (joystick->state().axes[0] != 1) ASSERT_TRUE(joystick->wait(kWatchdog));
+}
+
+TEST_F(JoystickTest, a_second_one_waits_for_its_turn) {
+  plug_in();
+  const int index = SDL_JoystickAttachVirtual(SDL_JOYSTICK_TYPE_GAMECONTROLLER, 6, 15, 0);
+  const auto second = SDL_JoystickGetDeviceInstanceID(index);
+  EXPECT_FALSE(joystick->wait(milliseconds(0)));
+  SDL_JoystickDetachVirtual(0);
+  while (SDL_JoystickFromInstanceID(second) == nullptr) ASSERT_TRUE(joystick->wait(kWatchdog));
+  EXPECT_FALSE(joystick->state().name.empty());
+  SDL_JoystickSetVirtualAxis(SDL_JoystickFromInstanceID(second), 1, 32767);
+  while (joystick->state().axes[1] != 1) ASSERT_TRUE(joystick->wait(kWatchdog));
+}
+
+TEST_F(JoystickTest, ends_to_wait_when_told_to_stop) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "x", 1), 1);
+  EXPECT_FALSE(joystick->wait(kWatchdog, ends[0]));
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+}  // namespace
