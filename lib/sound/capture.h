@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A microphone, by SDL2.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <hc/base/result.h>
+#include <sound/device.h>
+#include <sound/format.h>
+
+namespace hc::audio {
+
+/// A piece of what was heard.
+struct Heard {
+  std::vector<std::int16_t> samples;  ///< channels next to one another
+  std::int64_t time = 0;              ///< when the last frame was there [ns since the Unix epoch]
+};
+
+/// Records in pieces of one length. For one thread.
+class Capture {
+ public:
+  /// @param device  its name as SDL gives it; "" the default one.
+  /// @param frames  of a piece.
+  ///
+  /// Errors: System (no such device, no sound here).
+  static Result<std::unique_ptr<Capture>> open(const std::string& device, const Format& format,
+                                               int frames);
+  Capture(const Capture&) = delete;
+  Capture& operator=(const Capture&) = delete;
+  ~Capture();
+
+  /// Waits for the next piece; nothing when `timeout` has passed or `stop` is readable. Pieces that
+  /// nobody takes wait for 2 s; the oldest are lost then.
+  std::optional<Heard> take(std::chrono::milliseconds timeout, int stop = -1);
+
+  /// False once the device has gone.
+  [[nodiscard]] bool is_there() const;
+  /// Pieces that were lost so far.
+  [[nodiscard]] std::int64_t lost() const;
+
+ private:
+  struct Queue;
+  Capture(AudioSystem system, std::unique_ptr<Queue> queue);
+
+  AudioSystem system_;
+  std::unique_ptr<Queue> queue_;  // filled on SDL's thread
+  std::uint32_t device_ = 0;
+};
+
+}  // namespace hc::audio

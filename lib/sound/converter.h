@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Sound of one format as sound of another: rate, channels, scalar. For one thread at a time.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <hc/base/result.h>
+#include <sound/format.h>
+
+struct _SDL_AudioStream;
+
+namespace hc::audio {
+
+/// Takes f32 or i16, gives i16. What is put in comes out in pieces, a little later where the rates
+/// differ.
+class Converter {
+ public:
+  enum class Scalar { I16, F32 };
+
+  /// Errors: Unsupported (SDL cannot do it).
+  static Result<Converter> make(Scalar scalar, const Format& from, const Format& to);
+
+  [[nodiscard]] bool takes(Scalar scalar, const Format& from) const {
+    return scalar == scalar_ && from == from_;
+  }
+
+  /// @param samples  channels next to one another, −1 … 1; what is beyond is cut off, what is no
+  /// number is silence.
+  void put(std::span<const float> samples);
+  void put(std::span<const std::int16_t> samples);
+  /// Says that nothing follows, so that take() gives the rest; the last that is done.
+  void finish();
+  /// What has been converted, whole frames.
+  std::vector<std::int16_t> take();
+
+ private:
+  struct Free {
+    void operator()(_SDL_AudioStream* stream) const;
+  };
+  Converter(Scalar scalar, const Format& from, const Format& to, _SDL_AudioStream* stream)
+      : scalar_(scalar), from_(from), to_(to), stream_(stream) {}
+  template <typename T>
+  void put_any(std::span<const T> samples);
+
+  Scalar scalar_;
+  Format from_, to_;
+  std::unique_ptr<_SDL_AudioStream, Free> stream_;
+  std::int64_t put_ = 0, taken_ = 0;  // frames
+  bool is_finished_ = false;
+};
+
+}  // namespace hc::audio

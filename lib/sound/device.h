@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What playing and recording by SDL2 share: SDL's audio, started anew for each device, so that a
+// sound server that was started anew is found; and when to try again. Which driver is used says
+// SDL_AUDIODRIVER (pulseaudio, alsa, disk, dummy, …).
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <hc/base/clock.h>
+#include <hc/base/result.h>
+#include <sound/format.h>
+
+namespace hc::audio {
+
+/// SDL's audio while it is held. One at a time in a process.
+class AudioSystem {
+ public:
+  /// Errors: System (there is no sound here).
+  static Result<AudioSystem> start();
+  AudioSystem(AudioSystem&& other) noexcept;
+  AudioSystem& operator=(AudioSystem&&) = delete;
+  ~AudioSystem();
+
+ private:
+  AudioSystem() = default;
+  bool is_held_ = true;
+};
+
+/// When to try again what failed: after 0.1 s, then twice as long each time, up to 2 s. Pure.
+class Retry {
+ public:
+  [[nodiscard]] bool is_due(MonotonicTime now) const { return now >= due_; }
+  void failed(MonotonicTime now) {
+    due_ = now + pause_;
+    pause_ = std::min<MonotonicTime>(2 * pause_, std::chrono::seconds(2));
+  }
+  void succeeded() { *this = {}; }
+
+ private:
+  MonotonicTime due_{0}, pause_ = std::chrono::milliseconds(100);
+};
+
+/// Gives sound that comes in pieces the time of its first frame: counts frames, and begins anew
+/// where the count and the clock differ by more than 50 ms. Pure.
+class FrameClock {
+ public:
+  explicit FrameClock(int rate) : rate_(rate) {}
+  /// @param frames  in this piece.
+  /// @param now  when its last frame was there. [ns since the Unix epoch]
+  /// @returns  when its first frame was. [ns since the Unix epoch]
+  std::int64_t stamp(std::int64_t frames, std::int64_t now);
+
+ private:
+  int rate_;
+  std::optional<std::int64_t> start_;
+  std::int64_t counted_ = 0;
+};
+
+}  // namespace hc::audio

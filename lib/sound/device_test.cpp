@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// With SDL's drivers that need no device: disk writes what is played to a file, and reads what is
+// recorded from one.
+#include <sound/device.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <sound/capture.h>
+#include <sound/playback.h>
+
+namespace {
+
+using hc::audio::Capture;
+using hc::audio::FrameClock;
+using hc::audio::Playback;
+using hc::audio::Retry;
+using std::chrono::milliseconds;
+
+class Device : public testing::Test {
+ protected:
+  Device() : path("/tmp/hc_sound_" + std::to_string(::getpid()) + ".raw") {
+    ::setenv("SDL_AUDIODRIVER", "disk", 1);
+    ::setenv("SDL_DISKAUDIOFILE", path.c_str(), 1);
+    ::setenv("SDL_DISKAUDIOFILEIN", path.c_str(), 1);
+    std::filesystem::remove(path);
+  }
+  ~Device() override { std::filesystem::remove(path); }
+  std::string path;
+};
+
+TEST_F(Device, what_is_played_arrives) {
+  std::vector<std::int16_t> samples;
+  for (int i = 0; i < 4000; ++i) samples.push_back(static_cast<std::int16_t>(i + 1));
+  auto playback = Playback::open("", {16000, 1});
+  ASSERT_TRUE(playback) << playback.error().text();
+  EXPECT_TRUE((*playback)->is_there());
+  (*playback)->put(samples);
+  EXPECT_GT((*playback)->waiting(), 0);
+  while ((*playback)->waiting() > 0) std::this_thread::yield();
+  playback->reset();  // writes what the device has
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string sent(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
+  EXPECT_NE(bytes.find(sent), std::string::npos) << bytes.size();
+}
+
+TEST_F(Device, what_is_recorded_comes_in_pieces) {
+  std::vector<std::int16_t> samples;
+  for (int i = 0; i < 3200; ++i) samples.push_back(static_cast<std::int16_t>(i));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(samples.data()), 2 * std::ssize(samples));
+  auto capture = Capture::open("", {16000, 1}, 320);
+  ASSERT_TRUE(capture) << capture.error().text();
+  std::vector<std::int16_t> heard;
+  std::int64_t last = 0;
+  while (heard.size() < samples.size()) {
+    auto piece = (*capture)->take(milliseconds(30000));
+    ASSERT_TRUE(piece);
+    ASSERT_EQ(piece->samples.size(), 320);
+    EXPECT_GE(piece->time, last);
+    last = piece->time;
+    heard.insert(heard.end(), piece->samples.begin(), piece->samples.end());
+  }
+  EXPECT_EQ(heard, samples);
+  EXPECT_EQ((*capture)->lost(), 0);
+}
+
+TEST_F(Device, ends_to_wait_when_told_to_stop) {
+  std::ofstream(path).close();
+  auto capture = Capture::open("", {16000, 1}, 3200);
+  ASSERT_TRUE(capture);
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "x", 1), 1);
+  EXPECT_FALSE((*capture)->take(milliseconds(30000), ends[0]));
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST_F(Device, none_is_an_error_that_says_so) {
+  ::setenv("SDL_AUDIODRIVER", "no_such_driver", 1);
+  auto playback = Playback::open("", {16000, 1});
+  ASSERT_FALSE(playback);
+  EXPECT_EQ(playback.error().code, hc::Code::System);
+  EXPECT_TRUE(playback.error().detail.starts_with("no sound: ")) << playback.error().detail;
+  EXPECT_FALSE(Capture::open("", {16000, 1}, 320));
+  ::setenv("SDL_AUDIODRIVER", "disk", 1);
+  ::setenv("SDL_DISKAUDIOFILE", "/no/such/folder/x", 1);
+  playback = Playback::open("", {16000, 1});
+  ASSERT_FALSE(playback);
+  EXPECT_TRUE(playback.error().detail.starts_with("loudspeaker: ")) << playback.error().detail;
+  ::setenv("SDL_DISKAUDIOFILE", path.c_str(), 1);  // and now there is one
+  EXPECT_TRUE(Playback::open("", {16000, 1}));
+}
+
+TEST(Retry, waits_longer_each_time_up_to_2_s) {
+  Retry retry;
+  milliseconds now{5000};
+  for (int pause : {100, 200, 400, 800, 1600, 2000, 2000}) {
+    ASSERT_TRUE(retry.is_due(now));
+    retry.failed(now);
+    EXPECT_FALSE(retry.is_due(now + milliseconds(pause - 1)));
+    now += milliseconds(pause);
+  }
+  retry.succeeded();
+  EXPECT_TRUE(retry.is_due(milliseconds(0)));
+}
+
+TEST(FrameClock, counts_frames_and_begins_anew_after_a_gap) {
+  FrameClock clock(16000);
+  constexpr std::int64_t kStart = 1'763'683'200'000'000'000, kPiece = 20'000'000;
+  EXPECT_EQ(clock.stamp(320, kStart), kStart - kPiece);
+  // The machine is a little late and early; the sound is not.
+  EXPECT_EQ(clock.stamp(320, kStart + kPiece + 3'000'000), kStart);
+  EXPECT_EQ(clock.stamp(320, kStart + 2 * kPiece - 3'000'000), kStart + kPiece);
+  EXPECT_EQ(clock.stamp(320, kStart + 10 * kPiece), kStart + 9 * kPiece);
+  EXPECT_EQ(clock.stamp(320, kStart + 11 * kPiece + 1), kStart + 10 * kPiece);
+}
+
+}  // namespace

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a sound is: so many sample frames a second of so many channels; and the coordinate systems
+// that say so (spec/mtp-1.md, R44). Pure.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace hc::audio {
+
+inline constexpr int kMostChannels = 8;
+
+struct Format {
+  int rate = 0;      ///< sample frames a second [Hz]
+  int channels = 0;  ///< 1 … kMostChannels
+  bool operator==(const Format&) const = default;
+};
+
+/// "16000 Hz, 2 channels"
+inline std::string text(const Format& format) {
+  return std::to_string(format.rate) + " Hz, " + std::to_string(format.channels) +
+         (format.channels == 1 ? " channel" : " channels");
+}
+
+/// The rates that have a coordinate system, 20, 21, … [Hz]
+inline constexpr std::array<int, 5> kRates = {8000, 16000, 22050, 44100, 48000};
+inline constexpr std::int32_t kFirstCoord = 20;
+
+/// The rate of a coordinate system [Hz]; nothing of one that is no sound's.
+constexpr std::optional<int> rate_of(std::int32_t coord) {
+  if (coord < kFirstCoord || coord >= kFirstCoord + static_cast<std::int32_t>(kRates.size()))
+    return std::nullopt;
+  return kRates[static_cast<std::size_t>(coord - kFirstCoord)];
+}
+
+/// The coordinate system of a rate; nothing where it has none.
+constexpr std::optional<std::int32_t> coord_of(int rate) {
+  for (std::size_t i = 0; i < kRates.size(); ++i)
+    if (kRates[i] == rate) return kFirstCoord + static_cast<std::int32_t>(i);
+  return std::nullopt;
+}
+
+}  // namespace hc::audio

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Sound in WAV files (RIFF, "Multimedia Programming Interface and Data Specifications 1.0", 1991).
+// A file is not trusted: no size in it is believed beyond the file's own.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <hc/base/result.h>
+#include <sound/format.h>
+
+namespace hc::audio {
+
+/// Reads integer samples of 8, 16, 24 or 32 bits and floats of 32, plain or "extensible", as i16.
+class WavReader {
+ public:
+  /// Errors: NotFound (no such file), Malformed, Unsupported (another kind of samples), System.
+  static Result<WavReader> open(const std::string& path);
+
+  [[nodiscard]] const Format& format() const { return format_; }
+  /// Sample frames in all: those that are there, whatever the file says.
+  [[nodiscard]] std::int64_t frames() const { return frames_; }
+
+  /// Reads the next sample frames; their number, which is 0 at the end.
+  /// @param[out] samples  channels next to one another; room for whole frames.
+  ///
+  /// Errors: System.
+  Result<std::size_t> read(std::span<std::int16_t> samples);
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  WavReader() = default;
+  Status read_header(std::int64_t file_size);
+  Status read_format(std::span<const std::byte> chunk);
+
+  std::unique_ptr<std::FILE, Close> file_;
+  std::string path_;
+  Format format_;
+  std::int64_t frames_ = 0, at_ = 0;
+  std::size_t sample_bytes_ = 0;
+  bool is_float_ = false;
+  std::vector<std::byte> bytes_;
+};
+
+/// Writes i16. After every write() the file is a whole one, so that nothing is lost when the
+/// program dies.
+class WavWriter {
+ public:
+  /// Errors: System (cannot be written).
+  static Result<WavWriter> create(const std::string& path, const Format& format);
+  WavWriter(WavWriter&& other) noexcept;
+  WavWriter& operator=(WavWriter&&) = delete;
+  ~WavWriter();
+
+  /// Errors: TooLarge (4 GiB are full), System.
+  Status write(std::span<const std::int16_t> samples);
+
+  [[nodiscard]] const Format& format() const { return format_; }
+
+ private:
+  WavWriter(int file, std::string path, const Format& format)
+      : file_(file), path_(std::move(path)), format_(format) {}
+  Status put(std::span<const std::byte> bytes, std::int64_t at);
+  Status put_header();
+
+  int file_ = -1;
+  std::string path_;
+  Format format_;
+  std::int64_t data_bytes_ = 0;
+};
+
+}  // namespace hc::audio

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include <sound/wav.h>
+
+namespace hc::audio {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "samples are written as they are");
+
+constexpr std::int64_t kHeaderBytes = 44, kMostBytes = 0xFFFFFFFF - kHeaderBytes;
+
+}  // namespace
+
+Result<WavWriter> WavWriter::create(const std::string& path, const Format& format) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) return Error{Code::System, path + ": " + std::generic_category().message(errno)};
+  WavWriter writer(file, path, format);
+  if (auto put = writer.put_header(); !put) return put.error();
+  return writer;
+}
+
+WavWriter::WavWriter(WavWriter&& other) noexcept
+    : file_(std::exchange(other.file_, -1)),
+      path_(std::move(other.path_)),
+      format_(other.format_),
+      data_bytes_(other.data_bytes_) {}
+
+WavWriter::~WavWriter() {
+  if (file_ >= 0) ::close(file_);
+}
+
+Status WavWriter::put(std::span<const std::byte> bytes, std::int64_t at) {
+  while (!bytes.empty()) {
+    const ssize_t size = ::pwrite(file_, bytes.data(), bytes.size(), at);
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) return Error{Code::System, path_ + ": " + std::generic_category().message(errno)};
+    bytes = bytes.subspan(static_cast<std::size_t>(size));
+    at += size;
+  }
+  return {};
+}
+
+Status WavWriter::put_header() {
+  std::array<std::byte, kHeaderBytes> header{};
+  std::size_t at = 0;
+  auto add_name = [&](const char* name) {
+    std::memcpy(header.data() + at, name, 4);
+    at += 4;
+  };
+  auto add = [&](std::int64_t value, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) header[at++] = std::byte(value >> (8 * i) & 0xFF);
+  };
+  const std::int64_t frame = 2 * format_.channels;
+  add_name("RIFF");
+  add(kHeaderBytes - 8 + data_bytes_, 4);
+  add_name("WAVE");
+  add_name("fmt ");
+  add(16, 4);
+  add(1, 2);  // integers
+  add(format_.channels, 2);
+  add(format_.rate, 4);
+  add(format_.rate * frame, 4);
+  add(frame, 2);
+  add(16, 2);
+  add_name("data");
+  add(data_bytes_, 4);
+  return put(header, 0);
+}
+
+Status WavWriter::write(std::span<const std::int16_t> samples) {
+  const auto bytes = std::as_bytes(samples);
+  const auto size = static_cast<std::int64_t>(bytes.size());
+  if (size > kMostBytes - data_bytes_)
+    return Error{Code::TooLarge, path_ + ": a WAV file has room for 4 GiB"};
+  // The samples first: a header that tells of them is true at every moment.
+  if (auto written = put(bytes, kHeaderBytes + data_bytes_); !written) return written;
+  data_bytes_ += size;
+  return put_header();
+}
+
+}  // namespace hc::audio
