@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ears.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using std::chrono::milliseconds;
+
+class Ears : public testing::Test {
+ protected:
+  Ears() : path("/tmp/hc_ears_" + std::to_string(::getpid()) + ".wav") {}
+  ~Ears() override { std::filesystem::remove(path); }
+  void save(const hc::audio::Format& format, std::size_t samples) const {
+    auto writer = hc::audio::WavWriter::create(path, format);
+    ASSERT_TRUE(writer);
+    std::vector<std::int16_t> all(samples);
+    for (std::size_t i = 0; i < samples; ++i) all[i] = static_cast<std::int16_t>(i % 1000);
+    ASSERT_TRUE(writer->write(all));
+  }
+  std::string path;
+};
+
+TEST_F(Ears, a_file_comes_whole_in_pieces) {
+  save({16000, 1}, 1000);
+  auto ear = FileEar::open(path, {16000, 1});
+  ASSERT_TRUE(ear);
+  std::vector<std::int16_t> all;
+  for (std::size_t size : {320, 320, 320, 40, 0, 0}) {
+    auto piece = ear->next(320);
+    ASSERT_TRUE(piece);
+    EXPECT_EQ(piece->size(), size);
+    all.insert(all.end(), piece->begin(), piece->end());
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i % 1000);
+}
+
+TEST_F(Ears, a_file_is_given_in_the_format_asked_for) {
+  save({8000, 2}, 16000);  // 1 s
+  auto ear = FileEar::open(path, {16000, 1});
+  ASSERT_TRUE(ear);
+  std::size_t frames = 0;
+  while (true) {
+    auto piece = ear->next(320);
+    ASSERT_TRUE(piece);
+    if (piece->empty()) break;
+    frames += piece->size();
+  }
+  EXPECT_NEAR(static_cast<double>(frames), 16000, 200);
+}
+
+TEST_F(Ears, an_empty_file_is_at_its_end_at_once) {
+  save({16000, 2}, 0);
+  auto ear = FileEar::open(path, {16000, 1});
+  ASSERT_TRUE(ear);
+  EXPECT_TRUE(ear->next(320)->empty());
+}
+
+TEST_F(Ears, a_microphone_that_is_not_there_is_told_once_and_found_later) {
+  ::setenv("SDL_AUDIODRIVER", "no_such_driver", 1);
+  std::vector<std::string> told;
+  DeviceEar ear("", {16000, 1}, 320, [&](std::string_view line) { told.emplace_back(line); });
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(ear.next(milliseconds(0), -1));
+  ASSERT_EQ(told.size(), 1);
+  EXPECT_TRUE(told[0].starts_with("no sound: ")) << told[0];
+  ::setenv("SDL_AUDIODRIVER", "dummy", 1);  // gives silence, in real time
+  std::optional<Piece> piece;
+  while (!(piece = ear.next(milliseconds(10), -1))) ASSERT_LE(told.size(), 2);
+  EXPECT_EQ(piece->samples.size(), 320);
+  EXPECT_GT(piece->time, 0);
+  ASSERT_EQ(told.size(), 2);
+  EXPECT_EQ(told[1], "the microphone is there");
+}
+
+}  // namespace

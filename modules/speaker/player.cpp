@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "player.h"
+
+#include <poll.h>
+
+#include <cmath>
+#include <vector>
+
+using hc::Status;
+using hc::audio::Converter;
+using hc::audio::Format;
+
+namespace {
+
+constexpr int kLook = 5;  // how often one looks whether there is room [ms]
+
+}  // namespace
+
+template <typename T>
+Status Player::play(std::span<const T> samples, const Format& format) {
+  constexpr auto kScalar =
+      std::is_same_v<T, float> ? Converter::Scalar::F32 : Converter::Scalar::I16;
+  if (auto ready = prepare(kScalar, format); !ready) return ready;
+  converter_->put(samples);
+  return give_out();
+}
+template Status Player::play(std::span<const std::int16_t>, const Format&);
+template Status Player::play(std::span<const float>, const Format&);
+
+/// Has the converter for a sound, and the file; what was converted otherwise is given out before.
+Status Player::prepare(Converter::Scalar scalar, const Format& format) {
+  if (!format_)
+    format_ = Format{options_.rate > 0 ? options_.rate : format.rate,
+                     options_.channels > 0 ? options_.channels : format.channels};
+  if (!converter_ || !converter_->takes(scalar, format)) {
+    auto made = Converter::make(scalar, format, *format_);
+    if (!made) return made.error();
+    if (converter_) {
+      converter_->finish();
+      if (auto given = give_out(); !given) return given;
+    }
+    converter_.emplace(std::move(*made));
+  }
+  if (!options_.file.empty() && !writer_) {
+    auto created = hc::audio::WavWriter::create(options_.file, *format_);
+    if (!created) return created.error();
+    writer_.emplace(std::move(*created));
+  }
+  return {};
+}
+
+Status Player::give_out() {
+  const auto samples = converter_->take();
+  if (samples.empty()) return {};
+  if (writer_)
+    if (auto written = writer_->write(samples); !written) return written;
+  if (!options_.is_heard) return {};
+  look();
+  wait_until_at_most(options_.buffer);
+  look();
+  if (playback_ != nullptr)
+    playback_->put(samples);
+  else
+    ++dropped_;
+  return {};
+}
+
+void Player::wait_until_at_most(double seconds) {
+  const auto most = std::llround(seconds * format_->rate);
+  while (playback_ != nullptr && playback_->is_there() && playback_->waiting() > most) {
+    pollfd stop{stop_, POLLIN, 0};
+    if (::poll(&stop, 1, kLook) != 0) return;
+  }
+}
+
+void Player::look() {
+  if (!options_.is_heard || !format_) return;
+  const auto now = hc::SystemClock().monotonic();
+  if (playback_ != nullptr && !playback_->is_there()) {
+    playback_.reset();
+    told_missing_ = true;
+    tell_("the loudspeaker has gone; what comes is dropped until it is back");
+  }
+  if (playback_ != nullptr || !retry_.is_due(now)) return;
+  auto opened = hc::audio::Playback::open(options_.device, *format_);
+  if (!opened) {
+    retry_.failed(now);
+    if (!told_missing_) tell_(opened.error().detail + "; what comes is dropped until it is there");
+    told_missing_ = true;
+    return;
+  }
+  playback_ = std::move(*opened);
+  retry_.succeeded();
+  if (told_missing_)
+    tell_("the loudspeaker is there; " + std::to_string(dropped_ - dropped_told_) +
+          " messages were dropped");
+  dropped_told_ = dropped_;
+  told_missing_ = false;
+}
+
+Status Player::finish() {
+  if (!converter_) return {};
+  converter_->finish();
+  if (auto given = give_out(); !given) return given;
+  wait_until_at_most(0);
+  playback_.reset();
+  return {};
+}

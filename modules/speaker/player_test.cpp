@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "player.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using hc::audio::Format;
+
+class PlayerTest : public testing::Test {
+ protected:
+  PlayerTest()
+      : folder(std::filesystem::temp_directory_path() /
+               ("hc_player_" + std::to_string(::getpid()))),
+        wav(folder / "out.wav"),
+        raw(folder / "out.raw") {
+    std::filesystem::create_directory(folder);
+    ::setenv("SDL_AUDIODRIVER", "disk", 1);
+    ::setenv("SDL_DISKAUDIOFILE", raw.c_str(), 1);
+  }
+  ~PlayerTest() override { std::filesystem::remove_all(folder); }
+
+  Player player(PlayerOptions options) {
+    return {std::move(options), [this](std::string_view line) { told.emplace_back(line); }, -1};
+  }
+  [[nodiscard]] std::vector<std::int16_t> written(const Format& format) const {
+    auto reader = hc::audio::WavReader::open(wav);
+    if (!reader || !(reader->format() == format)) {
+      ADD_FAILURE() << (reader ? text(reader->format()) : reader.error().text());
+      return {};
+    }
+    std::vector<std::int16_t> samples(100000);
+    const auto frames = reader->read(samples);
+    samples.resize(*frames * static_cast<std::size_t>(format.channels));
+    return samples;
+  }
+  std::filesystem::path folder;
+  std::string wav, raw;
+  std::vector<std::string> told;
+};
+
+const std::vector<std::int16_t> kSome = {1, 2, 3, 4, 5, 6};
+
+TEST_F(PlayerTest, writes_a_file_that_is_whole_at_once) {
+  auto to_file = player({.is_heard = false, .device = "", .file = wav});
+  ASSERT_TRUE(to_file.play<std::int16_t>(kSome, {8000, 2}));
+  EXPECT_EQ(written({8000, 2}), kSome);
+  ASSERT_TRUE(to_file.play<std::int16_t>(kSome, {8000, 2}));
+  EXPECT_EQ(written({8000, 2}).size(), 12);
+  ASSERT_TRUE(to_file.finish());
+  EXPECT_EQ(to_file.dropped(), 0);
+}
+
+TEST_F(PlayerTest, takes_other_formats_after_the_first) {
+  auto to_file = player({.is_heard = false, .device = "", .file = wav});
+  const std::vector<std::int16_t> second(16000, 1000);
+  const std::vector<float> half(24000, 0.5F);
+  ASSERT_TRUE(to_file.play<std::int16_t>(second, {16000, 1}));
+  ASSERT_TRUE(to_file.play<float>(half, {48000, 1}));
+  ASSERT_TRUE(to_file.play<std::int16_t>(second, {8000, 2}));
+  ASSERT_TRUE(to_file.finish());
+  EXPECT_NEAR(static_cast<double>(written({16000, 1}).size()), 16000 + 8000 + 16000, 4);
+}
+
+TEST_F(PlayerTest, says_why_a_file_cannot_be_written) {
+  auto to_file = player({.is_heard = false, .device = "", .file = "/no/such.wav"});
+  auto status = to_file.play<std::int16_t>(kSome, {8000, 1});
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().detail, "/no/such.wav: No such file or directory");
+}
+
+TEST_F(PlayerTest, what_is_played_is_heard_and_written) {
+  std::vector<std::int16_t> samples;
+  for (int i = 0; i < 4000; ++i) samples.push_back(static_cast<std::int16_t>(7 * i + 1));
+  auto both = player({.is_heard = true, .device = "", .file = wav, .buffer = 0.05});
+  ASSERT_TRUE(both.play<std::int16_t>(samples, {16000, 1}));
+  ASSERT_TRUE(both.play<std::int16_t>(samples, {16000, 1}));
+  ASSERT_TRUE(both.finish());
+  std::ifstream file(raw, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string sent(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
+  EXPECT_NE(bytes.find(sent + sent), std::string::npos);
+  EXPECT_EQ(written({16000, 1}).size(), 8000);
+  EXPECT_TRUE(told.empty());
+}
+
+TEST_F(PlayerTest, drops_and_counts_while_there_is_no_device) {
+  ::setenv("SDL_AUDIODRIVER", "no_such_driver", 1);
+  auto both = player({.is_heard = true, .device = "", .file = wav});
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(both.play<std::int16_t>(kSome, {16000, 1}));
+  EXPECT_EQ(both.dropped(), 3);
+  EXPECT_EQ(written({16000, 1}).size(), 18);  // what is not heard is written all the same
+  ASSERT_EQ(told.size(), 1);
+  EXPECT_TRUE(told[0].ends_with("; what comes is dropped until it is there")) << told[0];
+  ::setenv("SDL_AUDIODRIVER", "disk", 1);
+  while (told.size() == 1) both.look();
+  EXPECT_EQ(told[1], "the loudspeaker is there; 3 messages were dropped");
+  ASSERT_TRUE(both.play<std::int16_t>(kSome, {16000, 1}));
+  ASSERT_TRUE(both.finish());
+  EXPECT_EQ(both.dropped(), 3);
+}
+
+}  // namespace
