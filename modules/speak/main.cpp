@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// A voice. This program is linked with eSpeak NG, which is under the GPL, version 3; the others are
+// not.
+#include <charconv>
+#include <optional>
+
+#include <hc/base/clock.h>
+#include <hc/node/module.h>
+#include <hc/wire/rows.h>
+
+#include "synthesis.h"
+#include "words.h"
+
+namespace {
+
+constexpr std::int32_t kSound22k = 22, kText = 30;
+constexpr int kRate = 22050;                   // of eSpeak NG's voices [Hz]
+constexpr std::chrono::milliseconds kLook{5};  // how much later than it could a text begins
+
+/// "0.120": seconds with three places.
+std::string seconds(double time) {
+  char digits[32];
+  const auto end =
+      std::to_chars(std::begin(digits), std::end(digits), time, std::chars_format::fixed, 3);
+  return {digits, end.ptr};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"speak", "Speaks text aloud, by eSpeak NG."};
+  auto text =
+      module.input("text", hc::string(), "what to say; UTF-8, at most 2000 characters of it");
+  auto sound =
+      module.output("sound", hc::sound<std::int16_t>(1).in(kSound22k), "a message for each text");
+  auto words = module.output("words", hc::string().in(kText),
+                             "a message for each text, with the sound's time, and in it a row for "
+                             "each word: START END WORD [s since the sound begins]");
+  auto voice =
+      module.parameter("voice", "en", "", "language or voice, as espeak-ng --voices has it");
+  auto rate = module.parameter("rate", 175, "1/min", "words a minute", {.least = 80, .most = 450});
+  auto pitch = module.parameter("pitch", 50, "", "of the voice", {.least = 0, .most = 100});
+  auto volume = module.parameter("volume", 100, "", "of the voice", {.least = 0, .most = 200});
+  auto paced = module.parameter("paced", true, "",
+                                "a text begins when the one before has been heard; false: at once");
+  auto waiting =
+      module.parameter("waiting", 4, "", "texts that may wait for their turn; the oldest make room",
+                       {.least = 1, .most = 1000});
+
+  const hc::SystemClock clock;
+  std::optional<Synthesis> synthesis;
+  TextQueue queue;
+  hc::MonotonicTime spoken_until{0};
+  std::int64_t left_out = 0;
+  std::string told;  // what is wrong, which is told once
+
+  module.on_start([&] {
+    synthesis.emplace(hc::value_or_end(Synthesis::start()));
+    if (synthesis->rate() != kRate)
+      throw hc::ModuleError("eSpeak NG gives " + std::to_string(synthesis->rate()) + " Hz, not " +
+                            std::to_string(kRate));
+  });
+  auto speak = [&](const WaitingText& next) {
+    auto speech = synthesis->say(
+        next.characters,
+        {*voice, static_cast<int>(*rate), static_cast<int>(*pitch), static_cast<int>(*volume)});
+    if (!speech) {
+      if (told != speech.error().detail) module.log(told = speech.error().detail);
+      return;
+    }
+    told.clear();
+    const auto time = next.time != 0 ? next.time : module.now();
+    const auto frames = speech->samples.size();
+    auto draft = sound.loan(static_cast<std::int32_t>(frames), 1);
+    draft.header.time = time;
+    draft.header.mode = next.mode;
+    std::copy(speech->samples.begin(), speech->samples.end(), draft.matrix().numbers().begin());
+    std::vector<std::string> rows;
+    for (const auto& word : speech->words)
+      rows.push_back(seconds(word.start) + " " + seconds(word.end) + " " + utf8(word.word));
+    auto table = hc::make_rows(rows);
+    table.header.time = time;
+    table.header.mode = next.mode;
+    spoken_until = clock.monotonic() + std::chrono::nanoseconds(static_cast<std::int64_t>(frames) *
+                                                                1'000'000'000 / kRate);
+    words.send({std::move(table)});  // first, since a link may wait until the sound has been heard
+    sound.send(std::move(draft));
+  };
+  auto speak_next = [&] {
+    while (!queue.empty() && (!*paced || clock.monotonic() >= spoken_until)) speak(queue.pop());
+  };
+  module.on(text, [&](const auto& message) {
+    std::string lines;
+    for (const auto& row : hc::rows_of(message)) lines += row + " ";
+    auto characters = speakable(lines);
+    if (is_blank(characters)) return;
+    if (queue.push({std::move(characters), message.header.time, message.header.mode},
+                   static_cast<std::size_t>(*waiting)) &&
+        left_out++ == 0)
+      module.log("too many texts wait; the oldest are left out");
+    speak_next();
+  });
+  module.every(kLook, speak_next);
+  module.on_end([&] {
+    while (!queue.empty()) speak(queue.pop());
+  });
+  const int status = module.run(argc, argv);
+  if (left_out > 0) module.log(std::to_string(left_out) + " texts were left out");
+  return status;
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "synthesis.h"
+
+#include <espeak-ng/speak_lib.h>
+
+#include <algorithm>
+
+#include "words.h"
+
+using hc::Code;
+using hc::Error;
+using hc::Result;
+
+namespace {
+
+constexpr std::size_t kLongest = 600;  // [s]
+
+/// What comes while a text is synthesised.
+struct Gathered {
+  Speech speech;
+  std::u32string_view text;
+  std::size_t most = 0;
+  double last = 0;  // the last event [s]
+};
+
+void take(Gathered& gathered, const espeak_EVENT& event) {
+  const double time = event.audio_position * 1e-3;
+  if (event.type == espeakEVENT_WORD || event.type == espeakEVENT_END) {
+    auto& words = gathered.speech.words;
+    if (!words.empty() && words.back().end <= words.back().start) words.back().end = time;
+    gathered.last = time;
+  }
+  if (event.type != espeakEVENT_WORD || event.text_position < 1 || event.length < 1) return;
+  const auto begin = static_cast<std::size_t>(event.text_position) - 1;
+  if (begin >= gathered.text.size()) return;
+  SpokenWord word;
+  word.start = word.end = time;
+  word.word = gathered.text.substr(begin, static_cast<std::size_t>(event.length));
+  gathered.speech.words.push_back(std::move(word));
+}
+
+extern "C" int gather(short* samples, int count, espeak_EVENT* events) {
+  Gathered* gathered = nullptr;
+  for (const espeak_EVENT* event = events; event->type != espeakEVENT_LIST_TERMINATED; ++event) {
+    gathered = static_cast<Gathered*>(event->user_data);
+    if (gathered != nullptr) take(*gathered, *event);
+  }
+  if (gathered == nullptr) gathered = static_cast<Gathered*>(events->user_data);
+  if (samples == nullptr || gathered == nullptr) return 0;
+  auto& all = gathered->speech.samples;
+  all.insert(all.end(), samples, samples + count);
+  return all.size() > gathered->most ? 1 : 0;
+}
+
+}  // namespace
+
+Result<Synthesis> Synthesis::start() {
+  // Once, and never ended: espeak_Terminate() waits for a thread that may have missed its call.
+  static const int rate =
+      espeak_Initialize(AUDIO_OUTPUT_SYNCHRONOUS, 0, nullptr, espeakINITIALIZE_DONT_EXIT);
+  if (rate <= 0) return Error{Code::System, "eSpeak NG does not start; are its data there?"};
+  espeak_SetSynthCallback(gather);
+  return Synthesis(rate);
+}
+
+Result<Speech> Synthesis::say(std::u32string_view text, const Voice& voice) {
+  static std::string current;
+  if (voice.name != current) {
+    // It would look for a file of that name.
+    const bool is_name = !voice.name.empty() && voice.name.find('/') == std::string::npos &&
+                         voice.name.find('.') == std::string::npos && voice.name.size() < 40;
+    if (!is_name || espeak_SetVoiceByName(voice.name.c_str()) != EE_OK)
+      return Error{Code::NotFound, "there is no voice \"" + voice.name + "\""};
+    current = voice.name;
+  }
+  espeak_SetParameter(espeakRATE, std::clamp(voice.rate, espeakRATE_MINIMUM, espeakRATE_MAXIMUM),
+                      0);
+  espeak_SetParameter(espeakPITCH, std::clamp(voice.pitch, 0, 100), 0);
+  espeak_SetParameter(espeakVOLUME, std::clamp(voice.volume, 0, 200), 0);
+  Gathered gathered;
+  gathered.text = text;
+  gathered.most = kLongest * static_cast<std::size_t>(rate_);
+  const std::string bytes = utf8(text);
+  const auto status = espeak_Synth(bytes.c_str(), bytes.size() + 1, 0, POS_CHARACTER, 0,
+                                   espeakCHARS_UTF8 | espeakENDPAUSE, nullptr, &gathered);
+  if (status != EE_OK)
+    return Error{Code::System, "eSpeak NG: error " + std::to_string(static_cast<int>(status))};
+  auto& words = gathered.speech.words;
+  const double length = static_cast<double>(gathered.speech.samples.size()) / rate_;
+  if (!words.empty() && words.back().end <= words.back().start) words.back().end = length;
+  return std::move(gathered.speech);
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "synthesis.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "words.h"
+
+namespace {
+
+class SynthesisTest : public testing::Test {
+ protected:
+  SynthesisTest() : synthesis(std::move(*Synthesis::start())) {}
+  Speech say(std::string_view text, const Voice& voice = {}) {
+    auto said = synthesis.say(speakable(text), voice);
+    EXPECT_TRUE(said) << said.error().text();
+    return said ? std::move(*said) : Speech{};
+  }
+  [[nodiscard]] double loudness(const Speech& speech, double from, double to) const {
+    const auto at = [&](double time) {
+      return std::min(static_cast<std::size_t>(time * synthesis.rate()), speech.samples.size());
+    };
+    double sum = 0;
+    for (std::size_t i = at(from); i < at(to); ++i) sum += std::abs(speech.samples[i]);
+    return sum / std::max<double>(1, static_cast<double>(at(to) - at(from)));
+  }
+  [[nodiscard]] double seconds(const Speech& speech) const {
+    return static_cast<double>(speech.samples.size()) / synthesis.rate();
+  }
+  Synthesis synthesis;
+};
+
+TEST_F(SynthesisTest, words_have_their_times) {
+  EXPECT_EQ(synthesis.rate(), 22050);
+  const auto speech = say("Grüße robot, hello.");
+  ASSERT_EQ(speech.words.size(), 3);
+  EXPECT_EQ(speech.words[0].word, U"Grüße");
+  EXPECT_EQ(speech.words[1].word, U"robot");
+  EXPECT_EQ(speech.words[2].word, U"hello");
+  double last = 0;
+  for (const auto& word : speech.words) {
+    EXPECT_GE(word.start, last);
+    EXPECT_GT(word.end, word.start + 0.1);
+    EXPECT_GT(loudness(speech, word.start, word.end), 300);
+    last = word.end;
+  }
+  EXPECT_LE(last, seconds(speech));
+}
+
+TEST_F(SynthesisTest, the_voice_is_as_asked_for) {
+  const auto plain = say("one two three four five");
+  EXPECT_LT(seconds(say("one two three four five", {.rate = 300})), 0.8 * seconds(plain));
+  EXPECT_GT(seconds(say("one two three four five", {.rate = 100})), 1.3 * seconds(plain));
+  const auto silent = say("one two three four five", {.volume = 0});
+  EXPECT_LT(loudness(silent, 0, 9), 2);
+  EXPECT_LT(loudness(say("one two three four five", {.volume = 40}), 0, 9),
+            0.7 * loudness(plain, 0, 9));
+  EXPECT_NE(say("one", {.pitch = 90}).samples, say("one", {.pitch = 10}).samples);
+  EXPECT_NE(say("one", {.name = "de"}).samples, say("one").samples);
+}
+
+TEST_F(SynthesisTest, says_which_voice_there_is_not) {
+  for (const char* name : {"nosuch", "", "../../../etc/passwd", "/etc/passwd", "en\n"}) {
+    auto said = synthesis.say(U"one", {.name = name});
+    ASSERT_FALSE(said) << name;
+    EXPECT_EQ(said.error().code, hc::Code::NotFound);
+  }
+  EXPECT_FALSE(say("one").samples.empty());  // and goes on
+}
+
+TEST_F(SynthesisTest, markup_is_text) {
+  // As SSML the first would be silent for a minute, and the second would be phonemes.
+  const auto markup = say("<break time=\"60s\"/> one");
+  EXPECT_LT(seconds(markup), 10);
+  EXPECT_GT(markup.words.size(), 1);
+  EXPECT_LT(seconds(say("<audio src=\"/etc/passwd\"/> one")), 15);
+  EXPECT_GT(say("[[h@'loU]]").words.size(), 0);
+}
+
+TEST_F(SynthesisTest, any_bytes_do_no_harm) {
+  std::mt19937 random(9);
+  for (int i = 0; i < 60; ++i) {
+    std::string bytes;
+    for (auto size = random() % 60; bytes.size() < size;) bytes += static_cast<char>(random());
+    const auto speech = say(bytes);
+    for (const auto& word : speech.words) {
+      EXPECT_GE(word.end, word.start);
+      EXPECT_LE(word.start, seconds(speech) + 0.1);
+    }
+  }
+  EXPECT_LT(seconds(say(std::string(5000, 'x'))), 601);
+  EXPECT_TRUE(say("").words.empty());
+}
+
+}  // namespace
