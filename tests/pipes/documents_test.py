@@ -48,6 +48,9 @@ class Documents(Pipes):
     def test_routing(self):
         self.run_document("doc/routing.md")
 
+    def test_body(self):
+        self.run_document("doc/body.md")
+
 
 if __name__ == "__main__":
     unittest.main()
