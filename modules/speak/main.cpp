@@ -14,8 +14,8 @@
 namespace {
 
 constexpr std::int32_t kSound22k = 22, kText = 30;
-constexpr int kRate = 22050;                   // of eSpeak NG's voices [Hz]
-constexpr std::chrono::milliseconds kLook{5};  // how much later than it could a text begins
+constexpr int kRate = 22050;                    // of eSpeak NG's voices [Hz]
+constexpr std::chrono::milliseconds kLook{20};  // how much later than it could a text begins
 
 /// "0.120": seconds with three places.
 std::string seconds(double time) {

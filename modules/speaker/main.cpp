@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   auto device = module.parameter("device", "", "",
                                  "SDL's name of the loudspeaker, \"\": the default, \"none\": none",
                                  {.fixed = true});
-  auto file = module.parameter("file", "", "", "WAV file to write too, whole at every moment",
+  auto save = module.parameter("save", "", "", "WAV file to write too, whole at every moment",
                                {.fixed = true});
   auto rate =
       module.parameter("rate", 0, "Hz", "to play and write with, 0: that of the first sound",
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     PlayerOptions options;
     options.is_heard = *device != "none";
     options.device = *device;
-    options.file = *file;
+    options.file = *save;
     options.rate = static_cast<int>(*rate);
     options.channels = static_cast<int>(*channels);
     options.buffer = *buffer;

@@ -144,7 +144,9 @@ class HeadTracker(Bodies):
         self.feed(0, 0, 0, 0, 0, 0)
         self.wait_for("hears a tracker", 2)
         self.stop(process)
-        lines = [line for line in self.said().splitlines() if "tracker is" in line or "hears" in line]
+        lines = [
+            line for line in self.said().splitlines() if "tracker is" in line or "hears" in line
+        ]
         for before, after in zip(lines, lines[1:]):
             self.assertNotEqual(before, after)
 
@@ -154,7 +156,7 @@ class HeadTracker(Bodies):
         self.shell("hc head_tracker --port %d" % port, status=1)
         self.assertIn("UDP port %d of 127.0.0.1: Address already in use" % port, self.err)
         self.shell("hc head_tracker --host nowhere.invalid --port 0", status=2)
-        self.assertIn("head_tracker: Usage: host \"nowhere.invalid\": ", self.err)
+        self.assertIn('head_tracker: Usage: host "nowhere.invalid": ', self.err)
 
 
 class Joystick(Bodies):
@@ -174,13 +176,15 @@ class Sound(Bodies):
             self.write_wav("in.wav", samples, 16000, channels)
             self.shell(
                 "hc microphone in.wav --channels %d --paced=false | "
-                "hc speaker --device none --file out.wav" % channels
+                "hc speaker --device none --save out.wav" % channels
             )
             self.assertEqual(self.read_wav("out.wav"), (16000, channels, samples))
 
     def test_pieces_follow_one_another_in_time(self):
         self.write_wav("in.wav", tone(22050, 0.1), 22050)
-        out = self.shell("hc microphone in.wav --rate 22050 --paced=false | hc cat --raw | head -c 90")
+        out = self.shell(
+            "hc microphone in.wav --rate 22050 --paced=false | hc cat --raw | head -c 90"
+        )
         self.assertRegex(out, r"^1 1 0 0 8 [0-9]{19} 100131 0 22 441 1\n")
         out = self.shell("hc microphone in.wav --rate 22050 --paced=false | hc cat --json")
         times = [int(time) for time in re.findall(r'"time":(\d+)', out)]
@@ -218,7 +222,7 @@ class Sound(Bodies):
     def test_a_file_is_whole_after_the_speaker_was_killed(self):
         port = free_port()
         process = self.run_module(
-            "hc speaker --device none --file out.wav --in tcp-listen:%d" % port
+            "hc speaker --device none --save out.wav --in tcp-listen:%d" % port
         )
         wait_until(lambda: listens(port))
         samples = tone(8000, 0.2)
@@ -236,7 +240,7 @@ class Sound(Bodies):
         self.write_wav("in.wav", tone(16000, 0.1), 16000)
         self.shell(
             "hc microphone in.wav --paced=false | "
-            "SDL_AUDIODRIVER=no_such_driver hc speaker --file out.wav"
+            "SDL_AUDIODRIVER=no_such_driver hc speaker --save out.wav"
         )
         self.assertEqual(self.err.count("speaker: no sound: "), 1, self.err)
         self.assertIn("speaker: 5 messages were not heard", self.err)
@@ -244,7 +248,7 @@ class Sound(Bodies):
 
     def test_sound_without_a_rate_is_left_out_and_told_once(self):
         message = b"1 1 0 0 8 0 100130 0 0 1 1\n7\n"
-        self.shell("hc speaker --device none --file out.wav", data=2 * message)
+        self.shell("hc speaker --device none --save out.wav", data=2 * message)
         self.assertEqual(self.err.count("leaves out sound of coordinate system 0"), 1, self.err)
 
 
@@ -287,7 +291,7 @@ class SoundServer(Bodies):
         self.start_server()
         self.start_tone(free_port())
         self.start(
-            "exec hc microphone --out mono=- 2>ears | hc speaker --device none --file heard.wav",
+            "exec hc microphone --out mono=- 2>ears | hc speaker --device none --save heard.wav",
             stdout=-3,
         )
         path = pathlib.Path(self.path("heard.wav"))
@@ -336,7 +340,7 @@ public <words> = (hello | robot | seven | window | yellow | river | tomorrow | e
     def speak(self, text, options=""):
         self.shell(
             "hc send --text '%s' | hc speak %s --out sound=- --out words=file:words.mtp | "
-            "hc speaker --device none --file said.wav --rate 16000" % (text, options)
+            "hc speaker --device none --save said.wav --rate 16000" % (text, options)
         )
         rows = pathlib.Path(self.path("words.mtp")).read_bytes()
         header, elements = rows.split(b"\n", 1)
@@ -384,7 +388,9 @@ public <words> = (hello | robot | seven | window | yellow | river | tomorrow | e
         out = self.shell("hc speak --waiting 2 --out words=- | hc cat --json", data=data)
         self.assertEqual(re.findall(r'"time":(\d+)', out), ["1", "4", "5"])
         self.assertIn("speak: 2 texts were left out", self.err)
-        out = self.shell("hc speak --waiting 2 --paced=false --out words=- | hc cat --json", data=data)
+        out = self.shell(
+            "hc speak --waiting 2 --paced=false --out words=- | hc cat --json", data=data
+        )
         self.assertEqual(re.findall(r'"time":(\d+)', out), ["1", "2", "3", "4", "5"])
 
 
