@@ -10,9 +10,16 @@
 #include <hc/base/check.h>
 
 namespace hc::audio {
+namespace {
 
-void Converter::Free::operator()(_SDL_AudioStream* stream) const {
-  SDL_FreeAudioStream(stream);
+SDL_AudioStream* stream_of(void* stream) {
+  return static_cast<SDL_AudioStream*>(stream);
+}
+
+}  // namespace
+
+void Converter::Free::operator()(void* stream) const {
+  SDL_FreeAudioStream(stream_of(stream));
 }
 
 Result<Converter> Converter::make(Scalar scalar, const Format& from, const Format& to) {
@@ -31,7 +38,8 @@ Result<Converter> Converter::make(Scalar scalar, const Format& from, const Forma
 
 template <typename T>
 void Converter::put_any(std::span<const T> samples) {
-  SDL_AudioStreamPut(stream_.get(), samples.data(), static_cast<int>(samples.size_bytes()));
+  SDL_AudioStreamPut(stream_of(stream_.get()), samples.data(),
+                     static_cast<int>(samples.size_bytes()));
 }
 
 void Converter::put(std::span<const float> samples) {
@@ -58,13 +66,13 @@ void Converter::finish() {
     put_any<float>(std::vector<float>(size));
   else
     put_any<std::int16_t>(std::vector<std::int16_t>(size));
-  SDL_AudioStreamFlush(stream_.get());
+  SDL_AudioStreamFlush(stream_of(stream_.get()));
 }
 
 std::vector<std::int16_t> Converter::take() {
-  const int bytes = SDL_AudioStreamAvailable(stream_.get());
+  const int bytes = SDL_AudioStreamAvailable(stream_of(stream_.get()));
   std::vector<std::int16_t> samples(static_cast<std::size_t>(std::max(bytes, 0)) / 2);
-  const int got = SDL_AudioStreamGet(stream_.get(), samples.data(),
+  const int got = SDL_AudioStreamGet(stream_of(stream_.get()), samples.data(),
                                      static_cast<int>(samples.size() * sizeof(std::int16_t)));
   std::int64_t frames = std::max(got, 0) / 2 / to_.channels;
   if (is_finished_)

@@ -10,8 +10,6 @@
 #include <hc/base/result.h>
 #include <sound/format.h>
 
-struct _SDL_AudioStream;
-
 namespace hc::audio {
 
 /// Takes f32 or i16, gives i16. What is put in comes out in pieces, a little later where the rates
@@ -38,17 +36,17 @@ class Converter {
 
  private:
   struct Free {
-    void operator()(_SDL_AudioStream* stream) const;
+    void operator()(void* stream) const;
   };
-  Converter(Scalar scalar, const Format& from, const Format& to, _SDL_AudioStream* stream)
+  Converter(Scalar scalar, const Format& from, const Format& to, void* stream)
       : scalar_(scalar), from_(from), to_(to), stream_(stream) {}
   template <typename T>
   void put_any(std::span<const T> samples);
 
   Scalar scalar_;
   Format from_, to_;
-  std::unique_ptr<_SDL_AudioStream, Free> stream_;
-  std::int64_t put_ = 0, taken_ = 0;  // frames
+  std::unique_ptr<void, Free> stream_;  // an SDL_AudioStream
+  std::int64_t put_ = 0, taken_ = 0;    // frames
   bool is_finished_ = false;
 };
 

@@ -38,7 +38,7 @@ void Playback::put(std::span<const std::int16_t> samples) {
 }
 
 std::int64_t Playback::waiting() const {
-  return SDL_GetQueuedAudioSize(device_) / (2 * format_.channels);
+  return std::int64_t{SDL_GetQueuedAudioSize(device_)} / (2 * format_.channels);
 }
 
 bool Playback::is_there() const {

@@ -14,7 +14,8 @@ Result<FileEar> FileEar::open(const std::string& path, const hc::audio::Format& 
   if (!reader) return reader.error();
   auto converter = Converter::make(Converter::Scalar::I16, reader->format(), format);
   if (!converter) return converter.error();
-  return FileEar(std::move(*reader), std::move(*converter), format.channels);
+  return FileEar(std::move(*reader), std::move(*converter),
+                 static_cast<std::size_t>(format.channels));
 }
 
 Result<std::vector<std::int16_t>> FileEar::next(std::size_t frames) {

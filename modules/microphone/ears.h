@@ -33,7 +33,7 @@ class FileEar {
   hc::Result<std::vector<std::int16_t>> next(std::size_t frames);
 
  private:
-  FileEar(hc::audio::WavReader reader, hc::audio::Converter converter, int channels)
+  FileEar(hc::audio::WavReader reader, hc::audio::Converter converter, std::size_t channels)
       : reader_(std::move(reader)), converter_(std::move(converter)), channels_(channels) {}
 
   hc::audio::WavReader reader_;

@@ -31,7 +31,7 @@ TEST_F(Ears, a_file_comes_whole_in_pieces) {
   auto ear = FileEar::open(path, {16000, 1});
   ASSERT_TRUE(ear);
   std::vector<std::int16_t> all;
-  for (std::size_t size : {320, 320, 320, 40, 0, 0}) {
+  for (const std::size_t size : {320U, 320U, 320U, 40U, 0U, 0U}) {
     auto piece = ear->next(320);
     ASSERT_TRUE(piece);
     EXPECT_EQ(piece->size(), size);

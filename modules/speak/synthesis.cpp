@@ -4,6 +4,7 @@
 #include <espeak-ng/speak_lib.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "words.h"
 
@@ -64,7 +65,7 @@ Result<Synthesis> Synthesis::start() {
 }
 
 Result<Speech> Synthesis::say(std::u32string_view text, const Voice& voice) {
-  static std::string current;
+  static std::optional<std::string> current;
   if (voice.name != current) {
     // It would look for a file of that name.
     const bool is_name = !voice.name.empty() && voice.name.find('/') == std::string::npos &&
