@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/aravis/aravis.h>
+
+#include <gtest/gtest.h>
+
+namespace hc::aravis {
+namespace {
+
+constexpr std::chrono::milliseconds kLong{10'000};  // of a watchdog, not of a camera
+
+/// The next picture, however slow the machine is.
+Result<Picture> wait_for_picture(Camera& camera) {
+  auto picture = camera.next(kLong);
+  for (int i = 0; i < 10 && !picture && picture.error().code == Code::TimedOut; ++i)
+    picture = camera.next(kLong);
+  return picture;
+}
+
+TEST(Aravis, gives_pictures_with_rising_times) {
+  auto camera = Camera::open("Fake_1");
+  ASSERT_TRUE(camera) << camera.error().text();
+  std::int64_t before = 0;
+  for (int i = 0; i < 3; ++i) {
+    auto picture = wait_for_picture(**camera);
+    ASSERT_TRUE(picture) << picture.error().text();
+    EXPECT_EQ(picture->bgr.type(), CV_8UC3);
+    EXPECT_GT(picture->bgr.cols, 100);
+    EXPECT_GT(picture->time, before);
+    before = picture->time;
+  }
+  EXPECT_GT(before, 1'700'000'000'000'000'000);
+}
+
+TEST(Aravis, sets_exposure_and_gain) {
+  auto camera = Camera::open("Fake_1");
+  ASSERT_TRUE(camera) << camera.error().text();
+  auto set = (*camera)->set_exposure(0.012);
+  ASSERT_TRUE(set) << set.error().text();
+  EXPECT_NEAR((*camera)->exposure().value_or(0), 0.012, 1e-4);
+  set = (*camera)->set_gain(3);
+  ASSERT_TRUE(set) << set.error().text();
+  EXPECT_NEAR((*camera)->gain().value_or(0), 3, 0.1);
+  EXPECT_EQ((*camera)->set_exposure(1e6).error().code, Code::Unsupported);
+  EXPECT_TRUE(wait_for_picture(**camera));
+}
+
+TEST(Aravis, takes_the_pixel_format_that_is_asked_for) {
+  for (const char* format : {"Mono8", "BayerRG8", "RGB8"}) {
+    auto camera = Camera::open("Fake_1", format);
+    if (!camera && camera.error().code == Code::Unsupported) continue;
+    ASSERT_TRUE(camera) << format << camera.error().text();
+    EXPECT_TRUE(wait_for_picture(**camera)) << format;
+  }
+  EXPECT_EQ(Camera::open("Fake_1", "Nonsense").error().code, Code::Unsupported);
+}
+
+TEST(Aravis, says_that_there_is_no_such_camera) {
+  auto camera = Camera::open("Fake_99");
+  ASSERT_FALSE(camera);
+  EXPECT_EQ(camera.error().code, Code::NotFound);
+}
+
+}  // namespace
+}  // namespace hc::aravis

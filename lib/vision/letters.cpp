@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/letters.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
+namespace {
+
+// Of letters, in pixels of the level of the pyramid that they are looked for at.
+constexpr int kLeastHeight = 8, kMostHeight = 40, kWindow = 35;
+constexpr int kMostPieces = 1500;  // a picture of nothing but grains
+constexpr int kLevels = 3;
+
+/// Something dark that is connected.
+struct Piece {
+  cv::Rect box;
+  double ink = 0, ground = 0;  // mean grey of it, and of what is around it
+  bool is_letter = false;      // by its size; otherwise perhaps a stop, a comma or a dash
+  [[nodiscard]] float left() const { return static_cast<float>(box.x); }
+  [[nodiscard]] float right() const { return static_cast<float>(box.x + box.width); }
+  [[nodiscard]] float top() const { return static_cast<float>(box.y); }
+  [[nodiscard]] float bottom() const { return static_cast<float>(box.y + box.height); }
+  [[nodiscard]] float middle_x() const { return (left() + right()) / 2; }
+  [[nodiscard]] float middle_y() const { return (top() + bottom()) / 2; }
+  [[nodiscard]] float height() const { return static_cast<float>(box.height); }
+};
+
+/// y = slope · x + offset
+struct Slant {
+  double slope = 0, offset = 0;
+  [[nodiscard]] double at(double x) const { return slope * x + offset; }
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The grey picture with the least noise: the mean of the channels.
+cv::Mat grey_of(const cv::Mat& picture) {
+  if (picture.channels() == 1) return picture;
+  cv::Mat grey;
+  cv::transform(picture, grey, cv::Matx13f(1 / 3.0F, 1 / 3.0F, 1 / 3.0F));
+  return grey;
+}
+
+/// Measures what is in a piece's box and around it; nothing for what is too faint for a letter.
+std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const cv::Mat& dark,
+                             int label, const cv::Rect& box) {
+  const cv::Rect around =
+      cv::Rect(box.x - 2, box.y - 2, box.width + 4, box.height + 4) & cv::Rect({}, grey.size());
+  double ink = 0, ground = 0;
+  int inks = 0, grounds = 0;
+  for (int y = around.y; y < around.br().y; ++y) {
+    const auto* value = grey.ptr<std::uint8_t>(y);
+    const auto* name = labels.ptr<std::int32_t>(y);
+    const auto* is_dark = dark.ptr<std::uint8_t>(y);
+    for (int x = around.x; x < around.br().x; ++x) {
+      if (name[x] == label) ink += value[x], ++inks;
+      if (is_dark[x] == 0) ground += value[x], ++grounds;
+    }
+  }
+  if (inks == 0 || grounds == 0) return {};
+  Piece piece{box, ink / inks, ground / grounds, false};
+  if (piece.ground - piece.ink < 0.25 * piece.ground) return {};
+  return piece;
+}
+
+/// The dark pieces of a picture that may be letters or stops.
+std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark) {
+  cv::adaptiveThreshold(grey, dark, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, kWindow,
+                        std::max(12.0, 3 * noise));
+  cv::Mat labels, stats, middles;
+  const int count = cv::connectedComponentsWithStats(dark, labels, stats, middles, 8);
+  std::vector<Piece> pieces;
+  for (int label = 1; label < count && pieces.size() < kMostPieces; ++label) {
+    const int* of = stats.ptr<int>(label);
+    const cv::Rect box(of[cv::CC_STAT_LEFT], of[cv::CC_STAT_TOP], of[cv::CC_STAT_WIDTH],
+                       of[cv::CC_STAT_HEIGHT]);
+    const int area = of[cv::CC_STAT_AREA];
+    if (box.height > kMostHeight || box.width > 6 * kMostHeight || area < 4) continue;
+    const double filled = static_cast<double>(area) / box.area();
+    const bool is_solid = filled > 0.85 && 10 * box.width > 6 * box.height;
+    const bool is_letter = box.height >= kLeastHeight && box.width <= 6 * box.height &&
+                           filled > 0.12 && area >= 10 && !is_solid;
+    // Specks that noise makes are smaller than stops beside the least of letters.
+    if (!is_letter && (box.height > kMostHeight / 2 || box.width > kMostHeight)) continue;
+    auto piece = look_at(grey, labels, dark, label, box);
+    if (!piece) continue;
+    piece->is_letter = is_letter;
+    pieces.push_back(*piece);
+  }
+  return pieces;
+}
+
+/// Whether two letters may be neighbours in a line.
+bool are_neighbours(const Piece& a, const Piece& b) {
+  const float high = std::max(a.height(), b.height()), low = std::min(a.height(), b.height());
+  if (high > 1.8F * low) return false;
+  if (std::abs(a.middle_y() - b.middle_y()) > 0.45F * high) return false;
+  const float gap = std::max(a.left(), b.left()) - std::min(a.right(), b.right());
+  if (gap > 1.4F * high || gap < -0.3F * high) return false;
+  const double contrast = std::max(a.ground - a.ink, b.ground - b.ink);
+  return std::abs(a.ground - b.ground) < 0.35 * contrast &&
+         std::abs(a.ink - b.ink) < 0.5 * contrast;
+}
+
+/// Letters by the line that they stand in.
+std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces) {
+  std::vector<Piece> letters;
+  for (const auto& piece : pieces)
+    if (piece.is_letter) letters.push_back(piece);
+  std::sort(letters.begin(), letters.end(),
+            [](const auto& a, const auto& b) { return a.left() < b.left(); });
+  std::vector<std::size_t> group_of(letters.size());
+  std::iota(group_of.begin(), group_of.end(), 0U);
+  auto root = [&](std::size_t i) {
+    while (group_of[i] != i) i = group_of[i] = group_of[group_of[i]];
+    return i;
+  };
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    for (std::size_t k = i + 1; k < letters.size(); ++k) {
+      if (letters[k].left() > letters[i].right() + 1.4F * kMostHeight) break;
+      if (are_neighbours(letters[i], letters[k])) group_of[root(k)] = root(i);
+    }
+  std::vector<std::vector<Piece>> groups(letters.size());
+  for (std::size_t i = 0; i < letters.size(); ++i) groups[root(i)].push_back(letters[i]);
+  std::erase_if(groups, [](const auto& each) { return each.size() < 2; });
+  return groups;
+}
+
+/// The slope that most pairs of points agree with (Theil and Sen).
+double slope_of(const std::vector<cv::Point2d>& points) {
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t k = i + 1; k < points.size(); ++k)
+      if (points[k].x - points[i].x > 1)
+        slopes.push_back((points[k].y - points[i].y) / (points[k].x - points[i].x));
+  return slopes.empty() ? 0 : median(std::move(slopes));
+}
+
+Slant slant_of(const std::vector<cv::Point2d>& points, double slope) {
+  std::vector<double> offsets;
+  offsets.reserve(points.size());
+  for (const auto& point : points) offsets.push_back(point.y - slope * point.x);
+  return {slope, median(std::move(offsets))};
+}
+
+/// Stops, commas and dashes that belong to a line reach beyond its letters.
+void reach_for_stops(const std::vector<Piece>& pieces, const Slant& top, const Slant& base,
+                     double height, double ground, double& left, double& right) {
+  bool any = true;
+  while (any) {
+    any = false;
+    for (const auto& piece : pieces) {
+      const double x = piece.middle_x();
+      if (piece.top() < top.at(x) - 0.15 * height || piece.bottom() > base.at(x) + 0.4 * height)
+        continue;
+      if (std::abs(piece.ground - ground) > 0.25 * ground) continue;
+      if (piece.box.area() < 0.008 * height * height) continue;
+      if (piece.left() < left && piece.right() > left - 0.9 * height) left = piece.left(), any = true;
+      if (piece.right() > right && piece.left() < right + 0.9 * height)
+        right = piece.right(), any = true;
+    }
+  }
+}
+
+/// Mean and standard deviation of the ground between a line's letters.
+std::pair<double, double> ground_of(const cv::Mat& grey, const cv::Mat& dark, const cv::Rect& box) {
+  cv::Mat ink, mean, deviation;
+  // The letters' soft edges are not the ground.
+  cv::dilate(dark(box), ink, cv::Mat());
+  cv::meanStdDev(grey(box), mean, deviation, ink == 0);
+  return {mean.at<double>(0), deviation.at<double>(0)};
+}
+
+std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::vector<Piece>& pieces,
+                                const cv::Mat& grey, const cv::Mat& dark, double noise) {
+  std::vector<double> heights;
+  for (const auto& letter : letters) heights.push_back(letter.height());
+  const double usual = median(heights);
+  std::vector<cv::Point2d> tops, bottoms;
+  std::vector<double> inks, grounds, unevenness;
+  double left = 1e9, right = -1e9;
+  for (const auto& letter : letters) {
+    left = std::min<double>(left, letter.left());
+    right = std::max<double>(right, letter.right());
+    if (letter.height() < 0.75 * usual) continue;
+    tops.emplace_back(letter.middle_x(), letter.top());
+    bottoms.emplace_back(letter.middle_x(), letter.bottom());
+    inks.push_back(letter.ink);
+    grounds.push_back(letter.ground);
+    unevenness.push_back(std::abs(letter.height() - usual));
+  }
+  // Few letters say too little of a perspective.
+  double top_slope = slope_of(tops), base_slope = slope_of(bottoms);
+  if (tops.size() < 5) top_slope = base_slope = (top_slope + base_slope) / 2;
+  if (std::max(std::abs(top_slope), std::abs(base_slope)) > 0.36) return {};
+  const Slant top = slant_of(tops, top_slope), base = slant_of(bottoms, base_slope);
+  const double middle_x = (left + right) / 2, height = base.at(middle_x) - top.at(middle_x);
+  if (height < kLeastHeight - 1) return {};
+  const double ink = median(inks), ground = median(grounds);
+  reach_for_stops(pieces, top, base, height, ground, left, right);
+
+  TextLine line;
+  auto corner = [](double x, double y) {
+    // Pixels are squares around their middles.
+    return cv::Point2f(static_cast<float>(x - 0.5), static_cast<float>(y - 0.5));
+  };
+  line.corners = {corner(left, top.at(left)), corner(right, top.at(right)),
+                  corner(right, base.at(right)), corner(left, base.at(left))};
+  line.letters = static_cast<int>(letters.size());
+  line.height = height;
+  // A margin of a third of the height is to be clean too.
+  const int margin = static_cast<int>(height / 3);
+  cv::Rect box = cv::boundingRect(std::vector<cv::Point2f>(line.corners.begin(), line.corners.end()));
+  box = cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin);
+  line.is_whole = (box & cv::Rect({}, grey.size())) == box;
+  box &= cv::Rect({}, grey.size());
+  if (box.empty()) return {};
+  const auto [mean, deviation] = ground_of(grey, dark, box);
+  const double contrast = std::max(1.0, ground - ink);
+  const double rough = std::max(0.0, deviation - noise) / contrast;
+  const double uneven = median(unevenness) / usual;
+  line.score = std::min(1.0, 1.3 * contrast / std::max(1.0, ground)) * std::exp(-5 * rough) *
+               std::exp(-3 * uneven) * (1 - std::exp(-line.letters / 2.5));
+  return line;
+}
+
+void scale(TextLine& line, double by) {
+  // The middle of the first pixel of the larger picture is not that of the smaller one's.
+  for (auto& corner : line.corners)
+    corner = (corner + cv::Point2f(0.5F, 0.5F)) * by - cv::Point2f(0.5F, 0.5F);
+  line.height *= by;
+}
+
+cv::Rect2f box_of(const TextLine& line) {
+  const auto& c = line.corners;
+  const float left = std::min(c[0].x, c[3].x), right = std::max(c[1].x, c[2].x);
+  const float top = std::min(c[0].y, c[1].y), bottom = std::max(c[2].y, c[3].y);
+  return {left, top, right - left, bottom - top};
+}
+
+}  // namespace
+
+cv::Point2f TextLine::middle() const {
+  return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+}
+
+double TextLine::width() const {
+  return cv::norm((corners[1] + corners[2]) - (corners[0] + corners[3])) / 2;
+}
+
+double noise_of(const cv::Mat& grey) {
+  if (grey.rows < 3 || grey.cols < 3) return 0;
+  const cv::Matx33f kernel(1, -2, 1, -2, 4, -2, 1, -2, 1);
+  cv::Mat rough;
+  cv::filter2D(grey, rough, CV_16S, kernel);
+  // Every fourth row and column is enough.
+  std::vector<int> counts(2048);
+  int all = 0;
+  for (int y = 1; y < rough.rows - 1; y += 4) {
+    const auto* row = rough.ptr<std::int16_t>(y);
+    for (int x = 1; x < rough.cols - 1; x += 4) {
+      // What is black or white altogether has been cut off, and tells nothing.
+      const int value = grey.at<std::uint8_t>(y, x);
+      if (value < 3 || value > 252) continue;
+      ++counts[static_cast<std::size_t>(std::min(2047, std::abs(static_cast<int>(row[x]))))];
+      ++all;
+    }
+  }
+  if (all == 0) return 0;
+  int below = 0;
+  std::size_t middle = 0;
+  while (below + counts[middle] <= all / 2) below += counts[middle++];
+  // Within the bin, so that a little noise is not none.
+  const double part = (all / 2.0 - below) / counts[middle];
+  const double value = std::max(0.0, static_cast<double>(middle) - 0.5 + part);
+  return value / 0.6745 / 6;  // median of |N(0, 1)|; the kernel's norm is 6
+}
+
+std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score) {
+  cv::Mat grey = grey_of(picture);
+  double noise = noise_of(grey);
+  if (noise > 4) {
+    cv::Mat smooth;
+    cv::GaussianBlur(grey, smooth, {}, 0.8);
+    grey = smooth;
+    noise *= 0.36;  // norm of the blur's kernel
+  }
+  std::vector<TextLine> found;
+  double by = 1;
+  for (int level = 0; level < kLevels; ++level) {
+    if (level > 0) {
+      cv::Mat half;
+      cv::resize(grey, half, {}, 0.5, 0.5, cv::INTER_AREA);
+      grey = half;
+      by *= 2;
+      noise /= 2;
+    }
+    if (std::min(grey.rows, grey.cols) < 2 * kLeastHeight) break;
+    cv::Mat dark;
+    const auto pieces = find_pieces(grey, noise, dark);
+    for (const auto& letters : group(pieces))
+      if (auto line = line_of(letters, pieces, grey, dark, noise);
+          line && line->score >= least_score) {
+        scale(*line, by);
+        found.push_back(*line);
+      }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
+  std::vector<TextLine> kept;
+  for (const auto& line : found)
+    if (std::none_of(kept.begin(), kept.end(), [&](const auto& better) {
+          return (box_of(line) & box_of(better)).area() > 0;
+        }))
+      kept.push_back(line);
+  return kept;
+}
+
+cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_height) {
+  const double scale = letter_height / line.height;
+  const float margin = 0.45F * static_cast<float>(letter_height);
+  const auto wide = static_cast<float>(line.width() * scale);
+  const auto high = static_cast<float>(letter_height);
+  const cv::Size size(cvRound(wide + 2 * margin), cvRound(high + 2 * margin));
+  // The part of the picture that is needed, so that nothing else is worked on.
+  cv::Rect2f around = box_of(line);
+  const auto wider = static_cast<float>(line.height) + 4;
+  const cv::Rect part = cv::Rect(cv::Rect2f(around.x - wider, around.y - wider,
+                                            around.width + 2 * wider, around.height + 2 * wider)) &
+                        cv::Rect({}, picture.size());
+  if (part.empty()) return {};
+  cv::Mat grey = grey_of(picture(part));
+  const double noise = noise_of(grey);
+  if (noise > 4) {
+    cv::Mat smooth;
+    cv::GaussianBlur(grey, smooth, {}, 0.7);
+    grey = smooth;
+  }
+  std::array<cv::Point2f, 4> from = line.corners;
+  for (auto& corner : from) corner -= cv::Point2f(cv::Point(part.x, part.y));
+  const std::array<cv::Point2f, 4> to = {
+      cv::Point2f(margin, margin), cv::Point2f(margin + wide, margin),
+      cv::Point2f(margin + wide, margin + high), cv::Point2f(margin, margin + high)};
+  cv::Mat straight;
+  if (scale < 0.7) {  // a picture that is made smaller is to be smooth
+    cv::Mat smooth;
+    cv::GaussianBlur(grey, smooth, {}, 0.4 / scale);
+    grey = smooth;
+  }
+  cv::warpPerspective(grey, straight, cv::getPerspectiveTransform(from, to), size, cv::INTER_CUBIC,
+                      cv::BORDER_REPLICATE);
+  // The ground is what letters, being narrower, do not reach; it becomes white.
+  cv::Mat ground;
+  const int reach = letter_height | 1;
+  cv::morphologyEx(straight, ground, cv::MORPH_CLOSE,
+                   cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
+  cv::GaussianBlur(ground, ground, {}, letter_height / 4.0);
+  cv::Mat even;
+  cv::divide(straight, ground, even, 255);
+  std::vector<int> counts(256);
+  for (int y = 0; y < even.rows; ++y)
+    for (int x = 0; x < even.cols; ++x) ++counts[even.at<std::uint8_t>(y, x)];
+  int ink = 0, below = counts[0];
+  while (below < even.rows * even.cols / 50) below += counts[static_cast<std::size_t>(++ink)];
+  const double white = 255 - 3 * noise * 0.4;
+  const double stretch = 255 / std::max(16.0, white - ink);
+  even.convertTo(even, CV_8U, stretch, -ink * stretch);
+  return even;
+}
+
+}  // namespace hc::vision

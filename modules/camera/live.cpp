@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{100};  // of a thread that is to notice its end
+constexpr std::chrono::milliseconds kFirstPause{100}, kLongestPause{2000};
+
+}  // namespace
+
+struct LiveCameras::Camera {
+  std::size_t side = 0;
+  LiveCamera how;
+  std::optional<Frame> newest;  // of one that is alone
+  bool told = false;            // that it is not there
+  std::chrono::milliseconds wait = kFirstPause;
+  std::thread thread;
+};
+
+LiveCameras::LiveCameras(std::vector<LiveCamera> cameras, bool reopen, const Adjustment& adjustment)
+    : reopen_(reopen), adjustment_(adjustment) {
+  for (auto& how : cameras) {
+    auto camera = std::make_unique<Camera>();
+    camera->side = cameras_.size();
+    camera->how = std::move(how);
+    cameras_.push_back(std::move(camera));
+  }
+  for (auto& camera : cameras_) camera->thread = std::thread([this, &camera] { run(*camera); });
+}
+
+LiveCameras::~LiveCameras() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  for (auto& camera : cameras_) camera->thread.join();
+}
+
+void LiveCameras::tell(std::string line) {
+  const std::lock_guard lock(mutex_);
+  remarks_.push_back(std::move(line));
+}
+
+/// Waits, if nobody wants it to end; whether to go on.
+bool LiveCameras::pause(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, time, [&] { return stopping_; });
+  return !stopping_;
+}
+
+void LiveCameras::run(Camera& camera) {
+  do {
+    auto device = camera.how.open();
+    std::optional<hc::Error> failure;
+    if (device) {
+      serve(camera, **device);
+    } else {
+      const std::lock_guard lock(mutex_);
+      if (!reopen_) {
+        failure_ = hc::Error{device.error().code, camera.how.name + ": " + device.error().detail};
+      } else if (!camera.told) {
+        camera.told = true;
+        remarks_.push_back(camera.how.name + ": not there: " + device.error().detail +
+                           "; trying again");
+      }
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      camera.newest.reset();
+      pairing_.clear(camera.side);
+      if (failure_) stopping_ = true;
+    }
+    changed_.notify_all();
+    if (!pause(camera.wait)) return;
+    camera.wait = std::min(2 * camera.wait, kLongestPause);
+  } while (true);
+}
+
+/// Takes a camera's pictures until it is lost, or all is to end.
+void LiveCameras::serve(Camera& camera, Device& device) {
+  Adjustment adjusted;
+  bool any = false;
+  while (true) {
+    Adjustment wanted;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return;
+      wanted = adjustment_;
+    }
+    if (wanted != adjusted) {
+      adjusted = wanted;
+      if (auto done = device.adjust(wanted); !done) tell(camera.how.name + ": " + done.error().detail);
+    }
+    auto frame = device.next(kPatience);
+    if (!frame && frame.error().code == hc::Code::TimedOut) continue;
+    const std::lock_guard lock(mutex_);
+    if (!frame) {
+      if (!reopen_)
+        failure_ = hc::Error{frame.error().code, camera.how.name + ": " + frame.error().detail};
+      else if (!camera.told)
+        remarks_.push_back(camera.how.name + ": lost: " + frame.error().detail + "; trying again");
+      camera.told = true;
+      return;
+    }
+    if (!any) {
+      // It is there when it gives a picture, and not when it can merely be opened.
+      any = true;
+      camera.wait = kFirstPause;
+      if (std::exchange(camera.told, false)) remarks_.push_back(camera.how.name + ": is back");
+    }
+    const bool is_alone = std::none_of(cameras_.begin(), cameras_.end(), [&](const auto& other) {
+      return other->side != camera.side && !other->told;
+    });
+    if (is_alone)
+      camera.newest = std::move(*frame);
+    else
+      pairing_.add(camera.side, std::move(*frame));
+    changed_.notify_all();
+  }
+}
+
+hc::Result<std::optional<LiveCameras::Taken>> LiveCameras::next(std::chrono::milliseconds timeout) {
+  std::optional<Taken> taken;
+  auto take = [&] {
+    while (auto pair = pairing_.take())
+      taken = Taken{std::move((*pair)[0]), std::move((*pair)[1])};
+    for (auto& camera : cameras_) {
+      if (!camera->newest) continue;
+      // What came before its partner did is no news any more beside a pair.
+      auto frame = std::move(*std::exchange(camera->newest, {}));
+      if (taken) continue;
+      taken.emplace();
+      (camera->side == 0 ? taken->left : taken->right) = std::move(frame);
+    }
+    return taken || failure_ || !remarks_.empty();
+  };
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, timeout, take);
+  if (failure_) return *failure_;
+  return taken;
+}
+
+void LiveCameras::adjust(const Adjustment& adjustment) {
+  const std::lock_guard lock(mutex_);
+  adjustment_ = adjustment;
+}
+
+std::vector<std::string> LiveCameras::remarks() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(remarks_, {});
+}

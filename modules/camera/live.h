@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Cameras that give pictures by themselves, and may go and come back. Each is opened, waited for
+// and, when it is lost, opened again on a thread of its own, so that it holds up nothing else.
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <hc/base/result.h>
+
+#include "pairing.h"
+
+/// What can be set while a camera runs.
+struct Adjustment {
+  double exposure = 0;  ///< [s]; 0: as the camera has it
+  double gain = -1;     ///< in the camera's unit; less than 0: as the camera has it
+  bool operator==(const Adjustment&) const = default;
+};
+
+/// An open camera, which belongs to one thread.
+class Device {
+ public:
+  virtual ~Device() = default;
+  /// Waits for a picture. Errors: TimedOut (none yet, ask again); any other: the camera is lost.
+  virtual hc::Result<Frame> next(std::chrono::milliseconds timeout) = 0;
+  virtual hc::Status adjust(const Adjustment& adjustment) = 0;
+};
+
+/// Opens a camera; is called on its thread, again and again while it fails.
+using OpenDevice = std::function<hc::Result<std::unique_ptr<Device>>()>;
+
+struct LiveCamera {
+  std::string name;  ///< as remarks call it
+  OpenDevice open;
+};
+
+/// One camera, or two whose pictures are taken in pairs at nearest times. When one of two is lost
+/// the other goes on alone.
+class LiveCameras {
+ public:
+  struct Taken {
+    std::optional<Frame> left, right;
+  };
+
+  /// @param reopen  try again when a camera is lost or was never there; otherwise next() fails.
+  LiveCameras(std::vector<LiveCamera> cameras, bool reopen, const Adjustment& adjustment);
+  ~LiveCameras();
+  LiveCameras(const LiveCameras&) = delete;
+  LiveCameras& operator=(const LiveCameras&) = delete;
+
+  /// Waits for a picture or pair; the newest where several have come. Nothing when none has.
+  /// Errors: without `reopen`, those of a camera.
+  hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
+  /// Has the cameras work otherwise from now on.
+  void adjust(const Adjustment& adjustment);
+  /// What there is to tell about the cameras, in lines: once for each change.
+  std::vector<std::string> remarks();
+
+ private:
+  struct Camera;
+  void run(Camera& camera);
+  void serve(Camera& camera, Device& device);
+  void tell(std::string line);
+  bool pause(std::chrono::milliseconds time);
+
+  const bool reopen_;
+  std::mutex mutex_;  // of all below
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  Adjustment adjustment_;
+  std::vector<std::string> remarks_;
+  std::optional<hc::Error> failure_;
+  Pairing pairing_;
+  std::vector<std::unique_ptr<Camera>> cameras_;
+};

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "announcer.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+TEST(Announcer, says_what_was_read_often_enough_in_a_row) {
+  Announcer announcer;
+  const Announcer::Rules rules{0.5, 3, 0};
+  EXPECT_FALSE(announcer.take("A", 0.9, 1, rules));
+  EXPECT_FALSE(announcer.take("A", 0.9, 2, rules));
+  EXPECT_FALSE(announcer.take("B", 0.9, 3, rules));
+  EXPECT_FALSE(announcer.take("A", 0.9, 4, rules));
+  EXPECT_FALSE(announcer.take("A", 0.9, 5, rules));
+  EXPECT_TRUE(announcer.take("A", 0.9, 6, rules));
+  EXPECT_FALSE(announcer.take("A", 0.9, 7, rules));
+}
+
+TEST(Announcer, an_unsure_reading_breaks_the_row) {
+  Announcer announcer;
+  const Announcer::Rules rules{0.5, 2, 0};
+  EXPECT_FALSE(announcer.take("A", 0.9, 1, rules));
+  EXPECT_FALSE(announcer.take("A", 0.4, 2, rules));
+  EXPECT_FALSE(announcer.take("A", 0.9, 3, rules));
+  EXPECT_TRUE(announcer.take("A", 0.5, 4, rules));
+}
+
+TEST(Announcer, nothing_is_never_said) {
+  Announcer announcer;
+  EXPECT_FALSE(announcer.take("", 1, 1, {0, 1, 0}));
+}
+
+TEST(Announcer, says_it_again_when_it_changes_or_after_a_while) {
+  Announcer announcer;
+  const Announcer::Rules rules{0, 1, 10};
+  EXPECT_TRUE(announcer.take("A", 1, 1 * kSecond, rules));
+  EXPECT_FALSE(announcer.take("A", 1, 10 * kSecond, rules));
+  EXPECT_TRUE(announcer.take("A", 1, 11 * kSecond, rules));
+  EXPECT_TRUE(announcer.take("B", 1, 12 * kSecond, rules));
+  EXPECT_TRUE(announcer.take("A", 1, 13 * kSecond, rules));
+}
+
+TEST(Announcer, never_again_with_0) {
+  Announcer announcer;
+  EXPECT_TRUE(announcer.take("A", 1, 1, {0, 1, 0}));
+  EXPECT_FALSE(announcer.take("A", 1, 1'000'000 * kSecond, {0, 1, 0}));
+}
+
+TEST(Announcer, a_clock_that_went_back_does_not_silence_it) {
+  Announcer announcer;
+  EXPECT_TRUE(announcer.take("A", 1, 100 * kSecond, {0, 1, 10}));
+  EXPECT_TRUE(announcer.take("A", 1, 5 * kSecond, {0, 1, 10}));
+}
+
+}  // namespace

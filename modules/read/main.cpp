@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads block letters in pictures, and says where they are.
+#include <optional>
+
+#include <hc/adapter/opencv.h>
+#include <hc/node/module.h>
+#include <vision/letters.h>
+
+#include "announcer.h"
+#include "recogniser.h"
+
+namespace {
+
+constexpr std::int32_t kText = 30;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"read", "Reads a line of dark letters on a bright ground, as on a board."};
+  auto image = module.input(
+      "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
+      "picture with letters");
+  auto text = module.output("text", hc::string().in(kText),
+                            "what is read, once it is sure; again when it changes");
+  auto confidence =
+      module.output("confidence", hc::table<double>(), "of each reading, sure or not, 0 to 1");
+  auto target = module.output("target", hc::position<double>(),
+                              "x, y, width of the line [px], in the picture's coordinate system");
+  auto language = module.parameter("language", "eng", "", "as Tesseract calls it: eng, deu, eng+deu",
+                                   {.fixed = true});
+  auto upper_case = module.parameter("upper_case", true, "",
+                                     "nothing but capital letters, digits and - . , ! ?",
+                                     {.fixed = true});
+  auto least = module.parameter("confidence", 0.6, "", "least confidence of a text that is given",
+                                {.least = 0, .most = 1});
+  auto repeat = module.parameter("repeat", 2, "", "times in a row that the same is to be read",
+                                 {.least = 1, .most = 1000});
+  auto again = module.parameter("again", 10.0, "s", "until a text that stays is given again, 0: never",
+                                {.least = 0, .most = 1e6});
+  auto rate = module.parameter(
+      "rate", 4.0, "Hz", "readings a second at most, 0: all; others are looked at for target alone",
+      {.least = 0, .most = 1000});
+  auto score = module.parameter("score", 0.25, "", "least likeness of a line to one on a clean board",
+                                {.least = 0, .most = 1});
+
+  std::optional<Recogniser> recogniser;
+  Announcer announcer;
+  std::optional<std::int64_t> read_at;
+  module.on_start(
+      [&] { recogniser.emplace(hc::value_or_end(Recogniser::make(*language, *upper_case))); });
+
+  /// Whether it is time to read again. By the pictures' times, as recordings are to give the same.
+  auto is_due = [&](std::int64_t time) {
+    if (*rate <= 0 || !read_at) return true;
+    const auto since = time - *read_at;
+    // Half a millisecond is what times of pictures that come evenly may differ by.
+    return since < 0 || static_cast<double>(since) + 5e5 >= 1e9 / *rate;
+  };
+
+  module.on(image, [&](const hc::Message& picture) {
+    const cv::Mat pixels = hc::value_or_end(hc::as_mat(picture));
+    const auto lines = hc::vision::find_text_lines(pixels, *score);
+    if (lines.empty()) return;
+    const auto& line = lines.front();
+    if (target.linked()) {
+      const auto middle = line.middle();
+      auto place = hc::position<double>(middle.x, middle.y, line.width());
+      place.header.coord = picture.header.coord;
+      target.send(place);
+    }
+    const std::int64_t time = picture.header.time != 0 ? picture.header.time : module.now();
+    if (!line.is_whole || !is_due(time)) return;
+    read_at = time;
+    const auto reading = recogniser->read(hc::vision::straighten(pixels, line));
+    confidence.send(hc::table({reading.confidence}));
+    if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again}))
+      text.send(hc::string(reading.text));
+  });
+  return module.run(argc, argv);
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recogniser.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+
+#include <tesseract/baseapi.h>
+
+namespace {
+
+/// Has Tesseract stay on one thread: its loops are too short to be worth several, which wait for
+/// one another. What OMP_THREAD_LIMIT=1 does is settled before main() begins; this is the same.
+void keep_to_one_thread() {
+  using SetLevels = void (*)(int);
+  if (void* set = dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"); set != nullptr)
+    reinterpret_cast<SetLevels>(set)(0);
+}
+
+std::string without_space_around(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\n\r\f");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\n\r\f") - first + 1);
+}
+
+}  // namespace
+
+struct Recogniser::Engine {
+  tesseract::TessBaseAPI api;
+};
+
+Recogniser::Recogniser(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
+Recogniser::Recogniser(Recogniser&&) noexcept = default;
+Recogniser& Recogniser::operator=(Recogniser&&) noexcept = default;
+Recogniser::~Recogniser() = default;
+
+hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_case) {
+  keep_to_one_thread();
+  auto engine = std::make_unique<Engine>();
+  auto& api = engine->api;
+  api.SetVariable("debug_file", "/dev/null");  // else it talks on standard error
+  if (api.Init(nullptr, language.c_str(), tesseract::OEM_LSTM_ONLY) != 0)
+    return hc::Error{hc::Code::NotFound, "Tesseract has no language " + language +
+                                             " (package tesseract-ocr-" + language + ")"};
+  api.SetPageSegMode(tesseract::PSM_SINGLE_LINE);
+  if (upper_case)
+    api.SetVariable("tessedit_char_whitelist", "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-.,!? ");
+  // Names and codes are in no dictionary.
+  api.SetVariable("load_system_dawg", "0");
+  api.SetVariable("load_freq_dawg", "0");
+  return Recogniser(std::move(engine));
+}
+
+Reading Recogniser::read(const cv::Mat& line) {
+  auto& api = engine_->api;
+  api.SetImage(line.data, line.cols, line.rows, 1, static_cast<int>(line.step));
+  api.SetSourceResolution(300);
+  const std::unique_ptr<char[]> text(api.GetUTF8Text());
+  Reading reading;
+  if (text == nullptr) return reading;
+  reading.text = without_space_around(text.get());
+  reading.confidence = std::clamp(api.MeanTextConf() / 100.0, 0.0, 1.0);
+  api.Clear();
+  return reading;
+}
