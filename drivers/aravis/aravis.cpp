@@ -144,7 +144,7 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
   return std::unique_ptr<Camera>(new Camera(std::move(handles)));
 }
 
-Result<Picture> Camera::next(std::chrono::milliseconds timeout) {
+Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
   auto& all = *handles_;
   if (all.is_lost) return Error{Code::Closed, "it has gone"};
   ArvBuffer* buffer = arv_stream_timeout_pop_buffer(
@@ -160,7 +160,7 @@ Result<Picture> Camera::next(std::chrono::milliseconds timeout) {
       all.is_lost = true;
       return Error{Code::Closed, "it is silent"};
     }
-    return Error{Code::TimedOut, "no picture yet"};
+    return std::optional<Picture>();
   }
   all.heard = now;
   std::size_t bytes = 0;
@@ -173,7 +173,7 @@ Result<Picture> Camera::next(std::chrono::milliseconds timeout) {
   if (!bgr) return bgr.error();
   const std::int64_t wall = wall_clock();
   const bool is_sensible = came > wall - kMostAge && came <= wall;
-  return Picture{*bgr, is_sensible ? came : wall};
+  return std::optional<Picture>(Picture{*bgr, is_sensible ? came : wall});
 }
 
 Status Camera::set_exposure(double exposure) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <hc/base/result.h>
@@ -36,10 +37,11 @@ class Camera {
   Camera& operator=(const Camera&) = delete;
 
   /// Waits for the next picture; ones that came incomplete are passed over.
+  /// @returns  nothing when none came within `timeout`.
   ///
-  /// Errors: TimedOut (none within `timeout`), Closed (the camera is lost: it says so itself, or has
+  /// Errors: Closed (the camera is lost: it says so itself, or has
   /// been silent for a second beyond its exposure), Malformed, Unsupported (what it sends).
-  Result<Picture> next(std::chrono::milliseconds timeout);
+  Result<std::optional<Picture>> next(std::chrono::milliseconds timeout);
 
   /// Sets the time of exposure and ends the camera's own choice of it. [s]
   /// Errors: Unsupported (it has none, or not this one), System.

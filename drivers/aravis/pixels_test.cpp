@@ -46,7 +46,7 @@ TEST(Pixels, Bayer_gives_the_colours_that_were_seen) {
 TEST(Pixels, rgb_and_grey) {
   std::vector<std::uint8_t> values;
   for (int i = 0; i < kWidth * kHeight; ++i)
-    for (std::uint8_t value : {1, 2, 3}) values.push_back(value);
+    values.insert(values.end(), {1, 2, 3});
   EXPECT_EQ(to_bgr(number(PixelFormat::Rgb8), kWidth, kHeight, bytes(values))->at<cv::Vec3b>(3, 3),
             cv::Vec3b(3, 2, 1));
   EXPECT_EQ(to_bgr(number(PixelFormat::Bgr8), kWidth, kHeight, bytes(values))->at<cv::Vec3b>(3, 3),

@@ -55,7 +55,6 @@ bool LiveCameras::pause(std::chrono::milliseconds time) {
 void LiveCameras::run(Camera& camera) {
   do {
     auto device = camera.how.open();
-    std::optional<hc::Error> failure;
     if (device) {
       serve(camera, **device);
     } else {
@@ -96,7 +95,7 @@ void LiveCameras::serve(Camera& camera, Device& device) {
       if (auto done = device.adjust(wanted); !done) tell(camera.how.name + ": " + done.error().detail);
     }
     auto frame = device.next(kPatience);
-    if (!frame && frame.error().code == hc::Code::TimedOut) continue;
+    if (frame && !*frame) continue;
     const std::lock_guard lock(mutex_);
     if (!frame) {
       if (!reopen_)
@@ -116,9 +115,9 @@ void LiveCameras::serve(Camera& camera, Device& device) {
       return other->side != camera.side && !other->told;
     });
     if (is_alone)
-      camera.newest = std::move(*frame);
+      camera.newest = std::move(**frame);
     else
-      pairing_.add(camera.side, std::move(*frame));
+      pairing_.add(camera.side, std::move(**frame));
     changed_.notify_all();
   }
 }

@@ -29,8 +29,8 @@ struct Adjustment {
 class Device {
  public:
   virtual ~Device() = default;
-  /// Waits for a picture. Errors: TimedOut (none yet, ask again); any other: the camera is lost.
-  virtual hc::Result<Frame> next(std::chrono::milliseconds timeout) = 0;
+  /// Waits for a picture; nothing when none comes in time. Errors: any, the camera is lost.
+  virtual hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) = 0;
   virtual hc::Status adjust(const Adjustment& adjustment) = 0;
 };
 

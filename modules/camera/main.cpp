@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One camera, or the two of a stereo pair.
 #include "camera.h"
+#include "devices.h"
 
 #include <hc/adapter/opencv.h>
 #include <hc/node/module.h>
@@ -11,6 +12,7 @@
 namespace {
 
 constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kLeftRectified = 9, kRightRectified = 10;
+constexpr std::chrono::milliseconds kPatience{20};  // until commands are looked for again
 
 }  // namespace
 
@@ -20,7 +22,7 @@ int main(int argc, char** argv) {
   auto left = module.output("left", hc::rgb_image<std::uint8_t>(), "picture of the left eye");
   auto right = module.output("right", hc::rgb_image<std::uint8_t>(), "picture of the right eye");
   auto left_name = module.parameter(
-      "source", "0", "", "device, video, pipeline, folder or picture of the left or only eye",
+      "source", "0", "", "aravis:NAME, device, video, pipeline, folder or picture of the left or only eye",
       {.positional = true});
   auto right_name =
       module.parameter("right_source", "", "", "the same of the right eye", {.positional = true});
@@ -39,8 +41,37 @@ int main(int argc, char** argv) {
   auto count = module.parameter("count", 0, "", "pictures to give, 0: all", {.least = 0});
   auto loop = module.parameter("loop", false, "", "begin again at the end");
 
+  auto reopen = module.parameter(
+      "reopen", true, "", "try again when a camera is lost: aravis, device, rtsp", {.fixed = true});
+  auto exposure = module.parameter("exposure", 0.0, "s", "of a camera, 0: its own choice",
+                                   {.least = 0, .most = 100});
+  auto gain = module.parameter("gain", -1.0, "", "in the camera's unit, mostly dB; -1: its own choice",
+                               {.least = -1, .most = 1e4});
+  auto pixel_format = module.parameter("pixel_format", "", "",
+                                       "of aravis, as BayerRG8, RGB8, Mono8; empty: the camera's",
+                                       {.fixed = true});
+
   std::unique_ptr<PictureSource> left_source, right_source;
+  std::unique_ptr<LiveCameras> cameras;
+  Adjustment adjustment;
+  auto adjust = [&] {
+    const Adjustment wanted{*exposure, *gain};
+    if (wanted != adjustment && cameras != nullptr) cameras->adjust(wanted);
+    adjustment = wanted;
+  };
   module.on_start([&] {
+    if (is_live(*left_name) && (right_name->empty() || is_live(*right_name))) {
+      if (!right_name->empty() && *side_by_side)
+        throw hc::ModuleError("side_by_side and right_source do not go together");
+      adjust();
+      std::vector<LiveCamera> live{live_camera(*left_name, *pixel_format)};
+      if (!right_name->empty()) live.push_back(live_camera(*right_name, *pixel_format));
+      cameras = std::make_unique<LiveCameras>(std::move(live), *reopen, adjustment);
+      return;
+    }
+    for (const auto* name : {&*left_name, &*right_name})
+      if (name->starts_with("aravis:"))
+        throw hc::ModuleError(*name + " does not go together with a file");
     left_source = open_picture_source(*left_name);
     if (!right_name->empty()) right_source = open_picture_source(*right_name);
     if (right_source != nullptr && *side_by_side)
@@ -64,22 +95,42 @@ int main(int argc, char** argv) {
   };
 
   std::int64_t given = 0;
-  module.generate([&] {
-    if (*count > 0 && given == *count) return false;
-    if (*rate > 0) module.keep_rate(*rate);
-    cv::Mat left_picture = next(*left_source), right_picture;
-    std::int64_t time = *stamped ? module.now() : 0;
-    if (right_source != nullptr) right_picture = next(*right_source);
-    if (left_picture.empty() || (right_source != nullptr && right_picture.empty())) return false;
+  auto send_all = [&](cv::Mat left_picture, cv::Mat right_picture, std::int64_t time) {
     if (*side_by_side) {
       int half = left_picture.cols / 2;
       right_picture = left_picture.colRange(half, 2 * half);
       left_picture = left_picture.colRange(0, half);
     }
-    send(left, left_picture, time, *rectified ? kLeftRectified : kLeftImage);
+    if (!left_picture.empty())
+      send(left, left_picture, time, *rectified ? kLeftRectified : kLeftImage);
     if (!right_picture.empty())
       send(right, right_picture, time, *rectified ? kRightRectified : kRightImage);
     ++given;
+  };
+  auto take_live = [&] {
+    adjust();
+    auto taken = cameras->next(kPatience);
+    for (const auto& line : cameras->remarks()) module.log(line);
+    if (!taken) throw hc::ModuleError(taken.error().detail);
+    if (!*taken) return;
+    const auto& [left_frame, right_frame] = **taken;
+    // A pair has one time, as who takes both together expects.
+    const std::int64_t time = left_frame ? left_frame->time : right_frame->time;
+    send_all(left_frame ? left_frame->picture : cv::Mat(),
+             right_frame ? right_frame->picture : cv::Mat(), *stamped ? time : 0);
+  };
+  module.generate([&] {
+    if (*count > 0 && given == *count) return false;
+    if (*rate > 0) module.keep_rate(*rate);
+    if (cameras != nullptr) {
+      take_live();
+      return true;
+    }
+    cv::Mat left_picture = next(*left_source), right_picture;
+    std::int64_t time = *stamped ? module.now() : 0;
+    if (right_source != nullptr) right_picture = next(*right_source);
+    if (left_picture.empty() || (right_source != nullptr && right_picture.empty())) return false;
+    send_all(left_picture, right_picture, time);
     return true;
   });
   return module.run(argc, argv);

@@ -8,6 +8,7 @@
 
 #include "announcer.h"
 #include "recogniser.h"
+#include "shapes.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ int main(int argc, char** argv) {
   auto upper_case = module.parameter("upper_case", true, "",
                                      "nothing but capital letters, digits and - . , ! ?",
                                      {.fixed = true});
-  auto least = module.parameter("confidence", 0.6, "", "least confidence of a text that is given",
+  auto least = module.parameter("confidence", 0.4, "", "least confidence of a text that is given",
                                 {.least = 0, .most = 1});
   auto repeat = module.parameter("repeat", 2, "", "times in a row that the same is to be read",
                                  {.least = 1, .most = 1000});
@@ -71,7 +72,9 @@ int main(int argc, char** argv) {
     const std::int64_t time = picture.header.time != 0 ? picture.header.time : module.now();
     if (!line.is_whole || !is_due(time)) return;
     read_at = time;
-    const auto reading = recogniser->read(hc::vision::straighten(pixels, line));
+    const cv::Mat straight = hc::vision::straighten(pixels, line);
+    auto reading = recogniser->read(straight);
+    if (*upper_case) reading.text = by_shape(straight, reading.text);
     confidence.send(hc::table({reading.confidence}));
     if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again}))
       text.send(hc::string(reading.text));

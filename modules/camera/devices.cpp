@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <drivers/aravis/aravis.h>
+#include <hc/base/clock.h>
+#include <opencv2/videoio.hpp>
+
+namespace {
+
+constexpr std::string_view kAravis = "aravis:";
+constexpr int kStreamTimeout = 3000;  // of an RTSP server [ms]
+// V4L2: exposure_absolute counts in 100 µs, and 1 is the manual mode of exposure_auto.
+constexpr double kExposureUnit = 1e-4, kManual = 1;
+
+bool is_number(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(),
+                                      [](char each) { return each >= '0' && each <= '9'; });
+}
+
+class AravisDevice final : public Device {
+ public:
+  explicit AravisDevice(std::unique_ptr<hc::aravis::Camera> camera) : camera_(std::move(camera)) {}
+  hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) override {
+    auto picture = camera_->next(timeout);
+    if (!picture) return picture.error();
+    if (!*picture) return std::optional<Frame>();
+    return std::optional<Frame>(Frame{(*picture)->bgr, (*picture)->time});
+  }
+  hc::Status adjust(const Adjustment& adjustment) override {
+    if (adjustment.exposure > 0)
+      if (auto set = camera_->set_exposure(adjustment.exposure); !set) return set;
+    if (adjustment.gain >= 0) return camera_->set_gain(adjustment.gain);
+    return {};
+  }
+
+ private:
+  std::unique_ptr<hc::aravis::Camera> camera_;
+};
+
+/// A V4L2 device or an RTSP stream, by OpenCV. A read waits as long as OpenCV does: 10 s for a
+/// silent V4L2 device.
+class CaptureDevice final : public Device {
+ public:
+  CaptureDevice(cv::VideoCapture capture, bool is_device)
+      : capture_(std::move(capture)), is_device_(is_device) {}
+  hc::Result<std::optional<Frame>> next(std::chrono::milliseconds) override {
+    Frame frame;
+    if (!capture_.read(frame.picture)) return hc::Error{hc::Code::Closed, "gives no picture"};
+    frame.time = time_of_picture();
+    return std::optional<Frame>(std::move(frame));
+  }
+  hc::Status adjust(const Adjustment& adjustment) override {
+    if (adjustment.exposure > 0) {
+      capture_.set(cv::CAP_PROP_AUTO_EXPOSURE, kManual);  // some have no other mode
+      if (!capture_.set(cv::CAP_PROP_EXPOSURE, adjustment.exposure / kExposureUnit))
+        return hc::Error{hc::Code::Unsupported, "does not take this exposure"};
+    }
+    if (adjustment.gain >= 0 && !capture_.set(cv::CAP_PROP_GAIN, adjustment.gain))
+      return hc::Error{hc::Code::Unsupported, "does not take this gain"};
+    return {};
+  }
+
+ private:
+  /// V4L2 says when a picture was taken, by the monotonic clock.
+  [[nodiscard]] std::int64_t time_of_picture() const {
+    const hc::SystemClock clock;
+    if (is_device_) {
+      const auto taken = static_cast<std::int64_t>(capture_.get(cv::CAP_PROP_POS_MSEC) * 1e6);
+      const auto age = clock.monotonic().count() - taken;
+      if (taken > 0 && age >= 0 && age < 1'000'000'000) return clock.wall() - age;
+    }
+    return clock.wall();
+  }
+
+  cv::VideoCapture capture_;
+  bool is_device_;
+};
+
+hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name) {
+  cv::VideoCapture capture;
+  const std::string path = is_number(name) ? "/dev/video" + name : name;
+  const bool is_device = path.starts_with("/dev/");
+  const bool is_open =
+      is_device ? capture.open(path, cv::CAP_V4L2)
+                : capture.open(path, cv::CAP_FFMPEG,
+                               {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kStreamTimeout,
+                                cv::CAP_PROP_READ_TIMEOUT_MSEC, kStreamTimeout});
+  if (!is_open)
+    return hc::Error{hc::Code::NotFound, "cannot be opened as a camera"};
+  return std::unique_ptr<Device>(std::make_unique<CaptureDevice>(std::move(capture), is_device));
+}
+
+}  // namespace
+
+bool is_live(const std::string& name) {
+  if (name.find('!') != std::string::npos) return false;  // a pipeline
+  return name.starts_with(kAravis) || is_number(name) || name.starts_with("/dev/") ||
+         name.starts_with("rtsp://");
+}
+
+LiveCamera live_camera(const std::string& name, const std::string& pixel_format) {
+  if (!name.starts_with(kAravis)) return {name, [name] { return open_capture(name); }};
+  return {name, [device = name.substr(kAravis.size()),
+                 pixel_format]() -> hc::Result<std::unique_ptr<Device>> {
+            auto camera = hc::aravis::Camera::open(device, pixel_format);
+            if (!camera) return camera.error();
+            return std::unique_ptr<Device>(std::make_unique<AravisDevice>(std::move(*camera)));
+          }};
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live.h"
+
+#include <atomic>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// What a test does to a camera, from another thread.
+struct Plug {
+  std::atomic<bool> is_in = true;
+  std::atomic<int> opened = 0, adjusted = 0;
+  std::atomic<std::int64_t> time = 1'000'000'000;
+};
+
+class FakeDevice final : public Device {
+ public:
+  explicit FakeDevice(Plug& plug) : plug_(plug) {}
+  hc::Result<std::optional<Frame>> next(milliseconds) override {
+    if (!plug_.is_in) return hc::Error{hc::Code::Closed, "pulled out"};
+    std::this_thread::sleep_for(milliseconds(1));  // its rate
+    return std::optional<Frame>(Frame{cv::Mat(2, 2, CV_8UC3), plug_.time += 1'000'000});
+  }
+  hc::Status adjust(const Adjustment& adjustment) override {
+    ++plug_.adjusted;
+    if (adjustment.gain > 10) return hc::Error{hc::Code::Unsupported, "too much gain"};
+    return {};
+  }
+
+ private:
+  Plug& plug_;
+};
+
+LiveCamera camera(const std::string& name, Plug& plug) {
+  return {name, [&plug]() -> hc::Result<std::unique_ptr<Device>> {
+            ++plug.opened;
+            if (!plug.is_in) return hc::Error{hc::Code::NotFound, "no such camera"};
+            return std::unique_ptr<Device>(std::make_unique<FakeDevice>(plug));
+          }};
+}
+
+/// Takes pictures until one is as wanted; all that was said meanwhile. The watchdog is the test's.
+template <typename Wanted>
+std::vector<std::string> take_until(LiveCameras& cameras, Wanted wanted) {
+  std::vector<std::string> said;
+  while (true) {
+    auto taken = cameras.next(milliseconds(20));
+    for (auto& line : cameras.remarks()) said.push_back(std::move(line));
+    if (taken && *taken && wanted(**taken)) return said;
+  }
+}
+
+auto pair() {
+  return [](const LiveCameras::Taken& taken) { return taken.left && taken.right; };
+}
+
+TEST(LiveCameras, gives_pairs_of_the_same_time_and_says_nothing) {
+  Plug left, right;
+  LiveCameras cameras({camera("left", left), camera("right", right)}, true, {});
+  EXPECT_TRUE(take_until(cameras, pair()).empty());
+  EXPECT_TRUE(take_until(cameras, pair()).empty());
+}
+
+TEST(LiveCameras, one_that_is_lost_is_told_once_and_once_when_it_is_back) {
+  Plug plug;
+  LiveCameras cameras({camera("eye", plug)}, true, {});
+  auto any = [](const LiveCameras::Taken& taken) { return taken.left.has_value(); };
+  take_until(cameras, any);
+  plug.is_in = false;
+  const int before = plug.opened;
+  while (plug.opened < before + 3) std::this_thread::yield();
+  plug.is_in = true;
+  std::vector<std::string> said;
+  while (said.size() < 2) {
+    EXPECT_TRUE(cameras.next(milliseconds(20)));
+    for (auto& line : cameras.remarks()) said.push_back(line);
+  }
+  EXPECT_EQ(said, (std::vector<std::string>{"eye: lost: pulled out; trying again", "eye: is back"}));
+  take_until(cameras, any);
+}
+
+TEST(LiveCameras, the_other_one_goes_on_alone) {
+  Plug left, right;
+  LiveCameras cameras({camera("left", left), camera("right", right)}, true, {});
+  take_until(cameras, pair());
+  left.is_in = false;
+  auto said = take_until(cameras, [](const auto& taken) { return !taken.left && taken.right; });
+  EXPECT_EQ(said, std::vector<std::string>{"left: lost: pulled out; trying again"});
+  left.is_in = true;
+  said = take_until(cameras, pair());
+  EXPECT_EQ(said, std::vector<std::string>{"left: is back"});
+}
+
+TEST(LiveCameras, one_that_is_not_there_is_waited_for) {
+  Plug plug;
+  plug.is_in = false;
+  LiveCameras cameras({camera("eye", plug)}, true, {});
+  while (plug.opened < 2) std::this_thread::yield();
+  EXPECT_EQ(cameras.remarks(),
+            std::vector<std::string>{"eye: not there: no such camera; trying again"});
+}
+
+TEST(LiveCameras, without_reopen_a_loss_is_an_error) {
+  Plug plug;
+  LiveCameras cameras({camera("eye", plug)}, false, {});
+  take_until(cameras, [](const auto&) { return true; });
+  plug.is_in = false;
+  auto taken = cameras.next(milliseconds(20));
+  while (taken) taken = cameras.next(milliseconds(20));
+  EXPECT_EQ(taken.error().detail, "eye: pulled out");
+}
+
+TEST(LiveCameras, what_cannot_be_set_is_told_and_pictures_go_on) {
+  Plug plug;
+  LiveCameras cameras({camera("eye", plug)}, true, {0, 11});
+  auto adjusted = [&](const auto&) { return plug.adjusted > 0; };
+  EXPECT_EQ(take_until(cameras, adjusted), std::vector<std::string>{"eye: too much gain"});
+  cameras.adjust({0.01, 3});
+  EXPECT_TRUE(take_until(cameras, [&](const auto&) { return plug.adjusted == 2; }).empty());
+}
+
+}  // namespace

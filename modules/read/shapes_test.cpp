@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+cv::Mat written(const std::string& text, int font, int stroke, double blur) {
+  cv::Mat line(80, 42 * static_cast<int>(text.size()) + 60, CV_8U, cv::Scalar(255));
+  cv::putText(line, text, {20, 60}, font, 1.9, cv::Scalar(0), stroke, cv::LINE_AA);
+  if (blur > 0) cv::GaussianBlur(line, line, {}, blur);
+  return line;
+}
+
+TEST(Shapes, tell_what_looks_alike_apart) {
+  const std::string text = "0OQ 1I 2Z 5S 8B", wrong = "OQ0 I1 Z2 S5 B8";
+  for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
+    for (int stroke : {3, 5, 6})
+      for (double blur : {0.0, 1.0, 1.5}) {
+        const cv::Mat line = written(text, font, stroke, blur);
+        EXPECT_EQ(by_shape(line, text), text) << font << " " << stroke << " " << blur;
+        EXPECT_EQ(by_shape(line, wrong), text) << font << " " << stroke << " " << blur;
+      }
+}
+
+TEST(Shapes, of_both_for_one_letter_one_is_left) {
+  const cv::Mat line = written("A5 0K", cv::FONT_HERSHEY_DUPLEX, 5, 1);
+  EXPECT_EQ(by_shape(line, "AS5 O0K"), "A5 0K");
+  EXPECT_EQ(by_shape(line, "A5S 0OK"), "A5 0K");
+}
+
+TEST(Shapes, leave_other_letters_as_they_are) {
+  const std::string text = "ACDEFGHJKLMNPQRTUVWXY34679";
+  EXPECT_EQ(by_shape(written(text, cv::FONT_HERSHEY_DUPLEX, 5, 1), text), text);
+}
+
+TEST(Shapes, do_nothing_where_letters_cannot_be_counted) {
+  const cv::Mat line = written("50", cv::FONT_HERSHEY_DUPLEX, 5, 0);
+  EXPECT_EQ(by_shape(line, "SOO"), "SOO");
+  EXPECT_EQ(by_shape(cv::Mat(80, 100, CV_8U, cv::Scalar(255)), "SO"), "SO");
+  EXPECT_EQ(by_shape(cv::Mat(80, 100, CV_8U, cv::Scalar(255)), ""), "");
+}
+
+TEST(Shapes, what_stands_one_above_the_other_is_one_letter) {
+  EXPECT_EQ(find_letters(written("A!?", cv::FONT_HERSHEY_DUPLEX, 4, 0)).size(), 3U);
+}
+
+}  // namespace
