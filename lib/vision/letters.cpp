@@ -21,6 +21,7 @@ struct Piece {
   cv::Rect box;
   double ink = 0, ground = 0;  // mean grey of it, and of what is around it
   bool is_letter = false;      // by its size; otherwise perhaps a stop, a comma or a dash
+  bool is_bar = false;         // full of ink, as an I and the gap beside a book
   [[nodiscard]] float left() const { return static_cast<float>(box.x); }
   [[nodiscard]] float right() const { return static_cast<float>(box.x + box.width); }
   [[nodiscard]] float top() const { return static_cast<float>(box.y); }
@@ -67,7 +68,7 @@ std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const c
     }
   }
   if (inks == 0 || grounds == 0) return {};
-  Piece piece{box, ink / inks, ground / grounds, false};
+  Piece piece{box, ink / inks, ground / grounds};
   if (piece.ground - piece.ink < 0.25 * piece.ground) return {};
   return piece;
 }
@@ -94,6 +95,7 @@ std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark)
     auto piece = look_at(grey, labels, dark, label, box);
     if (!piece) continue;
     piece->is_letter = is_letter;
+    piece->is_bar = filled > 0.85;
     pieces.push_back(*piece);
   }
   return pieces;
@@ -103,7 +105,9 @@ std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark)
 bool are_neighbours(const Piece& a, const Piece& b) {
   const float high = std::max(a.height(), b.height()), low = std::min(a.height(), b.height());
   if (high > 1.8F * low) return false;
-  if (std::abs(a.middle_y() - b.middle_y()) > 0.45F * high) return false;
+  // The further they are apart, the more a line that is not level rises between them.
+  const float apart = std::abs(a.middle_x() - b.middle_x());
+  if (std::abs(a.middle_y() - b.middle_y()) > 0.35F * high + 0.15F * apart) return false;
   const float gap = std::max(a.left(), b.left()) - std::min(a.right(), b.right());
   if (gap > 1.4F * high || gap < -0.3F * high) return false;
   const double contrast = std::max(a.ground - a.ink, b.ground - b.ink);
@@ -182,6 +186,10 @@ std::pair<double, double> ground_of(const cv::Mat& grey, const cv::Mat& dark, co
 
 std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::vector<Piece>& pieces,
                                 const cv::Mat& grey, const cv::Mat& dark, double noise) {
+  // Slots, books and stripes make rows too; of letters, few are bars.
+  const auto bars = std::count_if(letters.begin(), letters.end(),
+                                  [](const auto& letter) { return letter.is_bar; });
+  if (4 * static_cast<std::size_t>(bars) > 3 * letters.size()) return {};
   std::vector<double> heights;
   for (const auto& letter : letters) heights.push_back(letter.height());
   const double usual = median(heights);

@@ -31,7 +31,7 @@ struct TextLine {
 /// @param least_score  lines that are less like one on a board are left out.
 /// @returns  the best first; none overlaps a better one.
 /// Cost: about 10 ms for 800 × 600.
-std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score = 0.25);
+std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score = 0.4);
 
 /// Cuts a line out: level, with a margin, without noise, its ground white and its letters black.
 ///

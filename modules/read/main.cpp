@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
   auto rate = module.parameter(
       "rate", 4.0, "Hz", "readings a second at most, 0: all; others are looked at for target alone",
       {.least = 0, .most = 1000});
-  auto score = module.parameter("score", 0.25, "", "least likeness of a line to one on a clean board",
+  auto score = module.parameter("score", 0.4, "", "least likeness of a line to one on a clean board",
                                 {.least = 0, .most = 1});
 
   std::optional<Recogniser> recogniser;

@@ -10,7 +10,7 @@ namespace {
 
 // By the shapes of common sans serif letters: the width of a 0 by its height, which an O exceeds, and
 // how much of a region is ink, where one of two letters has a stroke and the other has none.
-constexpr double kNarrow = 0.755, kFilled = 0.45, kTouched = 0.16, kTail = 0.2;
+constexpr double kNarrow = 0.755, kFilled = 0.45, kTouched = 0.38, kTail = 0.2;
 
 /// How much of a region is ink, 0 … 1. It is given as parts of the glyph's width and height.
 double ink_in(const cv::Mat& glyph, const cv::Rect2d& part) {
@@ -95,7 +95,8 @@ char by_shape(const cv::Mat& glyph, char letter) {
       return ink_in(glyph, kTopRight) > kFilled ? 'Z' : '2';
     case '5':
     case 'S':
-      return ink_in(glyph, kBelowTheBar) < kTouched ? '5' : 'S';
+      // By how thick the strokes are.
+      return ink_in(glyph, kBelowTheBar) < kTouched * ink_in(glyph, {0, 0, 1, 1}) ? '5' : 'S';
     case '8':
     case 'B':
       return ink_in(glyph, kTopLeft) > kFilled ? 'B' : '8';

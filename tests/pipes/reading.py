@@ -77,7 +77,7 @@ def score(build, seeds, noise, out=None, options=""):
     wrong = letters = 0
     for seed in seeds:
         truth = random_text(seed)
-        found = read_board(build, truth, seed, noise, options=options)
+        found = read_board(build, truth, seed, noise, pictures=6, options=options)
         read = found["text"][0] if found["text"] else ""
         errors = edits(truth, read)
         wrong += errors

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The module camera with GigE Vision cameras: Aravis' fake ones, in a network of the test's own."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+FAKE = shutil.which("arv-fake-gv-camera-0.8")
+IN_NETWORK = "HC_TEST_NETWORK"  # set in the network of our own
+
+if IN_NETWORK not in os.environ:
+    # Such a camera has a port of its address that cannot be chosen; and a second address is wanted.
+    inside = "ip link set lo up && ip addr add 127.0.0.2/8 dev lo && exec %s" % " ".join(
+        [sys.executable] + sys.argv
+    )
+    own = ["unshare", "--net", "--map-root-user"]
+    may = subprocess.run(
+        own + ["sh", "-c", "ip link set lo up && ip addr add 127.0.0.2/8 dev lo"],
+        stderr=subprocess.DEVNULL,
+        check=False,
+    )
+    if may.returncode == 0:
+        os.execvpe(own[0], own + ["sh", "-c", inside], dict(os.environ, **{IN_NETWORK: "own"}))
+    os.environ[IN_NETWORK] = "shared"
+
+from harness import Pipes, WATCHDOG, wait_until  # noqa: E402 (takes an argument away)
+
+
+@unittest.skipUnless(FAKE, "arv-fake-gv-camera-0.8 (package aravis-tools) is not there")
+class CameraDevices(Pipes):
+    def fake(self, number):
+        """Starts a fake camera at 127.0.0.NUMBER, which answers when this returns."""
+        address = "127.0.0.%d" % number
+        if number > 1 and os.environ[IN_NETWORK] != "own":
+            self.skipTest("no network of one's own, and so no second camera")
+        process = subprocess.Popen(
+            [FAKE, "-i", address, "-s", "GV0%d" % number], stdout=-3, stderr=-3
+        )
+        self.addCleanup(self.kill, process)
+        wanted = " %02X0000%02X:0F74 " % (number, 0x7F)  # the port of GigE Vision's control, 3956
+
+        def listens():
+            self.assertIsNone(process.poll(), "the fake camera does not run")
+            with open("/proc/net/udp", encoding="ascii") as table:
+                return wanted in table.read()
+
+        wait_until(listens)
+        return process
+
+    @staticmethod
+    def kill(process):
+        if process.poll() is None:
+            process.send_signal(signal.SIGKILL)
+        process.wait()
+
+    def camera(self, arguments):
+        """Starts hc camera, with its pictures as text in `seen` and its lines in `said`."""
+        return self.start("hc camera %s --width 8 --height 8 2>said | hc cat >seen" % arguments)
+
+    def said(self):
+        with open(self.path("said"), encoding="utf8") as file:
+            return file.read().splitlines()
+
+    def seen(self):
+        with open(self.path("seen"), encoding="utf8") as file:
+            return file.read().count("rgb_image")
+
+    def test_pictures_of_a_camera_with_its_time(self):
+        self.fake(1)
+        before = time.time_ns()
+        out = self.shell("hc camera aravis:127.0.0.1 --count 3 --width 16 --height 16 | hc cat --json")
+        pictures = [json.loads(line) for line in out.splitlines()]
+        times = [picture["time"] for picture in pictures]
+        self.assertEqual(len(times), 3)
+        self.assertEqual(times, sorted(set(times)))
+        self.assertTrue(before < times[0] <= times[-1] < time.time_ns())
+        self.assertEqual((pictures[0]["coord"], pictures[0]["width"]), (7, 16))
+
+    def test_the_first_camera_and_pixel_formats(self):
+        self.fake(1)
+        for pixels in ("Mono8", "RGB8", "BayerRG8"):
+            command = "hc camera aravis: --pixel_format %s --count 2 | hc info" % pixels
+            self.assertIn("rgb_image 3 x u8", self.shell(command), pixels)
+        self.shell("hc camera aravis: --pixel_format Nonsense --reopen=false", status=1)
+        self.assertEqual(len(self.err.splitlines()), 1, self.err)
+
+    def test_exposure_and_gain_are_set_as_it_runs(self):
+        self.fake(1)
+        camera = self.start(
+            "mkfifo commands; hc camera aravis:127.0.0.1 --exposure 0.01 --gain 1 --width 8"
+            " --height 8 --out - --control commands 2>said | hc cat >seen"
+        )
+        # What cannot be set is told, and pictures go on.
+        command = self.start("hc send --text 'set gain=9999' >commands")
+        wait_until(lambda: os.path.exists(self.path("said")) and self.said())
+        self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: its gain is from ")
+        count = self.seen()
+        wait_until(lambda: self.seen() > count)
+        self.assertIsNone(camera.poll())
+        command.communicate(timeout=WATCHDOG)
+
+    def test_a_camera_that_is_killed_and_started_again(self):
+        fake = self.fake(1)
+        camera = self.camera("aravis:127.0.0.1")
+        wait_until(lambda: os.path.exists(self.path("seen")) and self.seen() > 3)
+        self.assertEqual(self.said(), [])
+        self.kill(fake)
+        wait_until(self.said)
+        self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: lost: .*; trying again$")
+        self.assertIsNone(camera.poll())
+        self.fake(1)
+        wait_until(lambda: len(self.said()) == 2)
+        self.assertEqual(self.said()[1], "camera: aravis:127.0.0.1: is back")
+        count = self.seen()
+        wait_until(lambda: self.seen() > count)
+        self.assertEqual(len(self.said()), 2)
+
+    def test_a_camera_that_comes_later(self):
+        self.camera("aravis:127.0.0.1")
+        wait_until(lambda: os.path.exists(self.path("said")) and self.said())
+        self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: not there: .*; trying again$")
+        self.fake(1)
+        wait_until(lambda: self.seen() > 0)
+        self.assertEqual(len(self.said()), 2)
+
+    def test_without_reopen_it_is_a_failure(self):
+        self.shell("hc camera aravis:127.0.0.1 --reopen=false", status=1)
+        self.assertRegex(self.err, "^camera: aravis:127.0.0.1: .*\n$")
+
+    def test_a_pair_has_one_time_and_is_nearest(self):
+        self.fake(1)
+        self.fake(2)
+        out = self.shell(
+            "hc camera aravis:127.0.0.1 aravis:127.0.0.2 --count 40 --width 8 --height 8"
+            " | hc cat --json"
+        )
+        pictures = [json.loads(line) for line in out.splitlines()]
+        both = [p["time"] for p in pictures if p["src"] == 1], [
+            p["time"] for p in pictures if p["src"] == 2
+        ]
+        paired = set(both[0]) & set(both[1])
+        self.assertGreater(len(paired), 20)
+        self.assertEqual(len(both[1]), len(set(both[1])))
+
+    def test_when_one_of_a_pair_is_lost_the_other_goes_on(self):
+        self.fake(1)
+        second = self.fake(2)
+        self.camera("aravis:127.0.0.1 aravis:127.0.0.2")
+        seen = lambda: open(self.path("seen"), encoding="utf8").read()  # noqa: E731
+        wait_until(lambda: os.path.exists(self.path("seen")) and "src 2" in seen())
+        self.kill(second)
+        wait_until(lambda: [line for line in self.said() if "lost" in line])
+        self.assertRegex(self.said()[-1], "^camera: aravis:127.0.0.2: lost: ")
+        rights, lefts = seen().count("src 2"), seen().count("src 1")
+        wait_until(lambda: seen().count("src 1") > lefts + 5)
+        self.fake(2)
+        wait_until(lambda: seen().count("src 2") > rights + 1)
+        self.assertEqual(self.said()[-1], "camera: aravis:127.0.0.2: is back")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The module read before the simulator's board; reading.py computes the same over many seeds."""
+
+import unittest
+
+from harness import BUILD, Pipes
+import reading
+
+
+class Read(Pipes):
+    def test_a_clean_board_is_read_without_an_error(self):
+        self.assertEqual(reading.score(BUILD, range(1, 4), noise=0), 0)
+
+    def test_noise_of_20_costs_five_letters_of_a_hundred_at_most(self):
+        self.assertLessEqual(reading.score(BUILD, range(1, 4), noise=20), 0.05)
+
+    def test_the_target_is_where_the_board_is(self):
+        found = reading.read_board(BUILD, "LOOK HERE", seed=2, noise=5)
+        self.assertEqual(found["text"], ["LOOK HERE"])
+        self.assertEqual(len(found["target"]), 4)
+        x, y, width = found["target"][0]
+        # At pan 0.3, tilt -0.04, focal length 600: the board is within 0.2 rad of the middle.
+        self.assertLess(abs(x - 399.5), 120)
+        self.assertLess(abs(y - 299.5), 120)
+        # 1.5 m of board at 3.5 m are 257 pixels, of which the letters take up to nine tenths.
+        self.assertTrue(100 < width < 240, width)
+
+    def test_the_target_comes_with_pictures_that_are_not_read(self):
+        found = reading.read_board(
+            BUILD, "LOOK HERE", 2, 0, pictures=6, options="--rate 5 --repeat 1"
+        )
+        # Pictures of 20 Hz, of which each fourth is read.
+        self.assertEqual((len(found["target"]), len(found["sure"])), (6, 2))
+
+    def test_what_is_not_sure_enough_is_a_target_and_no_text(self):
+        found = reading.read_board(BUILD, "LOOK HERE", 2, 0, options="--confidence 1")
+        self.assertEqual((found["text"], len(found["target"])), ([], 4))
+
+    def test_an_empty_wall_gives_nothing(self):
+        self.shell(
+            "hc simulator --paced=false --count 2 --start 1000000000000000000 --noise 20"
+            " --text '' --out left=eye.mtp --in gaze=/dev/null"
+        )
+        self.assertEqual(self.shell("hc read --in image=eye.mtp | hc cat"), "")
+
+    def test_a_language_that_is_missing_is_one_line(self):
+        self.shell("hc read --language no_such --in image=/dev/null", status=1)
+        self.assertEqual(len(self.err.splitlines()), 1, self.err)
+        self.assertIn("Tesseract has no language no_such", self.err)
+
+
+if __name__ == "__main__":
+    unittest.main()
