@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <linux/serial.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -73,6 +74,9 @@ Result<Serial> Serial::open(const std::string& device, int baud) {
   Serial serial(number);
   termios settings = {};
   if (tcgetattr(number, &settings) != 0) return failure("tcgetattr");
+  // Two who command one unit would take each other's answers. It ends with the process.
+  if (flock(number, LOCK_EX | LOCK_NB) != 0)
+    return Error{Code::System, "is in use by another program"};
   cfmakeraw(&settings);
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD;

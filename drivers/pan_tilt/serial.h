@@ -17,7 +17,7 @@ class Serial {
   /// @param device  "/dev/ttyUSB0", or a pseudo-terminal's path. @param baud  300 … 4000000.
   ///
   /// Errors: NotFound (no such device), Unsupported (a rate that there is not; no serial line),
-  /// System.
+  /// System (another Serial has it open, …).
   static Result<Serial> open(const std::string& device, int baud);
   Serial(Serial&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
   Serial& operator=(Serial&& other) noexcept;

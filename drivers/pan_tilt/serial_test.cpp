@@ -43,6 +43,17 @@ TEST(Serial, drops_what_came_before) {
   EXPECT_EQ(*serial->read(room), "");
 }
 
+TEST(Serial, is_one_users_alone) {
+  PseudoTerminal terminal;
+  {
+    auto first = Serial::open(terminal.path(), 9600);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(Serial::open(terminal.path(), 9600).error().text(),
+              "System: is in use by another program");
+  }
+  EXPECT_TRUE(Serial::open(terminal.path(), 9600));
+}
+
 TEST(Serial, a_device_that_goes_is_noticed) {
   PseudoTerminal terminal;
   auto serial = Serial::open(terminal.path(), 9600);
