@@ -261,6 +261,16 @@ TEST(Conversation, answers_that_are_too_late_are_not_taken_for_others) {
   check_recovery(line);
 }
 
+TEST(Conversation, an_answer_to_an_older_question_is_found_out) {
+  Line line;
+  line.host.begin(line.now);
+  for (char byte : std::string("* 22\r\n")) line.coming.emplace_back(line.now, byte);
+  line.run(milliseconds(1000));
+  ASSERT_FALSE(line.faults.empty());
+  EXPECT_TRUE(line.faults[0].starts_with("garbage: ")) << line.faults[0];
+  check_recovery(line);
+}
+
 TEST(Conversation, garbage_is_told_and_got_over) {
   Line line;
   line.unit = Unit(700, -300);
