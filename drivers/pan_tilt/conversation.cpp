@@ -93,19 +93,13 @@ void Conversation::hear_at_begin(MonotonicTime now, const Reply& reply) {
   const auto value = number(reply.text);
   const bool is_number = reply.kind == Reply::Kind::Result && value;
   if (asked_ == 0) {
-    if (!is_number || *value <= 0 || (is_known_ && reply.text != resolution_)) return;
-    tries_ = is_known_ ? 0 : tries_;
+    if (!is_number || *value <= 0 || (is_known_ && *value != settings_[kPR])) return;
     if (is_known_) return become_ready(now);
-    resolution_ = reply.text;
-  } else if (!is_number) {
+  } else if (!is_number || (asked_ >= kSettings && *value != settings_[asked_ % kSettings])) {
     return fail(now, garbage(reply.text));
   }
-  if (asked_ == kSettings) {
-    // The first question again: an answer to another would show that one of them got lost.
-    if (reply.text != resolution_) return fail(now, garbage(reply.text));
-    return become_ready(now);
-  }
-  settings_[asked_++] = *value;
+  settings_[asked_++ % kSettings] = *value;
+  if (asked_ == 2 * kSettings) return become_ready(now);
   overdue_ = now + kTimeOut;
   bytes_ += pan_tilt::command(kQuestions[asked_ % kSettings]);
 }

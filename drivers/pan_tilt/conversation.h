@@ -22,10 +22,11 @@ struct Gaze {
   MonotonicTime time{0};  ///< between question and answer
 };
 
-/// Begins with `ft ed ci`, asks what the unit is like, and is ready then. At most one question
-/// (both positions), one command (both axes), one pace and one halt are without answer at a time;
-/// of commands that come meanwhile the newest is sent. A line that brings garbage or no answer for
-/// kTimeOut is begun anew; what was commanded before is not sent again.
+/// Begins with `ft ed ci`, asks what the unit is like, twice, since a wrong answer would stay, and
+/// is ready when both agree. At most one question (both positions), one command (both axes), one
+/// pace and one halt are without answer at a time; of commands that come meanwhile the newest is
+/// sent. A line that brings garbage or no answer for kTimeOut is begun anew; what was commanded
+/// before is not sent again.
 class Conversation {
  public:
   static constexpr std::chrono::milliseconds kTimeOut{500};
@@ -97,9 +98,8 @@ class Conversation {
   std::optional<Error> fault_;
 
   int tries_ = 0;
-  std::size_t asked_ = 0;   // while it begins: the setting that is being asked
-  bool is_known_ = false;   // settings have been heard on this line
-  std::string resolution_;  // as the unit told it
+  std::size_t asked_ = 0;  // while it begins: the setting that is being asked
+  bool is_known_ = false;  // settings have been heard on this line
   std::array<double, kSettings> settings_ = {};
   std::optional<Pace> own_pace_, pace_;  // as it was met; as it is
   double speed_ = 0, acceleration_ = 0;
