@@ -11,9 +11,9 @@
 #include <numbers>
 #include <string>
 
+#include <vision/marker_finder.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <vision/marker_finder.h>
 
 namespace hc::vision {
 namespace {

@@ -19,14 +19,22 @@ struct Named {
 };
 
 constexpr Named kDictionaries[] = {
-    {"4X4_50", aruco::DICT_4X4_50},     {"4X4_100", aruco::DICT_4X4_100},
-    {"4X4_250", aruco::DICT_4X4_250},   {"4X4_1000", aruco::DICT_4X4_1000},
-    {"5X5_50", aruco::DICT_5X5_50},     {"5X5_100", aruco::DICT_5X5_100},
-    {"5X5_250", aruco::DICT_5X5_250},   {"5X5_1000", aruco::DICT_5X5_1000},
-    {"6X6_50", aruco::DICT_6X6_50},     {"6X6_100", aruco::DICT_6X6_100},
-    {"6X6_250", aruco::DICT_6X6_250},   {"6X6_1000", aruco::DICT_6X6_1000},
-    {"7X7_50", aruco::DICT_7X7_50},     {"7X7_100", aruco::DICT_7X7_100},
-    {"7X7_250", aruco::DICT_7X7_250},   {"7X7_1000", aruco::DICT_7X7_1000},
+    {"4X4_50", aruco::DICT_4X4_50},
+    {"4X4_100", aruco::DICT_4X4_100},
+    {"4X4_250", aruco::DICT_4X4_250},
+    {"4X4_1000", aruco::DICT_4X4_1000},
+    {"5X5_50", aruco::DICT_5X5_50},
+    {"5X5_100", aruco::DICT_5X5_100},
+    {"5X5_250", aruco::DICT_5X5_250},
+    {"5X5_1000", aruco::DICT_5X5_1000},
+    {"6X6_50", aruco::DICT_6X6_50},
+    {"6X6_100", aruco::DICT_6X6_100},
+    {"6X6_250", aruco::DICT_6X6_250},
+    {"6X6_1000", aruco::DICT_6X6_1000},
+    {"7X7_50", aruco::DICT_7X7_50},
+    {"7X7_100", aruco::DICT_7X7_100},
+    {"7X7_250", aruco::DICT_7X7_250},
+    {"7X7_1000", aruco::DICT_7X7_1000},
     {"ARUCO_ORIGINAL", aruco::DICT_ARUCO_ORIGINAL},
 };
 

@@ -54,8 +54,8 @@ void BlobFinder::fill_table() {
     for (int g = 0; g < kLevels; ++g)
       for (int b = 0; b < kLevels; ++b, ++at) {
         constexpr double kMiddle = (kStep - 1) / 2.0;
-        const auto hsv = hue_saturation_value(
-            {r * kStep + kMiddle, g * kStep + kMiddle, b * kStep + kMiddle});
+        const auto hsv =
+            hue_saturation_value({r * kStep + kMiddle, g * kStep + kMiddle, b * kStep + kMiddle});
         const bool is_it = hue_distance(hsv[0], colour_.hue) <= colour_.hue_width &&
                            hsv[1] >= colour_.least_saturation && hsv[2] >= colour_.least_value;
         table_[at] = is_it ? 255 : 0;
@@ -88,9 +88,9 @@ std::optional<BlobFinder::Region> BlobFinder::largest(const cv::Mat& rgb) {
   region.x = middles_.at<double>(label, 0);
   region.y = middles_.at<double>(label, 1);
   region.area = pixels;
-  region.box = {
-      sizes_.at<int>(label, cv::CC_STAT_LEFT), sizes_.at<int>(label, cv::CC_STAT_TOP),
-      sizes_.at<int>(label, cv::CC_STAT_WIDTH), sizes_.at<int>(label, cv::CC_STAT_HEIGHT)};
+  region.box = {sizes_.at<int>(label, cv::CC_STAT_LEFT), sizes_.at<int>(label, cv::CC_STAT_TOP),
+                sizes_.at<int>(label, cv::CC_STAT_WIDTH),
+                sizes_.at<int>(label, cv::CC_STAT_HEIGHT)};
 
   // A highlight is a hole: it counts, unless it is what makes the most of the blob, as in a frame.
   cv::Mat filled = cv::Mat::zeros(region.box.size(), CV_8U);

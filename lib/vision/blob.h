@@ -13,8 +13,8 @@ namespace hc::vision {
 /// Which pixels are of a colour, by hue, saturation and value, all from 0 to 1; hue 0 is red, 1/3
 /// green, 2/3 blue, and 1 red again.
 struct BlobColour {
-  double hue = 0;                ///< 0 … 1
-  double hue_width = 0.05;       ///< how far a pixel's hue may be from it, on either side
+  double hue = 0;           ///< 0 … 1
+  double hue_width = 0.05;  ///< how far a pixel's hue may be from it, on either side
   double least_saturation = 0.5;
   double least_value = 0.2;
 

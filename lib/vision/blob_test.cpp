@@ -73,8 +73,7 @@ TEST(Blob, IsFoundInNoiseBesideSmallerOnes) {
     cv::Mat picture = room();
     const cv::Point2d at(150 + 11.3 * i, 420 - 6.7 * i);
     draw_disc(picture, at, 22, kRed);
-    for (int other = 0; other < 8; ++other)
-      draw_disc(picture, {60.0 + 95 * other, 560}, 14, kRed);
+    for (int other = 0; other < 8; ++other) draw_disc(picture, {60.0 + 95 * other, 560}, 14, kRed);
     cv::rectangle(picture, {20, 20, 200, 6}, kRed, cv::FILLED);
     draw_disc(picture, {600, 480}, 50, kGreen);
     draw_disc(picture, {700, 300}, 50, kBlue);

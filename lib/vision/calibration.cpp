@@ -123,8 +123,7 @@ void rectify(StereoCalibration& c) {
   c.Q = Q;
 }
 
-std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right,
-                                    const Board& board) {
+std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right, const Board& board) {
   BoardView view;
   if (!find_corners(left, board, view.left) || !find_corners(right, board, view.right))
     return std::nullopt;
@@ -148,7 +147,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
                  "a board has 3 corners a row and a column at least, and not the same number"};
   if (views.size() < kLeastViews)
     return Error{Code::NotFound, std::to_string(views.size()) + " views of the board, at least " +
-                                  std::to_string(kLeastViews) + " are needed"};
+                                     std::to_string(kLeastViews) + " are needed"};
   Points points;
   for (const auto& view : views) {
     points.object.push_back(object_points(board));

@@ -21,15 +21,15 @@ struct Pinhole {
 
 /// Two cameras, by OpenCV's names. Frames are optical (x right, y down, z forward).
 struct StereoCalibration {
-  cv::Size size;                                     ///< of the pictures [px]; 0 × 0: unknown
-  cv::Matx33d M1, M2;                                ///< camera matrices, left and right [px]
-  std::vector<double> D1 = std::vector<double>(5);   ///< distortion k1 k2 p1 p2 k3 …: 4, 5, 8,
-  std::vector<double> D2 = std::vector<double>(5);   ///< 12 or 14 numbers [1]
-  cv::Matx33d R = cv::Matx33d::eye();                ///< p_right = R · p_left + T
-  cv::Vec3d T;                                       ///< [m]
-  cv::Matx33d R1 = cv::Matx33d::eye(), R2 = R1;      ///< p_rectified = R1 · p_left, R2 · p_right
-  cv::Matx34d P1, P2;                                ///< projections of the rectified cameras [px]
-  cv::Matx44d Q;  ///< (u, v, disparity, 1) to homogeneous coordinates of the rectified left eye
+  cv::Size size;                                    ///< of the pictures [px]; 0 × 0: unknown
+  cv::Matx33d M1, M2;                               ///< camera matrices, left and right [px]
+  std::vector<double> D1 = std::vector<double>(5);  ///< distortion k1 k2 p1 p2 k3 …: 4, 5, 8,
+  std::vector<double> D2 = std::vector<double>(5);  ///< 12 or 14 numbers [1]
+  cv::Matx33d R = cv::Matx33d::eye();               ///< p_right = R · p_left + T
+  cv::Vec3d T;                                      ///< [m]
+  cv::Matx33d R1 = cv::Matx33d::eye(), R2 = R1;     ///< p_rectified = R1 · p_left, R2 · p_right
+  cv::Matx34d P1, P2;                               ///< projections of the rectified cameras [px]
+  cv::Matx44d Q;   ///< (u, v, disparity, 1) to homogeneous coordinates of the rectified left eye
   double rms = 0;  ///< reprojection error of what it was found from [px]
 
   /// The rectified cameras; both have the same numbers but for cx.
@@ -88,11 +88,11 @@ double difference(const BoardView& a, const BoardView& b);
 /// A calibration, and how good it is.
 struct Calibrated {
   StereoCalibration calibration;
-  std::size_t views = 0;     ///< that were used
-  double rms_all = 0;        ///< reprojection error before views were left out [px]
-  double rms_left = 0;       ///< reprojection error of the left camera alone [px]
-  double rms_right = 0;      ///< [px]
-  double epipolar = 0;       ///< mean distance of corresponding rows, rectified [px]
+  std::size_t views = 0;  ///< that were used
+  double rms_all = 0;     ///< reprojection error before views were left out [px]
+  double rms_left = 0;    ///< reprojection error of the left camera alone [px]
+  double rms_right = 0;   ///< [px]
+  double epipolar = 0;    ///< mean distance of corresponding rows, rectified [px]
 };
 
 inline constexpr std::size_t kLeastViews = 3;  ///< that a calibration takes
@@ -100,10 +100,9 @@ inline constexpr std::size_t kLeastViews = 3;  ///< that a calibration takes
 /// Finds the geometry of two cameras: each alone, then both together. Views whose error is more
 /// than three times the median's are left out, as long as two thirds stay.
 ///
-/// Errors: NotFound (fewer than kLeastViews); Usage (a board that is not so); Malformed (views that do not
-/// determine the cameras, as when all are the same).
-/// Cost: 0.1 to 1 s.
-/// Source: Zhang, A Flexible New Technique for Camera Calibration, 2000 (as in OpenCV).
+/// Errors: NotFound (fewer than kLeastViews); Usage (a board that is not so); Malformed (views that
+/// do not determine the cameras, as when all are the same). Cost: 0.1 to 1 s. Source: Zhang, A
+/// Flexible New Technique for Camera Calibration, 2000 (as in OpenCV).
 Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& board, cv::Size size);
 
 }  // namespace hc::vision

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kLargestFile = 64 << 10;  // [byte]
 constexpr int kLargestSide = 65535;             // of a picture [px]
 constexpr double kMostFocal = 1e6;              // [px]
-constexpr double kMostBaseline = 1000;  // [m], or squares of a board in OpenCV's own files
+constexpr double kMostBaseline = 1000;          // [m], or squares of a board in OpenCV's own files
 constexpr std::ptrdiff_t kMostNested = 64;
 
 Error malformed(const std::string& what) {
@@ -123,8 +123,7 @@ Status check(const StereoCalibration& c) {
 std::string text_of(const StereoCalibration& calibration) {
   cv::FileStorage file("calibration.yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   const auto& c = calibration;
-  if (c.size.area() > 0)
-    file << "image_width" << c.size.width << "image_height" << c.size.height;
+  if (c.size.area() > 0) file << "image_width" << c.size.width << "image_height" << c.size.height;
   file << "M1" << cv::Mat(c.M1) << "D1" << cv::Mat(c.D1).reshape(1, 1);
   file << "M2" << cv::Mat(c.M2) << "D2" << cv::Mat(c.D2).reshape(1, 1);
   file << "R" << cv::Mat(c.R) << "T" << cv::Mat(c.T) << "R1" << cv::Mat(c.R1);
@@ -139,8 +138,8 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
   if (!text.starts_with("%YAML")) return malformed("does not begin with %YAML");
   if (text.find('\0') != std::string::npos) return malformed("holds a zero byte");
   // OpenCV's parser calls itself for what is nested, as deep as a file says.
-  std::ptrdiff_t nested = std::count(text.begin(), text.end(), '[') +
-                          std::count(text.begin(), text.end(), '{');
+  std::ptrdiff_t nested =
+      std::count(text.begin(), text.end(), '[') + std::count(text.begin(), text.end(), '{');
   for (std::size_t i = 0; i + 1 < text.size(); ++i)
     nested += text[i] == '-' && (text[i + 1] == ' ' || text[i + 1] == '\n');
   if (nested > kMostNested) return malformed("holds more lists than a calibration has");
@@ -151,8 +150,8 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
     if (is_first || (!line.starts_with("%YAML") && line != "---" && line != "..."))
       joined += line + "\n";
   try {
-    cv::FileStorage file(joined, cv::FileStorage::READ | cv::FileStorage::MEMORY |
-                                     cv::FileStorage::FORMAT_YAML);
+    cv::FileStorage file(
+        joined, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
     const cv::FileNode root = file.root();
     if (!root.isMap()) return malformed("holds no names");
     StereoCalibration c;

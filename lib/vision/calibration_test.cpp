@@ -29,9 +29,8 @@ struct Pairs {
 BoardView view_of_sample(const cv::Mat& left, const cv::Mat& right) {
   BoardView view;
   for (auto [picture, corners] : {std::pair{&left, &view.left}, {&right, &view.right}}) {
-    const bool is_found =
-        cv::findChessboardCorners(*picture, {9, 6}, *corners,
-                                  cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+    const bool is_found = cv::findChessboardCorners(
+        *picture, {9, 6}, *corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
     EXPECT_TRUE(is_found);
     cv::cornerSubPix(*picture, *corners, {11, 11}, {-1, -1},
                      {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.01});
@@ -41,23 +40,23 @@ BoardView view_of_sample(const cv::Mat& left, const cv::Mat& right) {
 
 /// The pictures of opencv-doc, in which OpenCV's own sample finds 13 pairs.
 Pairs photographs(bool as_sample) {
-    const char* folder = std::getenv("HC_DATA");
-    const std::string data = folder ? folder : "/usr/share/doc/opencv-doc/examples/data";
-    Pairs pairs;
-    for (int number = 1; number <= 14; ++number) {
-      if (number == 10) continue;
-      char name[32];
-      std::snprintf(name, sizeof name, "%02d.jpg", number);
-      cv::Mat left = cv::imread(data + "/left" + name, cv::IMREAD_GRAYSCALE);
-      cv::Mat right = cv::imread(data + "/right" + name, cv::IMREAD_GRAYSCALE);
-      if (left.empty() || right.empty()) continue;
-      pairs.size = left.size();
-      if (as_sample)
-        pairs.views.push_back(view_of_sample(left, right));
-      else if (auto view = find_board(left, right, kBoard))
-        pairs.views.push_back(*view);
-    }
-    return pairs;
+  const char* folder = std::getenv("HC_DATA");
+  const std::string data = folder ? folder : "/usr/share/doc/opencv-doc/examples/data";
+  Pairs pairs;
+  for (int number = 1; number <= 14; ++number) {
+    if (number == 10) continue;
+    char name[32];
+    std::snprintf(name, sizeof name, "%02d.jpg", number);
+    cv::Mat left = cv::imread(data + "/left" + name, cv::IMREAD_GRAYSCALE);
+    cv::Mat right = cv::imread(data + "/right" + name, cv::IMREAD_GRAYSCALE);
+    if (left.empty() || right.empty()) continue;
+    pairs.size = left.size();
+    if (as_sample)
+      pairs.views.push_back(view_of_sample(left, right));
+    else if (auto view = find_board(left, right, kBoard))
+      pairs.views.push_back(*view);
+  }
+  return pairs;
 }
 
 /// Views of a board by two cameras that are known, with noise [px].
@@ -171,12 +170,12 @@ double rms_of_sample(const Pairs& pairs) {
   }
   cv::Mat M1 = cv::initCameraMatrix2D(object, left, pairs.size, 0), D1, R, T, E, F;
   cv::Mat M2 = cv::initCameraMatrix2D(object, right, pairs.size, 0), D2;
-  return cv::stereoCalibrate(
-      object, left, right, M1, D1, M2, D2, pairs.size, R, T, E, F,
-      cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_USE_INTRINSIC_GUESS |
-          cv::CALIB_SAME_FOCAL_LENGTH | cv::CALIB_RATIONAL_MODEL | cv::CALIB_FIX_K3 |
-          cv::CALIB_FIX_K4 | cv::CALIB_FIX_K5,
-      {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-5});
+  return cv::stereoCalibrate(object, left, right, M1, D1, M2, D2, pairs.size, R, T, E, F,
+                             cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST |
+                                 cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_SAME_FOCAL_LENGTH |
+                                 cv::CALIB_RATIONAL_MODEL | cv::CALIB_FIX_K3 | cv::CALIB_FIX_K4 |
+                                 cv::CALIB_FIX_K5,
+                             {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-5});
 }
 
 TEST(Calibration, PhotographsAreNoWorseThanWithOpenCvsSample) {
@@ -187,10 +186,12 @@ TEST(Calibration, PhotographsAreNoWorseThanWithOpenCvsSample) {
   ASSERT_TRUE(found) << found.error().text();
   EXPECT_LE(found->rms_all, reference) << "px, of the same views";
   EXPECT_LE(found->calibration.rms, found->rms_all);
-  std::printf("[          ] rms %.3f px of all, %.3f px of %zu views (left %.3f, right %.3f), rows %.3f px; "
-              "OpenCV's sample %.3f px\n",
-              found->rms_all, found->calibration.rms, found->views, found->rms_left, found->rms_right,
-              found->epipolar, reference);
+  std::printf(
+      "[          ] rms %.3f px of all, %.3f px of %zu views (left %.3f, right %.3f), rows %.3f "
+      "px; "
+      "OpenCV's sample %.3f px\n",
+      found->rms_all, found->calibration.rms, found->views, found->rms_left, found->rms_right,
+      found->epipolar, reference);
   EXPECT_NEAR(found->calibration.M1(0, 0), 534, 8) << "px, as intrinsics.yml of opencv-doc";
   EXPECT_NEAR(found->calibration.baseline(), 3.34, 0.05) << "squares";
 }

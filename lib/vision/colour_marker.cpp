@@ -3,14 +3,14 @@
 #include <cmath>
 #include <numbers>
 
-#include <opencv2/imgproc.hpp>
 #include <vision/blob.h>
 #include <vision/marker_finder.h>
+#include <opencv2/imgproc.hpp>
 
 namespace hc::vision {
 namespace {
 
-constexpr double kLeastSide = 12;      // [px]
+constexpr double kLeastSide = 12;  // [px]
 constexpr double kLeastSaturation = 0.4;
 constexpr double kLeastValue = 0.2;
 

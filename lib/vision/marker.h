@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include <opencv2/core.hpp>
 #include <vision/calibration.h>
+#include <opencv2/core.hpp>
 
 namespace hc::vision {
 

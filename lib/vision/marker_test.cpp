@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <numbers>
 
+#include <vision/marker_finder.h>
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
-#include <vision/marker_finder.h>
 
 extern "C" {
 #include <apriltag/apriltag.h>
@@ -43,8 +43,9 @@ Face face_of(MarkerKind kind, int id) {
     apriltag_family_t* family = tag36h11_create();
     image_u8_t* tag = apriltag_to_image(family, id);
     cv::Mat grey, rgb;
-    cv::resize(cv::Mat(tag->height, tag->width, CV_8U, tag->buf, static_cast<std::size_t>(tag->stride)),
-               grey, {400, 400}, 0, 0, cv::INTER_NEAREST);
+    cv::resize(
+        cv::Mat(tag->height, tag->width, CV_8U, tag->buf, static_cast<std::size_t>(tag->stride)),
+        grey, {400, 400}, 0, 0, cv::INTER_NEAREST);
     std::free(tag->buf);  // image_u8_destroy() is not there to be linked
     std::free(tag);
     tag36h11_destroy(family);
@@ -207,8 +208,8 @@ TEST(ColourMarker, OtherThingsAreNone) {
   cv::fillConvexPoly(picture, triangle, {20, 190, 20});
   EXPECT_TRUE(find_colour_markers(picture).empty());
   // A square, but on a dark ground and on a coloured one.
-  cv::Mat dark(300, 300, CV_8UC3, cv::Scalar::all(40)), tinted(300, 300, CV_8UC3,
-                                                               cv::Scalar(230, 230, 90));
+  cv::Mat dark(300, 300, CV_8UC3, cv::Scalar::all(40)),
+      tinted(300, 300, CV_8UC3, cv::Scalar(230, 230, 90));
   for (auto* ground : {&dark, &tinted})
     cv::rectangle(*ground, {100, 100, 80, 80}, {210, 20, 210}, cv::FILLED);
   EXPECT_TRUE(find_colour_markers(dark).empty());

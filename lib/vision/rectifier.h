@@ -3,8 +3,8 @@
 // Pictures of two cameras as two ideal cameras side by side would have taken them. No messages.
 
 #include <hc/base/result.h>
-#include <opencv2/core.hpp>
 #include <vision/calibration.h>
+#include <opencv2/core.hpp>
 
 namespace hc::vision {
 

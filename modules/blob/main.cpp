@@ -18,8 +18,8 @@ int main(int argc, char** argv) {
                               "x, y of the blob's middle, its radius [px], in the coordinate "
                               "system of the picture; nothing while there is none");
   auto area = module.output("area", hc::table<double>(), "area of the blob [px²]");
-  auto hue = module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue",
-                              {.least = 0, .most = 1});
+  auto hue =
+      module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue", {.least = 0, .most = 1});
   auto hue_width = module.parameter("hue_width", 0.05, "", "how far a pixel's may be from it",
                                     {.least = 0, .most = 0.5});
   auto saturation = module.parameter("saturation", 0.5, "", "least saturation of a pixel",
@@ -30,9 +30,9 @@ int main(int argc, char** argv) {
                                      {.least = 0, .most = 1e9});
 
   std::optional<hc::vision::BlobFinder> finder;
-  std::optional<cv::Point2d> pointed;                   // at the next picture
-  std::optional<hc::vision::BlobColour> taken;          // by pointing
-  double hue_then = 0;                                  // when it was taken
+  std::optional<cv::Point2d> pointed;           // at the next picture
+  std::optional<hc::vision::BlobColour> taken;  // by pointing
+  double hue_then = 0;                          // when it was taken
   auto take = [&](const cv::Mat& picture) {
     const cv::Point at(static_cast<int>(std::lround(pointed->x)),
                        static_cast<int>(std::lround(pointed->y)));

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Geometry>
 #include <hc/adapter/opencv.h>
 #include <hc/node/module.h>
 #include <vision/calibration.h>
 #include <vision/marker.h>
 #include <vision/marker_finder.h>
+#include <Eigen/Geometry>
 
 #include "names.h"
 
@@ -48,11 +48,12 @@ struct Found {
 }  // namespace
 
 int main(int argc, char** argv) {
-  hc::Module module{"marker", "Finds ArUco, AprilTag and coloured square markers, and their poses."};
-  auto image = module.input("image", hc::any_of(hc::rgb_image<std::uint8_t>(),
-                                                hc::intensity_image<std::uint8_t>()),
-                            "picture of an eye; of the left one unless its coordinate system is "
-                            "the right one's");
+  hc::Module module{"marker",
+                    "Finds ArUco, AprilTag and coloured square markers, and their poses."};
+  auto image = module.input(
+      "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
+      "picture of an eye; of the left one unless its coordinate system is "
+      "the right one's");
   auto poses = module.output("poses", hc::transformation<double>(4, 4),
                              "T_eye_marker, one a marker: x right, y down, z into the plate as "
                              "seen by who looks at it, origin in its middle [m]");
@@ -60,19 +61,19 @@ int main(int argc, char** argv) {
       "markers", hc::table<double>(),
       "12 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
       "side [m], x y z [m] and qx qy qz qw in the eye, reprojection error, mean side [px]");
-  auto frames = module.parameter("marker_frames", "", "",
-                                 "numbers of markers' frames, as in \"aruco:23=101 colour:300=103\"");
+  auto frames = module.parameter(
+      "marker_frames", "", "", "numbers of markers' frames, as in \"aruco:23=101 colour:300=103\"");
   auto sides = module.parameter("sides", "", "m", "of single markers, as in \"aruco:23=0.18\"");
   auto side = module.parameter("side", 0.1, "m", "of all other markers' black or coloured square",
                                {.least = 1e-4, .most = 100});
   auto use_aruco = module.parameter("aruco", true, "", "look for ArUco markers");
-  auto dictionary = module.parameter("dictionary", "6X6_250", "",
-                                     "of the ArUco markers, as 4X4_50 or ARUCO_ORIGINAL",
-                                     {.fixed = true});
+  auto dictionary =
+      module.parameter("dictionary", "6X6_250", "",
+                       "of the ArUco markers, as 4X4_50 or ARUCO_ORIGINAL", {.fixed = true});
   auto use_apriltag = module.parameter("apriltag", true, "", "look for AprilTags (36h11)");
-  auto decimate = module.parameter(
-      "decimate", 1.0, "", "AprilTags: 2 is three times as fast, and misses some",
-      {.least = 1, .most = 8, .fixed = true});
+  auto decimate =
+      module.parameter("decimate", 1.0, "", "AprilTags: 2 is three times as fast, and misses some",
+                       {.least = 1, .most = 8, .fixed = true});
   auto use_colour = module.parameter("colour", true, "", "look for coloured squares on white");
   auto file = module.parameter("calibration_file", "", "",
                                "what stereo_calibration wrote; without it focal, cx, cy hold",
@@ -133,9 +134,18 @@ int main(int argc, char** argv) {
       const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(pose.R.val);
       Eigen::Quaterniond q(Eigen::Matrix3d{R});
       if (q.w() < 0) q.coeffs() *= -1;
-      const double row[kColumns] = {static_cast<double>(marker.kind), double(marker.id), metres,
-                                    pose.t[0], pose.t[1], pose.t[2], q.x(), q.y(), q.z(), q.w(),
-                                    pose.error, marker.mean_side()};
+      const double row[kColumns] = {static_cast<double>(marker.kind),
+                                    double(marker.id),
+                                    metres,
+                                    pose.t[0],
+                                    pose.t[1],
+                                    pose.t[2],
+                                    q.x(),
+                                    q.y(),
+                                    q.z(),
+                                    q.w(),
+                                    pose.error,
+                                    marker.mean_side()};
       std::copy(std::begin(row), std::end(row), draft.matrix().row(i).begin());
     }
     markers.send(std::move(draft));

@@ -69,8 +69,8 @@ std::optional<NamedMarker> find_name(const std::vector<NamedMarker>& names, Mark
   constexpr int kAlike = 20;  // [degree]
   for (const auto& name : names) {
     if (name.kind != kind) continue;
-    const int distance = kind == MarkerKind::Colour ? hue_distance(name.id, id)
-                                                    : (name.id == id ? 0 : kAlike + 1);
+    const int distance =
+        kind == MarkerKind::Colour ? hue_distance(name.id, id) : (name.id == id ? 0 : kAlike + 1);
     if (distance <= kAlike && (!best || distance < hue_distance(best->id, id))) best = name;
   }
   return best;

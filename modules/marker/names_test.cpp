@@ -8,8 +8,8 @@ namespace {
 using hc::vision::MarkerKind;
 
 TEST(Names, AreReadAndFound) {
-  auto names = read_names(" aruco:23=101, apriltag:7=102  colour:300=103 colour:330=104", 1, 999,
-                          true);
+  auto names =
+      read_names(" aruco:23=101, apriltag:7=102  colour:300=103 colour:330=104", 1, 999, true);
   ASSERT_TRUE(names) << names.error().text();
   ASSERT_EQ(names->size(), 4);
   EXPECT_EQ(find_name(*names, MarkerKind::Aruco, 23)->value, 101);

@@ -41,8 +41,7 @@ int main(int argc, char** argv) {
   auto tell = [&] {
     if (!time) return;
     const auto camera = calibration->rectified();
-    auto numbers =
-        hc::table({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()});
+    auto numbers = hc::table({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()});
     numbers.header.time = *time;
     intrinsics.send(numbers);
   };

@@ -85,6 +85,8 @@ cv::Mat paint_plate(const std::string& dictionary, int id) {
   cv::Mat cells(all.markerSize + 4, all.markerSize + 4, CV_8U, cv::Scalar(255));
   cells(cv::Rect(1, 1, all.markerSize + 2, all.markerSize + 2)) = cv::Scalar(0);
   cells(cv::Rect(2, 2, all.markerSize, all.markerSize)) = bits * 255;
+  // OpenCV has AprilTags upside down, as their own library reads them.
+  if (dictionary == "apriltag") cv::rotate(cells, cells, cv::ROTATE_180);
   cv::Mat picture;
   cv::resize(cells, picture, {}, kCell, kCell, cv::INTER_NEAREST);
   cv::cvtColor(picture, picture, cv::COLOR_GRAY2RGB);

@@ -55,9 +55,9 @@ int main(int argc, char** argv) {
     const auto& calibration = calibrated.calibration;
     if (auto written = hc::vision::write_calibration(*file, calibration); !written)
       throw hc::ModuleError(written.error());
-    auto score = hc::table({calibration.rms, calibrated.rms_left, calibrated.rms_right,
-                            calibrated.epipolar, calibration.baseline(),
-                            static_cast<double>(calibrated.views)});
+    auto score =
+        hc::table({calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,
+                   calibration.baseline(), static_cast<double>(calibrated.views)});
     score.header.time = time;
     result.send(score);
     char line[200];
@@ -83,9 +83,8 @@ int main(int argc, char** argv) {
     auto view = hc::vision::find_board(left_mat, right_mat, board);
     if (!view) return;
     const double far = *least * size.width;
-    if (std::any_of(views.begin(), views.end(), [&](const auto& other) {
-          return hc::vision::difference(*view, other) < far;
-        }))
+    if (std::any_of(views.begin(), views.end(),
+                    [&](const auto& other) { return hc::vision::difference(*view, other) < far; }))
       return;
     views.push_back(std::move(*view));
     time = std::max(l.header.time, r.header.time);

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What the eyes' modules see of the simulated room, compared with how it is."""
+
+import json
+import math
+import unittest
+
+from harness import Pipes
+
+
+def turn(q, v):
+    """A vector, turned by a quaternion x y z w."""
+    x, y, z, w = q
+    t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])]
+    return [
+        v[0] + w * t[0] + y * t[2] - z * t[1],
+        v[1] + w * t[1] + z * t[0] - x * t[2],
+        v[2] + w * t[2] + x * t[1] - y * t[0],
+    ]
+
+
+class Sight(Pipes):
+    """The head looks straight ahead; its left eye is at (0.06, 0.05, 1.25) m of the world."""
+
+    SIMULATOR = "hc simulator --count 3 --paced=false --start 1000000000 %s </dev/null"
+    SIDES = (
+        "apriltag:0=0.3 apriltag:7=0.16 aruco:23=0.18 aruco:40=0.14 "
+        "colour:300=0.14 colour:180=0.12 colour:120=0.12"
+    )
+
+    def simulate(self, options, **outputs):
+        links = "".join(" --out %s=%s" % link for link in outputs.items())
+        self.shell(self.SIMULATOR % (options + links))
+
+    def messages(self, command):
+        """The rows of each message."""
+        lines = self.shell(command + " | hc cat --json").splitlines()
+        return [row for line in lines for row in json.loads(line)["elements"]]
+
+    @staticmethod
+    def in_left_eye(place):
+        return [0.05 - place[1], 1.25 - place[2], place[0] - 0.06]
+
+    def test_markers_are_where_the_room_has_them(self):
+        self.simulate("--seed 1 --noise 2", left="left.mtp", plates="plates.mtp")
+        plates = {tuple(row[:2]): row for row in self.messages("cat plates.mtp")}
+        found = self.messages(
+            "hc marker --focal 600 --sides '%s' --in image=left.mtp --out markers=-" % self.SIDES
+        )
+        self.assertGreaterEqual(len({tuple(row[:2]) for row in found}), 5)
+        for row in found:
+            plate = plates[tuple(row[:2])]
+            truth = self.in_left_eye(plate[3:6])
+            self.assertLess(math.dist(row[3:6], truth), 0.01 * math.hypot(*truth), row)
+            # The marker's x axis, in both; the room's axes are those of the eye in another order.
+            x = turn(plate[6:10], [1, 0, 0])
+            cosine = sum(a * b for a, b in zip(turn(row[6:10], [1, 0, 0]), [-x[1], -x[2], x[0]]))
+            self.assertGreater(cosine, math.cos(math.radians(4)), row)
+            self.assertLess(row[10], 0.3, "reprojected, px")
+
+    def test_a_marker_that_has_a_frame_is_a_pose_of_it(self):
+        self.simulate("--seed 2", left="left.mtp", right="right.mtp")
+        names = "--marker_frames 'aruco:23=101 colour:300=103' --focal 600 --side 0.18 --out poses=-"
+        for eye, number in (("left", 4000), ("right", 5000)):
+            out = self.shell("hc marker %s --in image=%s.mtp | hc cat --json" % (names, eye))
+            coords = {json.loads(line)["coord"] for line in out.splitlines()}
+            self.assertLessEqual({number + 101, number + 103}, coords)
+
+    def test_the_ball_is_where_it_is_seen(self):
+        for noise in (0, 20):
+            with self.subTest(noise=noise):
+                self.simulate("--noise %d" % noise, left="left.mtp", ball_seen="seen.mtp")
+                seen = self.messages("cat seen.mtp")
+                lines = self.shell("hc blob --in image=left.mtp --out target=- | hc cat --json")
+                found = [json.loads(line)["elements"][0][0] for line in lines.splitlines()]
+                self.assertEqual(len(found), len(seen))
+                for blob, truth in zip(found, seen):
+                    self.assertLess(math.dist(blob[:2], truth[:2]), 1.5, "px")
+                    self.assertLess(abs(blob[2] - truth[2]), 2, "px")
+
+    def test_a_ball_that_has_gone_is_not_found(self):
+        self.simulate("--ball gone --noise 20", left="left.mtp")
+        self.assertEqual(self.shell("hc blob --in image=left.mtp"), "")
+
+    def test_an_ideal_pair_that_is_rectified_gives_the_depth(self):
+        options = "--focal 600 --noise 2 --encoding depth=text"
+        self.simulate(options, left="left.mtp", right="right.mtp", depth="truth.mtp")
+        self.shell(
+            "hc rectify --focal 600 --in left=left.mtp --in right=right.mtp "
+            "--out left=l.mtp --out right=r.mtp --out intrinsics=i.mtp"
+        )
+        self.assertEqual(self.messages("head -n 2 i.mtp")[0], [600, 600, 399.5, 299.5, 0.1])
+        for name in ("l.mtp", "r.mtp"):
+            self.assertIn("800x600 rgb_image", self.shell("hc info " + name))
+        # The disparities of an ideal pair are its depth: 600 px · 0.1 m / disparity.
+        found = self.shell(
+            "hc depth --focal 600 --baseline 0.1 --disparities 48 --in left=l.mtp --in right=r.mtp "
+            "--out depth=- --encoding text | awk 'NF == 800 { print $400 }'"
+        )
+        truth = self.shell("awk 'NF == 800 { print $400 }' truth.mtp")
+        pairs = [
+            (float(a), float(b)) for a, b in zip(found.split(), truth.split()) if float(a) > 0
+        ]
+        self.assertGreater(len(pairs), 900)
+        close = sum(abs(a - b) < 0.05 * b for a, b in pairs)
+        self.assertGreater(close, 0.9 * len(pairs))
+
+
+if __name__ == "__main__":
+    unittest.main()
