@@ -14,6 +14,7 @@ using Corners = std::vector<cv::Point2f>;
 
 /// A board that is small in its picture is found in one of twice the size.
 bool find_corners(const cv::Mat& picture, const Board& board, Corners& corners) {
+  if (picture.empty()) return false;
   cv::Mat grey = picture;
   if (picture.channels() == 3) cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
   const cv::Size size(board.columns, board.rows);

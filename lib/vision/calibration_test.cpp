@@ -126,6 +126,14 @@ TEST(Calibration, LeavesOutAViewThatIsWrong) {
   EXPECT_LT(found->calibration.rms, 0.2) << "px";
 }
 
+TEST(Calibration, CamerasThatAreMixedUpAreTold) {
+  auto pairs = made_up(squinting(), 6, 0.1);
+  for (auto& view : pairs.views) std::swap(view.left, view.right);
+  auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().detail.find("the left camera is at the right"), std::string::npos);
+}
+
 TEST(Calibration, RefusesWhatDoesNotDetermineTheCameras) {
   auto pairs = made_up(squinting(), 2, 0.1);
   auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);
@@ -155,6 +163,7 @@ TEST(Calibration, TheSameCornerHasTheSamePlaceInBothPictures) {
   for (auto& corner : moved.left) corner.x += 10;
   EXPECT_NEAR(difference(*view, moved), 5, 1e-3) << "px: the mean of both eyes";
   EXPECT_FALSE(find_board(cv::Mat::zeros(480, 640, CV_8U), picture, kBoard));
+  EXPECT_FALSE(find_board(cv::Mat(), cv::Mat(), kBoard));
 }
 
 // OpenCV's sample stereo_calib with its own flags.

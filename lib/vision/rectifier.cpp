@@ -15,6 +15,10 @@ Result<Rectifier> Rectifier::make(const StereoCalibration& calibration, Eye eye,
                                         std::to_string(size.height) + ", the calibration is for " +
                                         std::to_string(c.size.width) + " x " +
                                         std::to_string(c.size.height)};
+  constexpr int kMostSide = 32766;  // of what cv::remap() takes
+  if (size.width < 1 || size.height < 1 || size.width > kMostSide || size.height > kMostSide)
+    return Error{Code::TooLarge, "a picture of " + std::to_string(size.width) + " x " +
+                                     std::to_string(size.height) + " cannot be rectified"};
   const bool is_left = eye == Eye::Left;
   const auto& M = is_left ? c.M1 : c.M2;
   const auto& D = is_left ? c.D1 : c.D2;

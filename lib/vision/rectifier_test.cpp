@@ -73,6 +73,11 @@ TEST(Rectifier, AnotherSizeIsRefused) {
   auto made = Rectifier::make(ideal_pair({800, 600}, 600, 0.1), Eye::Left, {640, 480});
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().detail, "a picture of 640 x 480, the calibration is for 800 x 600");
+  auto ideal = ideal_pair({800, 600}, 600, 0.1);
+  ideal.size = {};  // unknown
+  EXPECT_TRUE(Rectifier::make(ideal, Eye::Right, {640, 480}));
+  EXPECT_EQ(Rectifier::make(ideal, Eye::Left, {40000, 1}).error().code, Code::TooLarge);
+  EXPECT_EQ(Rectifier::make(ideal, Eye::Left, {0, 0}).error().code, Code::TooLarge);
 }
 
 }  // namespace

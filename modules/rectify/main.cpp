@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   };
   auto rectify = [&](const auto& picture, auto& output, Eye eye) {
     const cv::Size size(picture.header.width, picture.header.height);
+    if (size.area() == 0) return;
     auto& rectifier = rectifiers[eye == Eye::Left ? 0 : 1];
     if (!rectifier || rectifier->size() != size) {
       if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, *baseline);

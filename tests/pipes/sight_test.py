@@ -61,7 +61,9 @@ class Sight(Pipes):
 
     def test_a_marker_that_has_a_frame_is_a_pose_of_it(self):
         self.simulate("--seed 2", left="left.mtp", right="right.mtp")
-        names = "--marker_frames 'aruco:23=101 colour:300=103' --focal 600 --side 0.18 --out poses=-"
+        names = (
+            "--marker_frames 'aruco:23=101 colour:300=103' --focal 600 --side 0.18 --out poses=-"
+        )
         for eye, number in (("left", 4000), ("right", 5000)):
             out = self.shell("hc marker %s --in image=%s.mtp | hc cat --json" % (names, eye))
             coords = {json.loads(line)["coord"] for line in out.splitlines()}
@@ -99,9 +101,7 @@ class Sight(Pipes):
             "--out depth=- --encoding text | awk 'NF == 800 { print $400 }'"
         )
         truth = self.shell("awk 'NF == 800 { print $400 }' truth.mtp")
-        pairs = [
-            (float(a), float(b)) for a, b in zip(found.split(), truth.split()) if float(a) > 0
-        ]
+        pairs = [(float(a), float(b)) for a, b in zip(found.split(), truth.split()) if float(a) > 0]
         self.assertGreater(len(pairs), 900)
         close = sum(abs(a - b) < 0.05 * b for a, b in pairs)
         self.assertGreater(close, 0.9 * len(pairs))
