@@ -122,6 +122,7 @@ class PanTilt(Pipes):
         self.pose = Reader(name + "pose")
         self.commands = connected(name + "command")
         self.gaze.wait()
+        self.motion.wait()
 
     def start_both(self, neck="", fake=""):
         self.start_fake(fake)
@@ -293,6 +294,7 @@ class PanTilt(Pipes):
     def test_either_killed_leaves_nothing_and_is_found_again(self):
         self.start_both("--hold 0")
         self.gaze.wait()
+        self.motion.wait()
         self.neck.process.send_signal(signal.SIGKILL)
         self.neck.process.wait()
         self.start_neck("--hold 0")
