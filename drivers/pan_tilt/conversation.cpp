@@ -99,7 +99,7 @@ void Conversation::hear_at_begin(MonotonicTime now, const Reply& reply) {
     return fail(now, garbage(reply.text));
   }
   settings_[asked_++ % kSettings] = *value;
-  if (asked_ == 2 * kSettings) return become_ready(now);
+  if (asked_ == 2 * kQuestions.size()) return become_ready(now);
   overdue_ = now + kTimeOut;
   bytes_ += pan_tilt::command(kQuestions[asked_ % kSettings]);
 }

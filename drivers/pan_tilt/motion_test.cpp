@@ -101,10 +101,12 @@ TEST(Motion, a_halt_brakes) {
 
 TEST(Motion, whatever_is_asked_for_position_and_speed_keep_to_the_pace) {
   std::mt19937 random(7);
-  auto upto = [&](double most) { return most * static_cast<double>(random() % 10001) / 10000; };
+  auto anything_to = [&](double most) {
+    return most * static_cast<double>(random() % 10001) / 10000;
+  };
   for (int run = 0; run < 200; ++run) {
-    Pace pace{10 + upto(2900), 10 + upto(4000), 0};
-    Motion axis(upto(100), pace);
+    Pace pace{10 + anything_to(2900), 10 + anything_to(4000), 0};
+    Motion axis(anything_to(100), pace);
     double fastest = pace.speed, steepest = pace.acceleration;
     Motion::State before = axis.at(0);
     double time = 0;
@@ -115,10 +117,10 @@ TEST(Motion, whatever_is_asked_for_position_and_speed_keep_to_the_pace) {
       EXPECT_LE(std::abs(state.speed - before.speed), steepest * 0.005 + kNear);
       EXPECT_LE(std::abs(state.position - before.position), fastest * 0.005 + kNear);
       before = state;
-      if (random() % 20 == 0) axis.go(time, upto(6000) - 3000);
+      if (random() % 20 == 0) axis.go(time, anything_to(6000) - 3000);
       if (random() % 90 == 0) axis.halt(time);
       if (random() % 60 == 0) {
-        pace = {10 + upto(2900), 10 + upto(4000), 0};
+        pace = {10 + anything_to(2900), 10 + anything_to(4000), 0};
         fastest = std::max(fastest, pace.speed);
         steepest = std::max(steepest, pace.acceleration);
         axis.set_pace(time, pace);
