@@ -55,7 +55,7 @@ Status read(const cv::FileNode& root, const std::string& key,
   if (!numbers) return numbers.error();
   // A column may have been written as a row.
   const bool is_vector = kColumns == 1;
-  if (numbers->size() != std::size_t{kRows * kColumns} ||
+  if (numbers->size() != std::size_t{kRows} * std::size_t{kColumns} ||
       (!is_vector && (root[key]["rows"].real() != kRows)))
     return malformed(key + " is not " + std::to_string(kRows) + " x " + std::to_string(kColumns));
   std::copy(numbers->begin(), numbers->end(), matrix.val);

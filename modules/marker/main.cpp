@@ -116,12 +116,12 @@ int main(int argc, char** argv) {
   auto send_poses = [&](const std::vector<Found>& all, std::int32_t eye) {
     for (const auto& found : all) {
       auto draft = poses.loan(4, 4);
-      auto numbers = draft.matrix().numbers();
-      for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column)
-          numbers[static_cast<std::size_t>(4 * row + column)] =
-              row == 3 ? (column == 3 ? 1 : 0)
-                       : (column == 3 ? found.pose.t[row] : found.pose.R(row, column));
+      for (int row = 0; row < 4; ++row) {
+        auto numbers = draft.matrix().row(static_cast<std::size_t>(row));
+        for (int column = 0; column < 3; ++column)
+          numbers[static_cast<std::size_t>(column)] = row < 3 ? found.pose.R(row, column) : 0;
+        numbers[3] = row < 3 ? found.pose.t[row] : 1;
+      }
       if (found.frame != 0) draft.header.coord = 1000 * eye + found.frame;
       poses.send(std::move(draft));
     }
