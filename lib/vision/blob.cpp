@@ -48,7 +48,7 @@ std::optional<BlobColour> colour_at(const cv::Mat& rgb, cv::Point at) {
 
 void BlobFinder::fill_table() {
   constexpr int kLevels = 1 << kBits, kStep = 256 / kLevels;
-  table_.resize(kLevels * kLevels * kLevels);
+  table_.resize(std::size_t{kLevels} * kLevels * kLevels);
   std::size_t at = 0;
   for (int r = 0; r < kLevels; ++r)
     for (int g = 0; g < kLevels; ++g)
@@ -73,8 +73,8 @@ std::optional<BlobFinder::Region> BlobFinder::largest(const cv::Mat& rgb) {
       to[x] = table_[static_cast<std::size_t>(from[0] >> kShift << (2 * kBits) |
                                               from[1] >> kShift << kBits | from[2] >> kShift)];
   }
-  static const cv::Mat open = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
-  cv::morphologyEx(mask_, mask_, cv::MORPH_OPEN, open);
+  const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
+  cv::morphologyEx(mask_, mask_, cv::MORPH_OPEN, square);
 
   const int count = cv::connectedComponentsWithStats(mask_, labels_, sizes_, middles_, 8, CV_32S);
   int label = 0, pixels = 0;

@@ -30,11 +30,9 @@ bool find_corners(const cv::Mat& picture, const Board& board, Corners& corners) 
   }
   // The window reaches half a square, so that no other corner is in it.
   double least = grey.cols;
-  for (int row = 0; row < board.rows; ++row)
-    for (int column = 0; column + 1 < board.columns; ++column) {
-      const auto at = static_cast<std::size_t>(row * board.columns + column);
-      least = std::min(least, cv::norm(corners[at + 1] - corners[at]));
-    }
+  const auto columns = static_cast<std::size_t>(board.columns);
+  for (std::size_t at = 0; at + 1 < corners.size(); ++at)
+    if ((at + 1) % columns != 0) least = std::min(least, cv::norm(corners[at + 1] - corners[at]));
   const int half = std::clamp(static_cast<int>(least / 2), 2, 11);
   cv::cornerSubPix(grey, corners, {half, half}, {-1, -1},
                    {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3});
@@ -163,7 +161,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
     constexpr double kOutlier = 3;  // times the median
     while (points.object.size() > least) {
       auto sorted = errors;
-      std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+      std::sort(sorted.begin(), sorted.end());
       const auto worst = std::max_element(errors.begin(), errors.end()) - errors.begin();
       if (errors[static_cast<std::size_t>(worst)] <= kOutlier * sorted[sorted.size() / 2]) break;
       points.object.erase(points.object.begin() + worst);

@@ -36,8 +36,7 @@ std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d
   const double reach = std::clamp(0.15 * length, 1.5, farthest);
   const int rays = std::clamp(static_cast<int>(length / 2), 6, 40);
   constexpr double kStep = 0.5;  // along a ray [px]
-  const int steps = static_cast<int>(std::ceil(reach / kStep));
-  std::vector<cv::Point2d> places;
+  const auto steps = static_cast<std::ptrdiff_t>(std::ceil(reach / kStep));
   std::vector<double> slopes(static_cast<std::size_t>(2 * steps + 1));
   double direction = 0;  // of all slopes: the rim is darker, or lighter, all along
   std::vector<std::pair<double, double>> found;  // where along the side, and how far across it
@@ -46,8 +45,9 @@ std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d
       // Where two sides meet an edge is round.
       const double share = 0.12 + 0.76 * (ray + 0.5) / rays;
       const cv::Point2d middle = from + share * side;
-      for (int i = -steps; i <= steps; ++i) {
-        const cv::Point2d out = middle + (i * kStep + 1) * across, in = out - 2 * across;
+      for (auto i = -steps; i <= steps; ++i) {
+        const cv::Point2d out = middle + (static_cast<double>(i) * kStep + 1) * across,
+                          in = out - 2 * across;
         slopes[static_cast<std::size_t>(i + steps)] =
             level(grey, out.x, out.y) - level(grey, in.x, in.y);
       }
@@ -72,7 +72,7 @@ std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d
         sum += slopes[static_cast<std::size_t>(i)] - half;
         moment += (slopes[static_cast<std::size_t>(i)] - half) * static_cast<double>(i);
       }
-      found.emplace_back(share * length, (moment / sum - steps) * kStep);
+      found.emplace_back(share * length, (moment / sum - static_cast<double>(steps)) * kStep);
     }
     if (pass == 0) direction = direction > 0 ? 1 : -1;
   }
