@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kBuffers = 8;
 constexpr std::chrono::milliseconds kSilence{1000};
+constexpr std::chrono::milliseconds kBeginning{2000};  // so much more until the first picture
 // A camera's time that is further from ours is by another clock.
 constexpr std::int64_t kMostAge = 10'000'000'000;  // [ns]
 
@@ -67,9 +68,9 @@ Status choose_format(ArvCamera* camera, const std::string& wanted) {
   const std::vector<gint64> formats(all, all + count);
   g_free(all);
   // Colours rather than grey, and fewer bytes rather than more.
-  for (auto like : {PixelFormat::BayerRG8, PixelFormat::BayerBG8, PixelFormat::BayerGR8,
-                    PixelFormat::BayerGB8, PixelFormat::Rgb8, PixelFormat::Bgr8,
-                    PixelFormat::Mono8})
+  for (auto like :
+       {PixelFormat::BayerRG8, PixelFormat::BayerBG8, PixelFormat::BayerGR8, PixelFormat::BayerGB8,
+        PixelFormat::Rgb8, PixelFormat::Bgr8, PixelFormat::Mono8})
     for (gint64 format : formats) {
       if (format != static_cast<gint64>(like)) continue;
       arv_camera_set_pixel_format(camera, static_cast<ArvPixelFormat>(format), failure.out());
@@ -140,7 +141,7 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
     arv_stream_push_buffer(handles->stream, arv_buffer_new_allocate(bytes));
   arv_camera_start_acquisition(camera, failure.out());
   if (failure) return failure.error();
-  handles->heard = std::chrono::steady_clock::now();
+  handles->heard = std::chrono::steady_clock::now() + kBeginning;
   return std::unique_ptr<Camera>(new Camera(std::move(handles)));
 }
 

@@ -40,7 +40,8 @@ class Camera {
   /// @returns  nothing when none came within `timeout`.
   ///
   /// Errors: Closed (the camera is lost: it says so itself, or has
-  /// been silent for a second beyond its exposure), Malformed, Unsupported (what it sends).
+  /// been silent for a second beyond its exposure, and two more at first), Malformed, Unsupported
+  /// (what it sends).
   Result<std::optional<Picture>> next(std::chrono::milliseconds timeout);
 
   /// Sets the time of exposure and ends the camera's own choice of it. [s]

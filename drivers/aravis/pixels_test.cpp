@@ -24,8 +24,9 @@ std::vector<std::uint8_t> mosaic(const char* pattern, int red, int green, int bl
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const char colour = pattern[2 * (y % 2) + x % 2];
-      values.push_back(
-          static_cast<std::uint8_t>(colour == 'R' ? red : colour == 'G' ? green : blue));
+      values.push_back(static_cast<std::uint8_t>(colour == 'R'   ? red
+                                                 : colour == 'G' ? green
+                                                                 : blue));
     }
   return values;
 }
@@ -45,8 +46,7 @@ TEST(Pixels, Bayer_gives_the_colours_that_were_seen) {
 
 TEST(Pixels, rgb_and_grey) {
   std::vector<std::uint8_t> values;
-  for (int i = 0; i < kWidth * kHeight; ++i)
-    values.insert(values.end(), {1, 2, 3});
+  for (int i = 0; i < kWidth * kHeight; ++i) values.insert(values.end(), {1, 2, 3});
   EXPECT_EQ(to_bgr(number(PixelFormat::Rgb8), kWidth, kHeight, bytes(values))->at<cv::Vec3b>(3, 3),
             cv::Vec3b(3, 2, 1));
   EXPECT_EQ(to_bgr(number(PixelFormat::Bgr8), kWidth, kHeight, bytes(values))->at<cv::Vec3b>(3, 3),

@@ -43,14 +43,6 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The grey picture with the least noise: the mean of the channels.
-cv::Mat grey_of(const cv::Mat& picture) {
-  if (picture.channels() == 1) return picture;
-  cv::Mat grey;
-  cv::transform(picture, grey, cv::Matx13f(1 / 3.0F, 1 / 3.0F, 1 / 3.0F));
-  return grey;
-}
-
 /// Measures what is in a piece's box and around it; nothing for what is too faint for a letter.
 std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const cv::Mat& dark,
                              int label, const cv::Rect& box) {
@@ -168,7 +160,8 @@ void reach_for_stops(const std::vector<Piece>& pieces, const Slant& top, const S
         continue;
       if (std::abs(piece.ground - ground) > 0.25 * ground) continue;
       if (piece.box.area() < 0.008 * height * height) continue;
-      if (piece.left() < left && piece.right() > left - 0.9 * height) left = piece.left(), any = true;
+      if (piece.left() < left && piece.right() > left - 0.9 * height)
+        left = piece.left(), any = true;
       if (piece.right() > right && piece.left() < right + 0.9 * height)
         right = piece.right(), any = true;
     }
@@ -227,7 +220,8 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   line.height = height;
   // A margin of a third of the height is to be clean too.
   const int margin = static_cast<int>(height / 3);
-  cv::Rect box = cv::boundingRect(std::vector<cv::Point2f>(line.corners.begin(), line.corners.end()));
+  cv::Rect box =
+      cv::boundingRect(std::vector<cv::Point2f>(line.corners.begin(), line.corners.end()));
   box = cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin);
   line.is_whole = (box & cv::Rect({}, grey.size())) == box;
   box &= cv::Rect({}, grey.size());
@@ -248,49 +242,22 @@ void scale(TextLine& line, double by) {
   line.height *= by;
 }
 
-cv::Rect2f box_of(const TextLine& line) {
-  const auto& c = line.corners;
-  const float left = std::min(c[0].x, c[3].x), right = std::max(c[1].x, c[2].x);
-  const float top = std::min(c[0].y, c[1].y), bottom = std::max(c[2].y, c[3].y);
-  return {left, top, right - left, bottom - top};
-}
-
 }  // namespace
 
 cv::Point2f TextLine::middle() const {
   return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
 }
 
-double TextLine::width() const {
-  return cv::norm((corners[1] + corners[2]) - (corners[0] + corners[3])) / 2;
+cv::Rect2f TextLine::box() const {
+  const float left = std::min(corners[0].x, corners[3].x);
+  const float right = std::max(corners[1].x, corners[2].x);
+  const float top = std::min(corners[0].y, corners[1].y);
+  const float bottom = std::max(corners[2].y, corners[3].y);
+  return {left, top, right - left, bottom - top};
 }
 
-double noise_of(const cv::Mat& grey) {
-  if (grey.rows < 3 || grey.cols < 3) return 0;
-  const cv::Matx33f kernel(1, -2, 1, -2, 4, -2, 1, -2, 1);
-  cv::Mat rough;
-  cv::filter2D(grey, rough, CV_16S, kernel);
-  // Every fourth row and column is enough.
-  std::vector<int> counts(2048);
-  int all = 0;
-  for (int y = 1; y < rough.rows - 1; y += 4) {
-    const auto* row = rough.ptr<std::int16_t>(y);
-    for (int x = 1; x < rough.cols - 1; x += 4) {
-      // What is black or white altogether has been cut off, and tells nothing.
-      const int value = grey.at<std::uint8_t>(y, x);
-      if (value < 3 || value > 252) continue;
-      ++counts[static_cast<std::size_t>(std::min(2047, std::abs(static_cast<int>(row[x]))))];
-      ++all;
-    }
-  }
-  if (all == 0) return 0;
-  int below = 0;
-  std::size_t middle = 0;
-  while (below + counts[middle] <= all / 2) below += counts[middle++];
-  // Within the bin, so that a little noise is not none.
-  const double part = (all / 2.0 - below) / counts[middle];
-  const double value = std::max(0.0, static_cast<double>(middle) - 0.5 + part);
-  return value / 0.6745 / 6;  // median of |N(0, 1)|; the kernel's norm is 6
+double TextLine::width() const {
+  return cv::norm((corners[1] + corners[2]) - (corners[0] + corners[3])) / 2;
 }
 
 std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score) {
@@ -326,63 +293,10 @@ std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score
                    [](const auto& a, const auto& b) { return a.score > b.score; });
   std::vector<TextLine> kept;
   for (const auto& line : found)
-    if (std::none_of(kept.begin(), kept.end(), [&](const auto& better) {
-          return (box_of(line) & box_of(better)).area() > 0;
-        }))
+    if (std::none_of(kept.begin(), kept.end(),
+                     [&](const auto& better) { return (line.box() & better.box()).area() > 0; }))
       kept.push_back(line);
   return kept;
-}
-
-cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_height) {
-  const double scale = letter_height / line.height;
-  const float margin = 0.45F * static_cast<float>(letter_height);
-  const auto wide = static_cast<float>(line.width() * scale);
-  const auto high = static_cast<float>(letter_height);
-  const cv::Size size(cvRound(wide + 2 * margin), cvRound(high + 2 * margin));
-  // The part of the picture that is needed, so that nothing else is worked on.
-  cv::Rect2f around = box_of(line);
-  const auto wider = static_cast<float>(line.height) + 4;
-  const cv::Rect part = cv::Rect(cv::Rect2f(around.x - wider, around.y - wider,
-                                            around.width + 2 * wider, around.height + 2 * wider)) &
-                        cv::Rect({}, picture.size());
-  if (part.empty()) return {};
-  cv::Mat grey = grey_of(picture(part));
-  const double noise = noise_of(grey);
-  if (noise > 4) {
-    cv::Mat smooth;
-    cv::GaussianBlur(grey, smooth, {}, 0.7);
-    grey = smooth;
-  }
-  std::array<cv::Point2f, 4> from = line.corners;
-  for (auto& corner : from) corner -= cv::Point2f(cv::Point(part.x, part.y));
-  const std::array<cv::Point2f, 4> to = {
-      cv::Point2f(margin, margin), cv::Point2f(margin + wide, margin),
-      cv::Point2f(margin + wide, margin + high), cv::Point2f(margin, margin + high)};
-  cv::Mat straight;
-  if (scale < 0.7) {  // a picture that is made smaller is to be smooth
-    cv::Mat smooth;
-    cv::GaussianBlur(grey, smooth, {}, 0.4 / scale);
-    grey = smooth;
-  }
-  cv::warpPerspective(grey, straight, cv::getPerspectiveTransform(from, to), size, cv::INTER_CUBIC,
-                      cv::BORDER_REPLICATE);
-  // The ground is what letters, being narrower, do not reach; it becomes white.
-  cv::Mat ground;
-  const int reach = letter_height | 1;
-  cv::morphologyEx(straight, ground, cv::MORPH_CLOSE,
-                   cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
-  cv::GaussianBlur(ground, ground, {}, letter_height / 4.0);
-  cv::Mat even;
-  cv::divide(straight, ground, even, 255);
-  std::vector<int> counts(256);
-  for (int y = 0; y < even.rows; ++y)
-    for (int x = 0; x < even.cols; ++x) ++counts[even.at<std::uint8_t>(y, x)];
-  int ink = 0, below = counts[0];
-  while (below < even.rows * even.cols / 50) below += counts[static_cast<std::size_t>(++ink)];
-  const double white = 255 - 3 * noise * 0.4;
-  const double stretch = 255 / std::max(16.0, white - ink);
-  even.convertTo(even, CV_8U, stretch, -ink * stretch);
-  return even;
 }
 
 }  // namespace hc::vision

@@ -21,7 +21,8 @@ struct TextLine {
   bool is_whole = true;  ///< inside the picture with a margin; otherwise letters may be missing
 
   [[nodiscard]] cv::Point2f middle() const;
-  [[nodiscard]] double width() const;  ///< [px]
+  [[nodiscard]] double width() const;    ///< [px]
+  [[nodiscard]] cv::Rect2f box() const;  ///< level, around the corners [px]
 };
 
 /// Finds lines of at least two dark letters on a bright ground, from 8 pixels to a quarter of the
@@ -38,6 +39,9 @@ std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score
 /// @param letter_height  of the capital letters in the result [px].
 /// @returns  (H, W) u8.
 cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_height = 40);
+
+/// The grey picture with the least noise: the mean of the channels. (H, W) u8.
+cv::Mat grey_of(const cv::Mat& picture);
 
 /// Standard deviation of a grey picture's noise, (H, W) u8.
 /// Source: J. Immerkær, Fast noise variance estimation, Computer Vision and Image Understanding

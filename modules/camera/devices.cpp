@@ -83,13 +83,11 @@ hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name) {
   cv::VideoCapture capture;
   const std::string path = is_number(name) ? "/dev/video" + name : name;
   const bool is_device = path.starts_with("/dev/");
-  const bool is_open =
-      is_device ? capture.open(path, cv::CAP_V4L2)
-                : capture.open(path, cv::CAP_FFMPEG,
-                               {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kStreamTimeout,
-                                cv::CAP_PROP_READ_TIMEOUT_MSEC, kStreamTimeout});
-  if (!is_open)
-    return hc::Error{hc::Code::NotFound, "cannot be opened as a camera"};
+  const bool is_open = is_device ? capture.open(path, cv::CAP_V4L2)
+                                 : capture.open(path, cv::CAP_FFMPEG,
+                                                {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kStreamTimeout,
+                                                 cv::CAP_PROP_READ_TIMEOUT_MSEC, kStreamTimeout});
+  if (!is_open) return hc::Error{hc::Code::NotFound, "cannot be opened as a camera"};
   return std::unique_ptr<Device>(std::make_unique<CaptureDevice>(std::move(capture), is_device));
 }
 
@@ -103,8 +101,9 @@ bool is_live(const std::string& name) {
 
 LiveCamera live_camera(const std::string& name, const std::string& pixel_format) {
   if (!name.starts_with(kAravis)) return {name, [name] { return open_capture(name); }};
-  return {name, [device = name.substr(kAravis.size()),
-                 pixel_format]() -> hc::Result<std::unique_ptr<Device>> {
+  return {name,
+          [device = name.substr(kAravis.size()),
+           pixel_format]() -> hc::Result<std::unique_ptr<Device>> {
             auto camera = hc::aravis::Camera::open(device, pixel_format);
             if (!camera) return camera.error();
             return std::unique_ptr<Device>(std::make_unique<AravisDevice>(std::move(*camera)));

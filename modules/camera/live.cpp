@@ -92,7 +92,8 @@ void LiveCameras::serve(Camera& camera, Device& device) {
     }
     if (wanted != adjusted) {
       adjusted = wanted;
-      if (auto done = device.adjust(wanted); !done) tell(camera.how.name + ": " + done.error().detail);
+      if (auto done = device.adjust(wanted); !done)
+        tell(camera.how.name + ": " + done.error().detail);
     }
     auto frame = device.next(kPatience);
     if (frame && !*frame) continue;
@@ -125,8 +126,7 @@ void LiveCameras::serve(Camera& camera, Device& device) {
 hc::Result<std::optional<LiveCameras::Taken>> LiveCameras::next(std::chrono::milliseconds timeout) {
   std::optional<Taken> taken;
   auto take = [&] {
-    while (auto pair = pairing_.take())
-      taken = Taken{std::move((*pair)[0]), std::move((*pair)[1])};
+    while (auto pair = pairing_.take()) taken = Taken{std::move((*pair)[0]), std::move((*pair)[1])};
     for (auto& camera : cameras_) {
       if (!camera->newest) continue;
       // What came before its partner did is no news any more beside a pair.

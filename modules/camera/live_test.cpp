@@ -78,7 +78,8 @@ TEST(LiveCameras, one_that_is_lost_is_told_once_and_once_when_it_is_back) {
     EXPECT_TRUE(cameras.next(milliseconds(20)));
     for (auto& line : cameras.remarks()) said.push_back(line);
   }
-  EXPECT_EQ(said, (std::vector<std::string>{"eye: lost: pulled out; trying again", "eye: is back"}));
+  EXPECT_EQ(said,
+            (std::vector<std::string>{"eye: lost: pulled out; trying again", "eye: is back"}));
   take_until(cameras, any);
 }
 

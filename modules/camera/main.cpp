@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
   auto left = module.output("left", hc::rgb_image<std::uint8_t>(), "picture of the left eye");
   auto right = module.output("right", hc::rgb_image<std::uint8_t>(), "picture of the right eye");
   auto left_name = module.parameter(
-      "source", "0", "", "aravis:NAME, device, video, pipeline, folder or picture of the left or only eye",
+      "source", "0", "",
+      "aravis:NAME, device, video, pipeline, folder or picture of the left or only eye",
       {.positional = true});
   auto right_name =
       module.parameter("right_source", "", "", "the same of the right eye", {.positional = true});
@@ -45,11 +46,12 @@ int main(int argc, char** argv) {
       "reopen", true, "", "try again when a camera is lost: aravis, device, rtsp", {.fixed = true});
   auto exposure = module.parameter("exposure", 0.0, "s", "of a camera, 0: its own choice",
                                    {.least = 0, .most = 100});
-  auto gain = module.parameter("gain", -1.0, "", "in the camera's unit, mostly dB; -1: its own choice",
-                               {.least = -1, .most = 1e4});
-  auto pixel_format = module.parameter("pixel_format", "", "",
-                                       "of aravis, as BayerRG8, RGB8, Mono8; empty: the camera's",
-                                       {.fixed = true});
+  auto gain =
+      module.parameter("gain", -1.0, "", "in the camera's unit, mostly dB; -1: its own choice",
+                       {.least = -1, .most = 1e4});
+  auto pixel_format =
+      module.parameter("pixel_format", "", "",
+                       "of aravis, as BayerRG8, RGB8, Mono8; empty: the camera's", {.fixed = true});
 
   std::unique_ptr<PictureSource> left_source, right_source;
   std::unique_ptr<LiveCameras> cameras;

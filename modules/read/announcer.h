@@ -8,9 +8,9 @@
 class Announcer {
  public:
   struct Rules {
-    double confidence = 0;   ///< least confidence of a reading that counts, 0 … 1
-    std::int64_t repeat = 1; ///< so many times in a row the same is to have been read
-    double again = 0;        ///< after so long, what is still there is said again, 0: never [s]
+    double confidence = 0;    ///< least confidence of a reading that counts, 0 … 1
+    std::int64_t repeat = 1;  ///< so many times in a row the same is to have been read
+    double again = 0;         ///< after so long, what is still there is said again, 0: never [s]
   };
 
   /// Takes a reading.
@@ -21,8 +21,8 @@ class Announcer {
   bool take(const std::string& text, double confidence, std::int64_t time, const Rules& rules);
 
  private:
-  std::string read_;        // last, and how often in a row
+  std::string read_;  // last, and how often in a row
   std::int64_t times_ = 0;
-  std::string said_;        // last, and when
+  std::string said_;  // last, and when
   std::int64_t said_at_ = 0;
 };

@@ -27,22 +27,23 @@ int main(int argc, char** argv) {
       module.output("confidence", hc::table<double>(), "of each reading, sure or not, 0 to 1");
   auto target = module.output("target", hc::position<double>(),
                               "x, y, width of the line [px], in the picture's coordinate system");
-  auto language = module.parameter("language", "eng", "", "as Tesseract calls it: eng, deu, eng+deu",
-                                   {.fixed = true});
-  auto upper_case = module.parameter("upper_case", true, "",
-                                     "nothing but capital letters, digits and - . , ! ?",
-                                     {.fixed = true});
+  auto language = module.parameter("language", "eng", "",
+                                   "as Tesseract calls it: eng, deu, eng+deu", {.fixed = true});
+  auto upper_case = module.parameter(
+      "upper_case", true, "", "nothing but capital letters, digits and - . , ! ?", {.fixed = true});
   auto least = module.parameter("confidence", 0.4, "", "least confidence of a text that is given",
                                 {.least = 0, .most = 1});
   auto repeat = module.parameter("repeat", 2, "", "times in a row that the same is to be read",
                                  {.least = 1, .most = 1000});
-  auto again = module.parameter("again", 10.0, "s", "until a text that stays is given again, 0: never",
-                                {.least = 0, .most = 1e6});
+  auto again =
+      module.parameter("again", 10.0, "s", "until a text that stays is given again, 0: never",
+                       {.least = 0, .most = 1e6});
   auto rate = module.parameter(
       "rate", 4.0, "Hz", "readings a second at most, 0: all; others are looked at for target alone",
       {.least = 0, .most = 1000});
-  auto score = module.parameter("score", 0.4, "", "least likeness of a line to one on a clean board",
-                                {.least = 0, .most = 1});
+  auto score =
+      module.parameter("score", 0.4, "", "least likeness of a line to one on a clean board",
+                       {.least = 0, .most = 1});
 
   std::optional<Recogniser> recogniser;
   Announcer announcer;

@@ -8,8 +8,8 @@
 
 namespace {
 
-// By the shapes of common sans serif letters: the width of a 0 by its height, which an O exceeds, and
-// how much of a region is ink, where one of two letters has a stroke and the other has none.
+// By the shapes of common sans serif letters: the width of a 0 by its height, which an O exceeds,
+// and how much of a region is ink, where one of two letters has a stroke and the other has none.
 constexpr double kNarrow = 0.755, kFilled = 0.45, kTouched = 0.38, kTail = 0.2;
 
 /// How much of a region is ink, 0 … 1. It is given as parts of the glyph's width and height.

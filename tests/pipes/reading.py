@@ -101,7 +101,9 @@ def main():
     rates = {}
     for noise in arguments.noise:
         seeds = range(1, arguments.seeds + 1)
-        rates[noise] = score(build, seeds, noise, lambda line: print(line, flush=True), arguments.options)
+        rates[noise] = score(
+            build, seeds, noise, lambda line: print(line, flush=True), arguments.options
+        )
     for noise, rate in rates.items():
         print("noise %g: character error rate %.2f %%" % (noise, 100 * rate))
 

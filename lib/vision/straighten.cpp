@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/letters.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
+
+cv::Mat grey_of(const cv::Mat& picture) {
+  if (picture.channels() == 1) return picture;
+  cv::Mat grey;
+  cv::transform(picture, grey, cv::Matx13f(1 / 3.0F, 1 / 3.0F, 1 / 3.0F));
+  return grey;
+}
+
+double noise_of(const cv::Mat& grey) {
+  if (grey.rows < 3 || grey.cols < 3) return 0;
+  const cv::Matx33f kernel(1, -2, 1, -2, 4, -2, 1, -2, 1);
+  cv::Mat rough;
+  cv::filter2D(grey, rough, CV_16S, kernel);
+  // Every fourth row and column is enough.
+  std::vector<int> counts(2048);
+  int all = 0;
+  for (int y = 1; y < rough.rows - 1; y += 4) {
+    const auto* row = rough.ptr<std::int16_t>(y);
+    for (int x = 1; x < rough.cols - 1; x += 4) {
+      // What is black or white altogether has been cut off, and tells nothing.
+      const int value = grey.at<std::uint8_t>(y, x);
+      if (value < 3 || value > 252) continue;
+      ++counts[static_cast<std::size_t>(std::min(2047, std::abs(static_cast<int>(row[x]))))];
+      ++all;
+    }
+  }
+  if (all == 0) return 0;
+  int below = 0;
+  std::size_t middle = 0;
+  while (below + counts[middle] <= all / 2) below += counts[middle++];
+  // Within the bin, so that a little noise is not none.
+  const double part = (all / 2.0 - below) / counts[middle];
+  const double value = std::max(0.0, static_cast<double>(middle) - 0.5 + part);
+  return value / 0.6745 / 6;  // median of |N(0, 1)|; the kernel's norm is 6
+}
+
+cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_height) {
+  const double scale = letter_height / line.height;
+  const float margin = 0.45F * static_cast<float>(letter_height);
+  const auto wide = static_cast<float>(line.width() * scale);
+  const auto high = static_cast<float>(letter_height);
+  const cv::Size size(cvRound(wide + 2 * margin), cvRound(high + 2 * margin));
+  // The part of the picture that is needed, so that nothing else is worked on.
+  cv::Rect2f around = line.box();
+  const auto wider = static_cast<float>(line.height) + 4;
+  const cv::Rect part = cv::Rect(cv::Rect2f(around.x - wider, around.y - wider,
+                                            around.width + 2 * wider, around.height + 2 * wider)) &
+                        cv::Rect({}, picture.size());
+  if (part.empty()) return {};
+  cv::Mat grey = grey_of(picture(part));
+  const double noise = noise_of(grey);
+  if (noise > 4) {
+    cv::Mat smooth;
+    cv::GaussianBlur(grey, smooth, {}, 0.7);
+    grey = smooth;
+  }
+  std::array<cv::Point2f, 4> from = line.corners;
+  for (auto& corner : from) corner -= cv::Point2f(cv::Point(part.x, part.y));
+  const std::array<cv::Point2f, 4> to = {
+      cv::Point2f(margin, margin), cv::Point2f(margin + wide, margin),
+      cv::Point2f(margin + wide, margin + high), cv::Point2f(margin, margin + high)};
+  cv::Mat straight;
+  if (scale < 0.7) {  // a picture that is made smaller is to be smooth
+    cv::Mat smooth;
+    cv::GaussianBlur(grey, smooth, {}, 0.4 / scale);
+    grey = smooth;
+  }
+  cv::warpPerspective(grey, straight, cv::getPerspectiveTransform(from, to), size, cv::INTER_CUBIC,
+                      cv::BORDER_REPLICATE);
+  // The ground is what letters, being narrower, do not reach; it becomes white.
+  cv::Mat ground;
+  const int reach = letter_height | 1;
+  cv::morphologyEx(straight, ground, cv::MORPH_CLOSE,
+                   cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
+  cv::GaussianBlur(ground, ground, {}, letter_height / 4.0);
+  cv::Mat even;
+  cv::divide(straight, ground, even, 255);
+  std::vector<int> counts(256);
+  for (int y = 0; y < even.rows; ++y)
+    for (int x = 0; x < even.cols; ++x) ++counts[even.at<std::uint8_t>(y, x)];
+  int ink = 0, below = counts[0];
+  while (below < even.rows * even.cols / 50) below += counts[static_cast<std::size_t>(++ink)];
+  const double white = 255 - 3 * noise * 0.4;
+  const double stretch = 255 / std::max(16.0, white - ink);
+  even.convertTo(even, CV_8U, stretch, -ink * stretch);
+  return even;
+}
+
+}  // namespace hc::vision
