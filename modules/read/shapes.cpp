@@ -11,6 +11,7 @@ namespace {
 // By the shapes of common sans serif letters: the width of a 0 by its height, which an O exceeds,
 // and how much of a region is ink, where one of two letters has a stroke and the other has none.
 constexpr double kNarrow = 0.755, kFilled = 0.45, kTouched = 0.38, kTail = 0.2;
+constexpr double kGap = 0.55;  // between words, at least, by a letter's height
 
 /// How much of a region is ink, 0 … 1. It is given as parts of the glyph's width and height.
 double ink_in(const cv::Mat& glyph, const cv::Rect2d& part) {
@@ -44,7 +45,7 @@ bool has_flag(const cv::Mat& glyph) {
   return left_of(glyph, 0.55, 0.85) - left_of(glyph, 0.08, 0.45) > 0.08 * glyph.rows;
 }
 
-constexpr std::string_view kAlike[] = {"0OQ", "1I", "2Z", "5S", "8BS"};
+constexpr std::string_view kAlike[] = {"0OQ", "1I", "2Z", "5S", "8BS", "4A"};
 
 bool are_alike(char a, char b) {
   return std::any_of(std::begin(kAlike), std::end(kAlike), [&](auto pair) {
@@ -116,8 +117,18 @@ std::string by_shape(const cv::Mat& line, const std::string& text) {
     else
       ++i;
   if (settled.size() != letters.size() + spaces) return text;
-  auto next = letters.begin();
-  for (char& letter : settled)
-    if (letter != ' ') letter = by_shape(line(*next++), letter);
-  return settled;
+  const auto gap_before = [&](std::size_t i) { return letters[i].x - letters[i - 1].br().x; };
+  std::string spaced;
+  std::size_t next = 0;
+  for (char letter : settled) {
+    if (letter == ' ') {
+      // What stands close together is one word, whatever it means.
+      if (next > 0 && next < letters.size() && gap_before(next) < kGap * letters[next].height)
+        continue;
+      spaced += letter;
+    } else {
+      spaced += by_shape(line(letters[next++]), letter);
+    }
+  }
+  return spaced;
 }

@@ -23,5 +23,6 @@ char by_shape(const cv::Mat& glyph, char letter);
 
 /// The same for all letters of a text. Where it has both of two that look alike for one letter, one
 /// of them is taken out. A text whose letters are not as many then as those that stand apart in the
-/// line, as where some touch, is left as it is.
+/// line, as where some touch, is left as it is. A space between letters that are close is taken
+/// out.
 std::string by_shape(const cv::Mat& line, const std::string& text);

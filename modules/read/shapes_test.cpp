@@ -30,6 +30,11 @@ TEST(Shapes, of_both_for_one_letter_one_is_left) {
   EXPECT_EQ(by_shape(line, "A5S 0OK"), "A5 0K");
 }
 
+TEST(Shapes, take_out_a_space_where_none_is) {
+  const cv::Mat line = written("8F1C B", cv::FONT_HERSHEY_DUPLEX, 5, 1);
+  EXPECT_EQ(by_shape(line, "8F 1C B"), "8F1C B");
+}
+
 TEST(Shapes, leave_other_letters_as_they_are) {
   const std::string text = "ACDEFGHJKLMNPQRTUVWXY34679";
   EXPECT_EQ(by_shape(written(text, cv::FONT_HERSHEY_DUPLEX, 5, 1), text), text);
