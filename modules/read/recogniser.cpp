@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include <tesseract/baseapi.h>
+#include <tesseract/resultiterator.h>
 
 namespace {
 
@@ -59,7 +60,17 @@ Reading Recogniser::read(const cv::Mat& line) {
   Reading reading;
   if (text == nullptr) return reading;
   reading.text = without_space_around(text.get());
-  reading.confidence = std::clamp(api.MeanTextConf() / 100.0, 0.0, 1.0);
+  // The mean of the letters': that of a word is its worst letter's, however right the others are.
+  const std::unique_ptr<tesseract::ResultIterator> letter(api.GetIterator());
+  double sum = 0;
+  int count = 0;
+  if (letter != nullptr) {
+    do {
+      sum += letter->Confidence(tesseract::RIL_SYMBOL);
+      ++count;
+    } while (letter->Next(tesseract::RIL_SYMBOL));
+  }
+  if (count > 0) reading.confidence = std::clamp(sum / count / 100, 0.0, 1.0);
   api.Clear();
   return reading;
 }
