@@ -261,7 +261,7 @@ double TextLine::width() const {
 }
 
 std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score) {
-  cv::Mat grey = grey_of(picture);
+  cv::Mat grey = mean_of_channels(picture);
   double noise = noise_of(grey);
   if (noise > 4) {
     cv::Mat smooth;

@@ -41,7 +41,7 @@ std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score
 cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_height = 40);
 
 /// The grey picture with the least noise: the mean of the channels. (H, W) u8.
-cv::Mat grey_of(const cv::Mat& picture);
+cv::Mat mean_of_channels(const cv::Mat& picture);
 
 /// Standard deviation of a grey picture's noise, (H, W) u8.
 /// Source: J. Immerkær, Fast noise variance estimation, Computer Vision and Image Understanding

@@ -112,13 +112,6 @@ double Marker::mean_side() const {
   return sum / 4;
 }
 
-cv::Mat grey_of(const cv::Mat& picture) {
-  if (picture.channels() == 1) return picture;
-  cv::Mat grey;
-  cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
-  return grey;
-}
-
 bool refine_corners(const cv::Mat& grey, std::array<cv::Point2d, 4>& corners, double reach) {
   std::array<Line, 4> sides;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -54,7 +54,4 @@ std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camer
 /// Cost: 20 µs.
 bool refine_corners(const cv::Mat& grey, std::array<cv::Point2d, 4>& corners, double reach = 2.5);
 
-/// Red, green, blue or grey to grey. A grey picture is given as it is.
-cv::Mat grey_of(const cv::Mat& picture);
-
 }  // namespace hc::vision

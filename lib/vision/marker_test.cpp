@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vision/marker.h>
+#include <vision/picture.h>
 
 #include <gtest/gtest.h>
 

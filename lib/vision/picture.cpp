@@ -38,6 +38,13 @@ cv::Mat fit(const cv::Mat& picture, int width, int height, bool smooth) {
                          kept.width, kept.height));
 }
 
+cv::Mat grey_of(const cv::Mat& picture) {
+  if (picture.channels() == 1) return picture;
+  cv::Mat grey;
+  cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
+  return grey;
+}
+
 cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
   cv::Mat numbers;
   values.convertTo(numbers, CV_32F);

@@ -16,6 +16,9 @@ cv::Mat fit(const cv::Mat& picture, int width, int height, bool smooth = true);
 /// By how much fit() scales. [1]
 double fit_scale(const cv::Size& size, int width, int height);
 
+/// Red, green, blue to grey, as bright as it looks; (H, W) u8. A grey picture is given as it is.
+cv::Mat grey_of(const cv::Mat& picture);
+
 /// A picture of one channel of any depth in colours, from blue (far or small) over green to red
 /// (near or large).
 ///

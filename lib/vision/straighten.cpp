@@ -8,7 +8,7 @@
 
 namespace hc::vision {
 
-cv::Mat grey_of(const cv::Mat& picture) {
+cv::Mat mean_of_channels(const cv::Mat& picture) {
   if (picture.channels() == 1) return picture;
   cv::Mat grey;
   cv::transform(picture, grey, cv::Matx13f(1 / 3.0F, 1 / 3.0F, 1 / 3.0F));
@@ -56,7 +56,7 @@ cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_heig
                                             around.width + 2 * wider, around.height + 2 * wider)) &
                         cv::Rect({}, picture.size());
   if (part.empty()) return {};
-  cv::Mat grey = grey_of(picture(part));
+  cv::Mat grey = mean_of_channels(picture(part));
   const double noise = noise_of(grey);
   if (noise > 4) {
     cv::Mat smooth;

@@ -18,8 +18,9 @@ int main(int argc, char** argv) {
   auto offset_roll = module.parameter("offset_roll", 0.0, "rad", "truth");
   auto offset_pitch = module.parameter("offset_pitch", 0.0, "rad", "truth");
   auto offset_yaw = module.parameter("offset_yaw", 0.0, "rad", "truth");
-  auto patience = module.parameter("patience", 60.0, "s", "after so long without a result it failed",
-                                   {.least = 1, .most = 3600});
+  auto patience =
+      module.parameter("patience", 60.0, "s", "after so long without a result it failed",
+                       {.least = 1, .most = 3600});
 
   bool is_done = false;
   module.on(result, [&](const auto& message) {
@@ -27,8 +28,8 @@ int main(int argc, char** argv) {
     if (found.size() < 6) throw hc::ModuleError("the result is not one of calibrate");
     const bool is_right = (found[0] != 0) == *swapped;
     const double zero = std::hypot(found[1] - *zero_pan, found[2] - *zero_tilt);
-    const double offset = std::hypot(found[3] - *offset_roll, found[4] - *offset_pitch,
-                                     found[5] - *offset_yaw);
+    const double offset =
+        std::hypot(found[3] - *offset_roll, found[4] - *offset_pitch, found[5] - *offset_yaw);
     score.send(hc::table({is_right ? 1.0 : 0.0, zero, offset}));
     char line[160];
     std::snprintf(line, sizeof line, "left and right %s, zero off by %.3f°, camera offset by %.3f°",

@@ -9,6 +9,7 @@
 #include <vision/calibration.h>
 #include <vision/marker.h>
 #include <vision/marker_finder.h>
+#include <vision/picture.h>
 #include <Eigen/Geometry>
 
 #include "names.h"
