@@ -111,6 +111,7 @@ hc::Result<hc::Replanned> plan_graph(const GraphOptions& options, const std::str
   for (const auto& setting : options.settings) hc::set_parameter(graph, setting, problems);
   for (const auto& line : commands)
     if (auto command = hc::parse_command(line)) hc::apply_command(graph, *command, problems);
+  if (!options.record.empty()) hc::record_outputs(graph, options.record);
   resolve_programs(graph, problems);
   std::map<std::string, hc::Result<std::string>> described;
   auto describe = [&](const std::string& program) {

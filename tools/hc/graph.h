@@ -16,6 +16,7 @@ namespace tool {
 struct GraphOptions {
   std::string file;
   std::vector<std::string> settings;  ///< MODULE.PARAMETER=VALUE
+  std::string record;                 ///< folder for what all outputs send; empty: none
 };
 void add_graph_options(CLI::App& verb, GraphOptions& options);
 

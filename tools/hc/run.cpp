@@ -70,6 +70,11 @@ void allow_descriptors() {
 
 void run(const Options& options) {
   allow_descriptors();
+  if (const auto& folder = options.graph.record; !folder.empty()) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (failed) throw Failure({hc::Code::System, folder + ": " + failed.message()});
+  }
   const std::string token = hc::graph_token();
   Texts texts;  // of the plan that runs
   auto plan = make_plan("run", options.graph, token, texts);
@@ -111,6 +116,8 @@ void add_run(CLI::App& app) {
   auto* verb = app.add_subcommand("run", "Run a graph of modules");
   add_graph_options(*verb, options->graph);
   verb->add_option("--as", options->name, "name that others find the graph by; else the file's");
+  verb->add_option("--record", options->graph.record,
+                   "folder where what each linked output sends is kept, as MODULE.PORT.mtp");
   verb->add_flag("--quiet", options->quiet, "tell only what goes wrong");
   verb->callback([options] { run(*options); });
 }

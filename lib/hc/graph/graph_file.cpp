@@ -141,6 +141,22 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
   return GraphReader(environment, problems, read_file).read(text, 0);
 }
 
+void record_outputs(Graph& graph, const std::string& folder) {
+  std::map<std::pair<std::string, std::string>, Place> outputs;
+  for (const auto& link : graph.links)
+    if (link.from.uri.empty())
+      outputs.emplace(std::pair(link.from.module, link.from.port), link.place);
+  if (graph.workspace && !graph.workspace->value.empty())
+    outputs.emplace(std::pair(graph.workspace->value, "focus"), graph.workspace->place);
+  for (const auto& [output, place] : outputs) {
+    GraphLink link;
+    link.from = {output.first, output.second, ""};
+    link.to.uri = "file:" + folder + "/" + link.from.text() + ".mtp";
+    link.place = place;
+    graph.links.push_back(std::move(link));
+  }
+}
+
 void set_parameter(Graph& graph, std::string_view assignment, Problems& problems) {
   auto dot = assignment.find('.'), equals = assignment.find('=');
   if (dot == std::string_view::npos || equals == std::string_view::npos || dot > equals)

@@ -194,6 +194,31 @@ TEST(GraphFile, ParametersAreSetFromOutside) {
                                   "--set: \"camera.rate\" is not MODULE.PARAMETER=VALUE"}));
 }
 
+TEST(GraphFile, EveryLinkedOutputIsRecordedOnce) {
+  auto graph = parse(R"([modules.a]
+[modules.b]
+[modules.w]
+[workspace]
+module = "w"
+[[links]]
+from = "a.out"
+to = "b.in"
+[[links]]
+from = "a.out"
+to = "b.other"
+[[links]]
+from = "tcp:7000"
+to = "b.in"
+)");
+  ASSERT_TRUE(graph) << graph.error().detail;
+  record_outputs(*graph, "kept");
+  ASSERT_EQ(graph->links.size(), 5U);
+  EXPECT_EQ(graph->links[3].from.text() + " " + graph->links[3].to.text(),
+            "a.out file:kept/a.out.mtp");
+  EXPECT_EQ(graph->links[4].from.text() + " " + graph->links[4].to.text(),
+            "w.focus file:kept/w.focus.mtp");
+}
+
 TEST(GraphFile, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {
   auto graph = parse(R"(speed = 3
 [modules.Eye]
