@@ -138,8 +138,8 @@ inline constexpr int kMaxIncluded = 256;
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
                   const ReadFile& read_file = {});
 
-/// Has every output that a link begins at, and the workspace's focus, kept in a file of its own too:
-/// FOLDER/MODULE.PORT.mtp.
+/// Has every output that a link begins at, and the workspace's focus, kept in a file of its own
+/// too: FOLDER/MODULE.PORT.mtp.
 void record_outputs(Graph& graph, const std::string& folder);
 
 /// Sets a parameter, from "MODULE.PARAMETER=VALUE".
