@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a robot reads aloud what is written before it.
+#include <cstdio>
+
+#include <hc/node/module.h>
+
+#include "read_score.h"
+
+namespace {
+
+constexpr std::int32_t kSound22k = 22, kText = 30;
+constexpr double kSoundRate = 22050;              // of coordinate system 22 [Hz]
+constexpr double kLook = 100;                     // [Hz]
+constexpr std::int64_t kSettle = 1'000'000'000;   // from the first text until the first test [ns]
+
+std::int64_t nanoseconds(double seconds) {
+  return static_cast<std::int64_t>(seconds * 1e9);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"read_score", "Writes texts for a robot to read aloud, and scores it."};
+  auto text = module.input("text", hc::string().in(kText), "what was read, with the picture's time");
+  auto sound = module.input("sound", hc::sound<std::int16_t>(1).in(kSound22k),
+                            "what is spoken, with the time of the text");
+  auto writing = module.output("writing", hc::string().in(kText), "what is to be read next");
+  auto result =
+      module.output("score", hc::table<double>(),
+                    "1 x 6: letters that are wrong, of 1; seen to spoken, median and most [s]; of "
+                    "it since the picture that decided, median [s]; texts; texts not spoken");
+  auto seed = module.parameter("seed", 1, "", "of the texts", {.least = 0, .most = 1e9});
+  auto count = module.parameter("count", 5, "", "texts", {.least = 1, .most = 100'000});
+  auto time_out = module.parameter("time_out", 10.0, "s", "for a text, then comes the next",
+                                   {.least = 0.1, .most = 1000});
+  auto pause = module.parameter("pause", 0.3, "s", "from the end of what is spoken to the next text",
+                                {.least = 0, .most = 1000});
+
+  std::mt19937_64 random;
+  std::vector<ReadText> texts;
+  std::optional<Attempt> attempt;
+  std::int64_t next_at = 0;      // the next text, or the first one at the latest [ns]
+  std::int64_t heard_until = 0;  // what is spoken [ns]
+  bool has_begun = false;
+
+  module.on_start([&] {
+    random.seed(static_cast<std::uint64_t>(*seed));
+    next_at = module.now() + nanoseconds(*time_out);
+  });
+  module.on(text, [&](const auto& message) {
+    // What stands there at first shows that all is running; the head turns to it.
+    if (!has_begun) next_at = module.now() + kSettle;
+    has_begun = true;
+    if (attempt) attempt->take_text(std::string(message.characters()), message.header.time);
+  });
+  module.on(sound, [&](const auto& message) {
+    const std::int64_t now = module.now();
+    heard_until = now + nanoseconds(message.header.width / kSoundRate);
+    if (attempt) attempt->take_sound(message.header.time, now);
+  });
+
+  auto finish = [&] {
+    const auto score = score_of(texts);
+    result.send(hc::table({score.error_rate, score.median, score.most, score.work,
+                           static_cast<double>(score.texts), static_cast<double>(score.unspoken)}));
+    char line[200];
+    int used = std::snprintf(line, sizeof line,
+                             "character error rate %.1f %%, seen to spoken %.2f s median, %.2f s "
+                             "at most, of %zu texts",
+                             100 * score.error_rate, score.median, score.most, score.texts);
+    if (score.unspoken > 0)
+      std::snprintf(line + used, sizeof line - static_cast<std::size_t>(used),
+                    "; %zu not spoken in time", score.unspoken);
+    module.log(line);
+  };
+  module.generate([&] {
+    module.keep_rate(kLook);
+    const std::int64_t now = module.now();
+    if (attempt) {
+      if (!attempt->is_done() && now - attempt->written_at() < nanoseconds(*time_out)) return true;
+      texts.push_back(attempt->result());
+      attempt.reset();
+      const auto& last = texts.back();
+      if (last.read != last.truth)
+        module.log("\"" + last.truth + "\" was read as \"" + last.read + "\"");
+      next_at = std::max(now, heard_until) + nanoseconds(*pause);
+    }
+    if (static_cast<std::int64_t>(texts.size()) >= *count) {
+      finish();
+      return false;
+    }
+    if (now < std::max(next_at, heard_until)) return true;
+    has_begun = true;
+    attempt.emplace(random_text(random), now);
+    auto message = hc::string(attempt->truth());
+    message.header.time = now;
+    writing.send(message);
+    return true;
+  });
+  return module.run(argc, argv);
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "read_score.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string_view>
+
+namespace {
+
+constexpr std::size_t kLeast = 5, kMost = 16;         // letters of a text
+constexpr std::size_t kLeastWord = 3, kMostWord = 8;  // of a word
+constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+
+/// The one in the middle, or the mean of the two there; 0 of none.
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const auto middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+}  // namespace
+
+std::string random_text(std::mt19937_64& random) {
+  // Not by a distribution of the standard library, as those are different ones elsewhere.
+  const auto draw = [&](std::size_t least, std::size_t most) {
+    return least + static_cast<std::size_t>(random() % (most - least + 1));
+  };
+  const std::size_t length = draw(kLeast, kMost);
+  std::size_t space = length;
+  if (length > kMostWord)
+    space = draw(std::max(kLeastWord, length - 1 - kMostWord),
+                 std::min(kMostWord, length - 1 - kLeastWord));
+  std::string text;
+  for (std::size_t i = 0; i < length; ++i)
+    text += i == space ? ' ' : kLetters[draw(0, kLetters.size() - 1)];
+  return text;
+}
+
+std::size_t edits(const std::string& truth, const std::string& read) {
+  std::vector<std::size_t> row(read.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t k = 0; k < read.size(); ++k) {
+      const std::size_t replaced = diagonal + (truth[i] != read[k] ? 1 : 0);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({replaced, diagonal + 1, row[k] + 1});
+    }
+  }
+  return row.back();
+}
+
+ReadingScore score_of(const std::vector<ReadText>& texts) {
+  ReadingScore score;
+  score.texts = texts.size();
+  std::size_t wrong = 0, letters = 0;
+  std::vector<double> times, work;
+  for (const auto& text : texts) {
+    wrong += edits(text.truth, text.read);
+    letters += text.truth.size();
+    if (text.seen_to_spoken) {
+      times.push_back(*text.seen_to_spoken);
+      work.push_back(text.work);
+    } else {
+      ++score.unspoken;
+    }
+  }
+  if (letters > 0) score.error_rate = static_cast<double>(wrong) / static_cast<double>(letters);
+  if (!times.empty()) score.most = *std::max_element(times.begin(), times.end());
+  score.median = median_of(times);
+  score.work = median_of(work);
+  return score;
+}
+
+void Attempt::take_text(const std::string& text, std::int64_t picture) {
+  if (picture >= written_at_ && !read_) read_ = text;
+}
+
+void Attempt::take_sound(std::int64_t picture, std::int64_t now) {
+  if (picture < written_at_ || spoken_at_) return;
+  spoken_at_ = now;
+  picture_ = picture;
+}
+
+ReadText Attempt::result() const {
+  ReadText text{truth_, read_.value_or(""), std::nullopt};
+  if (spoken_at_) {
+    text.seen_to_spoken = static_cast<double>(*spoken_at_ - written_at_) * 1e-9;
+    text.work = static_cast<double>(*spoken_at_ - picture_) * 1e-9;
+  }
+  return text;
+}

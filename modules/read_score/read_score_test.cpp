@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "read_score.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+TEST(RandomText, is_a_word_or_two_of_letters_and_digits) {
+  std::mt19937_64 random(7);
+  std::set<std::size_t> lengths;
+  for (int i = 0; i < 2000; ++i) {
+    const auto text = random_text(random);
+    lengths.insert(text.size());
+    const auto space = text.find(' ');
+    EXPECT_EQ(space == text.npos, text.size() <= 8) << text;
+    EXPECT_EQ(text.find(' ', space == text.npos ? space : space + 1), text.npos) << text;
+    const auto first = std::min(space, text.size());
+    EXPECT_TRUE(first >= 3 && first <= 8) << text;
+    if (space != text.npos) {
+      EXPECT_TRUE(text.size() - space - 1 >= 3 && text.size() - space - 1 <= 8) << text;
+    }
+    for (const char letter : text)
+      EXPECT_TRUE((letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9') ||
+                  letter == ' ');
+  }
+  EXPECT_EQ(lengths.size(), 12);
+  EXPECT_EQ(*lengths.begin(), 5);
+}
+
+TEST(RandomText, a_seed_gives_the_same_anew) {
+  std::mt19937_64 random(7), again(7), other(8);
+  const auto text = random_text(random);
+  EXPECT_EQ(text, random_text(again));
+  EXPECT_NE(text, random_text(other));
+}
+
+TEST(Edits, are_the_fewest) {
+  EXPECT_EQ(edits("", ""), 0);
+  EXPECT_EQ(edits("ROBOT", "ROBOT"), 0);
+  EXPECT_EQ(edits("ROBOT", ""), 5);
+  EXPECT_EQ(edits("", "ROBOT"), 5);
+  EXPECT_EQ(edits("R0BOT", "ROBOT"), 1);
+  EXPECT_EQ(edits("ROBOT", "RBOT"), 1);
+  EXPECT_EQ(edits("ROBOT", "RO BOT"), 1);
+  EXPECT_EQ(edits("KITTEN", "SITTING"), 3);
+}
+
+TEST(Attempt, is_done_when_read_and_spoken_in_any_order) {
+  for (const bool is_sound_first : {false, true}) {
+    Attempt attempt("ABC", 1000 * kMillisecond);
+    if (is_sound_first) attempt.take_sound(1100 * kMillisecond, 1300 * kMillisecond);
+    EXPECT_FALSE(attempt.is_done());
+    attempt.take_text("ABD", 1100 * kMillisecond);
+    if (!is_sound_first) {
+      EXPECT_FALSE(attempt.is_done());
+      attempt.take_sound(1100 * kMillisecond, 1300 * kMillisecond);
+    }
+    EXPECT_TRUE(attempt.is_done());
+    const auto result = attempt.result();
+    EXPECT_EQ(result.truth, "ABC");
+    EXPECT_EQ(result.read, "ABD");
+    ASSERT_TRUE(result.seen_to_spoken);
+    EXPECT_NEAR(*result.seen_to_spoken, 0.3, 1e-9);
+    EXPECT_NEAR(result.work, 0.2, 1e-9);
+  }
+}
+
+TEST(Attempt, what_was_seen_before_does_not_count) {
+  Attempt attempt("ABC", 1000 * kMillisecond);
+  attempt.take_text("OLD", 999 * kMillisecond);
+  attempt.take_sound(999 * kMillisecond, 1300 * kMillisecond);
+  EXPECT_EQ(attempt.result().read, "");
+  EXPECT_FALSE(attempt.result().seen_to_spoken);
+}
+
+TEST(Attempt, the_first_reading_counts) {
+  Attempt attempt("ABC", 0);
+  attempt.take_text("AC", 1);
+  attempt.take_text("ABC", 2);
+  attempt.take_sound(1, 10 * kMillisecond);
+  attempt.take_sound(2, 20 * kMillisecond);
+  EXPECT_EQ(attempt.result().read, "AC");
+  EXPECT_NEAR(*attempt.result().seen_to_spoken, 0.01, 1e-9);
+}
+
+TEST(ReadingScore, is_over_all_letters_and_all_that_were_spoken) {
+  const auto score =
+      score_of({{"ABCDE", "ABXDE", 0.5, 0.1}, {"FGHIJ", "", {}}, {"KLMNOPQRST", "KLMNOPQRST", 0.3, 0.2},
+                {"UVWXY", "UVWXYZ", 0.9, 0.6}});
+  EXPECT_NEAR(score.error_rate, 7.0 / 25, 1e-12);
+  EXPECT_EQ(score.median, 0.5);
+  EXPECT_EQ(score.most, 0.9);
+  EXPECT_EQ(score.work, 0.2);
+  EXPECT_EQ(score.texts, 4);
+  EXPECT_EQ(score.unspoken, 1);
+  EXPECT_NEAR(score_of({{"A", "A", 0.5, 0}, {"B", "B", 0.4, 0}}).median, 0.45, 1e-12);
+  EXPECT_EQ(score_of({}).error_rate, 0);
+}
+
+}  // namespace
