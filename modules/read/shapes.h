@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Tells apart block letters and digits that look alike: 0 O Q, 1 I, 2 Z, 5 S, 8 B. A recogniser
+// Tells apart block letters and digits that look alike: 0 O Q 9, 1 I !, 2 Z, 3 5 9 S, 4 A,
+// 6 8 B E. A recogniser
 // that has learned words takes what is likelier beside its neighbours; where letters and digits are
 // mixed, the shape alone says which it is. Pure.
 
@@ -12,7 +13,8 @@
 /// The letters of a line, from the left: a box around each, what stands one above the other in one.
 ///
 /// @param line  (H, W) u8, black on white.
-std::vector<cv::Rect> find_letters(const cv::Mat& line);
+/// @param darker  what is ink; less parts letters that touch.
+std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 
 /// What one letter is by its shape, in upright letters without serifs.
 ///
@@ -22,7 +24,7 @@ std::vector<cv::Rect> find_letters(const cv::Mat& line);
 char by_shape(const cv::Mat& glyph, char letter);
 
 /// The same for all letters of a text. Where it has both of two that look alike for one letter, one
-/// of them is taken out. A text whose letters are not as many then as those that stand apart in the
-/// line, as where some touch, is left as it is. A space between letters that are close is taken
-/// out.
+/// of them is taken out, so that the fewest others contradict their shapes. A text whose letters
+/// are not as many then as those that stand apart in the line is left as it is. A space between
+/// letters that are close is taken out.
 std::string by_shape(const cv::Mat& line, const std::string& text);

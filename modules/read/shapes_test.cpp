@@ -24,6 +24,28 @@ TEST(Shapes, tell_what_looks_alike_apart) {
       }
 }
 
+TEST(Shapes, tell_round_ones_by_their_sides) {
+  const std::string text = "35S9680BO 4A 6E";
+  for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
+    for (int stroke : {5, 6})
+      for (double blur : {0.0, 1.0, 1.5}) {
+        const cv::Mat line = written(text, font, stroke, blur);
+        for (const std::string wrong : {"5SSSEBOSO A4 EE", "SS9O830BO A4 66"})
+          EXPECT_EQ(by_shape(line, wrong), text) << font << " " << stroke << " " << blur;
+      }
+}
+
+TEST(Shapes, a_stroke_without_a_gap_is_no_exclamation_mark) {
+  const cv::Mat line = written("I1!", cv::FONT_HERSHEY_DUPLEX, 5, 1);
+  EXPECT_EQ(by_shape(line, "!!!"), "I1!");
+}
+
+TEST(Shapes, which_of_two_is_left_fits_the_others) {
+  const cv::Mat line = written("56X6N", cv::FONT_HERSHEY_DUPLEX, 5, 1);
+  EXPECT_EQ(by_shape(line, "56X6EN"), "56X6N");
+  EXPECT_EQ(by_shape(line, "S56X6N"), "56X6N");
+}
+
 TEST(Shapes, of_both_for_one_letter_one_is_left) {
   const cv::Mat line = written("A5 0K", cv::FONT_HERSHEY_DUPLEX, 5, 1);
   EXPECT_EQ(by_shape(line, "AS5 O0K"), "A5 0K");

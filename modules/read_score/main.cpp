@@ -9,9 +9,9 @@
 namespace {
 
 constexpr std::int32_t kSound22k = 22, kText = 30;
-constexpr double kSoundRate = 22050;              // of coordinate system 22 [Hz]
-constexpr double kLook = 100;                     // [Hz]
-constexpr std::int64_t kSettle = 1'000'000'000;   // from the first text until the first test [ns]
+constexpr double kSoundRate = 22050;             // of coordinate system 22 [Hz]
+constexpr double kLook = 100;                    // [Hz]
+constexpr std::int64_t kSettle = 1'000'000'000;  // from the first text until the first test [ns]
 
 std::int64_t nanoseconds(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
@@ -21,7 +21,8 @@ std::int64_t nanoseconds(double seconds) {
 
 int main(int argc, char** argv) {
   hc::Module module{"read_score", "Writes texts for a robot to read aloud, and scores it."};
-  auto text = module.input("text", hc::string().in(kText), "what was read, with the picture's time");
+  auto text =
+      module.input("text", hc::string().in(kText), "what was read, with the picture's time");
   auto sound = module.input("sound", hc::sound<std::int16_t>(1).in(kSound22k),
                             "what is spoken, with the time of the text");
   auto writing = module.output("writing", hc::string().in(kText), "what is to be read next");
@@ -33,8 +34,9 @@ int main(int argc, char** argv) {
   auto count = module.parameter("count", 5, "", "texts", {.least = 1, .most = 100'000});
   auto time_out = module.parameter("time_out", 10.0, "s", "for a text, then comes the next",
                                    {.least = 0.1, .most = 1000});
-  auto pause = module.parameter("pause", 0.3, "s", "from the end of what is spoken to the next text",
-                                {.least = 0, .most = 1000});
+  auto pause =
+      module.parameter("pause", 0.3, "s", "from the end of what is spoken to the next text",
+                       {.least = 0, .most = 1000});
 
   std::mt19937_64 random;
   std::vector<ReadText> texts;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How well a robot reads aloud: texts to be read, and what became of them. Pure: times come from the
-// caller, in nanoseconds since the Unix epoch.
+// How well a robot reads aloud: texts to be read, and what became of them. Pure: times come from
+// the caller, in nanoseconds since the Unix epoch.
 
 #include <cstdint>
 #include <optional>
@@ -23,7 +23,7 @@ struct ReadText {
 };
 
 struct ReadingScore {
-  double error_rate = 0;  ///< edits by letters of all texts; more than 1 where much was added
+  double error_rate = 0;        ///< edits by letters of all texts; more than 1 where much was added
   double median = 0, most = 0;  ///< seen to spoken, of those that were spoken [s]
   double work = 0;              ///< median of their work [s]
   std::size_t texts = 0, unspoken = 0;

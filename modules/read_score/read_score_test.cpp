@@ -88,9 +88,10 @@ TEST(Attempt, the_first_reading_counts) {
 }
 
 TEST(ReadingScore, is_over_all_letters_and_all_that_were_spoken) {
-  const auto score =
-      score_of({{"ABCDE", "ABXDE", 0.5, 0.1}, {"FGHIJ", "", {}}, {"KLMNOPQRST", "KLMNOPQRST", 0.3, 0.2},
-                {"UVWXY", "UVWXYZ", 0.9, 0.6}});
+  const auto score = score_of({{"ABCDE", "ABXDE", 0.5, 0.1},
+                               {"FGHIJ", "", {}},
+                               {"KLMNOPQRST", "KLMNOPQRST", 0.3, 0.2},
+                               {"UVWXY", "UVWXYZ", 0.9, 0.6}});
   EXPECT_NEAR(score.error_rate, 7.0 / 25, 1e-12);
   EXPECT_EQ(score.median, 0.5);
   EXPECT_EQ(score.most, 0.9);
