@@ -51,6 +51,9 @@ class Documents(Pipes):
     def test_body(self):
         self.run_document("doc/body.md")
 
+    def test_tasks(self):
+        self.run_document("doc/tasks.md")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tasks of the head in the simulated one, as the graphs score_TASK.toml score them."""
 
+import pathlib
 import re
 import unittest
 
@@ -22,7 +23,7 @@ class Read(Head):
     def test_reads_aloud_without_an_error(self):
         line = self.score("read", "read_score.count=2", "speak.rate=450", "speaker.save=said.wav")
         self.assertRegex(line, r"^character error rate 0\.0 %, seen to spoken .* of 2 texts$")
-        said = open(self.path("said.wav"), "rb").read()
+        said = pathlib.Path(self.path("said.wav")).read_bytes()
         self.assertGreater(len(said), 22050)  # half a second of 16 bits, at least
 
     def test_what_is_not_read_is_wrong_and_is_told(self):
