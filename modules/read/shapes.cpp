@@ -13,8 +13,9 @@ namespace {
 // and how much of a region is ink, where one of two letters has a stroke and the other has none.
 constexpr double kNarrow = 0.755, kFilled = 0.45, kTouched = 0.38, kTail = 0.2;
 constexpr double kStem = 0.75;  // how much narrower than elsewhere a stem may be
-constexpr double kWide = 1.35;  // by its height, what is wider are letters that touch
-constexpr double kGap = 0.55;   // between words, at least, by a letter's height
+constexpr double kWide =
+    1.35;  // by its height, of the highest: what is wider are letters that touch
+constexpr double kGap = 0.55;  // between words, at least, by a letter's height
 
 /// How much of a region is ink, 0 … 1. It is given as parts of the glyph's width and height.
 double ink_in(const cv::Mat& glyph, const cv::Rect2d& part) {
@@ -29,6 +30,9 @@ double ink_in(const cv::Mat& glyph, const cv::Rect2d& part) {
 const cv::Rect2d kTopLeft(0, 0, 0.2, 0.12), kTopRight(0.8, 0, 0.2, 0.12);
 const cv::Rect2d kBottomLeft(0, 0.84, 0.22, 0.16), kBottomRight(0.78, 0.84, 0.22, 0.16);
 const cv::Rect2d kBelowTheBar(0.7, 0.2, 0.3, 0.14);  // of a 5, where an S begins
+
+const cv::Rect2d kFork(0.42, 0.42, 0.16, 0.08);  // of a Y, where a V is open
+constexpr double kForked = 0.65;
 
 /// The leftmost column with ink within rows of a glyph, given as parts of its height.
 int left_of(const cv::Mat& glyph, double from, double to) {
@@ -49,7 +53,7 @@ bool has_flag(const cv::Mat& glyph) {
 }
 
 constexpr std::string_view kRound = "035689BOQS";  // what the sides tell from one another
-constexpr std::string_view kAlike[] = {"0OQ9", "1I!", "2Z", "35S9", "368BES", "4A"};
+constexpr std::string_view kAlike[] = {"0OQ9", "1I!", "2Z", "35S9", "368BES", "4A", "VY"};
 constexpr double kSide = 0.45;         // how much of a side is ink where there is a stroke
 constexpr int kInk[] = {128, 96, 64};  // what is darker is ink; less of it where letters touch
 
@@ -90,6 +94,18 @@ bool is_whole(const cv::Mat& glyph) {
   return least > kStem * dot;
 }
 
+/// The column of two glyphs that touch in which there is the least ink, not near their ends.
+int thinnest(const cv::Mat& glyphs) {
+  int best = glyphs.cols / 2;
+  double most = -1;
+  for (int x = glyphs.cols / 4; x < glyphs.cols * 3 / 4; ++x) {
+    const double light = cv::mean(glyphs.col(x))[0];
+    if (light > most) best = x;
+    most = std::max(most, light);
+  }
+  return std::max(1, best);
+}
+
 bool are_alike(char a, char b) {
   return std::any_of(std::begin(kAlike), std::end(kAlike), [&](auto alike) {
     return alike.find(a) != alike.npos && alike.find(b) != alike.npos;
@@ -110,7 +126,9 @@ std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker) {
   }
   std::sort(boxes.begin(), boxes.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   std::vector<cv::Rect> letters;
+  int height = 0;
   for (const auto& box : boxes) {
+    height = std::max(height, box.height);
     if (!letters.empty()) {
       auto& last = letters.back();
       const int shared = std::min(last.br().x, box.br().x) - box.x;
@@ -121,6 +139,17 @@ std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker) {
     }
     letters.push_back(box);
   }
+  // What is too wide are letters that touch: they are parted where there is the least ink.
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    while (letters[i].width > kWide * height) {
+      auto& first = letters[i];
+      const int cut = thinnest(line(first));
+      cv::Rect second = first;
+      first.width = cut;
+      second.x += cut;
+      second.width -= cut;
+      letters.insert(letters.begin() + static_cast<std::ptrdiff_t>(i) + 1, second);
+    }
   return letters;
 }
 
@@ -135,6 +164,9 @@ char by_shape(const cv::Mat& glyph, char letter) {
     case '4':
     case 'A':
       return ink_in(glyph, kBottomLeft) > kSide / 2 ? 'A' : '4';
+    case 'V':
+    case 'Y':
+      return ink_in(glyph, kFork) > kForked ? 'Y' : 'V';
     case 'E':
       return Sides(glyph).bottom_right ? '6' : 'E';
     case '!':
@@ -176,8 +208,6 @@ std::size_t contradictions(const cv::Mat& line, const std::vector<cv::Rect>& let
 /// as many as there are glyphs; gives nothing where that cannot be.
 std::optional<std::string> without_twice(const cv::Mat& line, const std::vector<cv::Rect>& letters,
                                          std::string text) {
-  const auto are_two = [](const auto& box) { return box.width > kWide * box.height; };
-  if (std::any_of(letters.begin(), letters.end(), are_two)) return std::nullopt;
   const auto spaces = static_cast<std::size_t>(std::count(text.begin(), text.end(), ' '));
   while (text.size() > letters.size() + spaces) {
     std::optional<std::string> best;

@@ -25,12 +25,12 @@ TEST(Shapes, tell_what_looks_alike_apart) {
 }
 
 TEST(Shapes, tell_round_ones_by_their_sides) {
-  const std::string text = "35S9680BO 4A 6E";
+  const std::string text = "35S9680BO 4A 6E VY";
   for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
     for (int stroke : {5, 6})
       for (double blur : {0.0, 1.0, 1.5}) {
         const cv::Mat line = written(text, font, stroke, blur);
-        for (const std::string wrong : {"5SSSEBOSO A4 EE", "SS9O830BO A4 66"})
+        for (const std::string wrong : {"5SSSEBOSO A4 EE YV", "SS9O830BO A4 66 VV"})
           EXPECT_EQ(by_shape(line, wrong), text) << font << " " << stroke << " " << blur;
       }
 }
@@ -71,6 +71,25 @@ TEST(Shapes, do_nothing_where_letters_cannot_be_counted) {
 
 TEST(Shapes, what_stands_one_above_the_other_is_one_letter) {
   EXPECT_EQ(find_letters(written("A!?", cv::FONT_HERSHEY_DUPLEX, 4, 0)).size(), 3U);
+}
+
+TEST(Shapes, letters_that_touch_are_parted) {
+  // Two pieces, of which the second is moved until it touches the first.
+  cv::Mat line = written("LAV56X", cv::FONT_HERSHEY_DUPLEX, 5, 1);
+  const auto apart = find_letters(line);
+  ASSERT_EQ(apart.size(), 6U);
+  const int gap = apart[1].x - apart[0].br().x;
+  cv::Mat touching(line.size(), CV_8U, cv::Scalar(255));
+  const int at = apart[1].x - gap / 2;
+  line.colRange(0, at).copyTo(touching.colRange(0, at));
+  cv::Mat rest = touching.colRange(at - gap - 1, line.cols - gap - 1);
+  cv::min(rest, line.colRange(at, line.cols), rest);
+  ASSERT_EQ(find_letters(touching).size(), 6U);
+  EXPECT_EQ(by_shape(touching, "LAVS6X"), "LAV56X");
+}
+
+TEST(Shapes, a_dash_is_one_letter) {
+  EXPECT_EQ(find_letters(written("A-B", cv::FONT_HERSHEY_DUPLEX, 5, 0)).size(), 3U);
 }
 
 }  // namespace
