@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Tells apart block letters and digits that look alike: 0 O Q 9, 1 I !, 2 Z, 3 5 9 S, 4 A,
-// 6 8 B E, V Y. A recogniser
-// that has learned words takes what is likelier beside its neighbours; where letters and digits are
-// mixed, the shape alone says which it is. Pure.
+// Tells apart block letters and digits that look alike: 0 O Q 9, 1 I !, 2 Z, 3 5 9 S, 4 A, 6 8 B E,
+// V Y. A recogniser that has learned words takes what is likelier beside its neighbours; where
+// letters and digits are mixed, the shape alone says which it is. Pure.
 
 #include <string>
 #include <vector>
