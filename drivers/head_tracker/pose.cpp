@@ -57,4 +57,15 @@ Result<HeadPose> read_head_packet(std::span<const std::byte> packet) {
                   Eigen::Vector3d(-z, -x, y) * kMetres};
 }
 
+std::array<std::byte, kHeadPacketBytes> write_head_packet(const HeadPose& pose) {
+  constexpr double kDegrees = 180 / std::numbers::pi, kCentimetres = 100;
+  const Eigen::Vector3d angles = pose.angles() * kDegrees, p = pose.p * kCentimetres;
+  const std::array<double, 6> numbers = {-p.y(),      p.z(),       -p.x(),
+                                         -angles.z(), -angles.y(), angles.x()};
+  std::array<std::byte, kHeadPacketBytes> packet{};
+  for (std::size_t i = 0; i < packet.size(); ++i)
+    packet[i] = std::byte((std::bit_cast<std::uint64_t>(numbers[i / 8]) >> (8 * (i % 8))) & 0xFF);
+  return packet;
+}
+
 }  // namespace hc

@@ -11,6 +11,7 @@
 // Ours is the frame of a body (spec/mtp-1.md, R44): x forward, y left, z up [m]; roll φ, pitch θ,
 // yaw ψ [rad], R = Rz(ψ) Ry(θ) Rx(φ). So yaw > 0 turns left and pitch > 0 looks down, as gaze does.
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -38,5 +39,8 @@ struct HeadPose {
 /// Errors: Malformed (another size, a number that is not finite, or that no head has: above 1 km or
 /// ten turns).
 Result<HeadPose> read_head_packet(std::span<const std::byte> packet);
+
+/// The packet that opentrack sends of a pose: what read_head_packet() reads as the same.
+std::array<std::byte, kHeadPacketBytes> write_head_packet(const HeadPose& pose);
 
 }  // namespace hc

@@ -94,4 +94,29 @@ TEST(HeadPose, turns_on_over_half_a_turn) {
   EXPECT_NEAR(pose(0, 0, 0, -170, 0, 0).relative_to(zero).angles().z(), -20 * kDegree, kClose);
 }
 
+TEST(HeadPacket, what_is_written_is_read_as_the_same) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> any(-1.5, 1.5);
+  for (int i = 0; i < 1000; ++i) {
+    using Turn = Eigen::AngleAxisd;
+    const HeadPose pose{(Turn(2 * any(random), Eigen::Vector3d::UnitZ()) *
+                         Turn(any(random), Eigen::Vector3d::UnitY()) *
+                         Turn(2 * any(random), Eigen::Vector3d::UnitX()))
+                            .toRotationMatrix(),
+                        {any(random), any(random), any(random)}};
+    const auto read = read_head_packet(hc::write_head_packet(pose));
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->R.isApprox(pose.R, 1e-9));
+    EXPECT_TRUE(read->p.isApprox(pose.p, 1e-9));
+  }
+}
+
+TEST(HeadPacket, is_written_as_opentrack_does) {
+  // One metre up is 100 cm of y, its second number: 0x4059000000000000.
+  const auto packet = hc::write_head_packet({Eigen::Matrix3d::Identity(), {0, 0, 1}});
+  EXPECT_EQ(packet[15], std::byte(0x40));
+  EXPECT_EQ(packet[14], std::byte(0x59));
+  EXPECT_EQ(packet[13], std::byte(0));
+}
+
 }  // namespace

@@ -54,13 +54,20 @@ class Follower {
   Axis pan_{}, tilt_{};
 };
 
+/// How a unit stops: with `base` at once, and faster than that only with an even acceleration.
+struct Brakes {
+  double acceleration = 1.795;  ///< over 0 [rad/s²]
+  double base = 0;              ///< [rad/s]
+};
+
 /// By how much a command has to be ahead of a place that moves at `rate`, for a unit that brakes to
 /// stand still where it is sent: its braking distance. [rad]
 ///
-/// @param rate  [rad/s]. @param acceleration  of the unit, over 0 [rad/s²].
-/// Source: v² / 2a.
-inline double braking(double rate, double acceleration) {
-  return rate * (rate < 0 ? -rate : rate) / (2 * acceleration);
+/// @param rate  [rad/s].
+/// Source: (v² - base²) / 2a.
+inline double braking(double rate, const Brakes& brakes) {
+  const double way = (rate * rate - brakes.base * brakes.base) / (2 * brakes.acceleration);
+  return way <= 0 ? 0 : rate < 0 ? -way : way;
 }
 
 }  // namespace hc::gaze

@@ -51,8 +51,10 @@ TEST(Follower, begins_anew_after_a_gap_and_leaves_the_past_alone) {
 }
 
 TEST(Follower, braking_is_what_a_unit_needs_to_stand_still) {
-  EXPECT_DOUBLE_EQ(braking(2, 4), 0.5);
-  EXPECT_DOUBLE_EQ(braking(-2, 4), -0.5);
+  EXPECT_DOUBLE_EQ(braking(2, {4, 0}), 0.5);
+  EXPECT_DOUBLE_EQ(braking(-2, {4, 0}), -0.5);
+  EXPECT_DOUBLE_EQ(braking(2, {4, 1}), 0.375);
+  EXPECT_DOUBLE_EQ(braking(-1, {4, 1}), 0);
 }
 
 }  // namespace

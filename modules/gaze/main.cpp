@@ -61,6 +61,10 @@ int main(int argc, char** argv) {
       module.parameter("acceleration", 1.795, "rad/s²",
                        "of the unit, which brakes to stand still where it is sent; 0: it does not",
                        {.least = 0, .most = 1000});
+  auto base_speed =
+      module.parameter("base_speed", 0.8976, "rad/s",
+                       "with which the unit starts and stops at once; only faster it accelerates",
+                       {.least = 0, .most = 100});
   auto dead_zone = module.parameter("dead_zone", 0.0, "rad",
                                     "nothing is done about a target so near to the middle",
                                     {.least = 0, .most = 1});
@@ -113,7 +117,7 @@ int main(int argc, char** argv) {
     command.send(std::move(draft));
   };
   auto lead = [&](double speed) {
-    return *acceleration > 0 ? hc::gaze::braking(speed, *acceleration) : 0;
+    return *acceleration > 0 ? hc::gaze::braking(speed, {*acceleration, *base_speed}) : 0;
   };
   /// Sends the head to where the target is when it gets there.
   auto follow = [&] {

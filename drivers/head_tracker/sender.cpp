@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/head_tracker/sender.h>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace hc {
+namespace {
+
+Error failed(const std::string& what) {
+  return {Code::System, what + ": " + std::generic_category().message(errno)};
+}
+
+}  // namespace
+
+Result<HeadPoseSender> HeadPoseSender::open(int port) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket < 0) return failed("socket");
+  HeadPoseSender sender(socket);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(port));
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
+    return failed("UDP port " + std::to_string(port));
+  return sender;
+}
+
+HeadPoseSender::HeadPoseSender(HeadPoseSender&& other) noexcept
+    : socket_(std::exchange(other.socket_, -1)) {}
+
+HeadPoseSender::~HeadPoseSender() {
+  if (socket_ >= 0) ::close(socket_);
+}
+
+Result<void> HeadPoseSender::send(const HeadPose& pose) {
+  const auto packet = write_head_packet(pose);
+  if (::send(socket_, packet.data(), packet.size(), 0) >= 0) return {};
+  // ECONNREFUSED tells of an earlier packet that nobody heard.
+  if (errno == ECONNREFUSED || errno == EAGAIN || errno == EINTR) return {};
+  return failed("send");
+}
+
+}  // namespace hc

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Sends poses of a head as opentrack does, to whoever hears a port of this machine.
+
+#include <drivers/head_tracker/pose.h>
+#include <hc/base/result.h>
+
+namespace hc {
+
+/// For one thread.
+class HeadPoseSender {
+ public:
+  /// @param port  UDP, of 127.0.0.1; 1 … 65535.
+  ///
+  /// Errors: System.
+  static Result<HeadPoseSender> open(int port);
+  HeadPoseSender(HeadPoseSender&& other) noexcept;
+  HeadPoseSender& operator=(HeadPoseSender&&) = delete;
+  ~HeadPoseSender();
+
+  /// Sends a packet. One that nobody hears is lost, as on any network.
+  ///
+  /// Errors: System.
+  Result<void> send(const HeadPose& pose);
+
+ private:
+  explicit HeadPoseSender(int socket) : socket_(socket) {}
+
+  int socket_ = -1;
+};
+
+}  // namespace hc

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gaze/following.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <hc/base/check.h>
+
+namespace hc::gaze {
+namespace {
+
+constexpr double kMostBehind = 0.5;  // either way [s]
+constexpr double kStep = 1e-3;       // in which it is sought [s]
+
+/// Mean of the squared angle between both, with `wish` later by `behind`.
+double mean_square(const std::vector<TimedAngles>& wish, const std::vector<TimedAngles>& follows,
+                   double behind) {
+  double sum = 0;
+  for (const auto& sample : follows) {
+    const double error = between(sample.angles, angles_at(wish, sample.time - behind));
+    sum += error * error;
+  }
+  return sum / static_cast<double>(follows.size());
+}
+
+}  // namespace
+
+Angles angles_at(const std::vector<TimedAngles>& samples, double time) {
+  HC_CHECK(!samples.empty());
+  const auto next = std::lower_bound(samples.begin(), samples.end(), time,
+                                     [](const auto& each, double t) { return each.time < t; });
+  if (next == samples.begin()) return next->angles;
+  if (next == samples.end()) return samples.back().angles;
+  const auto& before = *std::prev(next);
+  const double share = (time - before.time) / (next->time - before.time);
+  return {std::lerp(before.angles.pan, next->angles.pan, share),
+          std::lerp(before.angles.tilt, next->angles.tilt, share)};
+}
+
+FollowingScore score_following(const std::vector<TimedAngles>& wish,
+                               const std::vector<TimedAngles>& follows, double begin, double end) {
+  FollowingScore score;
+  if (wish.empty()) return score;
+  std::vector<TimedAngles> compared;
+  for (const auto& sample : follows)
+    if (sample.time >= std::max(begin, wish.front().time) &&
+        sample.time <= std::min(end, wish.back().time))
+      compared.push_back(sample);
+  if (compared.empty()) return score;
+  score.samples = compared.size();
+  score.rms = std::sqrt(mean_square(wish, compared, 0));
+  for (const auto& sample : compared)
+    score.most = std::max(score.most, between(sample.angles, angles_at(wish, sample.time)));
+
+  // The error has one hollow as long as the delay is short against the movement: coarse, then fine.
+  double best = 0, least = mean_square(wish, compared, 0);
+  for (double step : {50 * kStep, 10 * kStep, kStep}) {
+    const double middle = best, reach = step == 50 * kStep ? kMostBehind : 10 * step;
+    for (double behind = middle - reach; behind <= middle + reach; behind += step) {
+      const double error = mean_square(wish, compared, behind);
+      if (error < least) {
+        least = error;
+        best = behind;
+      }
+    }
+  }
+  score.behind = best;
+  return score;
+}
+
+}  // namespace hc::gaze

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// How well one gaze follows another, and by how much it is behind. Pure.
+
+#include <vector>
+
+#include <gaze/aim.h>
+
+namespace hc::gaze {
+
+/// A gaze at a time.
+struct TimedAngles {
+  double time = 0;  ///< [s], of any origin
+  Angles angles;
+};
+
+struct FollowingScore {
+  double rms = 0, most = 0;  ///< angle between the two at equal times [rad]
+  /// By which the one that follows fits best to the other when it is put ahead; < 0: it is ahead
+  /// itself [s].
+  double behind = 0;
+  std::size_t samples = 0;  ///< of those, all in the order of time
+};
+
+/// What a gaze is between its samples: a straight line in each angle; before and after them the
+/// nearest.
+/// @param samples  at least one, in the order of time.
+Angles angles_at(const std::vector<TimedAngles>& samples, double time);
+
+/// Compares at the times of `follows` from `begin` to `end` [s].
+///
+/// @param wish, follows  in the order of time.
+/// What of `follows` is outside `wish` is left out.
+FollowingScore score_following(const std::vector<TimedAngles>& wish,
+                               const std::vector<TimedAngles>& follows, double begin, double end);
+
+}  // namespace hc::gaze

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a head follows another head, by the truth of a simulation.
+#include <cmath>
+#include <cstdio>
+
+#include <gaze/following.h>
+#include <hc/adapter/eigen.h>
+#include <hc/adapter/pose.h>
+#include <hc/node/module.h>
+
+int main(int argc, char** argv) {
+  constexpr std::int32_t kGaze = 13;
+  hc::Module module{"follow_score", "Compares how a head looks with how another one wishes it."};
+  auto wish = module.input("wish", hc::rotation<double>(), "truth: roll, tilt, pan wished [rad]");
+  auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
+                             "truth: roll, tilt, pan of the head [rad]");
+  auto result = module.output("score", hc::table<double>(),
+                              "1 x 4: RMS error [rad], greatest error [rad], by how much it is "
+                              "behind [s], samples");
+  auto settle = module.parameter("settle", 2.0, "s", "from the first of both until it counts",
+                                 {.least = 0, .most = 1e6});
+  auto duration =
+      module.parameter("duration", 10.0, "s", "how long it counts", {.least = 0.1, .most = 1e6});
+
+  std::vector<hc::gaze::TimedAngles> wished, turned;
+  auto take = [](auto& samples, const auto& message) {
+    const double time = static_cast<double>(message.header.time) * 1e-9;
+    const auto q = hc::value_or_end(hc::rotation_of(message));
+    if (samples.empty() || time > samples.back().time)
+      samples.push_back({time, hc::gaze::angles_of(q)});
+  };
+  module.on(wish, [&](const auto& message) { take(wished, message); });
+  module.on(motion, [&](const auto& message) { take(turned, message); });
+  module.generate([&] {
+    constexpr double kLook = 20;  // [Hz]
+    module.keep_rate(kLook);
+    if (wished.empty() || turned.empty()) return true;
+    const double begin = std::max(wished.front().time, turned.front().time) + *settle;
+    const double end = begin + *duration;
+    if (wished.back().time < end || turned.back().time < end) return true;
+    const auto score = hc::gaze::score_following(wished, turned, begin, end);
+    result.send(
+        hc::table({score.rms, score.most, score.behind, static_cast<double>(score.samples)}));
+    constexpr double kDegrees = 180 / M_PI, kMilliseconds = 1000;
+    char line[120];
+    std::snprintf(line, sizeof line, "error %.2f° RMS, %.2f° at most, behind by %.0f ms",
+                  score.rms * kDegrees, score.most * kDegrees, score.behind * kMilliseconds);
+    module.log(line);
+    return false;
+  });
+  return module.run(argc, argv);
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// How soon a head obeys a stick, by the truth of a simulation.
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include <hc/adapter/eigen.h>
+#include <hc/adapter/pose.h>
+#include <hc/node/module.h>
+
+#include "pusher.h"
+
+int main(int argc, char** argv) {
+  constexpr std::int32_t kGaze = 13;
+  hc::Module module{"point_score", "Pushes a stick and measures when the head begins to move."};
+  auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
+                             "truth: roll, tilt, pan of the head [rad]");
+  auto stick = module.output("stick", hc::table<double>(), "1 x 2: left > 0, down > 0, -1 to 1");
+  auto result = module.output("score", hc::table<double>(),
+                              "1 x 4: median and greatest time from the stick to the motion [s], "
+                              "pushes that moved the head, pushes");
+  auto count = module.parameter("count", 20, "", "pushes", {.least = 1, .most = 1e6, .fixed = true});
+  auto seed = module.parameter("seed", 1, "", "of when, how far and how long it is pushed",
+                               {.least = 0, .most = 1e9, .fixed = true});
+  auto rate = module.parameter("rate", 50.0, "Hz",
+                               "how often the stick is told while it is out of its middle",
+                               {.least = 1, .most = 1000});
+  auto acceleration = module.parameter("acceleration", 1.795, "rad/s²", "of the unit",
+                                       {.least = 0.01, .most = 1000, .fixed = true});
+  auto base_speed = module.parameter("base_speed", 0.8976, "rad/s",
+                                     "with which the unit starts at once",
+                                     {.least = 0, .most = 100, .fixed = true});
+
+  std::optional<Pusher> pusher;
+  std::int64_t told = 0;  // when the stick was last [ns]
+  module.on_start([&] {
+    Pusher::Options options;
+    options.count = static_cast<int>(*count);
+    options.seed = static_cast<std::uint64_t>(*seed);
+    options.unit = {*acceleration, *base_speed};
+    pusher.emplace(options);
+  });
+  module.on(motion, [&](const auto& message) {
+    const auto q = hc::value_or_end(hc::rotation_of(message));
+    pusher->hear(static_cast<double>(message.header.time) * 1e-9, hc::gaze::angles_of(q));
+  });
+  auto tell = [&] {
+    const std::int64_t now = module.now();
+    const auto wish = pusher->look(static_cast<double>(now) * 1e-9);
+    const bool is_out = wish.left != 0 || wish.down != 0;
+    const bool is_due = is_out && static_cast<double>(now - told) * 1e-9 >= 1 / *rate;
+    if (!wish.changed && !is_due) return;
+    told = now;
+    auto message = hc::table({wish.left, wish.down});
+    message.header.time = now;
+    stick.send(message);
+  };
+  module.generate([&] {
+    constexpr double kLook = 1000;  // [Hz]
+    module.keep_rate(kLook);
+    tell();
+    if (!pusher->is_done()) return true;
+    auto delays = pusher->delays();
+    std::sort(delays.begin(), delays.end());
+    const std::size_t n = delays.size();
+    const double median = n == 0 ? -1 : (delays[(n - 1) / 2] + delays[n / 2]) / 2;
+    const double most = n == 0 ? -1 : delays.back();
+    result.send(
+        hc::table({median, most, static_cast<double>(n), static_cast<double>(pusher->pushes())}));
+    char line[120];
+    std::snprintf(line, sizeof line,
+                  "stick to first motion %.1f ms median, %.1f ms at most, of %zu of %d pushes",
+                  1000 * median, 1000 * most, n, pusher->pushes());
+    module.log(line);
+    return false;
+  });
+  return module.run(argc, argv);
+}

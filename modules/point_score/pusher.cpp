@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pusher.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+constexpr double kStill = 1e-6;  // what stands moves less [rad]
+
+double way(const hc::gaze::Angles& a, const hc::gaze::Angles& b) {
+  return std::max(std::abs(a.pan - b.pan), std::abs(a.tilt - b.tilt));
+}
+
+}  // namespace
+
+double Pusher::moving_since(double way, const hc::gaze::Brakes& unit) {
+  return (std::sqrt(unit.base * unit.base + 2 * unit.acceleration * way) - unit.base) /
+         unit.acceleration;
+}
+
+double Pusher::random(double least, double most) {
+  return least + (most - least) * static_cast<double>(random_() >> 11) * 0x1p-53;
+}
+
+Pusher::Stick Pusher::look(double time) {
+  stick_.changed = false;
+  if (pushed_) {
+    const bool is_over = moved_ ? time >= release_ : time - *pushed_ > options_.patience;
+    if (!is_over) return stick_;
+    pushed_.reset();
+    still_since_ = time;
+    rest_ = random(0.2, 0.5);
+    stick_ = {0, 0, true};
+    return stick_;
+  }
+  if (!stands_ || pushes_ >= options_.count || time - still_since_ < rest_ ||
+      heard_ < still_since_ + rest_ / 2)
+    return stick_;
+  // Back towards the middle, so that the unit never comes to its limits.
+  const double size = random(0.3, 1), share = random(-0.5, 0.5);
+  stick_.left = stands_->pan > 0 ? -size : size;
+  stick_.down = (stands_->tilt > 0 ? -1 : 1) * std::abs(share) * size;
+  stick_.changed = true;
+  pushed_ = time;
+  release_ = time + random(0.2, 0.5);
+  moved_ = false;
+  from_ = *stands_;
+  ++pushes_;
+  return stick_;
+}
+
+void Pusher::hear(double time, const hc::gaze::Angles& angles) {
+  heard_ = time;
+  if (!stands_ || way(angles, *stands_) > kStill) {
+    stands_ = angles;
+    still_since_ = std::max(still_since_, time);
+  }
+  if (!pushed_ || moved_ || time <= *pushed_) return;
+  const double moved = way(angles, from_);
+  if (moved < options_.least_motion) return;
+  moved_ = true;
+  delays_.push_back(time - moving_since(moved, options_.unit) - *pushed_);
+}
