@@ -18,8 +18,7 @@ int main(int argc, char** argv) {
                                 "truth: roll 0, pitch, yaw of the head [rad]");
   auto port = module.parameter("port", 4242, "", "UDP port of this machine that packets go to",
                                {.least = 1, .most = 65535, .fixed = true});
-  auto rate =
-      module.parameter("rate", 100.0, "Hz", "packets a second", {.least = 0, .most = 1000});
+  auto rate = module.parameter("rate", 100.0, "Hz", "packets a second", {.least = 0, .most = 1000});
   auto amplitude = module.parameter("amplitude", 0.7, "rad", "how far the head turns to each side",
                                     {.least = 0.01, .most = 1.5, .fixed = true});
   auto speed = module.parameter("speed", 1.047, "rad/s", "of the head, at most",

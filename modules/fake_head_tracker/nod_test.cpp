@@ -26,8 +26,8 @@ TEST(Nod, has_its_amplitude_and_speed_and_less_acceleration_than_the_unit) {
     yaw = std::max(yaw, std::abs(now.yaw));
     pitch = std::max(pitch, std::abs(now.pitch));
     speed = std::max(speed, std::abs(after.yaw - now.yaw) / kStep);
-    for (double change : {after.yaw - 2 * now.yaw + before.yaw,
-                          after.pitch - 2 * now.pitch + before.pitch})
+    for (double change :
+         {after.yaw - 2 * now.yaw + before.yaw, after.pitch - 2 * now.pitch + before.pitch})
       acceleration = std::max(acceleration, std::abs(change) / (kStep * kStep));
   }
   EXPECT_NEAR(yaw, 0.7, 1e-3);

@@ -20,6 +20,9 @@ constexpr double kSecond = 1e-9;  // of a nanosecond
 /// How far back the first picture of a pair may be from the second to be taken together with it.
 constexpr std::int64_t kPair = 1'000'000;  // [ns]
 
+/// How often a push is said again: the first time may come before the head is given to who pushes.
+constexpr std::chrono::milliseconds kSteer{5};
+
 /// What was seen in one eye's picture.
 struct Sighting {
   std::int64_t time = 0;
@@ -43,7 +46,8 @@ int main(int argc, char** argv) {
                                "roll 0, tilt, pan that the head is to take [rad]");
   auto bid = module.output("bid", hc::table<double>(), "salience while there is a target, else 0");
 
-  auto rate = module.parameter("rate", 50.0, "Hz", "commands a second", {.least = 1, .most = 1000});
+  auto rate =
+      module.parameter("rate", 100.0, "Hz", "commands a second", {.least = 1, .most = 1000});
   auto salience = module.parameter("salience", 0.5, "", "of the bid", {.least = 0, .most = 1});
   auto patience =
       module.parameter("patience", 0.5, "s", "how long a target counts that is not seen any more",
@@ -54,7 +58,7 @@ int main(int argc, char** argv) {
                                      "standard deviation of what speeds a target up: more follows "
                                      "it more closely, and its noise",
                                      {.least = 1e-3, .most = 1e3, .fixed = true});
-  auto predict = module.parameter("predict", 0.02, "s",
+  auto predict = module.parameter("predict", 0.01, "s",
                                   "how far ahead: what passes from a command to the motion",
                                   {.least = 0, .most = 1});
   auto acceleration =
@@ -87,9 +91,10 @@ int main(int argc, char** argv) {
   std::optional<hc::gaze::Follower> follower;
   hc::frames::Track gazes{hc::frames::Memory{}};
   std::optional<Sighting> sightings[2];
-  double range = 0;            // of the last target that both eyes saw [m]
-  std::optional<Angles> held;  // the command while a stick moves nothing
-  std::int64_t pushed = 0;     // when a stick was out of its middle [ns]
+  double range = 0;                // of the last target that both eyes saw [m]
+  std::optional<Angles> steering;  // rates that a stick asks for [rad/s]
+  std::int64_t pushed = 0;         // when a stick was out of its middle [ns]
+  bool was_wanted = false;         // as it was bid last
 
   module.on_start([&] {
     eyes.focal = *focal;
@@ -182,35 +187,49 @@ int main(int argc, char** argv) {
     follower->see(static_cast<double>(time) * kSecond, hc::gaze::angles_of(*q));
     follow();
   });
+  /// Whether it wants the head.
+  auto wants = [&] {
+    const auto now = static_cast<double>(module.now()) * kSecond;
+    const auto seen = follower->last();
+    return (seen && now - *seen <= *patience) ||
+           (pushed > 0 && now - static_cast<double>(pushed) * kSecond <= *patience);
+  };
+  auto tell_bid = [&] {
+    was_wanted = wants();
+    auto message = hc::table({was_wanted ? *salience : 0.0});
+    message.header.time = module.now();
+    bid.send(message);
+  };
+  /// Sends the head on while a stick is pushed and told of.
+  auto steer = [&] {
+    constexpr double kAhead = 0.1;  // until the next command, with time to spare [s]
+    const std::int64_t now = module.now();
+    if (!steering || static_cast<double>(now - pushed) * kSecond > kAhead) return;
+    const auto from = stands();
+    send({from.pan + steering->pan * kAhead + lead(steering->pan),
+          from.tilt + steering->tilt * kAhead + lead(steering->tilt)},
+         now);
+  };
   module.on(stick, [&](const auto& message) {
     const auto numbers = message.matrix().numbers();
     if (numbers.size() < 2 || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) return;
     const double pan = std::clamp(numbers[0], -1.0, 1.0) * *stick_rate;
     const double tilt = std::clamp(numbers[1], -1.0, 1.0) * *stick_rate;
-    const std::int64_t now = module.now();
     if (pan == 0 && tilt == 0) {
-      // Once, to where it comes to rest by itself.
-      if (pushed == 0 || held) return;
-      held = stands();
-      send(*held, now);
+      // Once, to where it stands.
+      if (steering) send(stands(), module.now());
+      steering.reset();
       return;
     }
-    held.reset();
-    pushed = now;
-    constexpr double kAhead = 0.1;  // until the next command, with time to spare [s]
-    const auto from = stands();
-    send({from.pan + pan * kAhead + lead(pan), from.tilt + tilt * kAhead + lead(tilt)}, now);
+    steering = Angles{pan, tilt};
+    pushed = module.now();
+    // Who pushes does not wait for the next bid.
+    if (!was_wanted) tell_bid();
+    steer();
   });
 
   module.every(rate, follow);
-  module.every(std::chrono::milliseconds(100), [&] {
-    const auto now = static_cast<double>(module.now()) * kSecond;
-    const auto seen = follower->last();
-    const bool wants = (seen && now - *seen <= *patience) ||
-                       (pushed > 0 && now - static_cast<double>(pushed) * kSecond <= *patience);
-    auto message = hc::table({wants ? *salience : 0.0});
-    message.header.time = module.now();
-    bid.send(message);
-  });
+  module.every(kSteer, steer);
+  module.every(std::chrono::milliseconds(100), tell_bid);
   return module.run(argc, argv);
 }

@@ -30,7 +30,7 @@ Pusher::Stick Pusher::look(double time) {
     if (!is_over) return stick_;
     pushed_.reset();
     still_since_ = time;
-    rest_ = random(0.2, 0.5);
+    rest_ = random(0.2, 0.8);  // some so long that the head is left to others meanwhile
     stick_ = {0, 0, true};
     return stick_;
   }

@@ -14,11 +14,11 @@
 class Pusher {
  public:
   struct Options {
-    int count = 20;               ///< pushes
-    std::uint64_t seed = 1;       ///< of when, how long and where to
-    hc::gaze::Brakes unit;        ///< how the unit speeds up, too
-    double patience = 2;          ///< without motion for so long, a push had no effect [s]
-    double least_motion = 2.5e-4; ///< as which a motion counts [rad]
+    int count = 20;                ///< pushes
+    std::uint64_t seed = 1;        ///< of when, how long and where to
+    hc::gaze::Brakes unit;         ///< how the unit speeds up, too
+    double patience = 2;           ///< without motion for so long, a push had no effect [s]
+    double least_motion = 2.5e-4;  ///< as which a motion counts [rad]
   };
   explicit Pusher(const Options& options) : options_(options), random_(options.seed) {}
 
@@ -49,11 +49,11 @@ class Pusher {
   std::mt19937_64 random_;
   std::optional<hc::gaze::Angles> stands_;  // since still_since_
   double still_since_ = 0, heard_ = 0;
-  double rest_ = 0.5;              // that it has to stand still before the next push [s]
-  std::optional<double> pushed_;   // when
-  double release_ = 0;             // when, at the earliest
-  bool moved_ = false;             // since then
-  hc::gaze::Angles from_;          // where it stood then
+  double rest_ = 0.5;             // that it has to stand still before the next push [s]
+  std::optional<double> pushed_;  // when
+  double release_ = 0;            // when, at the earliest
+  bool moved_ = false;            // since then
+  hc::gaze::Angles from_;         // where it stood then
   Stick stick_;
   int pushes_ = 0;
   std::vector<double> delays_;
