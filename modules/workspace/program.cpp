@@ -68,7 +68,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   };
   auto decide = [&](hc::MonotonicTime now) {
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
-    workspace.decide(now);
+    return workspace.decide(now);
   };
   auto tell = [&](hc::MonotonicTime now) {
     const std::int64_t time = module.now();
@@ -92,10 +92,8 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   module.on(person, [&](const auto& message) {
     take(message, &Workspace::bid_of_person);
     // A person does not wait for the period's end.
-    const auto before = workspace.focus();
     const auto now = clock.monotonic();
-    decide(now);
-    if (workspace.focus() != before) tell(now);
+    if (decide(now)) tell(now);
   });
   module.every(rate, [&] {
     const auto now = clock.monotonic();

@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The scored tasks in which a person drives the head, shortened. Their figures depend on how busy
+the machine is; the bounds here are those that only a broken system exceeds."""
+
+import re
+import socket
+import unittest
+
+from harness import ROOT, Pipes
+
+
+def free_udp_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Driving(Pipes):
+    def score(self, graph, pattern, *parameters):
+        """The numbers in the score's line."""
+        sets = "".join(" --set " + parameter for parameter in parameters)
+        self.shell("hc run %s/graphs/%s.toml%s" % (ROOT, graph, sets))
+        found = re.search(pattern, self.err)
+        self.assertTrue(found, self.err[-2000:])
+        return [float(number) for number in found.groups()]
+
+    def telepresence(self, sent, heard):
+        return self.score(
+            "score_telepresence",
+            r"error ([\d.]+)° RMS, ([\d.]+)° at most, behind by (-?\d+) ms",
+            "fake_head_tracker.port=%d" % sent,
+            "head_tracker.port=%d" % heard,
+            "follow_score.duration=4",
+        )
+
+    def test_the_head_follows_a_person_s_head(self):
+        port = free_udp_port()
+        rms, most, _ = self.telepresence(port, port)
+        # A head that stood still would be off by 28°, one that turned the other way by twice that.
+        self.assertLess(rms, 15)
+        self.assertGreaterEqual(most, rms)
+
+    def test_a_person_who_is_not_heard_is_not_followed(self):
+        port, other = free_udp_port(), free_udp_port()
+        if port == other:
+            self.skipTest("the same port was free twice")
+        rms, _, _ = self.telepresence(port, other)
+        self.assertGreater(rms, 15)
+
+    def test_a_stick_moves_the_head_each_time(self):
+        median, most, moved, pushes = self.score(
+            "score_point",
+            r"first motion (-?[\d.]+) ms median, (-?[\d.]+) ms at most, of (\d+) of (\d+) pushes",
+            "point_score.count=4",
+        )
+        self.assertEqual((moved, pushes), (4, 4))
+        # The head does not move before the stick, but for what the truth's period leaves open.
+        self.assertGreater(median, -2)
+        self.assertGreaterEqual(most, median)
+
+
+if __name__ == "__main__":
+    unittest.main()
