@@ -23,6 +23,16 @@ constexpr std::int64_t kPair = 1'000'000;  // [ns]
 /// How often a push is said again: the first time may come before the head is given to who pushes.
 constexpr std::chrono::milliseconds kSteer{5};
 
+/// How long a push counts that is not told again [ns].
+constexpr std::int64_t kTold = 100'000'000;
+
+/// What a stick steers.
+struct Steering {
+  Angles at;          ///< where it has come to [rad]
+  Angles rates;       ///< [rad/s]
+  std::int64_t time;  ///< of `at` [ns]
+};
+
 /// What was seen in one eye's picture.
 struct Sighting {
   std::int64_t time = 0;
@@ -91,10 +101,10 @@ int main(int argc, char** argv) {
   std::optional<hc::gaze::Follower> follower;
   hc::frames::Track gazes{hc::frames::Memory{}};
   std::optional<Sighting> sightings[2];
-  double range = 0;                // of the last target that both eyes saw [m]
-  std::optional<Angles> steering;  // rates that a stick asks for [rad/s]
-  std::int64_t pushed = 0;         // when a stick was out of its middle [ns]
-  bool was_wanted = false;         // as it was bid last
+  double range = 0;                  // of the last target that both eyes saw [m]
+  std::optional<Steering> steering;  // while a stick is out of its middle
+  std::int64_t pushed = 0;           // when a stick was out of its middle [ns]
+  bool was_wanted = false;           // as it was bid last
 
   module.on_start([&] {
     eyes.focal = *focal;
@@ -200,29 +210,45 @@ int main(int argc, char** argv) {
     message.header.time = module.now();
     bid.send(message);
   };
+  /// Moves what a stick steers on to now, never far from how the head stands.
+  auto advance = [&](std::int64_t now) {
+    constexpr double kReach = 0.1;  // [rad]
+    const auto stood = stands();
+    const double dt = static_cast<double>(now - steering->time) * kSecond;
+    steering->time = now;
+    auto moved = [&](double at, double by_rate, double from) {
+      return std::clamp(at + by_rate * dt, from - kReach, from + kReach);
+    };
+    steering->at = {moved(steering->at.pan, steering->rates.pan, stood.pan),
+                    moved(steering->at.tilt, steering->rates.tilt, stood.tilt)};
+  };
   /// Sends the head on while a stick is pushed and told of.
   auto steer = [&] {
-    constexpr double kAhead = 0.1;  // until the next command, with time to spare [s]
+    constexpr double kAhead = 0.02;  // so that it moves at once, and on if one comes late [s]
     const std::int64_t now = module.now();
-    if (!steering || static_cast<double>(now - pushed) * kSecond > kAhead) return;
-    const auto from = stands();
-    send({from.pan + steering->pan * kAhead + lead(steering->pan),
-          from.tilt + steering->tilt * kAhead + lead(steering->tilt)},
-         now);
+    if (!steering || now - pushed > kTold) return;
+    advance(now);
+    const auto& [at, rates, time] = *steering;
+    send({at.pan + rates.pan * kAhead + lead(rates.pan),
+          at.tilt + rates.tilt * kAhead + lead(rates.tilt)},
+         time);
   };
   module.on(stick, [&](const auto& message) {
     const auto numbers = message.matrix().numbers();
     if (numbers.size() < 2 || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) return;
-    const double pan = std::clamp(numbers[0], -1.0, 1.0) * *stick_rate;
-    const double tilt = std::clamp(numbers[1], -1.0, 1.0) * *stick_rate;
-    if (pan == 0 && tilt == 0) {
-      // Once, to where it stands.
-      if (steering) send(stands(), module.now());
+    const Angles rates{std::clamp(numbers[0], -1.0, 1.0) * *stick_rate,
+                       std::clamp(numbers[1], -1.0, 1.0) * *stick_rate};
+    const std::int64_t now = module.now();
+    if (steering && now - pushed > kTold) steering.reset();
+    if (steering) advance(now);
+    if (rates.pan == 0 && rates.tilt == 0) {
+      if (steering) send(steering->at, now);
       steering.reset();
       return;
     }
-    steering = Angles{pan, tilt};
-    pushed = module.now();
+    if (!steering) steering = Steering{stands(), rates, now};
+    steering->rates = rates;
+    pushed = now;
     // Who pushes does not wait for the next bid.
     if (!was_wanted) tell_bid();
     steer();
