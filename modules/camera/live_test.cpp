@@ -13,7 +13,6 @@ using std::chrono::milliseconds;
 struct Plug {
   std::atomic<bool> is_in = true;
   std::atomic<int> opened = 0, adjusted = 0;
-  std::atomic<std::int64_t> time = 1'000'000'000;
 };
 
 class FakeDevice final : public Device {
@@ -22,7 +21,10 @@ class FakeDevice final : public Device {
   hc::Result<std::optional<Frame>> next(milliseconds) override {
     if (!plug_.is_in) return hc::Error{hc::Code::Closed, "pulled out"};
     std::this_thread::sleep_for(milliseconds(1));  // its rate
-    return std::optional<Frame>(Frame{cv::Mat(2, 2, CV_8UC3), plug_.time += 1'000'000});
+    // Of one clock for all, or those of one that was away would have no partners.
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return std::optional<Frame>(
+        Frame{cv::Mat(2, 2, CV_8UC3), std::chrono::nanoseconds(now).count()});
   }
   hc::Status adjust(const Adjustment& adjustment) override {
     ++plug_.adjusted;

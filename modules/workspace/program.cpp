@@ -38,8 +38,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   auto person = module.input("person", hc::table<double>(),
                              "the same from a person, above all others while it stands");
   auto focus = module.output("focus", hc::table<std::int32_t>(),
-                             "1 x 1: number of the mode in focus, 0 none; each period, and at "
-                             "once when a person changes it");
+                             "1 x 1: number of the mode in focus, 0 none; each period");
   auto standings = module.output(
       "standings", hc::table<double>(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
@@ -66,11 +65,13 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     auto taken = (workspace.*bid)(message.header.mode, salience, now);
     if (!taken) complaints.tell(module, taken.error(), workspace.refused(), now);
   };
-  auto decide = [&](hc::MonotonicTime now) {
+  module.on(bids, [&](const auto& message) { take(message, &Workspace::bid); });
+  module.on(person, [&](const auto& message) { take(message, &Workspace::bid_of_person); });
+
+  module.every(rate, [&] {
+    auto now = clock.monotonic();
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
-    return workspace.decide(now);
-  };
-  auto tell = [&](hc::MonotonicTime now) {
+    workspace.decide(now);
     const std::int64_t time = module.now();
     auto told = hc::table({workspace.focus()});
     told.header.time = time;
@@ -87,18 +88,6 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       row[4] = rows[i].is_of_person ? 1 : 0;
     }
     standings.send(std::move(draft));
-  };
-  module.on(bids, [&](const auto& message) { take(message, &Workspace::bid); });
-  module.on(person, [&](const auto& message) {
-    take(message, &Workspace::bid_of_person);
-    // A person does not wait for the period's end.
-    const auto now = clock.monotonic();
-    if (decide(now)) tell(now);
-  });
-  module.every(rate, [&] {
-    const auto now = clock.monotonic();
-    decide(now);
-    tell(now);
   });
 
   int status = module.run(argc, argv);

@@ -335,7 +335,11 @@ class Check(Pipes):
 
     def test_right_graphs_are_counted(self):
         self.environment["HC_DATA"] = DATA
-        for graph in sorted(os.listdir(ROOT / "graphs")):
+        included = {
+            "real_head.toml",
+            "simulated_head.toml",
+        }  # wants the workspace of who includes it
+        for graph in sorted(set(os.listdir(ROOT / "graphs")) - included):
             out = self.shell("hc check %s/graphs/%s" % (ROOT, graph))
             self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: nothing is wrong\n$")
 
