@@ -54,11 +54,16 @@ int main(int argc, char** argv) {
   auto report = module.input("gaze", hc::rotation<double>().in(kGaze), "how the head stands");
   auto command = module.output("command", hc::rotation<double>().in(kGaze),
                                "roll 0, tilt, pan that the head is to take [rad]");
-  auto bid = module.output("bid", hc::table<double>(), "salience while there is a target, else 0");
+  auto bid = module.output("bid", hc::table<double>(),
+                           "salience while there is a target, else that of rest");
 
   auto rate =
       module.parameter("rate", 100.0, "Hz", "commands a second", {.least = 1, .most = 1000});
   auto salience = module.parameter("salience", 0.5, "", "of the bid", {.least = 0, .most = 1});
+  auto rest = module.parameter("rest", 0.0, "",
+                               "salience with which it looks straight ahead while there is no "
+                               "target, 0: it does nothing then",
+                               {.least = 0, .most = 1});
   auto patience =
       module.parameter("patience", 0.5, "s", "how long a target counts that is not seen any more",
                        {.least = 0.01, .most = 60});
@@ -138,7 +143,10 @@ int main(int argc, char** argv) {
   auto follow = [&] {
     const std::int64_t now = module.now();
     const auto seen = follower->last();
-    if (!seen || static_cast<double>(now) * kSecond - *seen > *patience) return;
+    if (!seen || static_cast<double>(now) * kSecond - *seen > *patience) {
+      if (*rest > 0) send({0, 0}, now);
+      return;
+    }
     const auto motion = *follower->at(static_cast<double>(now) * kSecond + *predict);
     if (hc::gaze::between(motion.angles, stands()) < *dead_zone) return;
     send({motion.angles.pan + lead(motion.pan_rate), motion.angles.tilt + lead(motion.tilt_rate)},
@@ -206,7 +214,7 @@ int main(int argc, char** argv) {
   };
   auto tell_bid = [&] {
     was_wanted = wants();
-    auto message = hc::table({was_wanted ? *salience : 0.0});
+    auto message = hc::table({was_wanted ? *salience : *rest});
     message.header.time = module.now();
     bid.send(message);
   };
