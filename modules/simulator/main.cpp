@@ -30,7 +30,7 @@ constexpr double kTick = 250;  // how often it is looked whether a picture is du
 constexpr std::chrono::milliseconds kGazeLate{100};  // a gaze that comes later is not waited for
 const Eigen::Vector3d kSpeakerPlace(2.4, -1.6, 0.7);
 
-/// Seconds, of a part of a second that is given as a rate, without adding up errors. [ns]
+/// When so many periods of a rate [Hz] have passed, without adding up errors. [ns]
 std::int64_t period_end(std::int64_t number, double rate) {
   return static_cast<std::int64_t>(static_cast<long double>(number) * 1e9L / rate);
 }
