@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <gaze/following.h>
+#include <gaze/follow_score.h>
 #include <hc/adapter/eigen.h>
 #include <hc/adapter/pose.h>
 #include <hc/node/module.h>
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     const double begin = std::max(wished.front().time, turned.front().time) + *settle;
     const double end = begin + *duration;
     if (wished.back().time < end || turned.back().time < end) return true;
-    const auto score = hc::gaze::score_following(wished, turned, begin, end);
+    const auto score = hc::gaze::score_follow(wished, turned, begin, end);
     result.send(
         hc::table({score.rms, score.most, score.behind, static_cast<double>(score.samples)}));
     constexpr double kDegrees = 180 / M_PI, kMilliseconds = 1000;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <gaze/score.h>
+#include <gaze/track_score.h>
 #include <hc/adapter/eigen.h>
 #include <hc/adapter/pose.h>
 #include <hc/node/module.h>
@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
     constexpr double kLook = 50;  // [Hz]
     module.keep_rate(kLook);
     if (samples.empty() || samples.back().time - samples.front().time < *duration) return true;
-    const auto score = hc::gaze::score_tracking(samples, *within);
+    const auto score = hc::gaze::score_track(samples, *within);
     const double longest =
         score.again.empty() ? 0 : *std::max_element(score.again.begin(), score.again.end());
     const bool is_lost =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gaze/score.h>
+#include <gaze/track_score.h>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 TEST(TrackScore, tells_when_a_ball_is_acquired_and_how_well_it_is_followed) {
   std::vector<TrackSample> samples;
   for (int i = 0; i < 100; ++i) samples.push_back({0.1 * i, i < 5 ? 0.5 : 0.02, 1});
-  const auto score = score_tracking(samples, 0.05);
+  const auto score = score_track(samples, 0.05);
   ASSERT_TRUE(score.acquired);
   EXPECT_NEAR(*score.acquired, 0.5, 1e-9);
   EXPECT_EQ(score.samples, 95U);
@@ -22,7 +22,7 @@ TEST(TrackScore, a_ball_that_hides_is_acquired_again) {
   for (int i = 0; i < 20; ++i) samples.push_back({0.1 * i, 0.01, 1});
   for (int i = 20; i < 40; ++i) samples.push_back({0.1 * i, 0.3, 0});  // hidden: not counted
   for (int i = 40; i < 60; ++i) samples.push_back({0.1 * i, i < 43 ? 0.3 : 0.01, 1});
-  const auto score = score_tracking(samples, 0.05);
+  const auto score = score_track(samples, 0.05);
   ASSERT_EQ(score.again.size(), 1U);
   EXPECT_NEAR(score.again[0], 0.3, 1e-9);
   EXPECT_NEAR(score.rms, 0.01, 1e-9);
@@ -31,7 +31,7 @@ TEST(TrackScore, a_ball_that_hides_is_acquired_again) {
 TEST(TrackScore, one_that_is_never_found_is_told_and_counts) {
   std::vector<TrackSample> samples;
   for (int i = 0; i < 30; ++i) samples.push_back({0.1 * i, 0.4, 1});
-  const auto score = score_tracking(samples, 0.05);
+  const auto score = score_track(samples, 0.05);
   EXPECT_FALSE(score.acquired);
   EXPECT_NEAR(score.rms, 0.4, 1e-9);
   EXPECT_EQ(score.samples, 19U);  // after the first second
@@ -39,7 +39,7 @@ TEST(TrackScore, one_that_is_never_found_is_told_and_counts) {
 
 TEST(TrackScore, one_that_does_not_come_into_the_middle_again_is_told) {
   std::vector<TrackSample> samples{{0, 0.01, 1}, {1, 0.01, 0}, {2, 0.3, 1}, {4, 0.3, 1}};
-  const auto score = score_tracking(samples, 0.05);
+  const auto score = score_track(samples, 0.05);
   ASSERT_EQ(score.again.size(), 1U);
   EXPECT_LT(score.again[0], 0);
 }

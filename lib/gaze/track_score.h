@@ -27,6 +27,6 @@ struct TrackScore {
 ///
 /// A ball is seen from a share of a half on, and hidden from a tenth down. After it has come back,
 /// errors count again when it is acquired again, or after 1 s.
-TrackScore score_tracking(const std::vector<TrackSample>& samples, double within);
+TrackScore score_track(const std::vector<TrackSample>& samples, double within);
 
 }  // namespace hc::gaze

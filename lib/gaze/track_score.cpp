@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gaze/score.h>
+#include <gaze/track_score.h>
 
 #include <cmath>
 
 namespace hc::gaze {
 
-TrackScore score_tracking(const std::vector<TrackSample>& samples, double within) {
+TrackScore score_track(const std::vector<TrackSample>& samples, double within) {
   constexpr double kSeen = 0.5, kHidden = 0.1, kGrace = 1.0;
   enum class Ball { Hidden, Sought, Followed } ball = Ball::Hidden;
   TrackScore score;

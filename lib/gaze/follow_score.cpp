@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gaze/following.h>
+#include <gaze/follow_score.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +37,9 @@ Angles angles_at(const std::vector<TimedAngles>& samples, double time) {
           std::lerp(before.angles.tilt, next->angles.tilt, share)};
 }
 
-FollowingScore score_following(const std::vector<TimedAngles>& wish,
+FollowScore score_follow(const std::vector<TimedAngles>& wish,
                                const std::vector<TimedAngles>& follows, double begin, double end) {
-  FollowingScore score;
+  FollowScore score;
   if (wish.empty()) return score;
   std::vector<TimedAngles> compared;
   for (const auto& sample : follows)

@@ -14,7 +14,7 @@ struct TimedAngles {
   Angles angles;
 };
 
-struct FollowingScore {
+struct FollowScore {
   double rms = 0, most = 0;  ///< angle between the two at equal times [rad]
   /// By which the one that follows fits best to the other when it is put ahead; < 0: it is ahead
   /// itself [s].
@@ -31,7 +31,7 @@ Angles angles_at(const std::vector<TimedAngles>& samples, double time);
 ///
 /// @param wish, follows  in the order of time.
 /// What of `follows` is outside `wish` is left out.
-FollowingScore score_following(const std::vector<TimedAngles>& wish,
+FollowScore score_follow(const std::vector<TimedAngles>& wish,
                                const std::vector<TimedAngles>& follows, double begin, double end);
 
 }  // namespace hc::gaze
