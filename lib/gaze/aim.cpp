@@ -23,39 +23,20 @@ double between(const Angles& a, const Angles& b) {
   return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
-Angles aim(const Vector3d& p_robot, const Vector3d& eye) {
-  Angles angles{std::atan2(p_robot.y(), p_robot.x()),
-                -std::atan2(p_robot.z(), p_robot.head<2>().norm())};
-  // The eye moves as the head turns; each step leaves eye / distance of the error before.
-  constexpr int kSteps = 8;
-  for (int i = 0; i < kSteps; ++i) {
-    const Vector3d to = rotation(angles).inverse() * p_robot - eye;
-    angles.pan += std::atan2(to.y(), to.x());
-    angles.tilt -= std::atan2(to.z(), to.head<2>().norm());
-    angles.tilt = std::clamp(angles.tilt, -1.5, 1.5);
-  }
-  return {std::remainder(angles.pan, 2 * M_PI), angles.tilt};
-}
-
-Vector3d Eyes::direction(int side, double u, double v) const {
-  // From the optical frame (x right, y down, z forward).
-  const Vector3d seen(1, -(u - cx) / focal, -(v - cy) / focal);
-  return (side > 0 ? R_left : R_right) * seen.normalized();
-}
-
-std::optional<Vector3d> Eyes::place_of(const Eigen::Vector2d& left, const Eigen::Vector2d& right,
-                                       double gap) const {
-  const Vector3d a = direction(1, left.x(), left.y()), b = direction(-1, right.x(), right.y());
-  const Vector3d base = place(-1) - place(1);
-  // Where |p_left + s a − (p_right + t b)| is least. Source: Hartley, Sturm, Triangulation, 1997.
-  const double ab = a.dot(b), denominator = 1 - ab * ab;
-  if (denominator < 1e-9) return std::nullopt;
-  const double s = (base.dot(a) - base.dot(b) * ab) / denominator;
-  const double t = (base.dot(a) * ab - base.dot(b)) / denominator;
-  if (s <= 0 || t <= 0) return std::nullopt;
-  const Vector3d one = place(1) + s * a, other = place(-1) + t * b;
-  if ((one - other).norm() > gap * std::min(s, t)) return std::nullopt;
-  return (one + other) / 2;
+Angles aim(const Vector3d& p_robot, const Sight& eye) {
+  // The place in the head: where the eye's ray is as far from the axes as the place is. A turn
+  // about the axes then takes it there.
+  const double along = eye.place.dot(eye.direction);
+  const double range =
+      std::sqrt(std::max(along * along - eye.place.squaredNorm() + p_robot.squaredNorm(), 0.0));
+  const Vector3d p_head = eye.place + (range - along) * eye.direction;
+  // Tilt brings it to the height, pan then to the side.
+  const double radius = std::hypot(p_head.x(), p_head.z());
+  const double height = radius > 0 ? std::clamp(p_robot.z() / radius, -1.0, 1.0) : 0;
+  const double tilt = std::atan2(p_head.z(), p_head.x()) - std::asin(height);
+  const double forward = p_head.x() * std::cos(tilt) + p_head.z() * std::sin(tilt);
+  const double pan = std::atan2(p_robot.y(), p_robot.x()) - std::atan2(p_head.y(), forward);
+  return {std::remainder(pan, 2 * M_PI), std::remainder(tilt, 2 * M_PI)};
 }
 
 }  // namespace hc::gaze

@@ -38,7 +38,7 @@ Angles angles_at(const std::vector<TimedAngles>& samples, double time) {
 }
 
 FollowScore score_follow(const std::vector<TimedAngles>& wish,
-                               const std::vector<TimedAngles>& follows, double begin, double end) {
+                         const std::vector<TimedAngles>& follows, double begin, double end) {
   FollowScore score;
   if (wish.empty()) return score;
   std::vector<TimedAngles> compared;

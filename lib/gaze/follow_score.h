@@ -32,6 +32,6 @@ Angles angles_at(const std::vector<TimedAngles>& samples, double time);
 /// @param wish, follows  in the order of time.
 /// What of `follows` is outside `wish` is left out.
 FollowScore score_follow(const std::vector<TimedAngles>& wish,
-                               const std::vector<TimedAngles>& follows, double begin, double end);
+                         const std::vector<TimedAngles>& follows, double begin, double end);
 
 }  // namespace hc::gaze
