@@ -122,6 +122,28 @@ void rectify(StereoCalibration& c) {
   c.Q = Q;
 }
 
+Eigen::Matrix3d StereoCalibration::R_left_right() const {
+  // By rows it is R, read by columns what R is transposed.
+  return Eigen::Map<const Eigen::Matrix3d>(R.val);
+}
+
+void turn(StereoCalibration& c, const Eigen::Matrix3d& R_left_right) {
+  constexpr double kSame = 1e-9;
+  const cv::Matx33d R(R_left_right.data());
+  if (cv::norm(R, c.R, cv::NORM_INF) < kSame) return;
+  const cv::Vec3d right = -(c.R.t() * c.T);  // its middle, in the left camera's frame
+  c.R = R;
+  c.T = -(R * right);
+  rectify(c);
+}
+
+cv::Vec2d ray_of(const StereoCalibration& c, Eye eye, cv::Point2d pixel) {
+  std::vector<cv::Point2d> at = {pixel};
+  const bool is_left = eye == Eye::Left;
+  cv::undistortPoints(at, at, is_left ? c.M1 : c.M2, is_left ? c.D1 : c.D2);
+  return {at[0].x, at[0].y};
+}
+
 std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right, const Board& board) {
   BoardView view;
   if (!find_corners(left, board, view.left) || !find_corners(right, board, view.right))

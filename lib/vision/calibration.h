@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <hc/base/result.h>
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace hc::vision {
@@ -31,11 +32,14 @@ struct StereoCalibration {
   cv::Matx34d P1, P2;                               ///< projections of the rectified cameras [px]
   cv::Matx44d Q;   ///< (u, v, disparity, 1) to homogeneous coordinates of the rectified left eye
   double rms = 0;  ///< reprojection error of what it was found from [px]
+  std::vector<double> head;  ///< how the eyes sit on a head, by who found that; empty: unknown
 
   /// The rectified cameras; both have the same numbers but for cx.
   [[nodiscard]] Pinhole rectified() const { return {P1(0, 0), P1(1, 1), P1(0, 2), P1(1, 2)}; }
   /// Distance of the cameras along the rectified x axis [m].
   [[nodiscard]] double baseline() const { return -P2(0, 3) / P2(0, 0); }
+  /// Takes directions as the right camera has them to the left one's.
+  [[nodiscard]] Eigen::Matrix3d R_left_right() const;
 };
 
 /// A pair that is rectified as it is: two equal cameras without distortion, side by side.
@@ -48,12 +52,22 @@ StereoCalibration ideal_pair(cv::Size size, double focal, double baseline);
 /// cameras (OpenCV's stereoRectify, alpha 0). `size` must be known.
 void rectify(StereoCalibration& calibration);
 
+/// Turns the right camera about its own middle, and rectifies anew if that is not how it is.
+/// @param R_left_right  as in StereoCalibration.
+void turn(StereoCalibration& calibration, const Eigen::Matrix3d& R_left_right);
+
+enum class Eye { Left, Right };
+
+/// Where a pixel is seen along, without the lens's distortion: (x / z, y / z) in the optical frame.
+cv::Vec2d ray_of(const StereoCalibration& calibration, Eye eye, cv::Point2d pixel);
+
 /// What a calibration is, as a file of cv::FileStorage (YAML): image_width, image_height, M1, D1,
-/// M2, D2, R, T, R1, R2, P1, P2, Q, rms.
+/// M2, D2, R, T, R1, R2, P1, P2, Q, rms, and head if it is known.
 std::string text_of(const StereoCalibration& calibration);
 
 /// Reads what text_of() wrote, or the files intrinsics.yml and extrinsics.yml that OpenCV's sample
-/// stereo_calib writes, one behind the other. image_width, image_height and rms may be missing.
+/// stereo_calib writes, one behind the other. image_width, image_height, rms and head may be
+/// missing.
 ///
 /// Errors: Malformed (no YAML of cv::FileStorage; a key that is missing; another shape; a number
 /// that is not finite; what is no rotation or no camera; cameras that are not side by side);

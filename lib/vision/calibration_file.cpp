@@ -129,6 +129,7 @@ std::string text_of(const StereoCalibration& calibration) {
   file << "R" << cv::Mat(c.R) << "T" << cv::Mat(c.T) << "R1" << cv::Mat(c.R1);
   file << "R2" << cv::Mat(c.R2) << "P1" << cv::Mat(c.P1) << "P2" << cv::Mat(c.P2);
   file << "Q" << cv::Mat(c.Q) << "rms" << c.rms;
+  if (!c.head.empty()) file << "head" << cv::Mat(c.head).reshape(1, 1);
   return file.releaseAndGetString();
 }
 
@@ -169,6 +170,11 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
     c.T = {T(0), T(1), T(2)};
     if (auto s = read(root, "Q", c.Q); !s) return s.error();
     if (const cv::FileNode rms = root["rms"]; rms.isReal() || rms.isInt()) c.rms = rms.real();
+    if (!root["head"].empty()) {
+      auto head = numbers_of(root, "head");
+      if (!head) return head.error();
+      c.head = *std::move(head);
+    }
     if (auto s = check(c); !s) return s.error();
     return c;
   } catch (const std::exception&) {  // cv::Exception, or one that its parser lets through

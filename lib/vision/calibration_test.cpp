@@ -11,6 +11,7 @@
 #include <regex>
 #include <string>
 
+#include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -205,9 +206,41 @@ TEST(Calibration, PhotographsAreNoWorseThanWithOpenCvsSample) {
   EXPECT_NEAR(found->calibration.baseline(), 3.34, 0.05) << "squares";
 }
 
+TEST(StereoCalibration, TheRightCameraTurnsAboutItsOwnMiddle) {
+  auto c = squinting();
+  const cv::Vec3d middle = -(c.R.t() * c.T);
+  const auto as_it_is = c;
+  turn(c, c.R_left_right());
+  EXPECT_EQ(c.R1, as_it_is.R1);
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(0.03, Eigen::Vector3d(1, 2, -1).normalized()).matrix();
+  turn(c, R);
+  EXPECT_NEAR((c.R_left_right() - R).norm(), 0, 1e-12);
+  EXPECT_NEAR(cv::norm(-(c.R.t() * c.T) - middle), 0, 1e-12);
+  // Forward of the right camera, as the left one has it.
+  const cv::Vec3d forward = c.R.t() * cv::Vec3d(0, 0, 1);
+  EXPECT_NEAR((Eigen::Vector3d(forward[0], forward[1], forward[2]) - R.col(2)).norm(), 0, 1e-12);
+  EXPECT_NE(c.R1, as_it_is.R1);
+  EXPECT_NEAR(c.baseline(), as_it_is.baseline(), 1e-9);
+}
+
+TEST(StereoCalibration, ARayIsWhatTheLensBends) {
+  const auto c = squinting();
+  for (Eye eye : {Eye::Left, Eye::Right}) {
+    const bool is_left = eye == Eye::Left;
+    std::vector<cv::Point2d> seen;
+    cv::projectPoints(std::vector<cv::Point3d>{{0.3, -0.2, 1}}, cv::Vec3d(), cv::Vec3d(),
+                      is_left ? c.M1 : c.M2, is_left ? c.D1 : c.D2, seen);
+    const cv::Vec2d ray = ray_of(c, eye, seen[0]);
+    EXPECT_NEAR(ray[0], 0.3, 1e-4);
+    EXPECT_NEAR(ray[1], -0.2, 1e-4);
+  }
+}
+
 TEST(CalibrationFile, ComesBackAsItWas) {
   auto truth = squinting();
   truth.rms = 0.25;
+  truth.head = {0, 0.01, -0.02, 0, 0, 0, 0.3};
   auto read = calibration_of(text_of(truth));
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->size, truth.size);
@@ -216,6 +249,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(read->T, truth.T);
   EXPECT_EQ(read->Q, truth.Q);
   EXPECT_EQ(read->rms, 0.25);
+  EXPECT_EQ(read->head, truth.head);
   auto path = std::filesystem::temp_directory_path() /
               ("calibration_test_" + std::to_string(getpid()) + ".yml");
   ASSERT_TRUE(write_calibration(path, truth));

@@ -8,8 +8,6 @@
 
 namespace hc::vision {
 
-enum class Eye { Left, Right };
-
 /// Rectifies the pictures of one eye; where each pixel comes from is found once.
 class Rectifier {
  public:

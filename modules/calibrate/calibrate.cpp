@@ -5,25 +5,24 @@
 #include <string>
 #include <utility>
 
+#include <vision/motion.h>
+#include <vision/rectifier.h>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
 namespace {
 
-using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using hc::gaze::HeadCalibration;
+using hc::vision::StereoCalibration;
 
 /// Turns vectors of an eye that sits as it should (x right, y down, z forward) into the head.
 Matrix3d optical() {
   Matrix3d M;
   M << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return M;
-}
-
-Vector3d turn_of(const Matrix3d& R) {
-  const AngleAxisd turn(R);
-  return turn.angle() * turn.axis();
 }
 
 hc::Error too_little(const std::string& where) {
@@ -35,6 +34,13 @@ struct Turn {
   Vector3d w, u;
 };
 
+/// How much the turns are about a second axis, beside the one that they are about most [rad²].
+double spread(const std::vector<Turn>& turns) {
+  Matrix3d sum = Matrix3d::Zero();
+  for (const auto& turn : turns) sum += turn.w * turn.w.transpose();
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(sum, Eigen::EigenvaluesOnly).eigenvalues()[1];
+}
+
 /// One eye.
 struct Eye {
   cv::Mat HeadView::*picture;
@@ -44,20 +50,25 @@ struct Eye {
   std::vector<hc::vision::Matches> matches = {};  // of the first stand with each other one
   std::vector<Turn> turns = {};
 
-  /// The turns from the first stand to each other one, as this eye sees them.
-  hc::Status see(const std::vector<HeadView>& views, const hc::vision::Intrinsics& camera) {
+  /// The turns from the first stand to others, as this eye sees them: a stand at which it sees too
+  /// little is left out, as long as turns about both axes stay.
+  hc::Status see(const std::vector<HeadView>& views, const hc::vision::Intrinsics& camera,
+                 const std::stop_token& stop) {
     turns.clear();
     const Matrix3d U0 = hc::gaze::rotation(views[0].unit).matrix();
     for (std::size_t k = 1; k < views.size(); ++k) {
+      if (stop.stop_requested()) return hc::Error{hc::Code::Stopped, "asked to stop"};
       const Matrix3d U = U0.transpose() * hc::gaze::rotation(views[k].unit).matrix();
       const Matrix3d guess = M.transpose() * U * M;
       if (matches.size() < k)
         matches.push_back(hc::vision::match(views[0].*picture, views[k].*picture, camera, guess));
       const auto pose = hc::vision::relative_pose(matches[k - 1], camera, guess,
                                                   M.transpose() * (U * place - place), true);
-      if (!pose) return too_little("of turn " + std::to_string(k));
-      turns.push_back({turn_of(U), turn_of(pose->R_a_b)});
+      if (pose)
+        turns.push_back({hc::gaze::rotation_vector(U), hc::gaze::rotation_vector(pose->R_a_b)});
     }
+    constexpr double kLeast = 0.02;  // [rad²], a turn of 8°
+    if (spread(turns) < kLeast) return too_little("as the head turns");
     return {};
   }
 };
@@ -71,34 +82,67 @@ Matrix3d align(const std::vector<Turn>& turns) {
   return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
 
-}  // namespace
+/// Views as two equal cameras without distortion would have taken them.
+/// @param is_swapped  the first pictures are the right eye's.
+hc::Result<std::vector<HeadView>> straightened(const std::vector<HeadView>& views,
+                                               const StereoCalibration& cameras, bool is_swapped,
+                                               const hc::vision::Intrinsics& ideal) {
+  const cv::Size size = views[0].first.size();
+  auto pinhole = hc::vision::ideal_pair(size, ideal.focal, 1);
+  pinhole.M1 = cameras.M1;
+  pinhole.M2 = cameras.M2;
+  pinhole.D1 = cameras.D1;
+  pinhole.D2 = cameras.D2;
+  auto left = hc::vision::Rectifier::make(pinhole, hc::vision::Eye::Left, size);
+  auto right = hc::vision::Rectifier::make(pinhole, hc::vision::Eye::Right, size);
+  if (!left) return left.error();
+  if (!right) return right.error();
+  if (is_swapped) std::swap(left, right);
+  std::vector<HeadView> straight;
+  for (const auto& view : views) {
+    straight.push_back({view.unit, {}, {}});
+    left->rectify(view.first, straight.back().first);
+    right->rectify(view.second, straight.back().second);
+  }
+  return straight;
+}
 
-hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
-                                      const hc::vision::Intrinsics& camera, const Vector3d& middle,
-                                      double baseline) {
-  HeadCalibration found;
-  const auto matches =
-      hc::vision::match(views[0].first, views[0].second, camera, Matrix3d::Identity());
-  auto eyes = hc::vision::relative_pose(matches, camera, Matrix3d::Identity(), Vector3d::UnitX());
+hc::vision::Matches matches_of_eyes(const HeadView& view, const hc::vision::Intrinsics& camera) {
+  return hc::vision::match(view.first, view.second, camera, Matrix3d::Identity());
+}
+
+/// Whether the first picture is the right eye's: the right eye is on the right of the left one.
+hc::Result<bool> tell_apart(const HeadView& view, const hc::vision::Intrinsics& camera) {
+  const auto eyes = hc::vision::relative_pose(matches_of_eyes(view, camera), camera,
+                                              Matrix3d::Identity(), Vector3d::UnitX());
   if (!eyes) return too_little("of the eyes");
-  // The right eye is on the right of the left one.
-  found.swapped = eyes->t.x() < 0;
+  return eyes->t.x() < 0;
+}
+
+/// The calibration by views of two equal cameras without distortion.
+hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_swapped,
+                                  const hc::vision::Intrinsics& camera, const Vector3d& middle,
+                                  double baseline, const std::stop_token& stop) {
+  HeadCalibration found;
+  found.swapped = is_swapped;
+  const auto matches = matches_of_eyes(views[0], camera);
   const Vector3d aside(0, baseline / 2, 0);
   Eye left{&HeadView::first, middle + aside}, right{&HeadView::second, middle - aside};
   if (found.swapped) std::swap(left.picture, right.picture);
-  Vector3d offset;
   // Where an eye moves as the head turns is known once it is known how it sits.
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     for (Eye* eye : {&left, &right})
-      if (auto seen = eye->see(views, camera); !seen) return seen.error();
+      if (auto seen = eye->see(views, camera, stop); !seen) return seen.error();
     // What both eyes see at once tells how one sits to the other.
     const Eye &first = found.swapped ? right : left, &second = found.swapped ? left : right;
     const Vector3d to_second = first.M.transpose() * (second.place - first.place);
-    eyes = hc::vision::relative_pose(matches, camera, eyes->R_a_b, to_second, true);
+    const auto eyes =
+        hc::vision::relative_pose(matches, camera, first.M.transpose() * second.M, to_second, true);
     if (!eyes) return too_little("of the eyes");
     const Matrix3d R_left_right = found.swapped ? Matrix3d(eyes->R_a_b.transpose()) : eyes->R_a_b;
-    offset = turn_of(R_left_right);
+    found.rms = eyes->rms;
+    found.offset = hc::gaze::rotation_vector(R_left_right);
     // The right eye's turns, as the left one would see them.
     auto turns = left.turns;
     for (const auto& turn : right.turns) turns.push_back({turn.w, R_left_right * turn.u});
@@ -107,11 +151,35 @@ hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
     // The eyes sit on one bar, which looks where the left one does.
     for (Eye* eye : {&left, &right}) eye->place = left.M * optical().transpose() * eye->built;
   }
-  found.rms = eyes->rms;
-  found.offset_pitch = offset.x();
-  found.offset_yaw = offset.y();
-  found.offset_roll = offset.z();
   const Vector3d forward = left.M.col(2);
   found.zero = {std::atan2(forward.y(), forward.x()), -std::asin(forward.z())};
+  return found;
+}
+
+}  // namespace
+
+hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
+                                      const StereoCalibration& cameras, const Vector3d& middle,
+                                      std::stop_token stop) {
+  const cv::Size size = views[0].first.size();
+  if (cameras.size.area() > 0 && cameras.size != size)
+    return hc::Error{hc::Code::Unsupported, "the cameras' calibration is for pictures of " +
+                                                std::to_string(cameras.size.width) + " x " +
+                                                std::to_string(cameras.size.height)};
+  const hc::vision::Intrinsics ideal{cameras.M1(0, 0), (size.width - 1) / 2.0,
+                                     (size.height - 1) / 2.0};
+  // Which camera took which pictures is not known before the eyes are told apart.
+  const auto first = straightened({views[0]}, cameras, false, ideal);
+  if (!first) return first.error();
+  const auto is_swapped = tell_apart(first->front(), ideal);
+  if (!is_swapped) return is_swapped.error();
+  const auto straight = straightened(views, cameras, *is_swapped, ideal);
+  if (!straight) return straight.error();
+  auto found = solve(*straight, *is_swapped, ideal, middle, cameras.baseline(), stop);
+  constexpr double kAgrees = 0.005;  // [rad]
+  const Matrix3d measured = cameras.R_left_right();
+  if (found && cameras.rms > 0 &&
+      hc::gaze::rotation_vector(measured.transpose() * found->R_left_right()).norm() < kAgrees)
+    found->offset = hc::gaze::rotation_vector(measured);
   return found;
 }

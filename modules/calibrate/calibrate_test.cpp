@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include <vision/motion.h>
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
@@ -56,15 +57,18 @@ class Discs {
   std::vector<Disc> discs_;
 };
 
-TEST(Calibrate, finds_how_the_eyes_sit_and_which_is_the_left) {
-  const Discs discs;
-  Eigen::Matrix3d optical;
-  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  const Vector3d middle(0.06, 0, 0.05);
-  const Eigen::Matrix3d zero = hc::gaze::rotation({2 * kDegree, -1.5 * kDegree}).matrix();
-  const Eigen::Matrix3d offset =
-      AngleAxisd(0.8 * kDegree, Vector3d(1, 0.5, -0.7).normalized()).matrix();
-  for (bool swapped : {false, true}) {
+/// A head that is not as it was built, and what it sees.
+struct Crooked {
+  Vector3d middle{0.06, 0, 0.05};
+  hc::gaze::Angles zero{2 * kDegree, -1.5 * kDegree};
+  Vector3d offset = 0.8 * kDegree * Vector3d(1, 0.5, -0.7).normalized();
+  Eigen::Matrix3d R_left_right = AngleAxisd(offset.norm(), offset.normalized()).matrix();
+  hc::vision::StereoCalibration pair = hc::vision::ideal_pair({800, 600}, 600, 0.1);
+
+  [[nodiscard]] std::vector<HeadView> views(bool swapped) const {
+    const Discs discs;
+    Eigen::Matrix3d optical;
+    optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     std::vector<HeadView> views;
     for (const hc::gaze::Angles& unit : {hc::gaze::Angles{0, 0},
                                          {0.25, 0},
@@ -74,31 +78,88 @@ TEST(Calibrate, finds_how_the_eyes_sit_and_which_is_the_left) {
                                          {0.12, 0.12},
                                          {-0.12, -0.12}}) {
       auto eye = [&](double left, const Eigen::Matrix3d& turned) {
-        return discs.seen_from(
-            hc::gaze::rotation(unit) *
-            (Eigen::Isometry3d(zero) * Eigen::Translation3d(middle + Vector3d(0, left, 0)) *
-             Eigen::Isometry3d(optical * turned)));
+        return discs.seen_from(hc::gaze::rotation(unit) *
+                               (Eigen::Isometry3d(hc::gaze::rotation(zero)) *
+                                Eigen::Translation3d(middle + Vector3d(0, left, 0)) *
+                                Eigen::Isometry3d(optical * turned)));
       };
-      const cv::Mat one = eye(0.05, Eigen::Matrix3d::Identity()), other = eye(-0.05, offset);
+      const cv::Mat one = eye(0.05, Eigen::Matrix3d::Identity()), other = eye(-0.05, R_left_right);
       views.push_back({unit, swapped ? other : one, swapped ? one : other});
     }
-    const auto found = calibrate(views, {}, middle, 0.1);
-    ASSERT_TRUE(found) << found.error().text();
-    EXPECT_EQ(found->swapped, swapped);
-    EXPECT_NEAR(found->zero.pan / kDegree, 2, 0.1);
-    EXPECT_NEAR(found->zero.tilt / kDegree, -1.5, 0.1);
-    const Vector3d turn = 0.8 * Vector3d(1, 0.5, -0.7).normalized();
-    EXPECT_NEAR(found->offset_pitch / kDegree, turn.x(), 0.1);
-    EXPECT_NEAR(found->offset_yaw / kDegree, turn.y(), 0.1);
-    EXPECT_NEAR(found->offset_roll / kDegree, turn.z(), 0.1);
+    return views;
   }
+
+  void expect_found(const hc::Result<hc::gaze::HeadCalibration>& found) const {
+    ASSERT_TRUE(found) << found.error().text();
+    EXPECT_NEAR((found->zero.pan - zero.pan) / kDegree, 0, 0.1);
+    EXPECT_NEAR((found->zero.tilt - zero.tilt) / kDegree, 0, 0.1);
+    EXPECT_NEAR((found->offset - offset).norm() / kDegree, 0, 0.15);
+  }
+};
+
+TEST(Calibrate, finds_how_the_eyes_sit_and_which_is_the_left) {
+  const Crooked head;
+  for (bool swapped : {false, true}) {
+    const auto found = calibrate(head.views(swapped), head.pair, head.middle);
+    head.expect_found(found);
+    EXPECT_EQ(found->swapped, swapped);
+  }
+}
+
+TEST(Calibrate, a_stand_that_shows_little_is_left_out) {
+  const Crooked head;
+  auto views = head.views(false);
+  views[4].second.setTo(0);
+  head.expect_found(calibrate(views, head.pair, head.middle));
+  // But not all that tilt.
+  views.resize(4);
+  views[3].second.setTo(0);
+  const auto found = calibrate(views, head.pair, head.middle);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().detail, "too little is seen in both pictures as the head turns");
+}
+
+TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
+  const Crooked head;
+  const auto views = head.views(false);
+  auto measured = head.pair;
+  measured.rms = 0.2;
+  auto turned = [&](double yaw) {
+    return Eigen::Matrix3d(head.R_left_right *
+                           AngleAxisd(yaw, Vector3d::UnitY()).toRotationMatrix());
+  };
+  hc::vision::turn(measured, turned(0.15 * kDegree));
+  const auto found = calibrate(views, measured, head.middle);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR((found->R_left_right() - turned(0.15 * kDegree)).norm(), 0, 1e-9);
+  // One that was moved since is.
+  hc::vision::turn(measured, turned(2 * kDegree));
+  head.expect_found(calibrate(views, measured, head.middle));
+}
+
+TEST(Calibrate, ends_when_it_is_asked_to) {
+  cv::Mat picture(600, 800, CV_8U);
+  cv::RNG(1).fill(picture, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(picture, picture, {}, 2);
+  std::stop_source stop;
+  stop.request_stop();
+  const auto found =
+      calibrate({{{0, 0}, picture, picture}, {{0.2, 0}, picture, picture}},
+                hc::vision::ideal_pair({800, 600}, 600, 0.1), {0, 0, 0}, stop.get_token());
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, hc::Code::Stopped);
 }
 
 TEST(Calibrate, says_when_too_little_is_seen) {
   const cv::Mat dark(600, 800, CV_8U, cv::Scalar(0));
-  const auto found = calibrate({{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}}, {}, {0, 0, 0}, 0.1);
+  const auto pair = hc::vision::ideal_pair({800, 600}, 600, 0.1);
+  const std::vector<HeadView> views = {{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}};
+  auto found = calibrate(views, pair, {0, 0, 0});
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().detail, "too little is seen in both pictures of the eyes");
+  found = calibrate(views, hc::vision::ideal_pair({640, 480}, 600, 0.1), {0, 0, 0});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().detail, "the cameras' calibration is for pictures of 640 x 480");
 }
 
 }  // namespace

@@ -4,7 +4,11 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <future>
 #include <optional>
+#include <stop_token>
+#include <utility>
 
 #include <hc/adapter/opencv.h>
 #include <hc/adapter/pose.h>
@@ -32,14 +36,18 @@ int main(int argc, char** argv) {
   auto result = module.output("result", hc::table<double>(),
                               "1 x 7: eyes swapped 0/1, pan and tilt of the left eye with the unit "
                               "at 0, roll, pitch, yaw of the right eye to the left one [rad], "
-                              "distance from epipolar lines, RMS [px]");
+                              "distance from epipolar lines, RMS [px]; once a second");
+  auto file = module.parameter(
+      "calibration_file", "", "",
+      "of stereo_calibration's: the result is added to it, and taken from it where it is there",
+      {.positional = true, .fixed = true});
   auto turn = module.parameter("turn", 0.28, "rad", "how far the head turns to each side",
                                {.least = 0.05, .most = 0.6});
   auto salience = module.parameter("salience", 0.9, "", "of the bid", {.least = 0, .most = 1});
-  auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes", {.least = 1});
-  auto cx = module.parameter("cx", 399.5, "px", "middle of the pictures");
-  auto cy = module.parameter("cy", 299.5, "px", "middle of the pictures");
-  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes", {.least = 0.001});
+  auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes, without a file",
+                                {.least = 1, .fixed = true});
+  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes, without a file",
+                                   {.least = 0.001, .fixed = true});
   auto forward = module.parameter("forward", 0.06, "m", "of the eyes from the unit's axes");
   auto up = module.parameter("up", 0.05, "m", "of the eyes from the unit's axes");
 
@@ -47,36 +55,60 @@ int main(int argc, char** argv) {
   std::vector<Angles> stands;
   std::int64_t rests_from = 0;  // 0: it moves [ns]
   Angles last;
+  hc::vision::StereoCalibration cameras;                    // once the pictures' size is known
+  std::future<hc::Result<hc::gaze::HeadCalibration>> work;  // while it computes
+  std::stop_source stop;
+  std::optional<hc::gaze::HeadCalibration> found;
   bool is_done = false;
+
+  auto tell = [&] {
+    const auto numbers = found->numbers();
+    auto draft = result.loan(numbers.size(), 1);
+    std::copy(numbers.begin(), numbers.end(), draft.matrix().numbers().begin());
+    result.send(std::move(draft));
+  };
+  auto finish = [&](const hc::gaze::HeadCalibration& calibration, const char* how) {
+    is_done = true;
+    found = calibration;
+    tell();
+    constexpr double kDegrees = 180 / M_PI;
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "%seyes %s; they look to pan %.2f°, tilt %.2f° with the unit at 0; the right one "
+                  "is off by roll %.2f°, pitch %.2f°, yaw %.2f°",
+                  how, found->swapped ? "swapped" : "as plugged in", found->zero.pan * kDegrees,
+                  found->zero.tilt * kDegrees, found->offset.z() * kDegrees,
+                  found->offset.x() * kDegrees, found->offset.y() * kDegrees);
+    module.log(line);
+  };
+  /// Takes in what was computed.
+  auto take = [&] {
+    const auto calibration = work.get();
+    if (!calibration) {
+      is_done = true;
+      return module.log("not calibrated: " + calibration.error().detail);
+    }
+    finish(*calibration, "");
+    if (file->empty()) return;
+    hc::vision::turn(cameras, calibration->R_left_right());
+    const auto numbers = calibration->numbers();
+    cameras.head.assign(numbers.begin(), numbers.end());
+    if (auto written = hc::vision::write_calibration(*file, cameras); !written)
+      module.log(written.error().detail);
+  };
 
   module.on_start([&] {
     const double t = *turn;
     stands = {{0, 0},         {t, 0},           {-t, 0},         {0, t},         {0, -t},
               {t / 2, t / 2}, {-t / 2, -t / 2}, {t / 2, -t / 2}, {-t / 2, t / 2}};
+    if (file->empty() || !std::filesystem::exists(*file)) return;
+    cameras = hc::value_or_end(hc::vision::read_calibration(*file));
+    if (!cameras.head.empty())
+      finish(hc::value_or_end(hc::gaze::HeadCalibration::of(cameras.head)),
+             ("by " + *file + ": ").c_str());
   });
-  auto finish = [&] {
-    is_done = true;
-    auto found = calibrate(views, {*focal, *cx, *cy}, {*forward, 0, *up}, *baseline);
-    views.clear();
-    if (!found) return module.log("not calibrated: " + found.error().detail);
-    auto message =
-        hc::table({found->swapped ? 1.0 : 0.0, found->zero.pan, found->zero.tilt,
-                   found->offset_roll, found->offset_pitch, found->offset_yaw, found->rms});
-    result.send(message);
-    constexpr double kDegrees = 180 / M_PI;
-    char line[200];
-    std::snprintf(
-        line, sizeof line,
-        "eyes %s; they look to pan %.2f°, tilt %.2f° with the unit at 0; the right one is "
-        "off by roll %.2f°, pitch %.2f°, yaw %.2f°",
-        found->swapped ? "swapped" : "as plugged in", found->zero.pan * kDegrees,
-        found->zero.tilt * kDegrees, found->offset_roll * kDegrees, found->offset_pitch * kDegrees,
-        found->offset_yaw * kDegrees);
-    module.log(line);
-  };
-
   module.on(report, [&](const auto& message) {
-    if (is_done) return;
+    if (is_done || work.valid()) return;
     last = hc::gaze::angles_of(hc::value_or_end(hc::rotation_of(message)));
     const auto& wanted = stands[views.size()];
     const bool is_there =
@@ -87,22 +119,33 @@ int main(int argc, char** argv) {
       rests_from = message.header.time;
   });
   module.on(hc::together(left, right), [&](const auto& one, const auto& other) {
-    if (is_done || rests_from == 0 || one.header.time < rests_from + kRests) return;
+    const bool looks = !is_done && !work.valid() && rests_from > 0;
+    if (!looks || one.header.time < rests_from + kRests) return;
     HeadView view;
     view.unit = last;
     cv::cvtColor(hc::value_or_end(hc::as_mat(one)), view.first, cv::COLOR_RGB2GRAY);
     cv::cvtColor(hc::value_or_end(hc::as_mat(other)), view.second, cv::COLOR_RGB2GRAY);
+    if (view.first.size() != view.second.size() ||
+        (!views.empty() && view.first.size() != views[0].first.size()))
+      throw hc::ModuleError("the pictures have different sizes");
+    if (cameras.M1(0, 0) == 0)
+      cameras = hc::vision::ideal_pair(view.first.size(), *focal, *baseline);
+    if (cameras.size.area() == 0) cameras.size = view.first.size();
     views.push_back(std::move(view));
     rests_from = 0;
-    if (views.size() == stands.size()) finish();
+    if (views.size() < stands.size()) return;
+    work = std::async(std::launch::async, calibrate, std::exchange(views, {}), cameras,
+                      Eigen::Vector3d(*forward, 0, *up), stop.get_token());
   });
   module.every(std::chrono::milliseconds(50), [&] {
     const std::int64_t now = module.now();
     auto message = hc::table({is_done ? 0.0 : *salience});
     message.header.time = now;
     bid.send(message);
+    using std::chrono_literals::operator""ms;
+    if (work.valid() && work.wait_for(0ms) == std::future_status::ready) take();
     if (is_done) return;
-    const auto& wanted = stands[views.size()];
+    const auto& wanted = work.valid() ? stands.back() : stands[views.size()];
     auto draft = command.loan(1, 1);
     draft.header.time = now;
     auto numbers = draft.matrix().numbers();
@@ -111,5 +154,9 @@ int main(int argc, char** argv) {
     numbers[2] = wanted.pan;
     command.send(std::move(draft));
   });
+  module.every(std::chrono::seconds(1), [&] {
+    if (found) tell();
+  });
+  module.on_end([&] { stop.request_stop(); });
   return module.run(argc, argv);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth from a rectified stereo pair.
+#include <cmath>
 #include <optional>
 
 #include <hc/adapter/opencv.h>
@@ -22,6 +23,9 @@ int main(int argc, char** argv) {
   auto left = module.input("left", picture(kLeftRectified), "rectified picture of the left eye");
   auto right =
       module.input("right", picture(kRightRectified), "rectified picture of the right eye");
+  auto intrinsics = module.input("intrinsics", hc::table<double>(),
+                                 "fx, fy, cx, cy [px], baseline [m] of the rectified pair, as "
+                                 "rectify tells them; without it focal and baseline hold");
   auto disparity = module.output("disparity", hc::intensity_image<float>().in(kDisparity),
                                  "disparity of the left picture's pixels [px], 0 unknown");
   auto depth = module.output("depth", hc::intensity_image<float>().in(kDepth),
@@ -37,11 +41,21 @@ int main(int argc, char** argv) {
                                  "added to a disparity before depth is computed from it");
 
   std::optional<hc::vision::StereoMatcher> matcher;
+  struct {
+    double focal, baseline;
+  } told{};  // by `intrinsics`; 0: not yet
   module.on_start([&] {
     if (*disparities % 16 != 0) throw hc::ModuleError("disparities is not a multiple of 16");
     if (*block_size % 2 == 0) throw hc::ModuleError("block_size is not odd");
     matcher.emplace(
         hc::vision::StereoOptions{static_cast<int>(*disparities), static_cast<int>(*block_size)});
+  });
+  module.on(intrinsics, [&](const auto& message) {
+    const auto numbers = message.matrix().numbers();
+    const bool is_pair = numbers.size() == 5 && std::isfinite(numbers[0]) && numbers[0] > 0 &&
+                         std::isfinite(numbers[4]) && numbers[4] > 0;
+    if (!is_pair) return module.log("intrinsics: not those of a pair");
+    told = {numbers[0], numbers[4]};
   });
   module.on(hc::together(left, right), [&](const hc::Message& left_picture,
                                            const hc::Message& right_picture) {
@@ -62,7 +76,10 @@ int main(int argc, char** argv) {
     if (depth.linked()) {
       auto metres = depth.loan(size.width, size.height);
       cv::Mat metres_mat = hc::value_or_end(hc::as_mat(metres));
-      hc::vision::depth_of(found_mat, {*focal, *baseline, *offset}, metres_mat);
+      hc::vision::depth_of(found_mat,
+                           {told.focal > 0 ? told.focal : *focal,
+                            told.baseline > 0 ? told.baseline : *baseline, *offset},
+                           metres_mat);
       disparity.send(std::move(found));
       depth.send(std::move(metres));
     } else {

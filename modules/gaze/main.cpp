@@ -5,39 +5,27 @@
 #include <optional>
 
 #include <frames/track.h>
-#include <gaze/aim.h>
+#include <gaze/binocular.h>
 #include <gaze/follower.h>
+#include <gaze/stick.h>
 #include <hc/adapter/eigen.h>
 #include <hc/adapter/pose.h>
 #include <hc/node/module.h>
+#include <vision/calibration.h>
 
 namespace {
 
 using hc::gaze::Angles;
+using hc::gaze::Side;
 
 constexpr std::int32_t kRobot = 2, kHead = 3, kLeftImage = 7, kRightImage = 8, kGaze = 13;
 constexpr double kSecond = 1e-9;  // of a nanosecond
-/// How far back the first picture of a pair may be from the second to be taken together with it.
-constexpr std::int64_t kPair = 1'000'000;  // [ns]
-
 /// How often a push is said again: the first time may come before the head is given to who pushes.
 constexpr std::chrono::milliseconds kSteer{5};
 
-/// How long a push counts that is not told again [ns].
-constexpr std::int64_t kTold = 100'000'000;
-
-/// What a stick steers.
-struct Steering {
-  Angles at;          ///< where it has come to [rad]
-  Angles rates;       ///< [rad/s]
-  std::int64_t time;  ///< of `at` [ns]
-};
-
-/// What was seen in one eye's picture.
-struct Sighting {
-  std::int64_t time = 0;
-  Eigen::Vector2d pixel;
-};
+double seconds(std::int64_t time) {
+  return static_cast<double>(time) * kSecond;
+}
 
 }  // namespace
 
@@ -52,6 +40,8 @@ int main(int argc, char** argv) {
   auto stick = module.input("stick", hc::table<double>(),
                             "1 x 2: turn to the left, turn down, -1 … 1 of stick_rate");
   auto report = module.input("gaze", hc::rotation<double>().in(kGaze), "how the head stands");
+  auto calibration =
+      module.input("calibration", hc::table<double>(), "how the eyes sit: calibrate's result");
   auto command = module.output("command", hc::rotation<double>().in(kGaze),
                                "roll 0, tilt, pan that the head is to take [rad]");
   auto bid = module.output("bid", hc::table<double>(),
@@ -93,6 +83,10 @@ int main(int argc, char** argv) {
       module.parameter("pan_most", 2.77, "rad", "to either side", {.least = 0, .most = 3.2});
   auto tilt_most = module.parameter("tilt_most", 0.81, "rad", "down", {.least = 0, .most = 1.6});
   auto tilt_least = module.parameter("tilt_least", -0.54, "rad", "up", {.least = -1.6, .most = 0});
+  auto file = module.parameter("calibration_file", "", "",
+                               "what stereo_calibration and calibrate wrote; without it focal, cx, "
+                               "cy hold",
+                               {.fixed = true});
   auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes",
                                 {.least = 1, .fixed = true});
   auto cx = module.parameter("cx", 399.5, "px", "middle of the pictures", {.fixed = true});
@@ -103,13 +97,12 @@ int main(int argc, char** argv) {
                                    {.least = 0.2});
 
   hc::gaze::Eyes eyes;
+  std::optional<hc::vision::StereoCalibration> cameras;
   std::optional<hc::gaze::Follower> follower;
+  hc::gaze::Binocular binocular;
+  hc::gaze::Stick steering;
   hc::frames::Track gazes{hc::frames::Memory{}};
-  std::optional<Sighting> sightings[2];
-  double range = 0;                  // of the last target that both eyes saw [m]
-  std::optional<Steering> steering;  // while a stick is out of its middle
-  std::int64_t pushed = 0;           // when a stick was out of its middle [ns]
-  bool was_wanted = false;           // as it was bid last
+  bool was_wanted = false;  // as it was bid last
 
   module.on_start([&] {
     eyes.focal = *focal;
@@ -117,8 +110,16 @@ int main(int argc, char** argv) {
     eyes.cy = *cy;
     eyes.baseline = *baseline;
     follower.emplace(hc::gaze::FollowerOptions{*noise, *liveliness, *patience});
+    if (file->empty()) return;
+    cameras = hc::value_or_end(hc::vision::read_calibration(*file));
+    eyes.baseline = cameras->baseline();
+    if (!cameras->head.empty())
+      eyes.calibration = hc::value_or_end(hc::gaze::HeadCalibration::of(cameras->head));
+    else
+      eyes.calibration.offset = hc::gaze::rotation_vector(cameras->R_left_right());
   });
 
+  auto now = [&] { return seconds(module.now()); };
   /// How the head stood at a time, as far as it is known.
   auto R_robot_head = [&](std::int64_t time) {
     if (gazes.empty()) return Eigen::Quaterniond::Identity();
@@ -127,9 +128,9 @@ int main(int argc, char** argv) {
   };
   auto stands = [&] { return hc::gaze::angles_of(R_robot_head(module.now())); };
 
-  auto send = [&](const Angles& to, std::int64_t time) {
+  auto send = [&](const Angles& to) {
     auto draft = command.loan(1, 1);
-    draft.header.time = time;
+    draft.header.time = module.now();
     auto numbers = draft.matrix().numbers();
     numbers[0] = 0;
     numbers[1] = std::clamp(to.tilt, *tilt_least, *tilt_most);
@@ -141,40 +142,37 @@ int main(int argc, char** argv) {
   };
   /// Sends the head to where the target is when it gets there.
   auto follow = [&] {
-    const std::int64_t now = module.now();
     const auto seen = follower->last();
-    if (!seen || static_cast<double>(now) * kSecond - *seen > *patience) {
-      if (*rest > 0) send({0, 0}, now);
+    if (!seen || now() - *seen > *patience) {
+      if (*rest > 0) send({0, 0});
       return;
     }
-    const auto motion = *follower->at(static_cast<double>(now) * kSecond + *predict);
+    const auto motion = *follower->at(now() + *predict);
     if (hc::gaze::between(motion.angles, stands()) < *dead_zone) return;
-    send({motion.angles.pan + lead(motion.pan_rate), motion.angles.tilt + lead(motion.tilt_rate)},
-         now);
+    send({motion.angles.pan + lead(motion.pan_rate), motion.angles.tilt + lead(motion.tilt_rate)});
   };
 
   auto see = [&](std::int64_t time, const Eigen::Vector3d& p_robot) {
-    follower->see(static_cast<double>(time) * kSecond, hc::gaze::aim(p_robot, eyes.middle));
+    follower->see(seconds(time), hc::gaze::aim(p_robot, eyes.cyclopean()));
   };
-  auto see_pixel = [&](int side, std::int64_t time, const Eigen::Vector2d& pixel) {
-    sightings[side > 0 ? 0 : 1] = Sighting{time, pixel};
-    const auto& other = sightings[side > 0 ? 1 : 0];
-    const auto q = R_robot_head(time);
-    if (other && std::abs(other->time - time) <= kPair) {
-      const auto& left = *sightings[0];
-      const auto& right = *sightings[1];
-      if (auto p_head = eyes.place_of(left.pixel, right.pixel)) {
-        range = p_head->norm();
-        see(time, q * *p_head);
-      }
-      return;
+  auto see_pixel = [&](bool is_left, std::int64_t time, Eigen::Vector2d pixel) {
+    if (eyes.calibration.swapped) is_left = !is_left;
+    if (cameras) {
+      const auto ray =
+          hc::vision::ray_of(*cameras, is_left ? hc::vision::Eye::Left : hc::vision::Eye::Right,
+                             {pixel.x(), pixel.y()});
+      pixel = {eyes.cx + eyes.focal * ray[0], eyes.cy + eyes.focal * ray[1]};
     }
-    // Its partner comes yet, unless this eye alone sees it.
-    if (other && std::abs(time - other->time) < std::llround(*patience / kSecond)) return;
-    const double from = range > 0 ? range : *distance;
-    see(time, q * (eyes.place(side) + from * eyes.direction(side, pixel.x(), pixel.y())));
+    const auto p_head = binocular.see(eyes, is_left ? Side::Left : Side::Right, time, pixel,
+                                      std::llround(*patience / kSecond), *distance);
+    if (p_head) see(time, R_robot_head(time) * *p_head);
   };
 
+  module.on(calibration, [&](const auto& message) {
+    auto found = hc::gaze::HeadCalibration::of(message.matrix().numbers());
+    if (!found) return module.log("calibration: " + found.error().detail);
+    eyes.calibration = *found;
+  });
   module.on(report, [&](const auto& message) {
     if (message.header.time <= 0) return;
     hc::frames::Pose pose;
@@ -188,7 +186,7 @@ int main(int argc, char** argv) {
     const Eigen::Vector3d p(numbers[0], numbers[1], numbers[2]);
     if (!p.allFinite()) return;
     if (message.header.coord == kLeftImage || message.header.coord == kRightImage)
-      see_pixel(message.header.coord == kLeftImage ? 1 : -1, time, p.head<2>());
+      see_pixel(message.header.coord == kLeftImage, time, p.head<2>());
     else if (message.header.coord == kHead)
       see(time, R_robot_head(time) * p);
     else if (message.header.coord == kRobot)
@@ -202,15 +200,13 @@ int main(int argc, char** argv) {
     const auto q = hc::rotation_of(message);
     if (!q) return module.log("wish: " + q.error().detail);
     const std::int64_t time = message.header.time > 0 ? message.header.time : module.now();
-    follower->see(static_cast<double>(time) * kSecond, hc::gaze::angles_of(*q));
+    follower->see(seconds(time), hc::gaze::angles_of(*q));
     follow();
   });
   /// Whether it wants the head.
   auto wants = [&] {
-    const auto now = static_cast<double>(module.now()) * kSecond;
-    const auto seen = follower->last();
-    return (seen && now - *seen <= *patience) ||
-           (pushed > 0 && now - static_cast<double>(pushed) * kSecond <= *patience);
+    auto is_fresh = [&](std::optional<double> last) { return last && now() - *last <= *patience; };
+    return is_fresh(follower->last()) || is_fresh(steering.last());
   };
   auto tell_bid = [&] {
     was_wanted = wants();
@@ -218,47 +214,22 @@ int main(int argc, char** argv) {
     message.header.time = module.now();
     bid.send(message);
   };
-  /// Moves what a stick steers on to now, never far from how the head stands.
-  auto advance = [&](std::int64_t now) {
-    constexpr double kReach = 0.1;  // [rad]
-    const auto stood = stands();
-    const double dt = static_cast<double>(now - steering->time) * kSecond;
-    steering->time = now;
-    auto moved = [&](double at, double by_rate, double from) {
-      return std::clamp(at + by_rate * dt, from - kReach, from + kReach);
-    };
-    steering->at = {moved(steering->at.pan, steering->rates.pan, stood.pan),
-                    moved(steering->at.tilt, steering->rates.tilt, stood.tilt)};
-  };
   /// Sends the head on while a stick is pushed and told of.
   auto steer = [&] {
     constexpr double kAhead = 0.02;  // so that it moves at once, and on if one comes late [s]
-    const std::int64_t now = module.now();
-    if (!steering || now - pushed > kTold) return;
-    advance(now);
-    const auto& [at, rates, time] = *steering;
-    send({at.pan + rates.pan * kAhead + lead(rates.pan),
-          at.tilt + rates.tilt * kAhead + lead(rates.tilt)},
-         time);
+    const auto motion = steering.at(now(), stands());
+    if (!motion) return;
+    send({motion->angles.pan + motion->pan_rate * kAhead + lead(motion->pan_rate),
+          motion->angles.tilt + motion->tilt_rate * kAhead + lead(motion->tilt_rate)});
   };
   module.on(stick, [&](const auto& message) {
     const auto numbers = message.matrix().numbers();
     if (numbers.size() < 2 || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) return;
-    const Angles rates{std::clamp(numbers[0], -1.0, 1.0) * *stick_rate,
-                       std::clamp(numbers[1], -1.0, 1.0) * *stick_rate};
-    const std::int64_t now = module.now();
-    if (steering && now - pushed > kTold) steering.reset();
-    if (steering) advance(now);
-    if (rates.pan == 0 && rates.tilt == 0) {
-      if (steering) send(steering->at, now);
-      steering.reset();
-      return;
-    }
-    if (!steering) steering = Steering{stands(), rates, now};
-    steering->rates = rates;
-    pushed = now;
+    steering.push({std::clamp(numbers[0], -1.0, 1.0) * *stick_rate,
+                   std::clamp(numbers[1], -1.0, 1.0) * *stick_rate},
+                  now(), stands());
     // Who pushes does not wait for the next bid.
-    if (!was_wanted) tell_bid();
+    if (!was_wanted && wants()) tell_bid();
     steer();
   });
 

@@ -2,6 +2,7 @@
 // The pictures of both eyes, rectified.
 #include <optional>
 
+#include <gaze/eyes.h>
 #include <hc/adapter/opencv.h>
 #include <hc/node/module.h>
 #include <vision/calibration.h>
@@ -20,6 +21,8 @@ int main(int argc, char** argv) {
       module.input("left", hc::rgb_image<std::uint8_t>().in(kLeftImage), "picture of the left eye");
   auto right = module.input("right", hc::rgb_image<std::uint8_t>().in(kRightImage),
                             "picture of the right eye");
+  auto head = module.input("calibration", hc::table<double>(),
+                           "how the eyes sit on a head: calibrate's result");
   auto left_rectified = module.output("left", hc::rgb_image<std::uint8_t>().in(kLeftRectified),
                                       "rectified picture of the left eye");
   auto right_rectified = module.output("right", hc::rgb_image<std::uint8_t>().in(kRightRectified),
@@ -27,9 +30,11 @@ int main(int argc, char** argv) {
   auto intrinsics = module.output("intrinsics", hc::table<double>(),
                                   "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
                                   "the first picture and then once a second");
-  auto file = module.parameter("calibration_file", "", "",
-                               "what stereo_calibration wrote; without it an ideal pair is assumed",
-                               {.positional = true, .fixed = true});
+  auto file =
+      module.parameter("calibration_file", "", "",
+                       "what stereo_calibration and calibrate wrote; without it an ideal pair "
+                       "is assumed",
+                       {.positional = true, .fixed = true});
   auto focal = module.parameter("focal", 800.0, "px", "focal length of an ideal pair",
                                 {.least = 1e-3, .most = 1e6, .fixed = true});
   auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes of an ideal pair",
@@ -37,6 +42,8 @@ int main(int argc, char** argv) {
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<Rectifier> rectifiers[2];
+  hc::gaze::HeadCalibration seat;    // how the eyes sit, as far as it is known
+  bool is_told = false;              // by `calibration`
   std::optional<std::int64_t> time;  // of the last picture
   auto tell = [&] {
     if (!time) return;
@@ -51,6 +58,8 @@ int main(int argc, char** argv) {
     auto& rectifier = rectifiers[eye == Eye::Left ? 0 : 1];
     if (!rectifier || rectifier->size() != size) {
       if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, *baseline);
+      if (calibration->size.area() == 0) calibration->size = size;
+      if (is_told) hc::vision::turn(*calibration, seat.R_left_right());
       rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
     }
     const bool is_first = !time;
@@ -63,10 +72,26 @@ int main(int argc, char** argv) {
     output.send(std::move(draft));
   };
   module.on_start([&] {
-    if (!file->empty()) calibration = hc::value_or_end(hc::vision::read_calibration(*file));
+    if (file->empty()) return;
+    calibration = hc::value_or_end(hc::vision::read_calibration(*file));
+    if (!calibration->head.empty())
+      seat = hc::value_or_end(hc::gaze::HeadCalibration::of(calibration->head));
   });
-  module.on(left, [&](const auto& picture) { rectify(picture, left_rectified, Eye::Left); });
-  module.on(right, [&](const auto& picture) { rectify(picture, right_rectified, Eye::Right); });
+  module.on(head, [&](const auto& message) {
+    const auto found = hc::gaze::HeadCalibration::of(message.matrix().numbers());
+    if (!found) return module.log("calibration: " + found.error().detail);
+    if (is_told && found->numbers() == seat.numbers()) return;  // it is told again and again
+    seat = *found;
+    is_told = true;
+    for (auto& rectifier : rectifiers) rectifier.reset();
+  });
+  auto take = [&](const auto& picture, Eye plug) {
+    const Eye other = plug == Eye::Left ? Eye::Right : Eye::Left;
+    const Eye eye = seat.swapped ? other : plug;
+    rectify(picture, eye == Eye::Left ? left_rectified : right_rectified, eye);
+  };
+  module.on(left, [&](const auto& picture) { take(picture, Eye::Left); });
+  module.on(right, [&](const auto& picture) { take(picture, Eye::Right); });
   module.every(std::chrono::seconds(1), tell);
   return module.run(argc, argv);
 }

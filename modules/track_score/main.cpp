@@ -10,10 +10,10 @@
 #include <hc/node/module.h>
 
 int main(int argc, char** argv) {
-  constexpr std::int32_t kWorld = 1, kWorldHead = 1003;
-  hc::Module module{"track_score", "Compares where a head looks with where a ball is."};
-  auto head = module.input("head_pose", hc::transformation<double>(4, 4).in(kWorldHead),
-                           "truth: T_world_head");
+  constexpr std::int32_t kWorld = 1, kWorldLeftEye = 1004;
+  hc::Module module{"track_score", "Compares where a head's eyes look with where a ball is."};
+  auto eye = module.input("left_pose", hc::transformation<double>(4, 4).in(kWorldLeftEye),
+                          "truth: T_world_left_eye");
   auto ball = module.input("ball", hc::position<double>(6).in(kWorld), "truth: of the ball [m]");
   auto seen = module.input("ball_seen", hc::table<double>(),
                            "truth, 1 x 4: of which the last is the share that is seen");
@@ -24,18 +24,17 @@ int main(int argc, char** argv) {
       module.parameter("duration", 20.0, "s", "how long it is scored", {.least = 0.1, .most = 1e6});
   auto within = module.parameter("within", 0.0524, "rad", "an error up to this has acquired it",
                                  {.least = 1e-4, .most = 1});
-  auto forward = module.parameter("forward", 0.06, "m", "of the eyes from the unit's axes");
-  auto up = module.parameter("up", 0.05, "m", "of the eyes from the unit's axes");
+  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes");
 
   std::vector<hc::gaze::TrackSample> samples;
   module.on(
-      hc::together(head, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {
-        const auto T_world_head = hc::value_or_end(hc::pose_of(pose)).T_to_from;
+      hc::together(eye, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {
+        const auto T_world_left_eye = hc::value_or_end(hc::pose_of(pose)).T_to_from;
         const auto p = place.matrix().numbers();
-        const Eigen::Vector3d to = T_world_head.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
-                                   Eigen::Vector3d(*forward, 0, *up);
+        const Eigen::Vector3d to = T_world_left_eye.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
+                                   Eigen::Vector3d(*baseline / 2, 0, 0);
         samples.push_back({static_cast<double>(pose.header.time) * 1e-9,
-                           std::atan2(to.tail<2>().norm(), to.x()), share.matrix().numbers()[3]});
+                           std::atan2(to.head<2>().norm(), to.z()), share.matrix().numbers()[3]});
       });
   module.generate([&] {
     constexpr double kLook = 50;  // [Hz]

@@ -56,7 +56,7 @@ class Recording(Pipes):
         self.assert_same("kept/head_eyes.ball.mtp", "place.mtp", 3)
         self.assert_same("kept/head_eyes.left.mtp", "left.mtp", 3)
         again = self.shell(
-            "hc track_score --duration 2 --in head_pose=kept/head_eyes.head_pose.mtp"
+            "hc track_score --duration 2 --in left_pose=kept/head_eyes.left_pose.mtp"
             " --in ball=kept/head_eyes.ball.mtp --in ball_seen=kept/head_eyes.ball_seen.mtp"
             " --out score=again.mtp"
         )
