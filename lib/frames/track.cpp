@@ -69,4 +69,11 @@ Pose Track::at(std::int64_t time) const {
       static_cast<double>(time - before->time) / static_cast<double>(next->time - before->time));
 }
 
+Pose Track::nearest(std::int64_t time) const {
+  const auto [first, last] = known();
+  time = std::clamp(time, first, last);
+  const auto gap = gap_at(time);
+  return at(gap ? gap->first : time);
+}
+
 }  // namespace hc::frames

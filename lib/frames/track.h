@@ -69,6 +69,11 @@ class Track {
   /// Cost: logarithmic in the poses; no allocation.
   [[nodiscard]] Pose at(std::int64_t time) const;
 
+  /// The pose of any time, of what does not move unless it is told: before all that is known its
+  /// first pose, after it the last, in a gap the one before it. Of an empty track: a bug.
+  /// Cost: as at().
+  [[nodiscard]] Pose nearest(std::int64_t time) const;
+
   void clear() { samples_.clear(); }
 
  private:

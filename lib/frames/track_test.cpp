@@ -144,6 +144,19 @@ TEST(Track, BridgesNoGap) {
   EXPECT_EQ(track.gap_at(201), std::nullopt) << "a late pose closes it";
 }
 
+TEST(Track, TheNearestPoseIsThatOfWhatStandsStill) {
+  Track track{Memory{}};
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  auto x = [&](std::int64_t time) { return track.nearest(time).p.x(); };
+  for (auto [time, place] : {std::pair{kSecond, 1.0}, {2 * kSecond, 2.0}, {5 * kSecond, 5.0}})
+    track.add(time, at_x(place));
+  EXPECT_EQ(x(1), 1);
+  EXPECT_DOUBLE_EQ(x(kSecond + kSecond / 2), 1.5);
+  EXPECT_EQ(x(4 * kSecond), 2) << "in a gap";
+  EXPECT_EQ(x(5 * kSecond), 5);
+  EXPECT_EQ(x(60 * kSecond), 5);
+}
+
 TEST(TrackDeathTest, OutsideIsABug) {
   Track track({});
   track.add(10, at_x(0));

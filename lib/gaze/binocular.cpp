@@ -2,23 +2,28 @@
 #include <gaze/binocular.h>
 
 #include <cstdlib>
+#include <utility>
 
 namespace hc::gaze {
 
 std::optional<Eigen::Vector3d> Binocular::see(const Eyes& eyes, Side side, std::int64_t time,
-                                              const Eigen::Vector2d& pixel, std::int64_t alone,
-                                              double distance) {
+                                              const Eigen::Vector2d& pixel, double distance) {
   // How far the pictures of a pair may be apart.
   constexpr std::int64_t kPair = 1'000'000;  // [ns]
-  (side == Side::Left ? left_ : right_) = Sighting{time, pixel};
+  // How far behind the other an eye may be.
+  constexpr std::int64_t kLate = 1'000'000'000;  // [ns]
+  auto& own = side == Side::Left ? left_ : right_;
   const auto& other = side == Side::Left ? right_ : left_;
+  const auto before = std::exchange(own, Sighting{time, pixel});
   if (other && std::abs(other->time - time) <= kPair) {
     const auto p_head = eyes.place_of(left_->pixel, right_->pixel);
     if (p_head) range_ = p_head->norm();
     return p_head;
   }
-  // Its partner comes yet, unless this eye alone sees it.
-  if (other && std::abs(time - other->time) < alone) return std::nullopt;
+  // Its partner comes yet, unless it did not come the last time.
+  const bool was_pair = before && other && std::abs(before->time - other->time) <= kPair;
+  const bool is_behind = other && other->time > time && other->time - time < kLate;
+  if (was_pair || is_behind) return std::nullopt;
   return eyes.place(side) + (range_ > 0 ? range_ : distance) * eyes.direction(side, pixel);
 }
 

@@ -14,21 +14,20 @@ class Binocular {
  public:
   /// Takes in where an eye saw the target.
   ///
-  /// @param alone  after so long without the other eye, this one's word counts alone [ns].
+  /// The other eye's word is awaited until this one speaks a second time without it.
   /// @param distance  of the target then, if both have never seen it [m].
   /// @returns  the target's place in the head [m]. Nothing: the other eye's word is awaited, or
   ///     both see what is not the same.
   std::optional<Eigen::Vector3d> see(const Eyes& eyes, Side side, std::int64_t time,
-                                     const Eigen::Vector2d& pixel, std::int64_t alone,
-                                     double distance);
+                                     const Eigen::Vector2d& pixel, double distance);
 
  private:
   struct Sighting {
     std::int64_t time;
     Eigen::Vector2d pixel;  // [px]
   };
-  std::optional<Sighting> left_, right_;
-  double range_ = 0;  // of the last target that both eyes saw [m]
+  std::optional<Sighting> left_, right_;  // the last of each
+  double range_ = 0;                      // of the last target that both eyes saw [m]
 };
 
 }  // namespace hc::gaze

@@ -32,10 +32,8 @@ Result<HeadCalibration> HeadCalibration::of(std::span<const double> numbers) {
       return Error{Code::Malformed, "a head's calibration: an angle of more than 0.8 rad"};
   if ((numbers[0] != 0 && numbers[0] != 1) || !std::isfinite(numbers[6]))
     return Error{Code::Malformed, "a head's calibration: what is no number of one"};
-  return HeadCalibration{numbers[0] == 1,
-                         {numbers[1], numbers[2]},
-                         {numbers[4], numbers[5], numbers[3]},
-                         numbers[6]};
+  return HeadCalibration{
+      numbers[0] == 1, {numbers[1], numbers[2]}, {numbers[4], numbers[5], numbers[3]}, numbers[6]};
 }
 
 Vector3d Eyes::place(Side side) const {

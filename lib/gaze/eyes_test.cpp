@@ -58,9 +58,12 @@ TEST(HeadCalibration, is_its_numbers) {
 
 TEST(HeadCalibration, what_is_none_is_refused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const std::vector<double>& numbers :
-       {std::vector<double>{}, {0, 0, 0, 0, 0, 0}, {0.5, 0, 0, 0, 0, 0, 0}, {0, nan, 0, 0, 0, 0, 0},
-        {0, 0, 0, 0, 0, 1.5, 0}, {0, 0, 0, 0, 0, 0, nan}})
+  for (const std::vector<double>& numbers : {std::vector<double>{},
+                                             {0, 0, 0, 0, 0, 0},
+                                             {0.5, 0, 0, 0, 0, 0, 0},
+                                             {0, nan, 0, 0, 0, 0, 0},
+                                             {0, 0, 0, 0, 0, 1.5, 0},
+                                             {0, 0, 0, 0, 0, 0, nan}})
     EXPECT_FALSE(HeadCalibration::of(numbers)) << numbers.size();
 }
 

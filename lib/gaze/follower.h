@@ -15,6 +15,7 @@ struct FollowerOptions {
   double noise = 0.003;       ///< standard deviation of an angle as it is seen, over 0 [rad]
   double acceleration = 2.0;  ///< standard deviation of what speeds it up, over 0 [rad/s²]
   double gap = 0.5;           ///< after so long unseen, it is another [s]
+  double horizon = 0.3;       ///< so long unseen its rates go on; then it is taken to stand [s]
 };
 
 /// A target's angles and their rates.
@@ -31,11 +32,14 @@ class Follower {
 
   /// Takes in where the target was.
   ///
-  /// @param time  [s], of any origin; one that is not after the last is left out.
+  /// @param time  [s], of any origin; one that is not after the last is left out, one that is a gap
+  ///     before it begins anew: the clock was set back.
+  /// A place where it cannot have come to is another target's, and begins anew as well.
   void see(double time, const Angles& angles);
   /// When it was last seen [s].
   [[nodiscard]] std::optional<double> last() const { return last_; }
-  /// Where it is taken to be at a time, its last rates going on. Nothing: never seen.
+  /// Where it is taken to be at a time, its last rates going on up to the
+  /// horizon. Nothing: never seen.
   [[nodiscard]] std::optional<Motion> at(double time) const;
   void forget() { last_.reset(); }
 
@@ -46,6 +50,7 @@ class Follower {
     Eigen::Matrix2d covariance;
     void begin(double angle, const FollowerOptions& options);
     void step(double dt, const FollowerOptions& options);
+    [[nodiscard]] bool can_be(double angle, const FollowerOptions& options) const;
     void correct(double angle, const FollowerOptions& options);
   };
 

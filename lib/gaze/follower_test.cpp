@@ -50,6 +50,38 @@ TEST(Follower, begins_anew_after_a_gap_and_leaves_the_past_alone) {
   EXPECT_FALSE(follower.at(2));
 }
 
+TEST(Follower, what_is_not_seen_stops_at_the_horizon) {
+  Follower follower({});
+  for (int i = 0; i < 20; ++i) follower.see(0.05 * i, {0.05 * i, 0});
+  const auto at_once = follower.at(1), later = follower.at(5);
+  EXPECT_NEAR(at_once->pan_rate, 1, 0.01);
+  EXPECT_NEAR(later->angles.pan, 0.95 + 0.3, 0.01);
+  EXPECT_EQ(later->pan_rate, 0);
+}
+
+TEST(Follower, a_clock_that_is_set_back_begins_anew) {
+  Follower follower({});
+  follower.see(1000, {0.1, 0});
+  follower.see(990, {0.5, 0});
+  EXPECT_EQ(follower.last(), 990);
+  EXPECT_EQ(follower.at(990)->angles.pan, 0.5);
+}
+
+TEST(Follower, half_a_turn_to_either_side_is_the_same) {
+  Follower follower({});
+  for (int i = 0; i < 20; ++i) follower.see(0.02 * i, {std::remainder(3 + 0.02 * i, 2 * M_PI), 0});
+  EXPECT_NEAR(follower.at(0.38)->angles.pan, 3.38, 1e-3);
+  EXPECT_NEAR(follower.at(0.38)->pan_rate, 1, 1e-2);
+}
+
+TEST(Follower, a_leap_is_no_motion) {
+  Follower follower({});
+  for (int i = 0; i < 20; ++i) follower.see(0.05 * i, {0, 0});
+  follower.see(1, {0.8, 0.1});
+  EXPECT_EQ(follower.at(1.1)->angles.pan, 0.8);
+  EXPECT_EQ(follower.at(1.1)->pan_rate, 0);
+}
+
 TEST(Follower, braking_is_what_a_unit_needs_to_stand_still) {
   EXPECT_DOUBLE_EQ(braking(2, {4, 0}), 0.5);
   EXPECT_DOUBLE_EQ(braking(-2, {4, 0}), -0.5);

@@ -18,8 +18,8 @@ class Stick {
   /// @param rates  [rad/s]; both 0: it is let go.
   /// @param stands  how the head stands.
   void push(const Angles& rates, double now, const Angles& stands);
-  /// Where the head is to be and how fast, while the stick is pushed; after it was let go, for kTold
-  /// where it is to stop. Nothing: the stick wants nothing.
+  /// Where the head is to be and how fast, while the stick is pushed; after it was let go, for
+  /// kTold where it is to stop. Nothing: the stick wants nothing.
   std::optional<Motion> at(double now, const Angles& stands);
   /// When it was out of its middle last [s].
   [[nodiscard]] std::optional<double> last() const { return pushed_; }

@@ -20,6 +20,8 @@ namespace {
 using hc::gaze::Angles;
 
 constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kGaze = 13;
+constexpr double kSecond = 1e9;                  // [ns]
+constexpr std::int64_t kSilent = 1'000'000'000;  // so long nothing comes, then it is gone [ns]
 constexpr double kNear = 0.004;               // of where it was sent: the unit stands there [rad]
 constexpr std::int64_t kRests = 300'000'000;  // so long, then it is at rest [ns]
 
@@ -32,7 +34,7 @@ int main(int argc, char** argv) {
   auto right = module.input("right", hc::rgb_image<std::uint8_t>().in(kRightImage), "right eye");
   auto report = module.input("gaze", hc::rotation<double>().in(kGaze), "how the head stands");
   auto command = module.output("command", hc::rotation<double>().in(kGaze), "how it is to stand");
-  auto bid = module.output("bid", hc::table<double>(), "salience until it is done, then 0");
+  auto bid = module.output("bid", hc::table<double>(), "salience while it looks, else 0");
   auto result = module.output("result", hc::table<double>(),
                               "1 x 7: eyes swapped 0/1, pan and tilt of the left eye with the unit "
                               "at 0, roll, pitch, yaw of the right eye to the left one [rad], "
@@ -48,6 +50,10 @@ int main(int argc, char** argv) {
                                 {.least = 1, .fixed = true});
   auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes, without a file",
                                    {.least = 0.001, .fixed = true});
+  auto patience = module.parameter("patience", 5.0, "s", "for the head to rest where it is sent",
+                                   {.least = 0.5, .most = 600});
+  auto pause = module.parameter("pause", 30.0, "s", "after a try in vain", {.least = 0});
+  auto tries = module.parameter("tries", 3, "", "in vain, then it gives up", {.least = 1});
   auto forward = module.parameter("forward", 0.06, "m", "of the eyes from the unit's axes");
   auto up = module.parameter("up", 0.05, "m", "of the eyes from the unit's axes");
 
@@ -60,6 +66,10 @@ int main(int argc, char** argv) {
   std::stop_source stop;
   std::optional<hc::gaze::HeadCalibration> found;
   bool is_done = false;
+  std::int64_t last_pair = 0, last_report = 0;  // when they came [ns]
+  std::int64_t sent = 0;                        // to the stand of now; 0: not yet [ns]
+  std::int64_t paused_until = 0;                // [ns]
+  std::int64_t tried = 0;                       // in vain
 
   auto tell = [&] {
     const auto numbers = found->numbers();
@@ -81,13 +91,17 @@ int main(int argc, char** argv) {
                   found->offset.x() * kDegrees, found->offset.y() * kDegrees);
     module.log(line);
   };
+  auto fail = [&](const std::string& why) {
+    views.clear();
+    sent = rests_from = 0;
+    is_done = ++tried >= *tries;
+    paused_until = module.now() + std::llround(*pause * kSecond);
+    module.log("not calibrated: " + why + (is_done ? "; given up" : "; it is tried again"));
+  };
   /// Takes in what was computed.
   auto take = [&] {
     const auto calibration = work.get();
-    if (!calibration) {
-      is_done = true;
-      return module.log("not calibrated: " + calibration.error().detail);
-    }
+    if (!calibration) return fail(calibration.error().detail);
     finish(*calibration, "");
     if (file->empty()) return;
     hc::vision::turn(cameras, calibration->R_left_right());
@@ -108,8 +122,11 @@ int main(int argc, char** argv) {
              ("by " + *file + ": ").c_str());
   });
   module.on(report, [&](const auto& message) {
+    const auto q = hc::rotation_of(message);
+    if (!q) return module.log("gaze: " + q.error().detail);
+    last_report = module.now();
     if (is_done || work.valid()) return;
-    last = hc::gaze::angles_of(hc::value_or_end(hc::rotation_of(message)));
+    last = hc::gaze::angles_of(*q);
     const auto& wanted = stands[views.size()];
     const bool is_there =
         std::abs(last.pan - wanted.pan) < kNear && std::abs(last.tilt - wanted.tilt) < kNear;
@@ -119,6 +136,7 @@ int main(int argc, char** argv) {
       rests_from = message.header.time;
   });
   module.on(hc::together(left, right), [&](const auto& one, const auto& other) {
+    last_pair = module.now();
     const bool looks = !is_done && !work.valid() && rests_from > 0;
     if (!looks || one.header.time < rests_from + kRests) return;
     HeadView view;
@@ -132,20 +150,29 @@ int main(int argc, char** argv) {
       cameras = hc::vision::ideal_pair(view.first.size(), *focal, *baseline);
     if (cameras.size.area() == 0) cameras.size = view.first.size();
     views.push_back(std::move(view));
-    rests_from = 0;
+    sent = rests_from = 0;
     if (views.size() < stands.size()) return;
     work = std::async(std::launch::async, calibrate, std::exchange(views, {}), cameras,
                       Eigen::Vector3d(*forward, 0, *up), stop.get_token());
   });
   module.every(std::chrono::milliseconds(50), [&] {
+    using std::chrono_literals::operator""ms;
     const std::int64_t now = module.now();
-    auto message = hc::table({is_done ? 0.0 : *salience});
+    if (work.valid() && work.wait_for(0ms) == std::future_status::ready) take();
+    // It wants the head only while it sees with both eyes and knows how the head stands.
+    const bool sees = now - last_pair < kSilent && now - last_report < kSilent;
+    const bool wants = !is_done && now >= paused_until && (sees || work.valid());
+    auto message = hc::table({wants ? *salience : 0.0});
     message.header.time = now;
     bid.send(message);
-    using std::chrono_literals::operator""ms;
-    if (work.valid() && work.wait_for(0ms) == std::future_status::ready) take();
-    if (is_done) return;
+    if (!wants) {
+      sent = 0;
+      return;
+    }
     const auto& wanted = work.valid() ? stands.back() : stands[views.size()];
+    if (sent == 0) sent = now;
+    if (!work.valid() && static_cast<double>(now - sent) > *patience * kSecond)
+      return fail("the head does not come to rest where it is sent");
     auto draft = command.loan(1, 1);
     draft.header.time = now;
     auto numbers = draft.matrix().numbers();

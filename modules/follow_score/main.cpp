@@ -22,18 +22,31 @@ int main(int argc, char** argv) {
   auto duration =
       module.parameter("duration", 10.0, "s", "how long it counts", {.least = 0.1, .most = 1e6});
 
+  auto patience = module.parameter("patience", 60.0, "s", "for a gaze of each, or it has failed",
+                                   {.least = 1, .most = 3600});
+
   std::vector<hc::gaze::TimedAngles> wished, turned;
+  std::int64_t waits[2] = {};  // looks since one of each
   auto take = [](auto& samples, const auto& message) {
     const double time = static_cast<double>(message.header.time) * 1e-9;
     const auto q = hc::value_or_end(hc::rotation_of(message));
     if (samples.empty() || time > samples.back().time)
       samples.push_back({time, hc::gaze::angles_of(q)});
   };
-  module.on(wish, [&](const auto& message) { take(wished, message); });
-  module.on(motion, [&](const auto& message) { take(turned, message); });
+  module.on(wish, [&](const auto& message) {
+    waits[0] = 0;
+    take(wished, message);
+  });
+  module.on(motion, [&](const auto& message) {
+    waits[1] = 0;
+    take(turned, message);
+  });
   module.generate([&] {
     constexpr double kLook = 20;  // [Hz]
     module.keep_rate(kLook);
+    for (auto& wait : waits)
+      if (static_cast<double>(++wait) > *patience * kLook)
+        throw hc::ModuleError("there was no gaze of both");
     if (wished.empty() || turned.empty()) return true;
     const double begin = std::max(wished.front().time, turned.front().time) + *settle;
     const double end = begin + *duration;

@@ -23,6 +23,11 @@ constexpr double kSecond = 1e-9;  // of a nanosecond
 /// How often a push is said again: the first time may come before the head is given to who pushes.
 constexpr std::chrono::milliseconds kSteer{5};
 
+/// A target may be so far in the future, by another clock [ns].
+constexpr std::int64_t kAhead = 200'000'000;
+/// Reports come in the order of time, but where a clock was set back [ns].
+constexpr std::int64_t kSetBack = 1'000'000'000;
+
 double seconds(std::int64_t time) {
   return static_cast<double>(time) * kSecond;
 }
@@ -66,6 +71,9 @@ int main(int argc, char** argv) {
   auto predict = module.parameter("predict", 0.01, "s",
                                   "how far ahead: what passes from a command to the motion",
                                   {.least = 0, .most = 1});
+  auto horizon = module.parameter("horizon", 0.3, "s",
+                                  "so long a target that is not seen any more goes on as it moved",
+                                  {.least = 0, .most = 10, .fixed = true});
   auto acceleration =
       module.parameter("acceleration", 1.795, "rad/s²",
                        "of the unit, which brakes to stand still where it is sent; 0: it does not",
@@ -103,13 +111,14 @@ int main(int argc, char** argv) {
   hc::gaze::Stick steering;
   hc::frames::Track gazes{hc::frames::Memory{}};
   bool was_wanted = false;  // as it was bid last
+  bool was_ahead = false;   // the last target's time was in the future
 
   module.on_start([&] {
     eyes.focal = *focal;
     eyes.cx = *cx;
     eyes.cy = *cy;
     eyes.baseline = *baseline;
-    follower.emplace(hc::gaze::FollowerOptions{*noise, *liveliness, *patience});
+    follower.emplace(hc::gaze::FollowerOptions{*noise, *liveliness, *patience, *horizon});
     if (file->empty()) return;
     cameras = hc::value_or_end(hc::vision::read_calibration(*file));
     eyes.baseline = cameras->baseline();
@@ -123,8 +132,7 @@ int main(int argc, char** argv) {
   /// How the head stood at a time, as far as it is known.
   auto R_robot_head = [&](std::int64_t time) {
     if (gazes.empty()) return Eigen::Quaterniond::Identity();
-    const auto known = gazes.known();
-    return gazes.at(std::clamp(time, known.first, known.last)).q;
+    return gazes.nearest(time).q;
   };
   auto stands = [&] { return hc::gaze::angles_of(R_robot_head(module.now())); };
 
@@ -163,9 +171,23 @@ int main(int argc, char** argv) {
                              {pixel.x(), pixel.y()});
       pixel = {eyes.cx + eyes.focal * ray[0], eyes.cy + eyes.focal * ray[1]};
     }
-    const auto p_head = binocular.see(eyes, is_left ? Side::Left : Side::Right, time, pixel,
-                                      std::llround(*patience / kSecond), *distance);
+    const auto p_head =
+        binocular.see(eyes, is_left ? Side::Left : Side::Right, time, pixel, *distance);
     if (p_head) see(time, R_robot_head(time) * *p_head);
+  };
+
+  /// When something was sensed, by the time of its message; nothing of what is to come, since it
+  /// would hold back all that is sensed until then.
+  auto sensed_at = [&](std::int64_t time) -> std::optional<std::int64_t> {
+    if (time <= 0) return module.now();
+    const std::int64_t ahead = time - module.now();
+    const bool is_ahead = ahead > kAhead;
+    if (is_ahead && !was_ahead)
+      module.log("left out: a target " + std::to_string(ahead / 1'000'000) +
+                 " ms in the future, as others may be");
+    was_ahead = is_ahead;
+    if (is_ahead) return std::nullopt;
+    return time;
   };
 
   module.on(calibration, [&](const auto& message) {
@@ -174,15 +196,22 @@ int main(int argc, char** argv) {
     eyes.calibration = *found;
   });
   module.on(report, [&](const auto& message) {
-    if (message.header.time <= 0) return;
+    const std::int64_t time = message.header.time;
+    const auto q = hc::rotation_of(message);
+    if (!q) return module.log("gaze: " + q.error().detail);
+    if (time <= 0) return;
+    // A clock that was set back: what was known is not of its times.
+    if (!gazes.empty() && gazes.known().last - time > kSetBack) gazes.clear();
     hc::frames::Pose pose;
-    pose.q = hc::value_or_end(hc::rotation_of(message));
-    gazes.add(message.header.time, pose);
+    pose.q = *q;
+    gazes.add(time, pose);
   });
   module.on(target, [&](const auto& message) {
     if (message.header.empty()) return;
     const auto numbers = message.matrix().numbers();
-    const std::int64_t time = message.header.time > 0 ? message.header.time : module.now();
+    const auto sensed = sensed_at(message.header.time);
+    if (!sensed) return;
+    const std::int64_t time = *sensed;
     const Eigen::Vector3d p(numbers[0], numbers[1], numbers[2]);
     if (!p.allFinite()) return;
     if (message.header.coord == kLeftImage || message.header.coord == kRightImage)
@@ -199,8 +228,9 @@ int main(int argc, char** argv) {
   module.on(wish, [&](const auto& message) {
     const auto q = hc::rotation_of(message);
     if (!q) return module.log("wish: " + q.error().detail);
-    const std::int64_t time = message.header.time > 0 ? message.header.time : module.now();
-    follower->see(seconds(time), hc::gaze::angles_of(*q));
+    const auto sensed = sensed_at(message.header.time);
+    if (!sensed) return;
+    follower->see(seconds(*sensed), hc::gaze::angles_of(*q));
     follow();
   });
   /// Whether it wants the head.
@@ -216,11 +246,11 @@ int main(int argc, char** argv) {
   };
   /// Sends the head on while a stick is pushed and told of.
   auto steer = [&] {
-    constexpr double kAhead = 0.02;  // so that it moves at once, and on if one comes late [s]
+    constexpr double kLead = 0.02;  // so that it moves at once, and on if one comes late [s]
     const auto motion = steering.at(now(), stands());
     if (!motion) return;
-    send({motion->angles.pan + motion->pan_rate * kAhead + lead(motion->pan_rate),
-          motion->angles.tilt + motion->tilt_rate * kAhead + lead(motion->tilt_rate)});
+    send({motion->angles.pan + motion->pan_rate * kLead + lead(motion->pan_rate),
+          motion->angles.tilt + motion->tilt_rate * kLead + lead(motion->tilt_rate)});
   };
   module.on(stick, [&](const auto& message) {
     const auto numbers = message.matrix().numbers();

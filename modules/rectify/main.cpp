@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pictures of both eyes, rectified.
 #include <optional>
+#include <utility>
 
 #include <gaze/eyes.h>
 #include <hc/adapter/opencv.h>
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   std::optional<Rectifier> rectifiers[2];
   hc::gaze::HeadCalibration seat;    // how the eyes sit, as far as it is known
   bool is_told = false;              // by `calibration`
+  bool is_new = true;                // what `intrinsics` tells
   std::optional<std::int64_t> time;  // of the last picture
   auto tell = [&] {
     if (!time) return;
@@ -62,9 +64,8 @@ int main(int argc, char** argv) {
       if (is_told) hc::vision::turn(*calibration, seat.R_left_right());
       rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
     }
-    const bool is_first = !time;
     time = picture.header.time;
-    if (is_first) tell();
+    if (std::exchange(is_new, false)) tell();
     if (!output.linked()) return;
     auto draft = output.loan(size.width, size.height);
     cv::Mat rectified = hc::value_or_end(hc::as_mat(draft));
@@ -82,7 +83,7 @@ int main(int argc, char** argv) {
     if (!found) return module.log("calibration: " + found.error().detail);
     if (is_told && found->numbers() == seat.numbers()) return;  // it is told again and again
     seat = *found;
-    is_told = true;
+    is_told = is_new = true;
     for (auto& rectifier : rectifiers) rectifier.reset();
   });
   auto take = [&](const auto& picture, Eye plug) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <gaze/track_score.h>
 #include <hc/adapter/eigen.h>
@@ -17,6 +18,8 @@ int main(int argc, char** argv) {
   auto ball = module.input("ball", hc::position<double>(6).in(kWorld), "truth: of the ball [m]");
   auto seen = module.input("ball_seen", hc::table<double>(),
                            "truth, 1 x 4: of which the last is the share that is seen");
+  auto begin = module.input("begin", hc::table<double>(),
+                            "the first message begins the score anew: as calibrate's result");
   auto result = module.output("score", hc::table<double>(),
                               "1 x 5: RMS error [rad], time to acquire it [s], times that it came "
                               "back, longest time to acquire it then [s], samples");
@@ -26,19 +29,30 @@ int main(int argc, char** argv) {
                                  {.least = 1e-4, .most = 1});
   auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes");
 
+  auto patience = module.parameter("patience", 60.0, "s", "for a picture, or it has failed",
+                                   {.least = 1, .most = 3600});
+
   std::vector<hc::gaze::TrackSample> samples;
+  bool has_begun = false;
+  std::int64_t waits = 0;  // looks since a picture
+  module.on(begin, [&](const auto&) {
+    if (!std::exchange(has_begun, true)) samples.clear();
+  });
   module.on(
       hc::together(eye, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {
         const auto T_world_left_eye = hc::value_or_end(hc::pose_of(pose)).T_to_from;
         const auto p = place.matrix().numbers();
         const Eigen::Vector3d to = T_world_left_eye.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
                                    Eigen::Vector3d(*baseline / 2, 0, 0);
+        waits = 0;
         samples.push_back({static_cast<double>(pose.header.time) * 1e-9,
                            std::atan2(to.head<2>().norm(), to.z()), share.matrix().numbers()[3]});
       });
   module.generate([&] {
     constexpr double kLook = 50;  // [Hz]
     module.keep_rate(kLook);
+    if (static_cast<double>(++waits) > *patience * kLook)
+      throw hc::ModuleError("there was no picture");
     if (samples.empty() || samples.back().time - samples.front().time < *duration) return true;
     const auto score = hc::gaze::score_track(samples, *within);
     const double longest =

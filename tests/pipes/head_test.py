@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tasks of the head in the simulated one, as the graphs score_TASK.toml score them."""
 
+import math
 import pathlib
 import re
 import unittest
@@ -17,6 +18,56 @@ class Head(Pipes):
         lines = re.findall(r"^%s_score: (.*\d.*)$" % task, self.err, re.M)
         self.assertTrue(lines, self.err)
         return lines[-1]
+
+
+class Whole(Head):
+    """graphs/head.toml, with a head that is crooked and has its eyes swapped."""
+
+    CROOKED = {
+        "swapped": "true",
+        "zero_pan": 0.05,
+        "zero_tilt": -0.04,
+        "offset_pitch": 0.015,
+        "offset_yaw": -0.015,
+    }
+    FOUND = "zero_pan", "zero_tilt", "offset_roll", "offset_pitch", "offset_yaw"
+
+    def test_it_calibrates_itself_and_follows_the_ball(self):
+        pathlib.Path(self.path("whole.toml")).write_text(
+            """
+            [graphs.robot]
+            file = "%s/graphs/head.toml"
+            [modules.track_score]
+            ends_graph = true
+            [[links]]
+            from = "robot_calibrate.result"
+            to = "track_score.begin"
+            """
+            % ROOT
+            + "".join(
+                '[[links]]\nfrom = "robot_head_eyes.%s"\nto = "track_score.%s"\n' % (port, port)
+                for port in ("left_pose", "ball", "ball_seen")
+            ),
+        )
+        options = {"robot_head_tracker.port": 0, "track_score.duration": 20}
+        options |= {"robot_view_%s.window" % side: "no" for side in ("left", "depth")}
+        options |= {"robot_head_eyes.%s" % name: value for name, value in self.CROOKED.items()}
+        self.shell(
+            "hc run whole.toml" + "".join(" --set %s=%s" % each for each in options.items()),
+        )
+        found = re.search(
+            r"calibrate: eyes swapped; they look to pan (\S+)°, tilt (\S+)° with the unit at 0; "
+            r"the right one is off by roll (\S+)°, pitch (\S+)°, yaw (\S+)°",
+            self.err,
+        )
+        self.assertTrue(found, self.err)
+        wrong = [self.CROOKED.get(name, 0) for name in self.FOUND]
+        for angle, truth in zip(found.groups(), wrong):
+            self.assertAlmostEqual(float(angle), math.degrees(truth), delta=0.4)
+        # It is 18 degrees and more if track does not know how its eyes sit.
+        error = re.search(r"track_score: RMS error (\S+)°, acquired after (\S+) s", self.err)
+        self.assertTrue(error, self.err)
+        self.assertLess(float(error[1]), 10)
 
 
 class Read(Head):
