@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
                                      "standard deviation of what speeds a target up: more follows "
                                      "it more closely, and its noise",
                                      {.least = 1e-3, .most = 1e3, .fixed = true});
-  auto predict = module.parameter("predict", 0.01, "s",
+  auto predict = module.parameter("predict", 0.03, "s",
                                   "how far ahead: what passes from a command to the motion",
                                   {.least = 0, .most = 1});
   auto horizon = module.parameter("horizon", 0.3, "s",

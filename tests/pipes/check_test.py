@@ -4,6 +4,7 @@
 
 import os
 import pathlib
+import re
 import unittest
 
 from harness import DATA, Pipes, ROOT
@@ -342,6 +343,15 @@ class Check(Pipes):
         for graph in sorted(set(os.listdir(ROOT / "graphs")) - included):
             out = self.shell("hc check %s/graphs/%s" % (ROOT, graph))
             self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: nothing is wrong\n$")
+
+    def test_a_real_head_has_the_tasks_of_the_simulated_one(self):
+        def tasks(name):
+            text = (ROOT / "graphs" / name).read_text()
+            text = re.sub(r"^(#.*|parameters.calibration_file = .*)\n", "", text, flags=re.M)
+            text = re.sub(r'calibration_file = "[^"]*", ', "", text)
+            return text.replace("real_head.toml", "simulated_head.toml")
+
+        self.assertEqual(tasks("head.toml").strip(), tasks("head_real.toml").strip())
 
     def test_errors_of_an_included_file_name_it_and_programs_are_sought_beside_it(self):
         os.mkdir(self.path("parts"))
