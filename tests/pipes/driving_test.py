@@ -5,6 +5,7 @@ the machine is; the bounds here are those that only a broken system exceeds."""
 
 import re
 import socket
+import time
 import unittest
 
 from harness import ROOT, Pipes
@@ -58,6 +59,26 @@ class Driving(Pipes):
         # The head does not move before the stick, but for what the truth's period leaves open.
         self.assertGreater(median, -2)
         self.assertGreaterEqual(most, median)
+
+
+class Gaze(Pipes):
+    def test_a_wish_of_the_future_holds_nothing_back(self):
+        now = time.time_ns()
+        wishes = "".join(
+            "hc send --type rotation %s --coord 14 --time %d;" % (angles, stamp)
+            for angles, stamp in (
+                ("0 0.3 1", now + 60 * 10**9),
+                ("0 0.1 0.2", now),
+                ("0 0.1 0.2", now + 1000),
+            )
+        )
+        out = self.shell("(%s) | hc gaze --in wish=- --out command=-" % wishes)
+        self.assertRegex(self.err, r"^gaze: left out: a target \d+ ms in the future, as others may be")
+        self.assertEqual(self.err.count("\n"), 1)
+        angles = [line.split() for line in out.splitlines()[1::2]]
+        self.assertGreaterEqual(len(angles), 2)
+        for roll, tilt, pan in angles:
+            self.assertEqual((float(roll), float(tilt), float(pan)), (0, 0.1, 0.2))
 
 
 if __name__ == "__main__":
