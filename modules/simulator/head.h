@@ -5,6 +5,9 @@
 
 #include <Eigen/Geometry>
 
+/// How far above the origin of the world the head's is, at any gaze [m].
+inline constexpr double kNeckHeight = 1.2;
+
 /// What a real head has wrong, and a calibration finds. [rad]
 struct HeadFaults {
   double zero_pan = 0, zero_tilt = 0;  ///< where the eyes look when the unit is at 0

@@ -14,6 +14,7 @@
 
 #include "ball.h"
 #include "head.h"
+#include "screen.h"
 #include "sensor.h"
 #include "sounds.h"
 #include "world.h"
@@ -219,7 +220,7 @@ int main(int argc, char** argv) {
       const bool is_inside = pixel.x() > -0.5 && pixel.x() < camera.width - 0.5 &&
                              pixel.y() > -0.5 && pixel.y() < camera.height - 0.5;
       if (is_inside && *ball_motion != "gone")
-        share = world->share_seen(state.position, T_world_left.translation());
+        share = share_seen(state.position, T_world_left.translation());
     }
     auto seen = hc::table({pixel.x(), pixel.y(), radius, share});
     seen.header.time = time;

@@ -8,20 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
-#include <graphics/renderer.h>
-
-inline constexpr double kNeckHeight = 1.2;  ///< [m]
-
-/// A plate or coloured marker of the room.
-struct Plate {
-  std::string kind;  ///< "aruco", "apriltag" or "colour"
-  int id = 0;        ///< of the dictionary; of a coloured one, its hue [degree]
-  double side = 0;   ///< of the black or coloured square, without the white margin [m]
-  /// Optical convention: x right, y down, z into the plate, as seen by who looks at it; its middle.
-  Eigen::Isometry3d T_world_plate = Eigen::Isometry3d::Identity();
-};
+#include "plates.h"
+#include "scenery.h"
 
 class World {
  public:
@@ -34,30 +24,17 @@ class World {
   /// Writes on the board, black on white: a line, or several.
   void write(const std::string& text);
 
-  /// How much of the ball is seen from a place, with nothing but the screen between. [0 … 1]
-  [[nodiscard]] double share_seen(const Eigen::Vector3d& ball, const Eigen::Vector3d& from) const;
-
+  /// What stands on the board.
+  [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const std::vector<Plate>& plates() const { return plates_; }
-  /// The middle of the board.
-  [[nodiscard]] const Eigen::Vector3d& board() const { return board_place_; }
   [[nodiscard]] const hc::graphics::Light& light() const { return light_; }
 
  private:
-  double random(double least, double most);
-  void add(const hc::graphics::Mesh& mesh, const cv::Mat& texture, const Eigen::Isometry3d& place);
-  void add_box(const Eigen::Vector3d& size, const Eigen::Vector3d& middle, const cv::Mat& texture,
-               double yaw = 0);
-  void add_room();
-  void add_furniture();
-  void add_arc();
-  void add_plates();
+  void add_board();
 
-  hc::graphics::Renderer& renderer_;
-  std::uint64_t seed_, state_;
-  std::vector<hc::graphics::Item> items_;  // the ball is the last
+  Scenery room_;  // the ball is its last
+  hc::graphics::Light light_;
   std::vector<Plate> plates_;
   hc::graphics::SurfaceId board_ = 0;
-  Eigen::Vector3d board_place_ = Eigen::Vector3d::Zero();
-  Eigen::Isometry3d T_world_screen_ = Eigen::Isometry3d::Identity();
-  hc::graphics::Light light_;
+  std::string text_;
 };

@@ -5,6 +5,7 @@
 
 #include "ball.h"
 #include "head.h"
+#include "screen.h"
 
 namespace {
 
@@ -75,8 +76,8 @@ TEST_F(Room, the_screen_hides_the_ball_as_its_truth_says) {
         if (c[0] > 60 && c[0] > 3 * c[1] && c[0] > 3 * c[2]) ++red;
       }
     const double radius = camera.fx * kBallRadius / (T_world_left.inverse() * ball).z();
-    EXPECT_NEAR(red / (3.14159 * radius * radius),
-                world->share_seen(ball, T_world_left.translation()), 0.08)
+    EXPECT_NEAR(red / (3.14159 * radius * radius), share_seen(ball, T_world_left.translation()),
+                0.08)
         << angle;
   }
 }

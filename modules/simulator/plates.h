@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Markers in the room: plates of ArUco and AprilTag, and coloured squares.
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "scenery.h"
+
+/// A plate or coloured marker of the room.
+struct Plate {
+  std::string kind;  ///< "aruco", "apriltag" or "colour"
+  int id = 0;        ///< of the dictionary; of a coloured one, its hue [degree]
+  double side = 0;   ///< of the black or coloured square, without the white margin [m]
+  /// Optical convention: x right, y down, z into the plate, as seen by who looks at it; its middle.
+  Eigen::Isometry3d T_world_plate = Eigen::Isometry3d::Identity();
+};
+
+/// Hangs them up before the robot, each of which it can see from its neck. @returns  where.
+std::vector<Plate> add_plates(Scenery& room);

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "room.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "ball.h"
+#include "paint.h"
+
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Translation3d;
+using Eigen::Vector3d;
+using hc::graphics::make_ball;
+using hc::graphics::make_rectangle;
+
+constexpr double kPi = std::numbers::pi;
+
+}  // namespace
+
+void add_room(Scenery& room) {
+  const double length = kRoomFront - kRoomBack, middle = (kRoomFront + kRoomBack) / 2;
+  auto wall = [&](const Vector3d& place, double yaw, double width) {
+    const double grey = room.random(165, 200);
+    room.add(make_rectangle(static_cast<float>(width), static_cast<float>(kRoomCeiling), {2, 1}),
+             paint_grains(512, 512, {grey, grey + room.random(-6, 6), grey + room.random(-8, 8)},
+                          26, static_cast<std::uint64_t>(room.random(0, 1e6))),
+             hang(place, yaw));
+  };
+  wall({kRoomFront, 0, kRoomCeiling / 2}, 0, 2 * kRoomSide);
+  wall({middle, kRoomSide, kRoomCeiling / 2}, kPi / 2, length);
+  wall({middle, -kRoomSide, kRoomCeiling / 2}, -kPi / 2, length);
+  wall({kRoomBack, 0, kRoomCeiling / 2}, kPi, 2 * kRoomSide);
+  // Who looks down sees the floor with x to the right.
+  Eigen::Matrix3d down, up;
+  down << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  up << 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  room.add(make_rectangle(static_cast<float>(length), 2 * static_cast<float>(kRoomSide), {3, 3}),
+           paint_planks(512, 512, room.seed()), Translation3d(middle, 0, 0) * Isometry3d(down));
+  room.add(make_rectangle(static_cast<float>(length), 2 * static_cast<float>(kRoomSide), {2, 2}),
+           paint_grains(256, 256, {225, 225, 222}, 10, room.seed()),
+           Translation3d(middle, 0, kRoomCeiling) * Isometry3d(up));
+  for (int i = 0; i < 5; ++i) {
+    const auto poster = paint_poster(256, 192, room.seed() * 16 + static_cast<std::uint64_t>(i));
+    const double height = room.random(1.2, 2.0), along = room.random(-0.4, 0.4);
+    Isometry3d place = hang({kRoomFront - 0.01, 2.4 - 2.4 * i + along, height}, 0);
+    if (i == 3) place = hang({1.5 + along, kRoomSide - 0.01, height}, kPi / 2);
+    if (i == 4) place = hang({1.5 + along, -kRoomSide + 0.01, height}, -kPi / 2);
+    room.add(make_rectangle(1.0F, 0.75F), poster, place);
+  }
+}
+
+void add_furniture(Scenery& room) {
+  const auto wood = paint_planks(256, 256, room.seed() + 5);
+  auto cloth = [&](double r, double g, double b) {
+    return paint_grains(128, 128, {r, g, b}, 34, static_cast<std::uint64_t>(room.random(0, 1e6)));
+  };
+  // A table behind the ball's bench, on the left, with a box and a pot on it.
+  const Vector3d table(3.3 + room.random(-0.1, 0.1), 1.2 + room.random(-0.1, 0.1), 0);
+  room.add_box({0.8, 1.4, 0.04}, table + Vector3d(0, 0, 0.74), wood);
+  for (double x : {-0.35, 0.35})
+    for (double y : {-0.63, 0.63})
+      room.add_box({0.05, 0.05, 0.72}, table + Vector3d(x, y, 0.36), wood);
+  room.add_box({0.22, 0.3, 0.2}, table + Vector3d(-0.1, 0.35, 0.86), cloth(92, 104, 128),
+               room.random(-1, 1));
+  room.add(make_ball(0.14F), cloth(150, 146, 120),
+           Isometry3d(Translation3d(table + Vector3d(-0.15, -0.3, 0.9))));
+  // A shelf at the right of the front wall.
+  const Vector3d shelf(kRoomFront - 0.2, -2.2 + room.random(-0.2, 0.2), 0);
+  for (int board = 0; board < 5; ++board)
+    room.add_box({0.36, 1.2, 0.03}, shelf + Vector3d(0, 0, 0.05 + 0.42 * board), wood);
+  for (double y : {-0.6, 0.6}) room.add_box({0.36, 0.03, 1.76}, shelf + Vector3d(0, y, 0.88), wood);
+  for (int board = 0; board < 4; ++board)
+    for (double y = -0.55; y < 0.45;) {
+      const double thick = room.random(0.03, 0.09), high = room.random(0.2, 0.34);
+      const double tint = room.random(-22, 22), grey = room.random(60, 190);
+      room.add_box({0.22, thick, high},
+                   shelf + Vector3d(-0.03, y + thick / 2, 0.065 + 0.42 * board + high / 2),
+                   cloth(grey + tint, grey, grey - tint));
+      y += thick + 0.004;
+    }
+  // Stools before and behind the bench, and a chest.
+  room.add_box({0.3, 0.3, 0.4}, {1.55 + room.random(-0.1, 0.1), 0.75 + room.random(-0.1, 0.1), 0.2},
+               cloth(118, 110, 96), room.random(-1, 1));
+  room.add_box({0.5, 0.9, 0.6}, {3.9, -0.4 + room.random(-0.2, 0.2), 0.3}, cloth(96, 100, 110));
+  room.add(make_ball(0.2F), cloth(170, 168, 160),
+           Isometry3d(Translation3d(3.0, -2.6 + room.random(-0.2, 0.2), 0.2)));
+}
+
+void add_bench(Scenery& room) {
+  const auto wood = paint_planks(256, 64, room.seed() + 9);
+  constexpr int kPieces = 16;
+  const double reach = kArcEnd + 0.12, step = 2 * reach / kPieces;
+  for (int i = 0; i < kPieces; ++i) {
+    const double angle = -reach + (i + 0.5) * step;
+    room.add_box({0.26, 1.06 * step * kArcRadius, 0.03},
+                 {kArcRadius * std::cos(angle), kArcRadius * std::sin(angle), kArcHeight - 0.015},
+                 wood, angle);
+    if (i % 3 == 1)
+      room.add_box(
+          {0.05, 0.05, kArcHeight - 0.03},
+          {kArcRadius * std::cos(angle), kArcRadius * std::sin(angle), (kArcHeight - 0.03) / 2},
+          wood, angle);
+  }
+}

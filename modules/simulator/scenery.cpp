@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenery.h"
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Translation3d;
+using Eigen::Vector3d;
+
+Isometry3d hang(const Vector3d& middle, double yaw) {
+  Eigen::Matrix3d optical;  // columns: x right, y down, z into, of who looks forward
+  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return Translation3d(middle) * AngleAxisd(yaw, Vector3d::UnitZ()) * Isometry3d(optical);
+}
+
+double Scenery::random(double least, double most) {
+  cv::RNG random(state_);
+  const double value = random.uniform(least, most);
+  state_ = random.state;
+  return value;
+}
+
+void Scenery::add(const hc::graphics::Mesh& mesh, const cv::Mat& texture, const Isometry3d& place) {
+  items_.push_back({renderer_.add(mesh, texture), place.cast<float>()});
+}
+
+void Scenery::add_box(const Vector3d& size, const Vector3d& middle, const cv::Mat& texture,
+                      double yaw) {
+  add(hc::graphics::make_box(size.cast<float>()), texture,
+      Isometry3d(Translation3d(middle) * AngleAxisd(yaw, Vector3d::UnitZ())));
+}
+
+void Scenery::move_last(const Vector3d& middle) {
+  items_.back().T_world_object = Isometry3d(Translation3d(middle)).cast<float>();
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a room is furnished with: surfaces at their places in the world, and dice for the rest.
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <graphics/renderer.h>
+
+/// Where a picture hangs, T_world_picture (x right, y down, z into it, of who looks at it).
+///
+/// @param middle  in the world [m].
+/// @param yaw  of the direction into it, 0 being forward, > 0 to the left [rad].
+Eigen::Isometry3d hang(const Eigen::Vector3d& middle, double yaw);
+
+class Scenery {
+ public:
+  /// @param seed  of the dice.
+  Scenery(hc::graphics::Renderer& renderer, std::uint64_t seed)
+      : renderer_(renderer), seed_(seed), state_(seed * 7919 + 1) {}
+
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  /// The next throw, least … most. The order of throws is part of the world: the same seed gives
+  /// the same room.
+  double random(double least, double most);
+
+  /// Puts a surface somewhere, T_world_surface. @param texture  (H, W, 3) u8, red, green, blue.
+  void add(const hc::graphics::Mesh& mesh, const cv::Mat& texture, const Eigen::Isometry3d& place);
+  /// Puts a box somewhere, turned about the vertical. @param size  along x, y, z [m].
+  void add_box(const Eigen::Vector3d& size, const Eigen::Vector3d& middle, const cv::Mat& texture,
+               double yaw = 0);
+  /// Puts another picture on a surface.
+  void set_texture(hc::graphics::SurfaceId surface, const cv::Mat& texture) {
+    renderer_.set_texture(surface, texture);
+  }
+
+  /// All that was put, in that order.
+  [[nodiscard]] const std::vector<hc::graphics::Item>& items() const { return items_; }
+  /// Moves what was put last.
+  void move_last(const Eigen::Vector3d& middle);
+
+ private:
+  hc::graphics::Renderer& renderer_;
+  std::uint64_t seed_, state_;
+  std::vector<hc::graphics::Item> items_;
+};
