@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The ears: give what they hear of the loudspeaker in the room, piece by piece without a gap.
+
+#include <cstdint>
+
+#include <Eigen/Geometry>
+
+#include <hc/node/module.h>
+
+class Ears {
+ public:
+  using Output = hc::Output<decltype(hc::sound<std::int16_t>(2))>;
+
+  /// @param start  time of the first sample [ns].
+  Ears(Output sound, std::int64_t start) : sound_(std::move(sound)), start_(start) {}
+
+  /// Gives all that came since the last time, the head being there. @param until  [ns]
+  void hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head);
+
+ private:
+  Output sound_;
+  std::int64_t start_;
+  std::int64_t sample_ = 0;  // the next
+};

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eyes.h"
+
+#include <hc/adapter/opencv.h>
+
+Eyes::Eyes(const Parameters& parameters, hc::graphics::Renderer& renderer, Output left,
+           Output right)
+    : parameters_(parameters),
+      renderer_(renderer),
+      head_(parameters.head()),
+      camera_(parameters.camera()),
+      left_{std::move(left), Sensor(2 * parameters.world_seed())},
+      right_{std::move(right), Sensor(2 * parameters.world_seed() + 1)} {}
+
+void Eyes::take(const View& view, cv::Mat* depth) {
+  auto first = head_.left_eye(), second = head_.right_eye();
+  if (*parameters_.swapped) std::swap(first, second);
+  take(left_, first, view, depth);
+  take(right_, second, view, nullptr);
+}
+
+void Eyes::take(Eye& eye, const Eigen::Isometry3d& T_head_eye, const View& view, cv::Mat* depth) {
+  if (!eye.output.linked() && depth == nullptr) return;
+  auto draft = eye.output.loan(camera_.width, camera_.height);
+  draft.header.time = view.time;
+  cv::Mat rgb = hc::value_or_end(hc::as_mat(draft));
+  auto light = view.light;
+  light.exposure = static_cast<float>(*parameters_.exposure);
+  const Eigen::Isometry3d T_world_eye = view.T_world_head * T_head_eye;
+  if (auto drawn = renderer_.draw(view.items, camera_, T_world_eye, light, rgb, depth); !drawn)
+    throw hc::ModuleError(drawn.error());
+  eye.sensor.apply(rgb, *parameters_.blur, *parameters_.noise,
+                   static_cast<std::uint64_t>(view.number));
+  late_.put(view.time + static_cast<std::int64_t>(*parameters_.latency * 1e9),
+            {eye.output, std::move(draft)});
+}
+
+void Eyes::send_due(std::int64_t now) {
+  while (auto picture = late_.take(now)) picture->output.send(std::move(picture->draft));
+}

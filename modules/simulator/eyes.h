@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The eyes: draw what they see, as cameras would take it, and give it when a camera would.
+
+#include <cstdint>
+#include <vector>
+
+#include <graphics/renderer.h>
+#include <hc/node/module.h>
+
+#include "late.h"
+#include "parameters.h"
+#include "sensor.h"
+
+/// What a pair of pictures is taken of.
+struct View {
+  std::int64_t time;    ///< [ns]
+  std::int64_t number;  ///< of the pair
+  Eigen::Isometry3d T_world_head;
+  const std::vector<hc::graphics::Item>& items;
+  hc::graphics::Light light;  ///< with exposure 1
+};
+
+class Eyes {
+ public:
+  using Kind = decltype(hc::rgb_image<std::uint8_t>());
+  using Output = hc::Output<Kind>;
+
+  /// @param parameters, renderer  must outlive it.
+  Eyes(const Parameters& parameters, hc::graphics::Renderer& renderer, Output left, Output right);
+
+  /// Takes a pair; a picture that nobody takes is not drawn, as that is most of the work.
+  ///
+  /// @param[out] depth  of the left picture, (H, W) f32 [m], 0 where nothing is; null: unwanted.
+  void take(const View& view, cv::Mat* depth);
+  /// Sends the pictures that are due [ns].
+  void send_due(std::int64_t now);
+  /// Whether no picture waits to be sent.
+  [[nodiscard]] bool empty() const { return late_.empty(); }
+
+ private:
+  struct Eye {
+    Output output;
+    Sensor sensor;
+  };
+  struct Picture {
+    Output output;
+    hc::DraftOf<Kind> draft;
+  };
+  void take(Eye& eye, const Eigen::Isometry3d& T_head_eye, const View& view, cv::Mat* depth);
+
+  const Parameters& parameters_;
+  hc::graphics::Renderer& renderer_;
+  const Head head_;
+  const hc::graphics::PinholeCamera camera_;
+  Eye left_, right_;
+  Late<Picture> late_;
+};

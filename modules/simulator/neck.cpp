@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neck.h"
+
+#include <algorithm>
+
+#include "head.h"
+
+void Neck::add(std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
+  hc::frames::Pose pose;
+  pose.q = R_robot_head;
+  gazes_.add(time, pose);
+}
+
+bool Neck::knows(std::int64_t time) const {
+  return gazes_.empty() || gazes_.known().last >= time;
+}
+
+Eigen::Isometry3d Neck::at(std::int64_t time) const {
+  Eigen::Isometry3d T_world_head(Eigen::Translation3d(0, 0, kNeckHeight));
+  if (gazes_.empty()) return T_world_head;
+  const auto known = gazes_.known();
+  return T_world_head * gazes_.at(std::clamp(time, known.first, known.last)).transformation();
+}

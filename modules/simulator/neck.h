@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Where the head is in the world, by the gazes that were told. Pure.
+
+#include <cstdint>
+
+#include <Eigen/Geometry>
+
+#include <frames/track.h>
+
+class Neck {
+ public:
+  /// Takes in how the head was turned. @param time  over 0 [ns].
+  void add(std::int64_t time, const Eigen::Quaterniond& R_robot_head);
+
+  /// Whether no later gaze tells more of a time: the head stands still without any.
+  [[nodiscard]] bool knows(std::int64_t time) const;
+
+  /// T_world_head at a time; the nearest that is known of, straight ahead without any.
+  [[nodiscard]] Eigen::Isometry3d at(std::int64_t time) const;
+
+ private:
+  hc::frames::Track gazes_{hc::frames::Memory{}};
+};

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// When pairs of pictures are taken: pair n is taken n / rate after the start. Pure.
+
+#include <cstdint>
+
+/// When so many periods have passed, without adding up errors. [ns]
+/// @param rate  [Hz]
+std::int64_t period_end(std::int64_t number, double rate);
+
+class Schedule {
+ public:
+  /// @param start  time of pair 0 [ns]. @param rate  pairs a second, over 0 [Hz].
+  Schedule(std::int64_t start, double rate) : start_(start), rate_(rate) {}
+
+  /// Number and time [ns] of the pair that is next.
+  [[nodiscard]] std::int64_t number() const { return number_; }
+  [[nodiscard]] std::int64_t time() const { return start_ + period_end(number_, rate_); }
+  /// From the start to the next pair [s].
+  [[nodiscard]] double seconds() const { return static_cast<double>(time() - start_) * 1e-9; }
+  /// Whether the next pair is the first of a second, counted in pairs.
+  [[nodiscard]] bool begins_second() const;
+
+  /// The next pair has been taken.
+  void next() { ++number_; }
+  /// Leaves out pairs that could not be taken in time, but for the latest that is due.
+  void catch_up(std::int64_t now);
+  /// Whether the next pair is to be taken. Where the head was becomes known a moment later, which
+  /// is waited for, but no longer than 0.1 s.
+  /// @param gaze_is_known  of that pair's time.
+  [[nodiscard]] bool is_due(std::int64_t now, bool gaze_is_known) const;
+
+ private:
+  std::int64_t start_;
+  double rate_;
+  std::int64_t number_ = 0;
+};

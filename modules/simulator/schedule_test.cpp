@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "schedule.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr std::int64_t kStart = 1'700'000'000'000'000'000, kMillisecond = 1'000'000;
+
+TEST(Schedule, adds_up_no_errors) {
+  EXPECT_EQ(period_end(0, 30), 0);
+  EXPECT_EQ(period_end(1, 30), 33'333'333);
+  EXPECT_EQ(period_end(3'000'000, 30), 100'000 * 1'000 * kMillisecond);
+  EXPECT_EQ(period_end(3, 0.5), 6'000 * kMillisecond);
+}
+
+TEST(Schedule, has_pair_n_at_n_periods_from_the_start) {
+  Schedule schedule(kStart, 20);
+  EXPECT_EQ(schedule.time(), kStart);
+  schedule.next();
+  schedule.next();
+  EXPECT_EQ(schedule.number(), 2);
+  EXPECT_EQ(schedule.time(), kStart + 100 * kMillisecond);
+  EXPECT_DOUBLE_EQ(schedule.seconds(), 0.1);
+}
+
+TEST(Schedule, tells_the_first_pair_of_each_second) {
+  for (const auto& [rate, expected] : {std::pair{3.0, 4}, {0.1, 10}, {1.4, 10}, {20.0, 1}}) {
+    Schedule schedule(kStart, rate);
+    int first = 0;
+    for (; schedule.number() < 10; schedule.next()) first += schedule.begins_second();
+    EXPECT_EQ(first, expected) << rate;
+  }
+}
+
+TEST(Schedule, leaves_out_what_could_not_be_taken_in_time) {
+  Schedule schedule(kStart, 10);
+  schedule.catch_up(kStart + 99 * kMillisecond);
+  EXPECT_EQ(schedule.number(), 0);
+  schedule.catch_up(kStart + 350 * kMillisecond);
+  EXPECT_EQ(schedule.number(), 3);
+  schedule.next();
+  schedule.catch_up(kStart + 360 * kMillisecond);  // never back
+  EXPECT_EQ(schedule.number(), 4);
+}
+
+TEST(Schedule, waits_for_its_time_and_a_while_for_the_gaze) {
+  Schedule schedule(kStart, 10);
+  EXPECT_FALSE(schedule.is_due(kStart - 1, true));
+  EXPECT_TRUE(schedule.is_due(kStart, true));
+  EXPECT_FALSE(schedule.is_due(kStart + 99 * kMillisecond, false));
+  EXPECT_TRUE(schedule.is_due(kStart + 100 * kMillisecond, false));
+}
+
+}  // namespace

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truth.h"
+
+#include <algorithm>
+
+#include <hc/adapter/eigen.h>
+
+#include "screen.h"
+
+namespace {
+
+constexpr std::int32_t kWorld = 1, kDepth = 11;
+constexpr std::int32_t kWorldFromHead = 1003, kWorldFromLeftEye = 1004, kWorldFromRightEye = 1005;
+
+template <typename Output>
+void send_pose(Output& output, std::int64_t time, const Eigen::Isometry3d& pose) {
+  if (!output.linked()) return;
+  auto draft = output.loan(4, 4);
+  draft.header.time = time;
+  hc::as_eigen<double>(draft) = pose.matrix();
+  output.send(std::move(draft));
+}
+
+}  // namespace
+
+std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_eye,
+                           const hc::graphics::PinholeCamera& camera) {
+  const Eigen::Vector3d p_eye = T_world_eye.inverse() * ball;
+  if (p_eye.z() <= camera.near) return {0, 0, 0, 0};
+  const Eigen::Vector2d pixel = camera.project(p_eye);
+  const bool is_inside = pixel.x() > -0.5 && pixel.x() < camera.width - 0.5 && pixel.y() > -0.5 &&
+                         pixel.y() < camera.height - 0.5;
+  return {pixel.x(), pixel.y(), camera.fx * kBallRadius / p_eye.z(),
+          is_inside ? share_seen(ball, T_world_eye.translation()) : 0};
+}
+
+std::array<double, 10> row_of(const Plate& plate) {
+  const double kind = plate.kind == "aruco" ? 0 : plate.kind == "apriltag" ? 1 : 2;
+  const Eigen::Vector3d p = plate.T_world_plate.translation();
+  const Eigen::Quaterniond q(plate.T_world_plate.linear());
+  return {kind, double(plate.id), plate.side, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+Truth::Truth(hc::Module& module)
+    : depth(module.output("depth", hc::intensity_image<float>().in(kDepth),
+                          "truth: depth of the left picture [m], 0 where nothing is")),
+      head_pose_(module.output("head_pose", hc::transformation<double>(4, 4).in(kWorldFromHead),
+                               "truth: T_world_head as the pictures were taken")),
+      left_pose_(module.output("left_pose", hc::transformation<double>(4, 4).in(kWorldFromLeftEye),
+                               "truth: T_world_left_eye")),
+      right_pose_(module.output("right_pose",
+                                hc::transformation<double>(4, 4).in(kWorldFromRightEye),
+                                "truth: T_world_right_eye")),
+      ball_(module.output("ball", hc::position<double>(6).in(kWorld),
+                          "truth: the ball's middle [m] and velocity [m/s]")),
+      ball_seen_(module.output("ball_seen", hc::table<double>(),
+                               "truth, 1 x 4: u, v, radius of the ball in the left picture [px], "
+                               "share of it that is seen")),
+      plates_(module.output("plates", hc::table<double>(),
+                            "truth, a row each: kind (0 aruco, 1 apriltag, 2 colour), id, side "
+                            "[m], x y z [m] and qx qy qz qw in the world")),
+      board_(module.output("board", hc::string(), "truth: what stands on the board")) {}
+
+void Truth::send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head, const Head& head) {
+  send_pose(head_pose_, time, T_world_head);
+  send_pose(left_pose_, time, T_world_head * head.left_eye());
+  send_pose(right_pose_, time, T_world_head * head.right_eye());
+}
+
+void Truth::send_ball(std::int64_t time, const Ball::State& ball, bool is_there,
+                      const Eigen::Isometry3d& T_world_left,
+                      const hc::graphics::PinholeCamera& camera) {
+  if (ball_.linked()) {
+    auto draft = ball_.loan(1, 1);
+    draft.header.time = time;
+    hc::as_eigen<double>(draft) << ball.position.transpose(), ball.velocity.transpose();
+    ball_.send(std::move(draft));
+  }
+  const auto [u, v, radius, share] = seen(ball.position, T_world_left, camera);
+  auto row = hc::table({u, v, radius, is_there ? share : 0});
+  row.header.time = time;
+  ball_seen_.send(row);
+}
+
+void Truth::send_board(std::int64_t time, const std::string& text) {
+  auto message = hc::string(text);
+  message.header.time = time;
+  board_.send(message);
+}
+
+void Truth::send_plates(std::int64_t time, const std::vector<Plate>& plates) {
+  auto draft = plates_.loan(10, static_cast<std::int32_t>(plates.size()));
+  draft.header.time = time;
+  for (std::size_t i = 0; i < plates.size(); ++i)
+    std::ranges::copy(row_of(plates[i]), draft.matrix().row(i).begin());
+  plates_.send(std::move(draft));
+}

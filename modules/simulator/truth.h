@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// How it really is: the outputs that a score is measured by.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <graphics/camera.h>
+#include <hc/node/module.h>
+
+#include "ball.h"
+#include "head.h"
+#include "plates.h"
+
+/// How the ball is seen: u, v, radius [px], share of it that is seen, 0 where it is not within the
+/// picture [0 … 1].
+///
+/// @param ball  its middle, in the world [m].
+std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_eye,
+                           const hc::graphics::PinholeCamera& camera);
+
+/// A plate as a row: kind (0 aruco, 1 apriltag, 2 colour), id, side [m], x y z [m] and
+/// qx qy qz qw of T_world_plate.
+std::array<double, 10> row_of(const Plate& plate);
+
+class Truth {
+ public:
+  explicit Truth(hc::Module& module);
+
+  hc::Output<decltype(hc::intensity_image<float>())> depth;
+
+  void send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head, const Head& head);
+  /// @param is_there  otherwise nothing of it is seen.
+  void send_ball(std::int64_t time, const Ball::State& ball, bool is_there,
+                 const Eigen::Isometry3d& T_world_left, const hc::graphics::PinholeCamera& camera);
+  void send_board(std::int64_t time, const std::string& text);
+  void send_plates(std::int64_t time, const std::vector<Plate>& plates);
+
+ private:
+  using Poses = hc::Output<decltype(hc::transformation<double>(4, 4))>;
+  using Tables = hc::Output<decltype(hc::table<double>())>;
+
+  Poses head_pose_, left_pose_, right_pose_;
+  hc::Output<decltype(hc::position<double>(6))> ball_;
+  Tables ball_seen_, plates_;
+  hc::Output<decltype(hc::string())> board_;
+};

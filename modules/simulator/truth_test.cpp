@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truth.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+/// Stands in the world's origin, at the height of the ball, and looks along x, turned to the left.
+Isometry3d eye(double pan) {
+  Eigen::Matrix3d optical;
+  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return Eigen::Translation3d(0, 0, 1.2) * Eigen::AngleAxisd(pan, Vector3d::UnitZ()) *
+         Isometry3d(optical);
+}
+
+TEST(SeenBall, is_where_the_camera_projects_it) {
+  const auto [u, v, radius, share] = seen({2, 0.2, 1.1}, eye(0), {});
+  EXPECT_NEAR(u, 399.5 - 600 * 0.1, 1e-9);
+  EXPECT_NEAR(v, 299.5 + 600 * 0.05, 1e-9);
+  EXPECT_NEAR(radius, 600 * kBallRadius / 2, 1e-9);
+  EXPECT_EQ(share, 1);
+}
+
+TEST(SeenBall, has_no_share_outside_the_picture) {
+  const double edge = std::atan(400.0 / 600);
+  EXPECT_EQ(seen({2, 0, 1.2}, eye(edge - 0.01), {})[3], 1);
+  EXPECT_EQ(seen({2, 0, 1.2}, eye(edge + 0.01), {})[3], 0);
+  EXPECT_GT(seen({2, 0, 1.2}, eye(edge + 0.01), {})[2], 0);
+}
+
+TEST(SeenBall, is_nowhere_behind_the_eye) {
+  EXPECT_EQ(seen({-2, 0, 1.2}, eye(0), {}), (std::array<double, 4>{}));
+}
+
+TEST(PlateRow, has_kind_number_side_and_pose) {
+  Plate plate{"apriltag", 7, 0.16, Isometry3d(Eigen::Translation3d(1, 2, 3))};
+  EXPECT_EQ(row_of(plate), (std::array<double, 10>{1, 7, 0.16, 1, 2, 3, 0, 0, 0, 1}));
+  plate.kind = "aruco";
+  EXPECT_EQ(row_of(plate)[0], 0);
+  plate.kind = "colour";
+  plate.T_world_plate.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitZ()));
+  const auto row = row_of(plate);
+  EXPECT_EQ(row[0], 2);
+  EXPECT_NEAR(row[8], std::sqrt(0.5), 1e-12);  // qz
+  EXPECT_NEAR(row[9], std::sqrt(0.5), 1e-12);  // qw
+}
+
+}  // namespace
