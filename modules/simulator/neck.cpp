@@ -19,5 +19,7 @@ Eigen::Isometry3d Neck::at(std::int64_t time) const {
   Eigen::Isometry3d T_world_head(Eigen::Translation3d(0, 0, kNeckHeight));
   if (gazes_.empty()) return T_world_head;
   const auto known = gazes_.known();
-  return T_world_head * gazes_.at(std::clamp(time, known.first, known.last)).transformation();
+  time = std::clamp(time, known.first, known.last);
+  if (const auto gap = gazes_.gap_at(time)) time = gap->first;
+  return T_world_head * gazes_.at(time).transformation();
 }

@@ -16,7 +16,9 @@ class Neck {
   /// Whether no later gaze tells more of a time: the head stands still without any.
   [[nodiscard]] bool knows(std::int64_t time) const;
 
-  /// T_world_head at a time; the nearest that is known of, straight ahead without any.
+  /// T_world_head at a time: between two gazes of a second or less what lies between, else the one
+  /// told before, since the head rests while nothing tells of it; before all of them the first, and
+  /// straight ahead without any.
   [[nodiscard]] Eigen::Isometry3d at(std::int64_t time) const;
 
  private:

@@ -36,4 +36,12 @@ TEST(Neck, turns_evenly_between_gazes_and_rests_outside_them) {
   EXPECT_FALSE(neck.knows(20 * kMillisecond + 1));
 }
 
+TEST(Neck, rests_while_nothing_tells_of_it) {
+  Neck neck;
+  neck.add(1000 * kMillisecond, hc::frames::rotation(0, 0, 0.1));
+  neck.add(3000 * kMillisecond, hc::frames::rotation(0, 0, 0.3));
+  EXPECT_NEAR(pan(neck, 2900 * kMillisecond), 0.1, 1e-12);
+  EXPECT_NEAR(pan(neck, 3000 * kMillisecond), 0.3, 1e-12);
+}
+
 }  // namespace
