@@ -39,35 +39,36 @@ layout(location = 0) out vec4 colour;
 void main() { colour = vec4(texture(picture, place).rgb * brightness, 1.0); }
 )";
 
-Result<GLuint> compile(GLenum kind, const char* source) {
-  GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &source, nullptr);
-  glCompileShader(shader);
+/// Whether OpenGL did what it was told with a shader or a program.
+///
+/// @param what  GL_COMPILE_STATUS or GL_LINK_STATUS. @param get, get_log  glGetShaderiv and
+/// glGetShaderInfoLog, or those of programs. Errors: Unsupported (what its compiler says).
+template <typename Get, typename GetLog>
+Status outcome(GLuint object, GLenum what, Get get, GetLog get_log) {
   GLint done = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
-  if (done != 0) return shader;
+  get(object, what, &done);
+  if (done != 0) return {};
   char log[256] = "";
-  glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+  get_log(object, sizeof log, nullptr, log);
   return Error{Code::Unsupported, std::string("graphics: shader: ") + log};
 }
 
 Result<GLuint> link_program() {
-  auto vertex = compile(GL_VERTEX_SHADER, kVertexShader);
-  if (!vertex) return vertex.error();
-  auto fragment = compile(GL_FRAGMENT_SHADER, kFragmentShader);
-  if (!fragment) return fragment.error();
-  GLuint program = glCreateProgram();
-  for (GLuint shader : {*vertex, *fragment}) {
+  const GLuint program = glCreateProgram();
+  for (auto [kind, source] : {std::pair{GLenum{GL_VERTEX_SHADER}, kVertexShader},
+                              {GLenum{GL_FRAGMENT_SHADER}, kFragmentShader}}) {
+    const GLuint shader = glCreateShader(kind);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    auto compiled = outcome(shader, GL_COMPILE_STATUS, glGetShaderiv, glGetShaderInfoLog);
+    if (!compiled) return compiled.error();
     glAttachShader(program, shader);
     glDeleteShader(shader);
   }
   glLinkProgram(program);
-  GLint done = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &done);
-  if (done != 0) return program;
-  char log[256] = "";
-  glGetProgramInfoLog(program, sizeof log, nullptr, log);
-  return Error{Code::Unsupported, std::string("graphics: shaders: ") + log};
+  auto linked = outcome(program, GL_LINK_STATUS, glGetProgramiv, glGetProgramInfoLog);
+  if (!linked) return linked.error();
+  return program;
 }
 
 /// From a camera's frame to OpenGL's clip space. Rows come out from the top down, as OpenGL's first
@@ -80,6 +81,17 @@ Eigen::Matrix4f projection(const PinholeCamera& camera) {
       0, 0, (f + n) / (f - n), -2 * f * n / (f - n),                 //
       0, 0, 1, 0;
   return matrix.cast<float>();
+}
+
+/// A new buffer, bound, with elements in it.
+template <typename T>
+GLuint upload(GLenum kind, const std::vector<T>& elements) {
+  GLuint buffer = 0;
+  glGenBuffers(1, &buffer);
+  glBindBuffer(kind, buffer);
+  glBufferData(kind, static_cast<GLsizeiptr>(elements.size() * sizeof(T)), elements.data(),
+               GL_STATIC_DRAW);
+  return buffer;
 }
 
 struct Surface {
@@ -138,15 +150,8 @@ SurfaceId Renderer::add(const Mesh& mesh, const cv::Mat& texture) {
   surface.count = static_cast<GLsizei>(mesh.indices.size());
   glGenVertexArrays(1, &surface.vertices);
   glBindVertexArray(surface.vertices);
-  glGenBuffers(1, &surface.corners);
-  glBindBuffer(GL_ARRAY_BUFFER, surface.corners);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
-               mesh.vertices.data(), GL_STATIC_DRAW);
-  glGenBuffers(1, &surface.indices);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, surface.indices);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
-               mesh.indices.data(), GL_STATIC_DRAW);
+  surface.corners = upload(GL_ARRAY_BUFFER, mesh.vertices);
+  surface.indices = upload(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
   const std::pair<GLint, std::size_t> attributes[] = {{3, offsetof(Vertex, position)},
                                                       {3, offsetof(Vertex, normal)},
                                                       {2, offsetof(Vertex, texture)}};
