@@ -37,8 +37,7 @@ class Bodies(Pipes):
         return self.start("exec " + command + " 2>said", stdout=-3)
 
     def said(self):
-        path = pathlib.Path(self.path("said"))
-        return path.read_text() if path.exists() else ""
+        return self.read("said")
 
     def wait_for(self, line, times=1):
         """Waits until a line has been said so often."""
@@ -46,8 +45,7 @@ class Bodies(Pipes):
 
     def rows(self, name):
         """The elements of a file of messages with a row each, as numbers."""
-        path = pathlib.Path(self.path(name))
-        lines = path.read_text().split("\n")[:-1] if path.exists() else []
+        lines = self.read(name).split("\n")[:-1]
         return [list(map(float, line.split())) for line in lines[1::2]]
 
     def stop(self, process, status=0):
@@ -106,7 +104,7 @@ class HeadTracker(Bodies):
         rotation, position = self.feed(11, 22, 33, 30, 20, 10)
         self.assert_close(rotation, [math.radians(a) for a in (10, -20, -30)])
         self.assert_close(position, [-0.3, -0.1, 0.2])
-        header = pathlib.Path(self.path("rotation")).read_text().split()
+        header = self.read("rotation").split()
         self.assertEqual(header[6:11], ["20390", "0", "14", "1", "1"])
         self.assertGreater(int(header[5]), 1_600_000_000_000_000_000)
         self.stop(process)
@@ -196,12 +194,12 @@ class Sound(Bodies):
             "hc microphone in.wav --rate 8000 >paced.mtp; hc microphone in.wav --rate 8000 "
             "--paced=false >fast.mtp"
         )
-        paced = pathlib.Path(self.path("paced.mtp")).read_bytes()
-        fast = pathlib.Path(self.path("fast.mtp")).read_bytes()
+        paced = self.read_bytes("paced.mtp")
+        fast = self.read_bytes("fast.mtp")
         self.assertEqual(len(paced), len(fast))
 
     def test_what_is_no_wav_file_is_refused(self):
-        pathlib.Path(self.path("no.wav")).write_bytes(b"RIFF\xff\xff\xff\xffWAVEfmt ")
+        self.write("no.wav", b"RIFF\xff\xff\xff\xffWAVEfmt ")
         self.shell("hc microphone no.wav", status=1)
         self.assertIn("microphone: Malformed: no.wav: has no samples", self.err)
         self.shell("hc microphone gone.wav", status=1)
@@ -216,7 +214,7 @@ class Sound(Bodies):
             "hc microphone in.wav --paced=false | "
             "SDL_AUDIODRIVER=disk SDL_DISKAUDIOFILE=heard.raw hc speaker"
         )
-        heard = pathlib.Path(self.path("heard.raw")).read_bytes()
+        heard = self.read_bytes("heard.raw")
         self.assertIn(samples.tobytes(), heard)
 
     def test_a_file_is_whole_after_the_speaker_was_killed(self):
@@ -271,7 +269,7 @@ class SoundServer(Bodies):
             stdout=-3,
         )
         wait_until(lambda: os.path.exists(self.path("run/pulse/native")) or server.poll())
-        self.assertIsNone(server.poll(), pathlib.Path(self.path("server")).read_text())
+        self.assertIsNone(server.poll(), self.read("server"))
         return server
 
     def kill_server(self, server):
@@ -319,7 +317,7 @@ class SoundServer(Bodies):
         self.assertRegex(self.said(), r"speaker: the loudspeaker is there; [1-9]\d* messages were")
 
         def ears_said():
-            return pathlib.Path(self.path("ears")).read_text()
+            return self.read("ears")
 
         wait_until(lambda: "microphone: the microphone is there" in ears_said())
         self.assertEqual(ears_said().count("the microphone has gone; looks for it"), 1)
@@ -342,7 +340,7 @@ public <words> = (hello | robot | seven | window | yellow | river | tomorrow | e
             "hc send --text '%s' | hc speak %s --out sound=- --out words=file:words.mtp | "
             "hc speaker --device none --save said.wav --rate 16000" % (text, options)
         )
-        rows = pathlib.Path(self.path("words.mtp")).read_bytes()
+        rows = self.read_bytes("words.mtp")
         header, elements = rows.split(b"\n", 1)
         width, height = map(int, header.split()[-2:])
         cut = [elements[i * width : (i + 1) * width] for i in range(height)]
@@ -366,7 +364,7 @@ public <words> = (hello | robot | seven | window | yellow | river | tomorrow | e
         # Of a grammar of eight words in any order: a synthetic voice is too far from those that
         # the free model of English was trained with.
         self.speak(self.WORDS)
-        pathlib.Path(self.path("words.gram")).write_text(self.GRAMMAR)
+        self.write("words.gram", self.GRAMMAR)
         heard = self.shell("pocketsphinx_continuous -infile said.wav -jsgf words.gram 2>/dev/null")
         self.assertEqual(heard.split(), self.WORDS.split())
 

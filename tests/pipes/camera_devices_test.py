@@ -67,12 +67,10 @@ class CameraDevices(Pipes):
         return self.start("hc camera %s --width 8 --height 8 2>said | hc cat >seen" % arguments)
 
     def said(self):
-        with open(self.path("said"), encoding="utf8") as file:
-            return file.read().splitlines()
+        return self.read("said").splitlines()
 
     def seen(self, word="rgb_image"):
-        with open(self.path("seen"), encoding="utf8") as file:
-            return file.read().count(word)
+        return self.read("seen").count(word)
 
     def test_pictures_of_a_camera_with_its_time(self):
         self.fake(1)
@@ -109,7 +107,7 @@ class CameraDevices(Pipes):
         )
         # What cannot be set is told, and pictures go on.
         command = self.start("hc send --text 'set gain=9999' >commands")
-        wait_until(lambda: os.path.exists(self.path("said")) and self.said())
+        wait_until(self.said)
         self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: its gain is from ")
         count = self.seen()
         wait_until(lambda: self.seen() > count)
@@ -134,7 +132,7 @@ class CameraDevices(Pipes):
 
     def test_a_camera_that_comes_later(self):
         self.camera("aravis:127.0.0.1")
-        wait_until(lambda: os.path.exists(self.path("said")) and self.said())
+        wait_until(self.said)
         self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: not there: .*; trying again$")
         self.fake(1)
         wait_until(lambda: self.seen() > 0)

@@ -3,7 +3,6 @@
 """hc check on broken graphs: each line that is wrong ends with #! and what is to be said of it."""
 
 import os
-import pathlib
 import re
 import unittest
 
@@ -300,11 +299,6 @@ def wanted_lines(text):
 
 
 class Check(Pipes):
-    def write(self, name, text, mode=0o644):
-        path = pathlib.Path(self.path(name))
-        path.write_text(text)
-        path.chmod(mode)
-
     def write_programs(self):
         for name, text in PROGRAMS.items():
             self.write(name, text, 0o755)
@@ -369,7 +363,7 @@ class Check(Pipes):
         for verb in "check", "run":
             self.shell("hc %s ." % verb, 1)
             self.assertEqual(self.err, "hc %s: NotFound: .: is a folder, not a file\n" % verb)
-            pathlib.Path(self.path("latin.toml")).write_bytes(b"[modules.camera]\n# \xe4\n")
+            self.write("latin.toml", b"[modules.camera]\n# \xe4\n")
             self.shell("hc %s latin.toml" % verb, 2)
             self.assertEqual(
                 self.err,

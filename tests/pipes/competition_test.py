@@ -35,7 +35,7 @@ def read_messages(path):
 
 
 class Demonstrations(Pipes):
-    def write(self, name, *links, **changes):
+    def write_copy(self, name, *links, **changes):
         """A copy of a demonstration that records outputs, as `"herald.command"`, into files."""
         text = (ROOT / "graphs" / name).read_text()
         for old, new in changes.items():
@@ -45,14 +45,10 @@ class Demonstrations(Pipes):
             text += '\n[[links]]\nfrom = "%s"\nto = "file:%s.mtp"\n' % (output, output)
             if output.endswith(".out") and output.startswith("router"):
                 text += 'route = "all"\n'
-        pathlib.Path(self.path(name)).write_text(text)
+        self.write(name, text)
 
-    def read(self, output):
+    def recorded(self, output):
         return read_messages(self.path(output + ".mtp"))
-
-    def said(self, name):
-        path = pathlib.Path(self.path(name))
-        return path.read_text() if path.exists() else ""
 
     def interrupt(self, process):
         os.kill(process.pid, signal.SIGINT)
@@ -65,29 +61,29 @@ class Demonstrations(Pipes):
         try:
             wait_until(condition)
         except AssertionError:
-            self.fail(self.said(errors)[-3000:])
+            self.fail(self.read(errors)[-3000:])
 
     def test_a_ring_of_routers_delivers_once_and_ends_messages_by_ttl(self):
         sources, letters = ("herald", "whisperer", "caller"), "abc"
-        self.write(
+        self.write_copy(
             "ring.toml",
             *(source + ".command" for source in sources),
             *("sink_%s.out" % letter for letter in letters),
             *("router_%s.counts" % letter for letter in letters),
         )
         process = self.start("exec hc run ring.toml 2>errors")
-        ended = lambda: all(source + ": ended" in self.said("errors") for source in sources)
+        ended = lambda: all(source + ": ended" in self.read("errors") for source in sources)
         self.wait_for(ended, "errors")
-        sent = {source: self.read(source + ".command") for source in sources}
+        sent = {source: self.recorded(source + ".command") for source in sources}
         self.assertTrue(all(sent.values()))
 
         def counted(column):
-            counts = [self.read("router_%s.counts" % letter)[-1:] for letter in letters]
+            counts = [self.recorded("router_%s.counts" % letter)[-1:] for letter in letters]
             return sum(count[0].rows[0][column] for count in counts if count)
 
         def received(letter, source):
             wanted = {"herald": 11, "whisperer": 12, "caller": 13}[source]
-            return [each for each in self.read("sink_%s.out" % letter) if each.src == wanted]
+            return [each for each in self.recorded("sink_%s.out" % letter) if each.src == wanted]
 
         # Both ways round meet twice, and both neighbours of the first router end the short-lived.
         kTtl, kSeen = 1, 2
@@ -115,47 +111,48 @@ class Demonstrations(Pipes):
         self.assertEqual({each.ttl for each in received("a", "whisperer")}, {1})
         self.assertEqual({each.ttl for each in received("c", "caller")}, {6})
         self.assertEqual({each.dst for each in received("c", "caller")}, {23})
-        self.assertRegex(self.said("errors"), r"router_b: \d+ passed; dropped: \d+ ttl, \d+ seen")
+        self.assertRegex(self.read("errors"), r"router_b: \d+ passed; dropped: \d+ ttl, \d+ seen")
 
     def test_a_gateway_joins_two_graphs(self):
         port = free_port()
-        self.write("gateway_b.toml", "sink.out", "brightness.mean", "router.out", _7000_=port)
-        self.write("gateway_a.toml", "caller.command", "spy.command", _7000_=port)
+        self.write_copy("gateway_b.toml", "sink.out", "brightness.mean", "router.out", _7000_=port)
+        self.write_copy("gateway_a.toml", "caller.command", "spy.command", _7000_=port)
         other = self.start("exec hc run gateway_b.toml 2>errors_b")
         self.shell("hc run gateway_a.toml 2>errors_a")
-        sent = self.read("caller.command")
+        sent = self.recorded("caller.command")
         self.assertTrue(sent)
         arrived = lambda: (
-            len(self.read("sink.out")) >= len(sent) and len(self.read("brightness.mean")) >= 3
+            len(self.recorded("sink.out")) >= len(sent)
+            and len(self.recorded("brightness.mean")) >= 3
         )
         self.wait_for(arrived, "errors_b")
         self.interrupt(other)
-        received = self.read("sink.out")
+        received = self.recorded("sink.out")
         self.assertEqual([each.seq for each in received], [each.seq for each in sent])
         # Two routers and the gateway took one off each.
         self.assertEqual({each[:2] + (each.ttl,) for each in received}, {(111, 112, 5)})
-        self.assertEqual(len(self.read("brightness.mean")), 3)
+        self.assertEqual(len(self.recorded("brightness.mean")), 3)
         self.assertRegex(
-            self.said("errors_a"),
+            self.read("errors_a"),
             r"gateway: %d passed; dropped: 0 ttl, %d not listed, 0 without a route"
-            % (len(sent) + 3, len(self.read("spy.command"))),
+            % (len(sent) + 3, len(self.recorded("spy.command"))),
         )
         told = self.shell("hc info router.out.mtp")
         self.assertRegex(told, "rgb_image.*jpeg")
         self.assertNotIn("116 binary", told)
 
     def test_in_a_contest_the_actor_takes_commands_of_the_mode_in_focus_alone(self):
-        self.write("contest.toml", "actor.done", "workspace.focus", "looking.command")
+        self.write_copy("contest.toml", "actor.done", "workspace.focus", "looking.command")
         self.shell("hc run contest.toml 2>errors")
-        done = self.read("actor.done")
+        done = self.recorded("actor.done")
         for each in done:
             mode, focus = each.rows[0]
             self.assertEqual(mode, focus)
         self.assertEqual({each.rows[0][0] for each in done}, {1, 2, 3})
         taken = sum(each.rows[0][0] == 1 for each in done)
-        self.assertLess(taken, len(self.read("looking.command")))
+        self.assertLess(taken, len(self.recorded("looking.command")))
         changes = []
-        for each in self.read("workspace.focus"):
+        for each in self.recorded("workspace.focus"):
             if not changes or changes[-1][1] != each.rows[0][0]:
                 changes.append((each.time, each.rows[0][0]))
         modes = [mode for _, mode in changes if mode != 0]
@@ -167,14 +164,14 @@ class Demonstrations(Pipes):
         self.assertGreater(at[3] - at[2], 0.8e9)
 
     def test_a_person_takes_the_focus_whatever_the_dwell_time_says(self):
-        self.write("contest.toml", "actor.done", "workspace.focus")
+        self.write_copy("contest.toml", "actor.done", "workspace.focus")
         with open(self.path("contest.toml"), "a") as graph:
             graph.write('\n[[links]]\nfrom = "unix-listen:person"\nto = "workspace.person"\n')
         process = self.start(
             "exec hc run contest.toml --set workspace.dwell=3600 --set workspace.person_expiry=3600 "
             "--set looking.script=0:0.9 --set tracking.script=0:0 --set reading.script=0:0 2>errors"
         )
-        latest = lambda: [each.rows[0][0] for each in self.read("workspace.focus")[-1:]]
+        latest = lambda: [each.rows[0][0] for each in self.recorded("workspace.focus")[-1:]]
         self.wait_for(lambda: latest() == [1], "errors")
         with socket.socket(socket.AF_UNIX) as person:
             person.connect(self.path("person"))
@@ -183,14 +180,14 @@ class Demonstrations(Pipes):
                 say(salience)  # refused, and nothing ends
             say(b"0.01")
             self.wait_for(lambda: latest() == [3], "errors")
-            count = len(self.read("actor.done"))
+            count = len(self.recorded("actor.done"))
             say(b"0")
             self.wait_for(lambda: latest() == [1], "errors")
-        self.wait_for(lambda: len(self.read("actor.done")) > count + 1, "errors")
+        self.wait_for(lambda: len(self.recorded("actor.done")) > count + 1, "errors")
         self.interrupt(process)
-        self.assertEqual({tuple(each.rows[0]) for each in self.read("actor.done")}, {(1, 1)})
-        self.assertIn("workspace: bid refused: Malformed: salience nan", self.said("errors"))
-        self.assertIn("bids refused: 3 for their salience", self.said("errors"))
+        self.assertEqual({tuple(each.rows[0]) for each in self.recorded("actor.done")}, {(1, 1)})
+        self.assertIn("workspace: bid refused: Malformed: salience nan", self.read("errors"))
+        self.assertIn("bids refused: 3 for their salience", self.read("errors"))
 
 
 if __name__ == "__main__":

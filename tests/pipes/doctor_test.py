@@ -3,7 +3,6 @@
 """hc doctor on this machine, and on graphs that miss something."""
 
 import os
-import pathlib
 import re
 import socket
 import unittest
@@ -23,7 +22,7 @@ to = "brightness.image"
 class Doctor(Pipes):
     def examine(self, text, status, options=""):
         """What is said of a graph: marks, and lines of each."""
-        pathlib.Path(self.path("g.toml")).write_text(text)
+        self.write("g.toml", text)
         said = {}
         for line in self.shell("hc doctor g.toml" + options, status).splitlines():
             mark, text = line.split(maxsplit=1)

@@ -3,7 +3,6 @@
 """Frames of a graph file: fixed ones and moving ones, at the times of messages."""
 
 import math
-import pathlib
 import unittest
 
 from harness import BUILD, Pipes
@@ -73,9 +72,6 @@ def picture(number, time):
 
 
 class Frames(Pipes):
-    def write(self, name, text):
-        pathlib.Path(self.path(name)).write_text(text)
-
     def run_graph(self, poses, times, parameters=""):
         """The poses that whereabouts tells, by time; `told` is what the graph logs then."""
         self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", parameters))

@@ -12,9 +12,6 @@ from harness import BUILD, DATA, Pipes, ROOT, WATCHDOG, wait_until
 
 
 class Graph(Pipes):
-    def write(self, name, text):
-        pathlib.Path(self.path(name)).write_text(text)
-
     def test_depth_graph_is_as_good_as_opencv_called_directly(self):
         out = self.shell("hc run %s/graphs/depth.toml" % ROOT)
         said = self.err
@@ -24,7 +21,7 @@ class Graph(Pipes):
         self.assertLess(abs(share - 2.7), 0.2)
         self.assertRegex(out, r"camera\.left -> depth\.left +1 message +1\.44 MB")
         self.assertRegex(out, r"depth\.depth -> view\.image +1 message +1\.92 MB")
-        picture = pathlib.Path(self.path("depth.png")).read_bytes()
+        picture = self.read_bytes("depth.png")
         self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(picture[16:24], b"\0\0\3\x20\0\0\2\x58")  # 800 x 600
 
@@ -169,7 +166,7 @@ to = "once.in"
             % DATA,
         )
         self.shell("hc run once.toml")
-        self.assertIn("rgb_image", pathlib.Path(self.path("once.txt")).read_text())
+        self.assertIn("rgb_image", self.read("once.txt"))
 
     def test_a_module_without_a_description_is_named(self):
         self.write("false.toml", '[modules.store]\nprogram = "/bin/false"\n')

@@ -3,7 +3,6 @@
 
 import json
 import os
-import pathlib
 import re
 import signal
 import socket
@@ -49,10 +48,9 @@ class Messages:
 
 
 class Graphs(Pipes):
-    def write(self, text, name="g.toml"):
-        path = pathlib.Path(self.path(name))
-        path.with_suffix(".new").write_text(text)
-        path.with_suffix(".new").rename(path)  # as editors do
+    def write_graph(self, text):
+        self.write("g.new", text)
+        os.rename(self.path("g.new"), self.path("g.toml"))  # as editors do
 
     def run_graph(self, options="", last="brightness: started"):
         process = self.start("exec hc run g.toml " + options)

@@ -78,6 +78,20 @@ class Pipes(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder.name, name)
 
+    def write(self, name, data, mode=0o644):
+        """Makes a file of text or bytes."""
+        path = pathlib.Path(self.path(name))
+        path.write_bytes(data if isinstance(data, bytes) else data.encode())
+        path.chmod(mode)
+
+    def read(self, name):
+        """The text of a file so far; "" before it is there."""
+        path = pathlib.Path(self.path(name))
+        return path.read_text(encoding="utf8") if path.exists() else ""
+
+    def read_bytes(self, name):
+        return pathlib.Path(self.path(name)).read_bytes()
+
     @staticmethod
     def catches_term(pid):
         text = pathlib.Path("/proc/%d/status" % pid).read_text()

@@ -13,7 +13,7 @@ from harness import WATCHDOG, wait_until
 
 class Running(Graphs):
     def test_two_graphs_run_side_by_side(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         first, second = self.run_graph(), self.run_graph("--as other")
         for process, name in ((first, "g"), (second, "other")):
             state = self.state(
@@ -26,25 +26,25 @@ class Running(Graphs):
         self.assertEqual(second.wait(timeout=WATCHDOG), 0)
 
     def test_an_edited_file_changes_the_graph(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
-        self.write(GRAPH.replace("brightness]", "brihtness]"))
+        self.write_graph(GRAPH.replace("brightness]", "brihtness]"))
         lines = self.await_lines(process, "graph: goes on as it was")
         self.assertIn('no program "brihtness", did you mean "brightness"?', "\n".join(lines))
         more = "[modules.more]\nprogram = 'brightness'\n[[links]]\nfrom = 'camera.left'\nto = 'more.image'\n"
-        self.write(GRAPH + more)
+        self.write_graph(GRAPH + more)
         self.await_lines(process, "more: started")
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         self.await_lines(process, "more: ended")
         # One that comes first in the file has a number of its own, and the others keep theirs.
-        self.write(more.partition("[[")[0] + GRAPH)
+        self.write_graph(more.partition("[[")[0] + GRAPH)
         self.await_lines(process, "graph: changed")
         _, err = self.stop(process)
         self.assertNotIn("brightness: started", err)
         self.assertNotIn("camera: started", err)
 
     def test_commands_change_the_graph(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
         self.assertEqual(
@@ -60,7 +60,7 @@ class Running(Graphs):
         self.stop(process)
 
     def test_a_link_lives_on_with_another_policy(self):
-        self.write(GRAPH.replace("[modules", 'restart = "never"\n[modules', 1))
+        self.write_graph(GRAPH.replace("[modules", 'restart = "never"\n[modules', 1))
         process = self.run_graph()
         observed = self.observe(process)
         link = lambda state: state["links"][0]
@@ -74,13 +74,13 @@ class Running(Graphs):
         self.assertNotIn("started", err)
 
     def test_commands_change_the_graph_as_it_was_read_last(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
-        self.write("[modules.camera\n")
+        self.write_graph("[modules.camera\n")
         self.await_lines(process, "graph: goes on as it was")
         self.assertEqual(self.ask(process, "set camera.rate=20"), ["ok"])
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         self.await_lines(process, "graph: as it was")
         os.mkdir(self.path("elsewhere"))
         os.link(self.path("g.toml"), self.path("elsewhere/same.toml"))
@@ -90,13 +90,13 @@ class Running(Graphs):
         rate = lambda state: self.module(state, "camera")["parameters"]["rate"]
         state = self.state(observed, lambda state: rate(state) == "30")
         self.assertIsNone(self.module(state, "more"))
-        self.write(GRAPH + "[modules.more]\nprogram = 'brightness'\n")
+        self.write_graph(GRAPH + "[modules.more]\nprogram = 'brightness'\n")
         state = self.state(observed, lambda state: self.module(state, "more"))
         self.assertEqual(rate(state), "30")
         self.stop(process)
 
     def test_wrong_commands_are_answered(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         for command, answer in (
             ("set camera.rate=fast", "fast"),
@@ -115,8 +115,7 @@ class Running(Graphs):
 
     def ask_for_a_program_that_hangs(self, process):
         """Who asks for a module whose program does not answer, and the number of that."""
-        self.write("#!/bin/sh\necho $$ > asked\nexec sleep 1000\n", "hang")
-        os.chmod(self.path("hang"), 0o700)
+        self.write("hang", "#!/bin/sh\necho $$ > asked\nexec sleep 1000\n", 0o755)
         asking = self.start("exec hc graph add z ./hang --of g.%d" % process.pid)
         asked = pathlib.Path(self.path("asked"))
         return asking, int(wait_until(lambda: asked.exists() and asked.read_text()))
@@ -130,7 +129,7 @@ class Running(Graphs):
         return stat.rpartition(")")[2].split()[0] in "ZX"  # nobody has asked for its status yet
 
     def test_a_program_that_hangs_holds_nothing_up(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
         asking, hangs = self.ask_for_a_program_that_hangs(process)
@@ -144,14 +143,14 @@ class Running(Graphs):
         self.assertTrue(self.has_ended(hangs))
 
     def test_a_program_that_hangs_does_not_outlive_a_killed_graph(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         _, hangs = self.ask_for_a_program_that_hangs(process)
         os.kill(process.pid, signal.SIGKILL)
         wait_until(lambda: self.has_ended(hangs))
 
     def test_a_killed_module_comes_back_and_messages_flow_again(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
         messages = lambda state: state["links"][0]["messages"]
@@ -173,7 +172,7 @@ class Running(Graphs):
         self.assertEqual(err.count("camera: killed by signal 9; starting it again"), 3)
 
     def test_a_stopped_module_is_shown_as_stalled(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
         stalled = self.state(
@@ -190,7 +189,7 @@ class Running(Graphs):
         self.stop(process)
 
     def test_a_running_module_is_told_and_not_restarted(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
         self.assertEqual(self.ask(process, "set camera.rate=100"), ["ok"])
@@ -207,15 +206,15 @@ class Running(Graphs):
     def test_nobody_needs_to_read_what_is_told(self):
         """A pager, or a terminal after Ctrl-S, keeps no module from being seen to."""
         self.write(
+            "talker",
             """#!/bin/sh
 [ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
 yes "what talkers have to say" | head -n 50000 >&2
 exec sleep 1000
 """,
-            "talker",
+            0o755,
         )
-        os.chmod(self.path("talker"), 0o755)
-        self.write("[modules.talker]\nprogram = './talker'\n")
+        self.write_graph("[modules.talker]\nprogram = './talker'\n")
 
         def await_state(process, condition):
             def is_so():
@@ -243,7 +242,7 @@ exec sleep 1000
                 self.assertEqual(process.wait(timeout=WATCHDOG), 0)
 
     def test_the_status_line_stands_below_all_others(self):
-        self.write(GRAPH)
+        self.write_graph(GRAPH)
         out = self.shell(
             'script -qec "hc run g.toml --set camera.count=40" /dev/null | tr -d "\\r"'
         )

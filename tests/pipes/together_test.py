@@ -3,7 +3,6 @@
 """Inputs that are taken together: from one stream, files, FIFOs and shared memory."""
 
 import os
-import pathlib
 import random
 import re
 import unittest
@@ -24,11 +23,6 @@ def stream(port, times):
 
 
 class Together(Pipes):
-    def write(self, name, text):
-        pathlib.Path(self.path(name)).write_bytes(
-            text if isinstance(text, bytes) else text.encode()
-        )
-
     def sets(self, command):
         lines = self.shell("%s | hc cat --raw" % command).splitlines()
         for header, elements in zip(lines[::2], lines[1::2]):
@@ -113,7 +107,7 @@ class Together(Pipes):
         other.communicate(right, timeout=WATCHDOG)
         _, err = depth.communicate(timeout=WATCHDOG)
         self.assertEqual(depth.returncode, 0, err)
-        found = pathlib.Path(self.path("found")).read_bytes()
+        found = self.read_bytes("found")
         count = len(re.findall(rb"1 1 0 \d+ 8 1\d\d 40181 0 12 200 200\n", found))
         said = re.search(rb"left: left out: (\d+) unmatched, (\d+) crowded out\n", err)
         self.assertEqual(int(said[1]) + int(said[2]) + count, 199)

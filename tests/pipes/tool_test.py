@@ -4,7 +4,6 @@
 
 import json
 import os
-import pathlib
 import signal
 import time
 import unittest
@@ -106,7 +105,7 @@ class Tool(Pipes):
                 lines.append(
                     "1 8 0 %d 8 %d 120190 0 0 1 1\n%d\n" % (i, 10**18 + i * 20_000_000, i)
                 )
-        pathlib.Path(self.path("r.mtp")).write_text("".join(lines))
+        self.write("r.mtp", "".join(lines))
 
     def test_info_tells_rates_gaps_and_sizes(self):
         self.record()
@@ -135,8 +134,8 @@ class Tool(Pipes):
 
     def test_a_truncated_file_gives_what_is_whole(self):
         self.record()
-        whole = pathlib.Path(self.path("r.mtp")).read_bytes()
-        pathlib.Path(self.path("cut.mtp")).write_bytes(whole[:-3])
+        whole = self.read_bytes("r.mtp")
+        self.write("cut.mtp", whole[:-3])
         out = self.shell("hc cat --json cut.mtp", 1)
         self.assertEqual(out.count("\n"), 18)
         self.assertIn(
@@ -145,9 +144,9 @@ class Tool(Pipes):
 
     def test_skip_goes_on_behind_damage(self):
         self.record()
-        whole = pathlib.Path(self.path("r.mtp")).read_text().splitlines(True)
+        whole = self.read("r.mtp").splitlines(True)
         whole[4] = whole[4].replace("10390", "99999")
-        pathlib.Path(self.path("bad.mtp")).write_text("".join(whole))
+        self.write("bad.mtp", "".join(whole))
         out = self.shell("hc cat --json --skip bad.mtp")
         self.assertEqual(out.count("\n"), 18)
         self.assertIn("R20 info", self.err)
@@ -187,18 +186,18 @@ class Tool(Pipes):
 
     def test_record_does_not_empty_what_it_reads(self):
         self.record()
-        before = pathlib.Path(self.path("r.mtp")).read_bytes()
+        before = self.read_bytes("r.mtp")
         for command in ("hc record r.mtp --in r.mtp", "hc record ./r.mtp < r.mtp"):
             self.shell(command, 2)
             self.assertIn("is the file that is written", self.err)
-        self.assertEqual(pathlib.Path(self.path("r.mtp")).read_bytes(), before)
+        self.assertEqual(self.read_bytes("r.mtp"), before)
         self.shell(
             "hc record 'odd?name&=.mtp' --in r.mtp --in r.mtp && hc play --speed max 'odd?name&=.mtp' | hc info"
         )
 
     def test_record_names_the_link_that_is_wrong(self):
         self.record()
-        pathlib.Path(self.path("bad.mtp")).write_text("rubbish\n")
+        self.write("bad.mtp", "rubbish\n")
         self.shell(": >empty.mtp; hc record x.mtp --in empty.mtp --in bad.mtp --in r.mtp", 1)
         self.assertIn("bad.mtp: R5", self.err)
 

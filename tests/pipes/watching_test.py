@@ -22,7 +22,7 @@ class Watching(Graphs):
 
     def run_named(self, name, text=GRAPH, last="brightness: started"):
         """A graph with a name that no other test has."""
-        self.write(text)
+        self.write_graph(text)
         name = "%s_%d" % (name, os.getpid())
         return name, self.run_graph("--as " + name, last)
 
@@ -55,9 +55,9 @@ class Watching(Graphs):
         self.assertNotIn(name, self.hc("ps"))
 
     def test_a_file_is_drawn_without_running(self):
-        self.write(GRAPH + "keep = 3\n")
+        self.write_graph(GRAPH + "keep = 3\n")
         self.assertIn("  left → brightness.image  keep 3\n", self.hc("graph g.toml"))
-        self.write(GRAPH.replace("brightness.image", "b.image"))
+        self.write_graph(GRAPH.replace("brightness.image", "b.image"))
         self.assertIn('no module "b"', self.hc("graph g.toml", 2))
 
     def test_a_running_graph_is_changed(self):
