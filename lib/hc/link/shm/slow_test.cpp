@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Readers of shared memory that lag behind, hold much, come and go, beside others that do not.
-#include <hc/link/link_conformance.h>
-#include <unistd.h>
+#include <hc/link/shm/shm_test.h>
 
 #include <atomic>
 #include <random>
@@ -11,13 +10,6 @@
 
 namespace hc::testing {
 namespace {
-
-constexpr std::int32_t kSmall = 10, kLarge = 100'000;  // elements [byte]
-
-std::string fresh_name() {
-  static int count = 0;
-  return "shm:slow-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
-}
 
 TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
   auto name = fresh_name();

@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reader of `shm:NAME`.
-#include <sched.h>
+// Taking a message out of the publisher's memory, which may be written over meanwhile.
+#include <hc/link/shm/source.h>
+
 #include <sys/socket.h>
 
-#include <array>
 #include <cstring>
 
-#include <hc/link/awaiting_source.h>
-#include <hc/link/dialing.h>
-#include <hc/link/shm/attachment.h>
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/shm/greeting.h>
-#include <hc/link/stream_link.h>
-#include <hc/link/transports.h>
-#include <hc/link/unix.h>
 #include <hc/wire/framing.h>
-#include <hc/wire/header_memo.h>
-
-#if defined(__x86_64__) || defined(__i386__)
-#include <emmintrin.h>
-#endif
 
 namespace hc::internal {
 namespace {
@@ -28,116 +16,23 @@ using std::memory_order_acquire;
 using std::memory_order_relaxed;
 using std::memory_order_release;
 using std::memory_order_seq_cst;
-using Clock = std::chrono::steady_clock;
 
 /// How often a reader that gets through looks whether it is waited for; see Head::wanted.
 constexpr std::uint64_t kLookEvery = 64;  // messages
-/// How long one sleeps on the futex, which is quick to wake but hears of nothing else, before one
-/// waits on the socket.
-constexpr std::chrono::milliseconds kFutexTime{100};
-/// About as long as it takes to sleep and wake: who spins so long never loses more than that.
-constexpr std::int64_t kDefaultSpin = 20;           // [µs]
-constexpr std::chrono::microseconds kSpinAlone{2};  // until one who spins lets others run
-constexpr int kSpinRounds = 32;                     // between two looks at the clock
-constexpr std::chrono::milliseconds kSpinLook{1};   // how often one who spins looks at all else
-
-constexpr unsigned kLookSeldom = 8;  // waits, until one looks at a silent link
-
 constexpr std::size_t kCopyHold = kMostHeld - 1;
 constexpr std::size_t kNoHold = kMostHeld;
 constexpr int kMostSkips = 64;  // until who is overtaken again and again looks after other things
-
-void relax() {
-#if defined(__x86_64__) || defined(__i386__)
-  _mm_pause();
-#endif
-}
 
 Error damaged(const std::string& what) {
   return {Code::Malformed, "the publisher's memory is damaged: " + what};
 }
 
-class ShmSource final : public Source {
- public:
-  ShmSource(std::shared_ptr<Attachment> attachment, const Offer& offer,
-            std::chrono::microseconds spin, LinkOptions options)
-      : attachment_(std::move(attachment)),
-        cursor_(offer.begin),
-        keep_(offer.keep),
-        spin_(spin),
-        options_(std::move(options)) {}
+}  // namespace
 
-  ~ShmSource() override {
-    attachment_->own().cursor.store(ReaderPage::kLeft, memory_order_release);
-    HC_CRASH_POINT("reader left");
-    ::shutdown(attachment_->socket.get(), SHUT_WR);
-  }
-
-  Result<Got> take(Message& message) override;
-  [[nodiscard]] int descriptor() const override { return attachment_->socket.get(); }
-  bool prepare_wait() override;
-  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override;
-  [[nodiscard]] Traffic traffic() const override { return traffic_; }
-
- private:
-  struct Copy {
-    std::array<std::uint64_t, Cell::kWords> words;
-    std::uint64_t slot, bytes;  // of the elements
-    std::size_t header_bytes;
-    [[nodiscard]] const char* text() const { return reinterpret_cast<const char*>(words.data()); }
-  };
-
-  [[nodiscard]] bool is_ready() const;
-  [[nodiscard]] bool has_ended() const;
-  void look_at_socket();
-  void skip_to(std::uint64_t position, std::uint64_t Traffic::*why);
-  void skip_withdrawn(std::uint64_t oldest);
-  bool copy(Copy& cell) const;
-  Status deliver(const Copy& cell, Message& message, std::size_t hold);
-  std::size_t take_hold(std::uint64_t slot);
-  void fetch_ahead();
-  [[nodiscard]] bool is_withdrawn() const;
-  void finish_cell(bool has_slot);
-  void arm(bool on_socket);
-  void disarm();
-
-  std::shared_ptr<Attachment> attachment_;
-  std::uint64_t cursor_;
-  std::uint64_t keep_;
-  std::uint64_t known_ = 0;  // positions below are known to be published
-  std::chrono::microseconds spin_;
-  LinkOptions options_;
-  std::uint32_t arming_ = 0;
-  bool armed_ = false;
-  unsigned unlooked_ = 0;  // waits that began without a look at the socket
-  bool publisher_gone_ = false;
-  bool told_ = false;  // that too many are held
-  HeaderMemo memo_;
-  Traffic traffic_;
-};
-
-bool ShmSource::is_ready() const {
-  return attachment_->cell(cursor_).stamp.load(memory_order_acquire) > cursor_ || has_ended();
-}
-
-/// Nothing comes where there was nothing a moment ago: the publisher has gone, or has closed and
-/// all that it published has been taken.
-bool ShmSource::has_ended() const {
-  const Head& head = attachment_->head();
-  return publisher_gone_ || (head.closed.load(memory_order_acquire) != 0 &&
-                             cursor_ >= head.published.load(memory_order_acquire));
-}
-
-/// Takes the bytes that woke us, and notices when the publisher has gone.
-void ShmSource::look_at_socket() {
-  std::array<char, 64> bytes;
-  const auto most = static_cast<ssize_t>(bytes.size());
-  ssize_t size = most;
-  while (size == most)
-    size = ::recv(attachment_->socket.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
-  // Behind a short read there is nothing but, perhaps, the end: poll() tells of that again.
-  if (size > 0 || (size < 0 && (errno == EAGAIN || errno == EINTR))) return;
-  publisher_gone_ = true;
+ShmSource::~ShmSource() {
+  attachment_->own().cursor.store(ReaderPage::kLeft, memory_order_release);
+  HC_CRASH_POINT("reader left");
+  ::shutdown(attachment_->socket.get(), SHUT_WR);
 }
 
 /// Leaves out what was not taken in time.
@@ -285,136 +180,6 @@ void ShmSource::finish_cell(bool has_slot) {
   if (keep_ > 0 || !(has_slot || cursor_ % kLookEvery == 0)) return;
   std::atomic_thread_fence(memory_order_seq_cst);  // room
   attachment_->offer_cells();
-}
-
-void ShmSource::arm(bool on_socket) {
-  arming_ += 2;
-  std::uint32_t value = (arming_ == 0 ? arming_ = 2 : arming_) | (on_socket ? 1 : 0);
-  attachment_->own().armed.store(value, memory_order_relaxed);
-  armed_ = true;
-  HC_CRASH_POINT("reader armed");
-  std::atomic_thread_fence(memory_order_seq_cst);  // wake
-  if (attachment_->head().unfenced.load(memory_order_acquire) != 0) order_everywhere();
-}
-
-void ShmSource::disarm() {
-  attachment_->own().armed.store(0, memory_order_relaxed);
-  armed_ = false;
-}
-
-bool ShmSource::prepare_wait() {
-  // Who is armed still was woken by another link: nothing but the end can have come meanwhile.
-  if (!armed_ || ++unlooked_ % kLookSeldom == 0) look_at_socket();
-  arm(true);
-  if (!is_ready()) return true;
-  disarm();
-  return false;
-}
-
-Result<bool> ShmSource::wait(int stop, std::chrono::milliseconds timeout) {
-  const auto begin = Clock::now();
-  auto passed = [&] { return Clock::now() - begin; };
-  auto is_over = [&] { return timeout.count() >= 0 && passed() >= timeout; };
-  auto look = [&]() -> Status {
-    look_at_socket();
-    auto stopped = wait_readable({}, stop, std::chrono::milliseconds(0));
-    return stopped ? Status() : stopped.error();
-  };
-  for (auto next_look = begin + kSpinLook; passed() < spin_;) {
-    for (int i = 0; i < kSpinRounds; ++i) {
-      if (is_ready()) return true;
-      relax();
-    }
-    if (passed() > kSpinAlone) ::sched_yield();
-    if (is_over()) return false;
-    if (Clock::now() < next_look) continue;
-    if (auto looked = look(); !looked) return looked.error();
-    next_look = Clock::now() + kSpinLook;
-  }
-  const auto slept_from = Clock::now();
-  while (true) {
-    auto signal = attachment_->head().signal.load(memory_order_acquire);
-    arm(false);
-    if (is_ready()) {
-      disarm();
-      return true;
-    }
-    if (is_over()) {
-      disarm();
-      return false;
-    }
-    auto left = kFutexTime - (Clock::now() - slept_from);
-    if (left <= Clock::duration(0) || publisher_gone_) break;
-    if (timeout.count() >= 0) left = std::min<Clock::duration>(left, timeout - passed());
-    futex_wait(attachment_->head().signal, signal, left);
-    if (is_ready()) continue;
-    if (auto looked = look(); !looked) return looked.error();
-  }
-  if (!prepare_wait()) return true;
-  auto left = std::chrono::milliseconds(-1);
-  if (timeout.count() >= 0)
-    left = std::max(std::chrono::ceil<std::chrono::milliseconds>(timeout - passed()),
-                    std::chrono::milliseconds(0));
-  std::array<int, 1> descriptors = {descriptor()};
-  auto ready = wait_readable(descriptors, stop, left);
-  if (!ready) return ready.error();
-  return *ready == 0;
-}
-
-/// How a reader attaches.
-struct Wishes {
-  std::string keep;  ///< empty: as the publisher wants it
-  std::chrono::microseconds spin;
-  bool waits;  ///< for the publisher's answer, or else take() does without
-};
-
-/// Makes the reader of a publisher that has been connected to. Errors: as await_offer().
-Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
-                                       const LinkOptions& options) {
-  auto attachment = std::make_shared<Attachment>();
-  attachment->socket = std::move(socket);
-  auto page = SharedMemory::make(kPageBytes, kPageBytes);
-  if (!page) return page.error();
-  attachment->page = std::move(*page);
-  HC_CRASH_POINT("reader made page");
-  const int connection = attachment->socket.get();
-  if (auto sent = send_hello(connection, wishes.keep, attachment->page); !sent) return sent.error();
-  auto begin = [attachment, spin = wishes.spin, options](Offer offer) -> std::unique_ptr<Source> {
-    attachment->memory = std::move(offer.memory);
-    attachment->own().cursor.store(offer.begin, memory_order_release);
-    return std::make_unique<ShmSource>(attachment, offer, spin, options);
-  };
-  if (!wishes.waits)
-    return std::unique_ptr<Source>(std::make_unique<AwaitingSource>(
-        connection, [connection, begin]() -> Result<std::unique_ptr<Source>> {
-          auto offer = take_offer(connection);
-          if (!offer) return offer.error();
-          return offer->has_value() ? begin(std::move(**offer)) : nullptr;
-        }));
-  auto offer = await_offer(connection, options.stop);
-  if (!offer) return offer.error();
-  return begin(std::move(*offer));
-}
-
-}  // namespace
-
-Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOptions& options) {
-  if (auto named = check_name(uri); !named) return named.error();
-  auto spin = number_option(uri, "spin", kDefaultSpin);
-  if (!spin) return spin.error();
-  auto reconnect = number_option(uri, "reconnect", 0);
-  if (!reconnect) return reconnect.error();
-  Wishes wishes{std::string(uri.option("keep", "")), std::chrono::microseconds(*spin),
-                *reconnect == 0};
-  if (!wishes.keep.empty())
-    if (auto valid = parse_keep(wishes.keep); !valid) return valid.error();
-  Uri place = meeting_place(uri);
-  auto peer = unix_peer(place);
-  if (!peer) return peer.error();
-  peer->name = uri.rest;
-  return dial_source(*peer, uri, options, [wishes, options](Descriptor socket) {
-    return attach(std::move(socket), wishes, options);
-  });
 }
 
 }  // namespace hc::internal

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// How publishers and readers find each other, and again when one has gone.
+#include <hc/link/shm/greeting.h>
+#include <hc/link/shm/shm_test.h>
+#include <hc/link/unix.h>
+
+#include <memory>
+#include <thread>
+
+namespace hc::testing {
+namespace {
+
+TEST(ShmMeeting, OneWhoComesLaterHearsWhatIsSentFromThenOn) {
+  auto name = fresh_name();
+  auto sink = sink_of(name);
+  auto first = source_of(name);
+  ASSERT_TRUE(sink->send(numbered(0, kSmall)));
+  auto second = source_of(name);
+  ASSERT_TRUE(sink->send(numbered(1, kSmall)));
+  Message message;
+  ASSERT_TRUE(*receive(*second, message));
+  EXPECT_EQ(message.header.seq, 1);
+  ASSERT_TRUE(*receive(*first, message));
+  EXPECT_EQ(message.header.seq, 0);
+}
+
+TEST(ShmMeeting, WhoDropsWaitsForTheFirstReaderAlone) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?keep=latest&memory=2M");
+  std::thread reader([&] {
+    auto source = source_of(name);
+    Message message;
+    EXPECT_TRUE(*receive(*source, message));
+  });
+  ASSERT_TRUE(sink->send(numbered(0, kLarge)));
+  reader.join();
+  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(sink->send(numbered(i, kLarge)));
+  EXPECT_TRUE(sink->close());
+}
+
+TEST(ShmMeeting, ANameIsFreeAgainAsSoonAsItsPublisherHasGone) {
+  auto name = fresh_name();
+  auto sink = sink_of(name);
+  auto taken = open_sink(*parse_uri(name));
+  ASSERT_FALSE(taken);
+  EXPECT_NE(taken.error().text().find("in use"), std::string::npos) << taken.error().text();
+  ASSERT_TRUE(sink->close());
+  EXPECT_TRUE(open_sink(*parse_uri(name)));
+}
+
+TEST(ShmMeeting, AReaderThatReconnectsFindsTheNextPublisher) {
+  auto name = fresh_name();
+  auto source = source_of(name + "?reconnect=60&keep=all");  // nobody is there yet
+  std::thread publisher([&] {
+    for (int life = 0; life < 3; ++life) {
+      auto sink = sink_of(name + "?readers=1");
+      for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 2 ? kSmall : kLarge)));
+      if (life % 2 == 0) {
+        ASSERT_TRUE(sink->close());
+      }
+    }
+  });
+  Message message;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE(*receive(*source, message));
+    ASSERT_EQ(message.header.seq, i % 10);
+  }
+  publisher.join();
+  EXPECT_EQ(source->traffic().messages, 30U);
+  auto impatient = source_of(fresh_name() + "?reconnect=1");
+  EXPECT_EQ(receive(*impatient, message).error().code, Code::NotFound);
+}
+
+/// Listens at the name as a publisher that is stopped does: nobody answers.
+class StoppedPublisher {
+ public:
+  explicit StoppedPublisher(const std::string& name)
+      : listening_(std::move(*internal::listen_unix(internal::meeting_place(*parse_uri(name))))) {}
+  /// What the next reader has said, and nothing is answered.
+  internal::Descriptor await_reader() {
+    pollfd polled{listening_.descriptor.get(), POLLIN, 0};
+    EXPECT_EQ(::poll(&polled, 1, -1), 1);
+    return internal::Descriptor(
+        ::accept4(listening_.descriptor.get(), nullptr, nullptr, SOCK_CLOEXEC));
+  }
+
+ private:
+  internal::ListeningSocket listening_;
+};
+
+TEST(ShmMeeting, AReaderThatReconnectsDoesNotWaitForAPublisherThatIsStopped) {
+  auto name = fresh_name();
+  auto stopped = std::make_unique<StoppedPublisher>(name);
+  Warnings warnings;
+  auto source = source_of(name + "?reconnect=60", warnings.options());
+  auto reader = stopped->await_reader();
+  Message message;
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+  EXPECT_TRUE(source->prepare_wait());
+  // Who waits 4 s for an answer would have given up by itself, and said so.
+  EXPECT_TRUE(warnings.lines.empty());
+  stopped.reset();
+  reader.reset();
+  auto sink = sink_of(name);
+  std::thread publisher([&] { ASSERT_TRUE(sink->send(numbered(1, kSmall))); });
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
+  publisher.join();
+  ASSERT_EQ(warnings.lines.size(), 1U);
+  EXPECT_EQ(warnings.lines[0], name +
+                                   "?reconnect=60: the publisher has gone before it answered; "
+                                   "connecting again");
+}
+
+TEST(ShmMeeting, NobodyThereIsSaid) {
+  auto source = open_source(*parse_uri(fresh_name()));
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::Closed);
+}
+
+}  // namespace
+}  // namespace hc::testing

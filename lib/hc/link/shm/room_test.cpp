@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where there is no room for all messages: who loses which, who waits, and what is held.
+#include <hc/link/shm/shm_test.h>
+
+#include <thread>
+#include <vector>
+
+namespace hc::testing {
+namespace {
+
+/// Takes what is there, and gives how many messages it was.
+int drain(Source& source, Message& message) {
+  int count = 0;
+  while (*source.take(message) == Got::Message) ++count;
+  return count;
+}
+
+TEST(ShmRoom, ASlotIsUsedAgainOnlyWhenNobodyHoldsIt) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?memory=2M");
+  auto source = source_of(name);
+  ASSERT_TRUE(sink->send(numbered(1, kLarge)));
+  Message held, message;
+  ASSERT_TRUE(*receive(*source, held));
+  for (int i = 2; i < 200; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, kLarge)));
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_NE(message.elements.data(), held.elements.data());
+    EXPECT_EQ(message.characters(), numbered(i, kLarge).characters());
+  }
+  EXPECT_EQ(held.characters(), numbered(1, kLarge).characters());
+  source.reset();
+  EXPECT_EQ(held.characters(), numbered(1, kLarge).characters());
+}
+
+TEST(ShmRoom, WhoKeepsTheLatestGetsItAndLosesTheOthers) {
+  for (auto size : {kSmall, kLarge}) {
+    auto name = fresh_name();
+    auto sink = sink_of(name + "?memory=2M");
+    auto source = source_of(name + "?keep=latest");
+    constexpr int kCount = 5000;  // more than there are cells, more than fit into the memory
+    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, size)));
+    Message message;
+    ASSERT_EQ(drain(*source, message), 1);
+    ASSERT_TRUE(sink->send(numbered(kCount, size)));
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.characters(), numbered(kCount, size).characters());
+    EXPECT_EQ(source->traffic().superseded, static_cast<std::uint64_t>(kCount) - 1);
+    EXPECT_EQ(source->traffic().messages, 2U);
+  }
+}
+
+TEST(ShmRoom, WhoKeepsMoreThanFitsLosesTheOldest) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?memory=2M&keep=30");
+  auto source = source_of(name);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(numbered(i, kLarge)));
+  std::vector<std::int64_t> seen;
+  Message message;
+  while (*source->take(message) == Got::Message) seen.push_back(message.header.seq);
+  ASSERT_FALSE(seen.empty());
+  EXPECT_EQ(seen.back(), 99);
+  for (std::size_t i = 1; i < seen.size(); ++i) EXPECT_EQ(seen[i], seen[i - 1] + 1);
+  EXPECT_EQ(source->traffic().superseded, 70U);
+  EXPECT_EQ(seen.size() + source->traffic().over_memory, 30U);
+  EXPECT_GT(source->traffic().over_memory, 0U);  // fewer fit
+}
+
+TEST(ShmRoom, ASlowReaderDoesNotHoldUpAnother) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?readers=2&memory=2M");
+  auto slow = source_of(name + "?keep=latest");
+  auto quick = source_of(name);
+  Message message;
+  for (int i = 0; i < 3000; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, i % 2 == 0 ? kSmall : kLarge)));
+    ASSERT_TRUE(*receive(*quick, message));
+    ASSERT_EQ(message.header.seq, i);
+  }
+  EXPECT_EQ(drain(*slow, message), 1);
+  EXPECT_EQ(slow->traffic().superseded, 2999U);
+}
+
+TEST(ShmRoom, AReaderThatHoldsTooManyIsToldAndGetsCopies) {
+  auto name = fresh_name();
+  auto sink = sink_of(name);
+  int told = 0;
+  LinkOptions options;
+  options.log = [&](Severity, std::string_view line) {
+    EXPECT_NE(line.find("are held"), std::string_view::npos) << line;
+    ++told;
+  };
+  auto source = source_of(name, options);
+  std::vector<Message> held(100);
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, kLarge)));
+    ASSERT_TRUE(*receive(*source, held[static_cast<std::size_t>(i)]));
+  }
+  EXPECT_EQ(told, 1);
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(), numbered(i, kLarge).characters());
+}
+
+TEST(ShmRoom, AReaderThatHoldsAllDoesNotStallAPublisherThatDrops) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?keep=latest&memory=2M");
+  auto source = source_of(name);
+  std::vector<Message> held(100);
+  int count = 0;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, kLarge)));
+    if (*source->take(held[static_cast<std::size_t>(i)]) == Got::Message) ++count;
+  }
+  EXPECT_LT(count, 100);
+  EXPECT_EQ(sink->traffic().messages, 100U);
+  EXPECT_EQ(sink->traffic().over_memory + static_cast<std::uint64_t>(count), 100U);
+}
+
+TEST(ShmRoom, APublisherWaitsForRoomUntilItIsLetGo) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?memory=2M");
+  auto source = source_of(name);
+  std::vector<Message> held;
+  std::thread publisher([&] {
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(numbered(i, kLarge)));
+    ASSERT_TRUE(sink->close());
+  });
+  Message message;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(*receive(*source, message)) << i;
+    ASSERT_EQ(message.header.seq, i);
+    held.push_back(message);
+    if (held.size() == 7) held.clear();
+  }
+  publisher.join();
+}
+
+TEST(ShmRoom, AProgramThatKeepsAllLoansIsToldSo) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?memory=2M");
+  auto source = source_of(name);
+  std::vector<Draft> loans;
+  for (int i = 0; i < 30; ++i) loans.push_back(sink->loan(numbered(i, kLarge).header));
+  auto sent = sink->send(numbered(0, kLarge));
+  ASSERT_FALSE(sent);
+  EXPECT_EQ(sent.error().text(), "TooLarge: no room left: this program holds all of the memory");
+}
+
+}  // namespace
+}  // namespace hc::testing

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The publisher of `shm:NAME`: sink.cpp is the way of each message, sink_room.cpp how room is found
+// for it. Not for several threads. Internal.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include <hc/link/shm/readers.h>
+#include <hc/link/shm/slots.h>
+#include <hc/link/shm/waker.h>
+#include <hc/link/transports.h>
+#include <hc/wire/header_memo.h>
+
+namespace hc::internal {
+
+class ShmSink final : public Sink {
+ public:
+  /// @param counted  readers that the first message waits for, which are all; 0: one, and others
+  ///     may come. @param stays  goes on when all of those have left.
+  /// @param keep  newest messages that wait for a reader that does not say; 0: all, it is waited
+  ///     for.
+  ShmSink(SharedMemory memory, std::int64_t counted, bool stays, std::uint64_t keep,
+          LinkOptions options)
+      : memory_(std::make_shared<SharedMemory>(std::move(memory))),
+        head_(*reinterpret_cast<Head*>(memory_->data())),
+        cells_(reinterpret_cast<Cell*>(memory_->data() + kRingBegin)),
+        slots_(std::make_shared<SlotPool>(kSlotsBegin, memory_->size())),
+        counted_(counted),
+        stays_(stays),
+        keep_(keep),
+        log_(std::move(options.log)),
+        stop_(options.stop),
+        awaits_reader_(std::move(options.awaits_reader)) {}
+  ~ShmSink() override { end(); }
+
+  /// Lets readers in; before all else. Errors: System.
+  Status begin(ListeningSocket socket) {
+    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_);
+    if (!readers) return readers.error();
+    readers_ = std::move(*readers);
+    return {};
+  }
+
+  Status send(const Message& message) override;
+  Draft loan(const Header& header) override;
+  Status close() override;
+  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+
+ private:
+  void publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot);
+  void end();
+
+  // Who is there (sink_room.cpp).
+  /// Learns who has come and gone. Cost: next to nothing when nobody has.
+  void refresh() {
+    if (readers_->changed()) meet_readers();
+  }
+  void meet_readers();
+  void refresh_for_sure();
+  Status await_readers(std::size_t count);
+
+  // Where there is room for a message (sink_room.cpp).
+  [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes);
+  Status let_catch_up(std::uint64_t bytes);
+  Status wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room);
+  Status make_cell_free();
+  Status place(const Message& message, Slot*& slot);
+  Slot* take_slot(std::uint64_t bytes);
+  Slot* clear_slot(std::uint64_t bytes);
+  Slot* reserve(Slot* slot);
+  void withdraw(std::uint64_t end);
+  void sweep();
+
+  // Readers' messages outlive the sink, and so may those of this process that own slots.
+  std::shared_ptr<SharedMemory> memory_;
+  Head& head_;
+  Cell* cells_;
+  std::shared_ptr<SlotPool> slots_;
+  std::unique_ptr<ShmReaders> readers_;
+  std::int64_t counted_;
+  bool stays_;  // when all of them have left
+  std::uint64_t keep_;
+  LogSink log_;
+  int stop_;
+  std::function<void(bool)> awaits_reader_;
+
+  std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
+  std::array<Slot*, kCells> slot_of_cell_{};
+  std::array<std::uint64_t, kCells> ahead_{};  // bytes in slots, sent before the message of a cell
+  std::uint64_t slot_bytes_ = 0;               // the same of the next message
+  std::uint64_t taken_ = 0;                    // by all, at the last look
+  HeaderMemo memo_;
+  Waker waker_{head_};
+  std::size_t present_ = 0;  // readers that still take messages
+  bool begun_ = false, ended_ = false;
+  Status host_;  // whether it had pages for the last slot
+  Traffic traffic_;
+};
+
+}  // namespace hc::internal

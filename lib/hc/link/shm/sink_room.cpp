@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// How room is found for a message: who is there, what nobody wants or holds any more, and whom to
+// wait for.
+#include <hc/link/shm/sink.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include <hc/link/shm/crash_point.h>
+#include <hc/link/stream_link.h>
+
+namespace hc::internal {
+namespace {
+
+using std::memory_order_acquire;
+using std::memory_order_relaxed;
+using std::memory_order_release;
+using std::memory_order_seq_cst;
+
+/// How far a publisher that loses nothing gets ahead of its slowest reader: what it writes then is
+/// in the caches still when it is read.
+constexpr std::uint64_t kAheadBytes = std::uint64_t{8} << 20;
+constexpr std::uint64_t kAheadMessages = 2;  // at least, however large
+constexpr std::uint64_t kBatch = 64;         // cells that are withdrawn together
+/// How often one who waits looks whether it is to stop.
+constexpr std::chrono::milliseconds kLookPeriod{20};
+
+}  // namespace
+
+void ShmSink::meet_readers() {
+  readers_->refresh();
+  readers_->remarks().tell(log_);
+  const auto& readers = readers_->current();
+  present_ = static_cast<std::size_t>(std::count_if(
+      readers.begin(), readers.end(), [](const auto& reader) { return !reader->left(); }));
+  waker_.meet(readers);
+}
+
+/// refresh() for sure, of all who could have been told where they begin; before one takes back what
+/// they are to have.
+void ShmSink::refresh_for_sure() {
+  std::atomic_thread_fence(memory_order_seq_cst);
+  refresh();
+}
+
+Status ShmSink::await_readers(std::size_t count) {
+  refresh();
+  const bool awaits = present_ < count && awaits_reader_;
+  if (awaits) awaits_reader_(true);
+  for (; present_ < count; refresh()) {
+    auto changed = wait_for(readers_->event(), POLLIN, stop_);
+    if (!changed) return changed.error();
+  }
+  if (awaits) awaits_reader_(false);
+  return {};
+}
+
+/// Whether `bytes` more in slots are too many for the slowest of those that lose nothing. Cost: a
+/// look at what each has taken, but only when it seems so from the last look.
+bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
+  auto seems_so = [&] {
+    return published_ - taken_ >= kAheadMessages &&
+           slot_bytes_ + bytes - ahead_[taken_ % kCells] > kAheadBytes;
+  };
+  taken_ = std::max(taken_, oldest_);
+  if (!seems_so()) return false;
+  taken_ = readers_->taken_by_all(published_);
+  return seems_so();
+}
+
+/// Waits until the slowest has caught up so far that `bytes` more are not too many: half of
+/// all at once, since to wake is dear.
+Status ShmSink::let_catch_up(std::uint64_t bytes) {
+  auto wanted = taken_ + 1;
+  while (wanted + 1 < published_ && slot_bytes_ + bytes - ahead_[wanted % kCells] > kAheadBytes / 2)
+    ++wanted;
+  return wait_for_room(wanted, [&] { return readers_->taken_by_all(published_) >= wanted; });
+}
+
+/// Waits until `has_room()`, or the readers that were counted have left.
+Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room) {
+  struct Wish {
+    Head& head;
+    ~Wish() { head.wanted.store(0, memory_order_relaxed); }
+  } wish{head_};
+  head_.wanted.store(wanted, memory_order_relaxed);
+  while (true) {
+    refresh();
+    const auto reader =
+        readers_->blocker(published_);  // kept, since it may go while one looks for room
+    auto progress = reader == nullptr ? 0 : reader->page().progress.load(memory_order_acquire);
+    std::atomic_thread_fence(memory_order_seq_cst);  // room
+    if (has_room()) return {};
+    if (readers_->changed()) continue;
+    if (reader == nullptr && !host_)
+      return Error{Code::System,
+                   "no room left: the host has no memory to share: " + host_.error().detail};
+    if (reader == nullptr)
+      return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
+    HC_CRASH_POINT("publisher waits for room");
+    futex_wait(reader->page().progress, progress, kLookPeriod);
+    auto stop = wait_readable({}, stop_, std::chrono::milliseconds(0));
+    if (!stop) return stop.error();
+  }
+}
+
+/// Takes cells below `end` back: readers that come to them skip them.
+void ShmSink::withdraw(std::uint64_t end) {
+  if (end <= oldest_) return;
+  head_.oldest.store(end, memory_order_release);
+  HC_CRASH_POINT("publisher withdrew");
+  for (; oldest_ < end; ++oldest_)
+    if (Slot*& slot = slot_of_cell_[oldest_ % kCells]; slot != nullptr) {
+      --slot->cells;
+      slot = nullptr;
+    }
+}
+
+/// Finds out which slots nobody refers to or holds any more.
+void ShmSink::sweep() {
+  refresh_for_sure();  // hold
+  std::vector<std::uint64_t> held;
+  for (const auto& reader : readers_->current())
+    for (const auto& slot : reader->page().held)
+      if (auto begin = slot.load(memory_order_acquire); begin != 0) held.push_back(begin);
+  slots_->sweep([&](const Slot& slot) {
+    return !slot.referred_to() && std::find(held.begin(), held.end(), slot.begin) == held.end();
+  });
+  HC_CRASH_POINT("publisher swept");
+}
+
+/// Sees that a slot's pages are there; null when the host has no memory for them.
+Slot* ShmSink::reserve(Slot* slot) {
+  if (slot == nullptr) return slot;
+  host_ = memory_->reserve(slot->begin + slot->bytes);
+  return host_ ? slot : nullptr;  // the next sweep takes it back, and it is tried again
+}
+
+/// A slot, without taking from a reader what it wants; null when there is none.
+Slot* ShmSink::take_slot(std::uint64_t bytes) {
+  if (Slot* slot = reserve(slots_->reuse(bytes)); slot != nullptr) return slot;
+  refresh_for_sure();
+  withdraw(readers_->wanted_by_none(published_));
+  sweep();
+  if (Slot* slot = reserve(slots_->reuse(bytes)); slot != nullptr) return slot;
+  return reserve(slots_->allocate(bytes));
+}
+
+/// A slot, for which the readers that lose messages lose what they have not taken, the oldest
+/// first; null when those that lose none want or hold all the rest.
+Slot* ShmSink::clear_slot(std::uint64_t bytes) {
+  host_ = {};
+  Slot* slot = take_slot(bytes);
+  while (slot == nullptr && oldest_ < readers_->taken_by_all(published_)) {
+    withdraw(oldest_ + 1);
+    sweep();
+    slot = reserve(slots_->reuse(bytes));
+    if (slot == nullptr) slot = reserve(slots_->allocate(bytes));
+  }
+  return slot;
+}
+
+/// Finds a slot for elements, and copies them if they are not in one already. Null: the message is
+/// lost, as there is no memory for it and one does not wait.
+Status ShmSink::place(const Message& message, Slot*& slot) {
+  const std::byte* from = message.elements.data();
+  auto bytes = message.elements.size();
+  bool loaned = from >= memory_->data() + kSlotsBegin && from < memory_->data() + memory_->size();
+  slot = loaned ? slots_->find(static_cast<std::uint64_t>(from - memory_->data())) : nullptr;
+  if (slot != nullptr && bytes <= slot->bytes) return {};
+  if (bytes > memory_->size() - kSlotsBegin)
+    return Error{Code::TooLarge,
+                 "a message of " + std::to_string(bytes) +
+                     " bytes does not fit memory=" + std::to_string(memory_->size())};
+  slot = clear_slot(bytes);
+  if (slot == nullptr && keep_ == 0) {
+    auto room = wait_for_room(Head::kAnyRoom, [&] {
+      slot = clear_slot(bytes);
+      return slot != nullptr;
+    });
+    if (!room) return room;
+  }
+  if (slot == nullptr) return {};
+  HC_CRASH_POINT("publisher has slot");
+  std::memcpy(memory_->data() + slot->begin, from, bytes);
+  HC_CRASH_POINT("publisher filled slot");
+  return {};
+}
+
+/// Sees that the next message has a cell.
+Status ShmSink::make_cell_free() {
+  refresh_for_sure();
+  withdraw(std::min(readers_->taken_by_all(published_), published_ - kCells + kBatch));
+  if (published_ - oldest_ < kCells) return {};
+  // Half of the ring at once, since to wake is dear.
+  auto wanted = published_ - kCells / 2;
+  auto room = wait_for_room(wanted, [&] { return readers_->taken_by_all(published_) >= wanted; });
+  if (room) withdraw(std::min(readers_->taken_by_all(published_), published_ - kCells + kBatch));
+  return room;
+}
+
+}  // namespace hc::internal
