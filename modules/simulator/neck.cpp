@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "neck.h"
 
-#include <algorithm>
-
 #include "head.h"
 
 void Neck::add(std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
@@ -18,8 +16,5 @@ bool Neck::knows(std::int64_t time) const {
 Eigen::Isometry3d Neck::at(std::int64_t time) const {
   Eigen::Isometry3d T_world_head(Eigen::Translation3d(0, 0, kNeckHeight));
   if (gazes_.empty()) return T_world_head;
-  const auto known = gazes_.known();
-  time = std::clamp(time, known.first, known.last);
-  if (const auto gap = gazes_.gap_at(time)) time = gap->first;
-  return T_world_head * gazes_.at(time).transformation();
+  return T_world_head * gazes_.nearest(time).transformation();
 }

@@ -33,7 +33,8 @@ class Whole(Head):
     FOUND = "zero_pan", "zero_tilt", "offset_roll", "offset_pitch", "offset_yaw"
 
     def test_it_calibrates_itself_and_follows_the_ball(self):
-        pathlib.Path(self.path("whole.toml")).write_text(
+        self.write(
+            "whole.toml",
             """
             [graphs.robot]
             file = "%s/graphs/head.toml"
