@@ -84,9 +84,10 @@ class Parser {
   }
 
   static bool is_common(std::string_view key) {
-    constexpr std::array<std::string_view, 14> kCommon = {
-        "--in",    "--out",   "--name", "--address", "--encoding", "--manage",    "--control",
-        "--limit", "--route", "--to",   "--mode",    "--modes",    "--idle-rate", "--exclusive"};
+    constexpr std::array<std::string_view, 15> kCommon = {
+        "--in",     "--out",     "--name",  "--address",   "--encoding",
+        "--manage", "--control", "--limit", "--route",     "--to",
+        "--mode",   "--modes",   "--clock", "--idle-rate", "--exclusive"};
     return std::find(kCommon.begin(), kCommon.end(), key) != kCommon.end();
   }
 
@@ -101,6 +102,7 @@ class Parser {
     if (key == "--encoding") return read_encoding(value);
     if (key == "--mode" || key == "--modes" || key == "--idle-rate") return read_mode(key, value);
     if (key == "--exclusive") return read_exclusive(value);
+    if (key == "--clock") return read_clock(value);
     if (key == "--route") {
       auto route = parse_link_route(value);
       if (!route) return route.error();
@@ -182,6 +184,15 @@ class Parser {
     if (input == module_.inputs().end())
       return usage("no input \"" + value + "\"; there are: " + names(module_.inputs()));
     (*input)->is_exclusive = true;
+    return {};
+  }
+
+  Status read_clock(const std::string& value) {
+    if (value != "machine" && value != "messages")
+      return usage("--clock is machine or messages, not \"" + value + "\"");
+    arguments_.by_messages = value == "messages";
+    if (arguments_.by_messages && module_.inputs().empty())
+      return usage("--clock messages wants inputs, and this module has none");
     return {};
   }
 

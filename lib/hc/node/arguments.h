@@ -23,6 +23,7 @@ struct Arguments {
   std::vector<Uri> focus;                             ///< --in focus=URI
   std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
   Attention attention;                                ///< --mode, --modes, --idle-rate
+  bool by_messages = false;                           ///< --clock messages
   std::optional<Uri> manage;                          ///< --manage
   std::optional<Uri> control;                         ///< --control
   Limits limits;                                      ///< --limit

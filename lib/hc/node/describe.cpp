@@ -155,6 +155,8 @@ std::string help(const Module& module) {
   text += line("--mode NUMBER", "the system mode of its messages");
   text += line("--modes NUMBER,…", "modes it works in; others idle it");
   text += line("--idle-rate HZ", "what it does while idle (default 0: all)");
+  if (!module.inputs().empty())
+    text += line("--clock machine|messages", "what tells the time (default machine)");
   text += line("--manage URI", "where its counters go, twice a second");
   text += line("--control URI", "where commands come from, a line each");
   text += line("--describe", "print ports and parameters as JSON");

@@ -50,7 +50,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   management_ = internal::Management(std::move(reports),
                                      arguments.control ? open(*arguments.control) : nullptr);
   open_inputs(arguments);
-  for (const auto& uri : arguments.focus) focus_.push_back({uri.text(), open(uri)});
+  for (const auto& uri : arguments.focus) focus_.push_back({uri.text(), open(uri), {}});
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   module_.loop_ = this;
 }
@@ -123,8 +123,9 @@ void Module::Loop::run() {
   end_unlinked();
   end_unneeded();
   now_ = module_.clock_.monotonic();
-  for (auto& timer : module_.timers_) timer.last = now_;
   attend();
+  if (module_.message_time_) begin_clock();
+  for (auto& timer : module_.timers_) timer.last = time();
   if (module_.start_) module_.start_();
   while (true) {
     if (stop_requested()) throw Stopped();
@@ -132,12 +133,12 @@ void Module::Loop::run() {
     attend();
     fire_timers();
     for (auto& watch : module_.watches_) watch.handler();
-    const bool any = take_each();
+    const bool any = module_.message_time_ ? take_earliest() : take_each();
     end_unneeded();
     if (join_renewed()) tell_links();
     if (any) continue;
-    if (module_.generate_) {
-      if (!module_.generate_()) break;
+    if (is_generators_turn()) {
+      if (!generate()) break;
     } else if (all_ended()) {
       break;
     } else {
@@ -163,10 +164,10 @@ bool Module::Loop::all_ended() const {
 void Module::Loop::fire_timers() {
   for (auto& timer : module_.timers_) {
     const auto due = timer.due();
-    if (due > now_) continue;
+    if (due > time()) continue;
     timer.handler();
     now_ = module_.clock_.monotonic();
-    timer.last = std::max(due, now_ - timer.period());
+    timer.last = std::max(due, time() - timer.period());
   }
 }
 
@@ -195,16 +196,21 @@ bool Module::Loop::take_each() {
 
 bool Module::Loop::take_one(LinkedSource& link) {
   Message message;
+  if (take(link, message) != Got::Message) return false;
+  if (management_.is_heard()) measure(link, message);
+  deliver(link, message);
+  return true;
+}
+
+/// What a link has now; one that has ended is ended here too.
+Got Module::Loop::take(LinkedSource& link, Message& message) {
   auto got = link.source->take(message);
   if (!got) {
     bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
     fail(is_of_link || link.inputs.size() > 1 ? link.uri : link.inputs[0]->name, got.error());
   }
   if (*got == Got::End) end(link);
-  if (*got != Got::Message) return false;
-  if (management_.is_heard()) measure(link, message);
-  deliver(link, message);
-  return true;
+  return *got;
 }
 
 bool Module::Loop::is_linked(const internal::InputState& input) const {
@@ -217,6 +223,7 @@ bool Module::Loop::is_linked(const internal::InputState& input) const {
 void Module::Loop::end(LinkedSource& link) {
   link.past = link.traffic();
   link.source.reset();
+  link.head.reset();
   for (auto* input : link.inputs)
     if (input->matcher != nullptr && !is_linked(*input)) input->matcher->end(input->place);
 }
@@ -314,8 +321,8 @@ bool Module::Loop::may_handle(internal::TogetherState& together) {
 bool Module::Loop::may_while_idle(std::optional<MonotonicTime>& last) const {
   const auto& attention = module_.attention_;
   if (!attention.is_idle()) return true;
-  if (last && now_ - *last < internal::period_of(attention.idle_rate)) return false;
-  last = now_;
+  if (last && time() - *last < internal::period_of(attention.idle_rate)) return false;
+  last = time();
   return true;
 }
 
@@ -333,13 +340,14 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   std::vector<internal::WatchedDescriptor> watched;
   if (for_messages) {
     for (const auto& link : sources_)
-      if (link.source != nullptr) sources.push_back(link.source.get());
+      if (link.source != nullptr && !link.head) sources.push_back(link.source.get());
     for (const auto& watch : module_.watches_) watched.emplace_back(watch.descriptor());
     for (auto& each : watched) sources.push_back(&each);
   }
   for (const auto& link : focus_)
-    if (link.source != nullptr) sources.push_back(link.source.get());
+    if (link.source != nullptr && !link.head) sources.push_back(link.source.get());
   if (management_.commands() != nullptr) sources.push_back(management_.commands());
+  if (module_.message_time_) until = MonotonicTime::max();  // it is messages that pass the time
   if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
   auto timeout = std::chrono::milliseconds(-1);
   if (until != MonotonicTime::max())
@@ -351,6 +359,10 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
 }
 
 void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
+  if (module_.message_time_) {
+    has_generated_ = false;
+    return pass_to(std::max(time(), due()));
+  }
   for (now_ = module_.clock_.monotonic(); now_ < due(); now_ = module_.clock_.monotonic()) {
     wait(false, due());
     now_ = module_.clock_.monotonic();

@@ -24,11 +24,12 @@ struct LinkedSource {
   std::string uri;
   std::unique_ptr<Source> source;  ///< null once it has ended
   std::vector<InputState*> inputs;
-  Route route;                 ///< who is at the other end
-  Traffic past = {};           ///< of sources that have ended
-  std::int64_t left_out = 0;   ///< messages that no handler got: out of focus, or while idle
-  Quantiles ages, gaps;        ///< of the messages since the last report; gaps between them
-  MonotonicTime last_come{0};  ///< the message before; 0: none
+  std::optional<Message> head;  ///< with --clock messages: taken, and to be handled in its time
+  Route route;                  ///< who is at the other end
+  Traffic past = {};            ///< of sources that have ended
+  std::int64_t left_out = 0;    ///< messages that no handler got: out of focus, or while idle
+  Quantiles ages, gaps;         ///< of the messages since the last report; gaps between them
+  MonotonicTime last_come{0};   ///< the message before; 0: none
 
   [[nodiscard]] Traffic traffic() const {
     Traffic all = past;
@@ -44,6 +45,7 @@ struct LinkedSource {
 struct FocusLink {
   std::string uri;
   std::unique_ptr<Source> source;  ///< null once it has ended
+  std::optional<Message> head;     ///< as of a LinkedSource
 };
 
 /// A descriptor that the module reads by itself, to be waited for beside the links.
@@ -88,6 +90,7 @@ struct Module::Loop {
 
   bool take_each();
   bool take_one(internal::LinkedSource& link);
+  Got take(internal::LinkedSource& link, Message& message);
   [[nodiscard]] bool is_linked(const internal::InputState& input) const;
   [[nodiscard]] bool all_ended() const;
   void end(internal::LinkedSource& link);
@@ -102,9 +105,18 @@ struct Module::Loop {
   [[nodiscard]] MonotonicTime next_timer() const;
   void wait(bool for_messages, MonotonicTime until);
 
+  // loop_messages.cpp
+  [[nodiscard]] bool is_generators_turn() const;
+  bool generate();
+  void begin_clock();
+  bool take_earliest();
+  bool has_heads();
+  void pass_to(MonotonicTime time) { module_.message_time_ = time.count(); }
+
   // loop_control.cpp
   void attend();
   void hear_focus();
+  void heed(const Message& focus);
   void obey(const std::string& command);
   Status carry_out(const std::string& command);
   Status set_parameter(const std::string& assignment);
@@ -124,9 +136,17 @@ struct Module::Loop {
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;  // in the order of the command line
   std::vector<internal::FocusLink> focus_;
   internal::Management management_;
-  MonotonicTime now_{0};      // at the last look at the clock
+  /// By the module's clock, at the last look.
+  [[nodiscard]] MonotonicTime time() const {
+    return module_.message_time_ ? MonotonicTime(*module_.message_time_) : now_;
+  }
+
+  MonotonicTime now_{0};      // of the machine, at the last look at the clock
   std::int64_t to_wall_ = 0;  // from monotonic to wall clock, at the last report [ns]
   MonotonicTime reported_{0}, attended_{0};
+  // With --clock messages: whether the generator is called next; has been since the last message,
+  // and keeps no rate; and whether all messages have been handled.
+  bool generates_next_ = false, has_generated_ = false, has_ended_ = false;
 };
 
 }  // namespace hc

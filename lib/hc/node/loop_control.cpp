@@ -47,19 +47,25 @@ void Module::Loop::attend() {
 }
 
 void Module::Loop::hear_focus() {
+  if (module_.message_time_) return;  // in its time
   Message message;
-  const bool was_idle = module_.attention_.is_idle();
-  const auto before = module_.attention_.focus;
   for (auto& link : focus_) {
     while (link.source != nullptr) {
       auto got = link.source->take(message);
       if (got && *got == Got::Nothing) break;
       if (!got || *got == Got::End)
         link.source.reset();  // the module goes on in the mode it knows
-      else if (auto modes = message.view<std::int32_t>(); modes && !modes->empty())
-        module_.attention_.focus = modes->at(0, 0);
+      else
+        heed(message);
     }
   }
+}
+
+void Module::Loop::heed(const Message& focus) {
+  const bool was_idle = module_.attention_.is_idle();
+  const auto before = module_.attention_.focus;
+  if (auto modes = focus.view<std::int32_t>(); modes && !modes->empty())
+    module_.attention_.focus = modes->at(0, 0);
   if (was_idle && !module_.attention_.is_idle())
     for (auto& input : module_.inputs_) input->handled_at.reset();
   if (module_.attention_.focus != before) tell_state();
@@ -71,7 +77,7 @@ void Module::Loop::obey(const std::string& command) {
   if (done) return;
   const std::string line = "command \"" + command + "\": " + done.error().detail;
   if (management_.is_heard())
-    management_.tell(Report::Refusal, std::array{line}, module_.now());
+    management_.tell(Report::Refusal, std::array{line}, module_.clock_.wall());
   else
     module_.log(line);
 }
@@ -122,7 +128,7 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
       if (!source) return source.error();
       const auto uri = link->uri.text();
       std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
-      focus_.push_back({uri, std::move(*source)});
+      focus_.push_back({uri, std::move(*source), {}});
     } else if (is_input) {
       open_input(link->uri, {module_.inputs_[link->port].get()});
     } else {
@@ -226,7 +232,7 @@ void Module::Loop::tell_counters() {
     numbers.insert(numbers.end(), 2 * kQuantileColumns, -1);
   }
   // Also where there is no row: that we report tells that we are not stuck.
-  management_.tell(Report::Counters, numbers, kColumns, module_.now());
+  management_.tell(Report::Counters, numbers, kColumns, module_.clock_.wall());
 }
 
 void Module::Loop::tell_links() {
@@ -240,21 +246,21 @@ void Module::Loop::tell_links() {
         lines.push_back("out " + output->name + " " + sink->uri);
         break;  // standard output may be of several ports
       }
-  management_.tell(Report::Links, lines, module_.now());
+  management_.tell(Report::Links, lines, module_.clock_.wall());
 }
 
 void Module::Loop::tell_parameters() {
   std::vector<std::string> lines;
   for (const auto& parameter : module_.parameters_)
     lines.push_back(parameter->name + "=" + text(parameter->value));
-  management_.tell(Report::Parameters, lines, module_.now());
+  management_.tell(Report::Parameters, lines, module_.clock_.wall());
 }
 
 void Module::Loop::tell_state(bool awaits_reader) {
   const auto& attention = module_.attention_;
   const std::int64_t state[] = {attention.own, attention.focus, attention.in_focus() ? 1 : 0,
                                 awaits_reader ? 1 : 0};
-  management_.tell(Report::State, state, std::size(state), module_.now());
+  management_.tell(Report::State, state, std::size(state), module_.clock_.wall());
 }
 
 }  // namespace hc

@@ -108,7 +108,7 @@ void Module::keep_rate(double rate) {
   auto period = [&] { return internal::period_of(attention_.rate(rate)); };
   loop_->pause([&] { return last_period_ ? *last_period_ + period() : MonotonicTime(0); });
   // Periods that were missed are not made up for.
-  auto now = clock_.monotonic();
+  auto now = monotonic();
   last_period_ = std::max(last_period_ ? *last_period_ + period() : now, now - period());
 }
 
@@ -191,6 +191,8 @@ int Module::run(int argc, char** argv) {
     return kFailure;
   }
   if (!arguments->instance.empty()) instance_ = arguments->instance;
+  message_time_.reset();
+  if (arguments->by_messages) message_time_ = 0;
   try {
     Loop loop(*this, *arguments, stop_descriptor());
     try {

@@ -179,8 +179,14 @@ class Module {
   /// module's name before it.
   void log(std::string_view line) const;
 
-  /// Wall clock, for messages that begin here. [ns since the Unix epoch]
-  [[nodiscard]] std::int64_t now() const { return clock_.wall(); }
+  /// Wall clock, for messages that begin here: the machine's, or with `--clock messages` that of
+  /// the messages which come. [ns since the Unix epoch]
+  [[nodiscard]] std::int64_t now() const { return message_time_ ? *message_time_ : clock_.wall(); }
+  /// The same clock for periods and time-outs, which never goes back. What is done in the time of
+  /// messages goes by this; what talks to a device at the machine's pace has a clock of its own.
+  [[nodiscard]] MonotonicTime monotonic() const {
+    return message_time_ ? MonotonicTime(*message_time_) : clock_.monotonic();
+  }
 
   /// Number of the system mode in focus, as last heard; 0: none, or nobody tells it.
   [[nodiscard]] std::int32_t focus() const { return attention_.focus; }
@@ -245,8 +251,9 @@ class Module {
   bool routes_ = false;
   const Clock& clock_;
   internal::Attention attention_;
-  Loop* loop_ = nullptr;           // while it runs
-  std::int64_t handled_time_ = 0;  // of the message being handled; 0: none
+  Loop* loop_ = nullptr;                      // while it runs
+  std::optional<std::int64_t> message_time_;  // with --clock messages [ns]
+  std::int64_t handled_time_ = 0;             // of the message being handled; 0: none
   std::int32_t handled_mode_ = 0;
   const std::string* handled_peer_ = nullptr;  // who sent it; null: nobody knows
   std::optional<MonotonicTime> last_period_;   // of keep_rate()
