@@ -20,7 +20,6 @@ int main(int argc, char** argv) {
                        {.least = 0, .most = 3600, .fixed = true});
   module.route_outputs();
 
-  hc::SystemClock clock;
   std::unique_ptr<Router> router;
   module.on_start([&] {
     auto time = std::chrono::duration<double>(*remember);
@@ -28,7 +27,8 @@ int main(int argc, char** argv) {
   });
   module.on_raw(in, [&](const hc::Message& message) {
     hc::Message copy = message;
-    if (router->admit(copy.header, clock.monotonic())) router->sent(copy.header, out.forward(copy));
+    if (router->admit(copy.header, module.monotonic()))
+      router->sent(copy.header, out.forward(copy));
   });
   module.every(std::chrono::seconds(1), [&] {
     const RouterCounts& counts = router->counts();

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <optional>
 
-#include <hc/base/clock.h>
 #include <hc/node/module.h>
 #include <hc/wire/rows.h>
 
@@ -47,7 +46,6 @@ int main(int argc, char** argv) {
       module.parameter("waiting", 4, "", "texts that may wait for their turn; the oldest make room",
                        {.least = 1, .most = 1000});
 
-  const hc::SystemClock clock;
   std::optional<Synthesis> synthesis;
   TextQueue queue;
   hc::MonotonicTime spoken_until{0};
@@ -81,13 +79,13 @@ int main(int argc, char** argv) {
     auto table = hc::make_rows(rows);
     table.header.time = time;
     table.header.mode = next.mode;
-    spoken_until = clock.monotonic() + std::chrono::nanoseconds(static_cast<std::int64_t>(frames) *
-                                                                1'000'000'000 / kRate);
+    spoken_until = module.monotonic() + std::chrono::nanoseconds(static_cast<std::int64_t>(frames) *
+                                                                 1'000'000'000 / kRate);
     words.send({std::move(table)});  // first, since a link may wait until the sound has been heard
     sound.send(std::move(draft));
   };
   auto speak_next = [&] {
-    while (!queue.empty() && (!*paced || clock.monotonic() >= spoken_until)) speak(queue.pop());
+    while (!queue.empty() && (!*paced || module.monotonic() >= spoken_until)) speak(queue.pop());
   };
   module.on(text, [&](const auto& message) {
     std::string lines;

@@ -58,7 +58,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   Workspace workspace;
   Complaints complaints;
   auto take = [&](const hc::Message& message, auto bid) {
-    auto now = clock.monotonic();
+    auto now = module.monotonic();
     auto numbers = hc::value_or_end(message.view<double>()).numbers();
     // Without its one number a bid has a salience that is refused as any other.
     double salience = numbers.size() == 1 ? numbers[0] : -1;
@@ -69,7 +69,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   module.on(person, [&](const auto& message) { take(message, &Workspace::bid_of_person); });
 
   module.every(rate, [&] {
-    auto now = clock.monotonic();
+    auto now = module.monotonic();
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
     workspace.decide(now);
     const std::int64_t time = module.now();
