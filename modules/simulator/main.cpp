@@ -69,8 +69,9 @@ int main(int argc, char** argv) {
     truth.send_board(module.now(), what);
   };
   module.on(gaze, [&](const auto& message) {
-    if (message.header.time > 0)
-      neck.add(message.header.time, hc::value_or_end(hc::rotation_of(message)));
+    const auto q = hc::rotation_of(message);
+    if (!q) return module.log("gaze: " + q.error().detail);
+    if (message.header.time > 0) neck.add(message.header.time, *q);
   });
   module.on(text, [&](const auto& message) { write(std::string(message.characters())); });
 
@@ -111,7 +112,7 @@ int main(int argc, char** argv) {
     if (*parameters.count > 0 && schedule.number() >= *parameters.count)
       return !scene->eyes.empty();
     if (is_paced) schedule.catch_up(now);
-    if (is_paced && !schedule.is_due(now, neck.knows(schedule.time()))) return true;
+    if (is_paced && !schedule.is_due(now, neck.awaits(schedule.time(), now))) return true;
     take();
     schedule.next();
     return true;

@@ -9,8 +9,11 @@ void Neck::add(std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
   gazes_.add(time, pose);
 }
 
-bool Neck::knows(std::int64_t time) const {
-  return gazes_.empty() || gazes_.known().last >= time;
+bool Neck::awaits(std::int64_t time, std::int64_t now) const {
+  constexpr std::int64_t kSilent = 100'000'000;  // [ns]
+  if (gazes_.empty()) return false;
+  const std::int64_t last = gazes_.known().last;
+  return last < time && now - last < kSilent;
 }
 
 Eigen::Isometry3d Neck::at(std::int64_t time) const {

@@ -19,7 +19,7 @@ double pan(const Neck& neck, std::int64_t time) {
 
 TEST(Neck, looks_straight_ahead_until_it_is_told) {
   const Neck neck;
-  EXPECT_TRUE(neck.knows(5 * kMillisecond));
+  EXPECT_FALSE(neck.awaits(5 * kMillisecond, 5 * kMillisecond));
   const Eigen::Isometry3d straight(Eigen::Translation3d(0, 0, kNeckHeight));
   EXPECT_TRUE(neck.at(5 * kMillisecond).isApprox(straight, 1e-15));
 }
@@ -32,8 +32,14 @@ TEST(Neck, turns_evenly_between_gazes_and_rests_outside_them) {
   EXPECT_NEAR(pan(neck, 1), 0.1, 1e-12);
   EXPECT_NEAR(pan(neck, 90 * kMillisecond), 0.3, 1e-12);
   EXPECT_EQ(neck.at(15 * kMillisecond).translation(), Eigen::Vector3d(0, 0, kNeckHeight));
-  EXPECT_TRUE(neck.knows(20 * kMillisecond));
-  EXPECT_FALSE(neck.knows(20 * kMillisecond + 1));
+}
+
+TEST(Neck, awaits_a_gaze_as_long_as_they_come) {
+  Neck neck;
+  neck.add(20 * kMillisecond, hc::frames::rotation(0, 0, 0.3));
+  EXPECT_FALSE(neck.awaits(20 * kMillisecond, 20 * kMillisecond));
+  EXPECT_TRUE(neck.awaits(20 * kMillisecond + 1, 119 * kMillisecond));
+  EXPECT_FALSE(neck.awaits(20 * kMillisecond + 1, 120 * kMillisecond));
 }
 
 TEST(Neck, rests_while_nothing_tells_of_it) {

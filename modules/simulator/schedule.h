@@ -18,20 +18,23 @@ class Schedule {
   [[nodiscard]] std::int64_t time() const { return start_ + period_end(number_, rate_); }
   /// From the start to the next pair [s].
   [[nodiscard]] double seconds() const { return static_cast<double>(time() - start_) * 1e-9; }
-  /// Whether the next pair is the first of a second, counted in pairs.
+  /// Whether the next pair is the first that is taken of a second, counted in pairs.
   [[nodiscard]] bool begins_second() const;
 
   /// The next pair has been taken.
-  void next() { ++number_; }
-  /// Leaves out pairs that could not be taken in time, but for the latest that is due.
+  void next() { last_ = number_++; }
+  /// Leaves out pairs that could not be taken in time, but for the latest that is due, and for the
+  /// first of all: that tells a recording when the world began.
   void catch_up(std::int64_t now);
-  /// Whether the next pair is to be taken. Where the head was becomes known a moment later, which
-  /// is waited for, but no longer than 0.1 s.
-  /// @param gaze_is_known  of that pair's time.
-  [[nodiscard]] bool is_due(std::int64_t now, bool gaze_is_known) const;
+  /// Whether the next pair is to be taken.
+  /// @param gaze_is_awaited  where the head is then becomes known yet.
+  [[nodiscard]] bool is_due(std::int64_t now, bool gaze_is_awaited) const {
+    return now >= time() && !gaze_is_awaited;
+  }
 
  private:
   std::int64_t start_;
   double rate_;
   std::int64_t number_ = 0;
+  std::int64_t last_ = -1;  // that was taken
 };

@@ -35,8 +35,11 @@ TEST(Schedule, tells_the_first_pair_of_each_second) {
 
 TEST(Schedule, leaves_out_what_could_not_be_taken_in_time) {
   Schedule schedule(kStart, 10);
-  schedule.catch_up(kStart + 99 * kMillisecond);
-  EXPECT_EQ(schedule.number(), 0);
+  schedule.catch_up(kStart + 350 * kMillisecond);
+  EXPECT_EQ(schedule.number(), 0) << "the first one is always taken";
+  schedule.next();
+  schedule.catch_up(kStart + 199 * kMillisecond);
+  EXPECT_EQ(schedule.number(), 1);
   schedule.catch_up(kStart + 350 * kMillisecond);
   EXPECT_EQ(schedule.number(), 3);
   schedule.next();
@@ -44,12 +47,22 @@ TEST(Schedule, leaves_out_what_could_not_be_taken_in_time) {
   EXPECT_EQ(schedule.number(), 4);
 }
 
-TEST(Schedule, waits_for_its_time_and_a_while_for_the_gaze) {
+TEST(Schedule, waits_for_its_time_and_for_the_gaze) {
   Schedule schedule(kStart, 10);
-  EXPECT_FALSE(schedule.is_due(kStart - 1, true));
-  EXPECT_TRUE(schedule.is_due(kStart, true));
-  EXPECT_FALSE(schedule.is_due(kStart + 99 * kMillisecond, false));
-  EXPECT_TRUE(schedule.is_due(kStart + 100 * kMillisecond, false));
+  EXPECT_FALSE(schedule.is_due(kStart - 1, false));
+  EXPECT_TRUE(schedule.is_due(kStart, false));
+  EXPECT_FALSE(schedule.is_due(kStart, true));
+}
+
+TEST(Schedule, a_second_begins_though_its_first_pair_is_left_out) {
+  Schedule schedule(kStart, 10);
+  schedule.next();
+  EXPECT_FALSE(schedule.begins_second());
+  schedule.catch_up(kStart + 1250 * kMillisecond);
+  EXPECT_EQ(schedule.number(), 12);
+  EXPECT_TRUE(schedule.begins_second());
+  schedule.next();
+  EXPECT_FALSE(schedule.begins_second());
 }
 
 }  // namespace
