@@ -51,6 +51,9 @@ class Documents(Pipes):
     def test_body(self):
         self.run_document("doc/body.md")
 
+    def test_head(self):
+        self.run_document("doc/head.md")
+
     def test_tasks(self):
         self.run_document("doc/tasks.md")
 
