@@ -4,11 +4,78 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
+#include <random>
+#include <vector>
 
-#include "line_test.h"
+#include <drivers/pan_tilt/unit.h>
 
 namespace hc::pan_tilt {
 namespace {
+
+using std::chrono::milliseconds;
+using Phase = Conversation::Phase;
+
+constexpr double kStep = kArcsecondsPerPosition / 3600 * 3.14159265358979 / 180;  // [rad]
+
+/// A host and a simulated unit with a line between them that can be late, cut or bad.
+struct Line {
+  Unit unit;
+  Conversation host;
+  MonotonicTime now = milliseconds(1000);
+  milliseconds delay{2};
+  bool is_silent = false;
+  double garbage = 0;
+  bool looks = true;
+  std::string asked;  // all that the host wrote
+  std::vector<Gaze> gazes;
+  std::vector<std::string> faults, remarks;
+  std::deque<std::pair<MonotonicTime, char>> coming;
+  std::mt19937 random{1};
+
+  void exchange() {
+    const std::string bytes = host.bytes();
+    asked += bytes;
+    const double time = std::chrono::duration<double>(now).count();
+    for (char byte : unit.take(time, bytes) + unit.pass(time)) {
+      if (is_silent) continue;
+      const bool is_spoilt = static_cast<double>(random() % 1000) < garbage * 1000;
+      coming.emplace_back(now + delay, is_spoilt ? static_cast<char>(random() % 256) : byte);
+    }
+  }
+  void step() {
+    exchange();
+    now += milliseconds(1);
+    std::string come;
+    for (; !coming.empty() && coming.front().first <= now; coming.pop_front())
+      come += coming.front().second;
+    host.take(now, come);
+    host.pass(now);
+    if (auto gaze = host.gaze()) gazes.push_back(*gaze);
+    if (auto fault = host.fault()) faults.push_back(fault->detail);
+    if (auto remark = host.remark(); !remark.empty()) remarks.push_back(remark);
+    if (looks && now.count() % 20'000'000 == 0) host.look(now);
+  }
+  void run(milliseconds duration) {
+    for (const auto end = now + duration; now < end;) step();
+  }
+  void begin() {
+    host.begin(now);
+    run(milliseconds(300));
+    ASSERT_EQ(host.phase(), Phase::Ready);
+  }
+  /// What the host wrote since the last time, without questions.
+  std::string commands() {
+    std::string all = std::exchange(asked, {}), left;
+    for (std::size_t at = 0; at < all.size();) {
+      const auto end = all.find(' ', at) + 1;
+      const std::string one = all.substr(at, end - at);
+      if (one != "pp " && one != "tp ") left += one;
+      at = end;
+    }
+    return left;
+  }
+};
 
 TEST(Conversation, begins_as_drivers_do_and_asks_what_is_there) {
   Line line;
@@ -39,20 +106,28 @@ TEST(Conversation, tells_where_the_unit_looks_and_when) {
   EXPECT_NEAR(last.tilt, 100 * kStep, 10 * kStep);
 }
 
-TEST_F(Conversing, a_command_goes_at_once_beside_a_question) {
+TEST(Conversation, a_command_goes_at_once_beside_a_question) {
+  Line line;
+  line.begin();
+  line.commands();
   line.host.look(line.now);
   EXPECT_EQ(line.host.bytes(), "pp tp ");
   EXPECT_TRUE(line.host.command(line.now, 100 * kStep, 50 * kStep));
   EXPECT_EQ(line.host.bytes(), "pp100 tp-50 ");
 }
 
-TEST_F(Conversing, of_commands_that_must_wait_the_newest_is_sent) {
+TEST(Conversation, of_commands_that_must_wait_the_newest_is_sent) {
+  Line line;
+  line.begin();
+  line.commands();
   for (int i = 1; i <= 50; ++i) line.host.command(line.now, i * kStep, 0);
   line.run(milliseconds(50));
   EXPECT_EQ(line.commands(), "pp1 tp0 pp50 tp0 ");
 }
 
-TEST_F(Conversing, never_has_more_than_a_question_and_a_command_without_answer) {
+TEST(Conversation, never_has_more_than_a_question_and_a_command_without_answer) {
+  Line line;
+  line.begin();
   line.is_silent = true;
   line.asked.clear();
   for (int i = 0; i < 400; ++i) {
@@ -62,7 +137,10 @@ TEST_F(Conversing, never_has_more_than_a_question_and_a_command_without_answer) 
   EXPECT_LE(std::count(line.asked.begin(), line.asked.end(), ' '), 4);
 }
 
-TEST_F(Conversing, commands_are_brought_within_the_limits) {
+TEST(Conversation, commands_are_brought_within_the_limits) {
+  Line line;
+  line.begin();
+  line.commands();
   line.host.command(line.now, 99, -1e300);
   line.run(milliseconds(50));
   line.host.command(line.now, -99, 99);
@@ -71,7 +149,10 @@ TEST_F(Conversing, commands_are_brought_within_the_limits) {
   EXPECT_TRUE(line.remarks.empty());
 }
 
-TEST_F(Conversing, a_command_that_is_the_same_is_not_sent_again) {
+TEST(Conversation, a_command_that_is_the_same_is_not_sent_again) {
+  Line line;
+  line.begin();
+  line.commands();
   for (int i = 0; i < 5; ++i) {
     line.host.command(line.now, 0.1, 0);
     line.run(milliseconds(20));
@@ -79,8 +160,11 @@ TEST_F(Conversing, a_command_that_is_the_same_is_not_sent_again) {
   EXPECT_EQ(line.commands(), "pp111 tp0 ");
 }
 
-TEST_F(Conversing, a_motion_is_halted_when_commands_end) {
+TEST(Conversation, a_motion_is_halted_when_commands_end) {
+  Line line;
+  line.begin();
   line.host.set_hold(milliseconds(200));
+  line.commands();
   line.host.command(line.now, 2, 0);
   line.run(milliseconds(199));
   EXPECT_EQ(line.commands(), "pp2228 tp0 ");
@@ -94,11 +178,147 @@ TEST_F(Conversing, a_motion_is_halted_when_commands_end) {
   EXPECT_EQ(line.commands(), "pp2228 tp0 ");
 }
 
-TEST_F(Conversing, a_place_that_was_reached_needs_no_halt) {
+TEST(Conversation, a_place_that_was_reached_needs_no_halt) {
+  Line line;
+  line.begin();
   line.host.set_hold(milliseconds(200));
+  line.commands();
   line.host.command(line.now, 0.05, 0);
   line.run(milliseconds(2000));
   EXPECT_EQ(line.commands(), "pp56 tp0 ");
+}
+
+TEST(Conversation, a_silent_unit_is_asked_anew_and_then_given_up) {
+  Line line;
+  line.begin();
+  line.is_silent = true;
+  line.run(Conversation::kTimeOut + milliseconds(30));
+  EXPECT_EQ(line.faults, std::vector<std::string>{"the unit does not answer"});
+  EXPECT_EQ(line.host.phase(), Phase::Begins);
+  EXPECT_FALSE(line.host.command(line.now, 0, 0));
+  line.run((Conversation::kTries + 1) * Conversation::kTimeOut);
+  EXPECT_EQ(line.host.phase(), Phase::Lost);
+}
+
+TEST(Conversation, no_old_command_is_sent_when_the_unit_is_back_but_its_motion_is_halted) {
+  Line line;
+  line.begin();
+  line.host.set_hold(milliseconds(200));
+  line.host.command(line.now, 2, 0);
+  line.step();
+  line.host.command(line.now, 1, 0);  // waits for the first one's answer, which is lost
+  line.is_silent = true;
+  line.coming.clear();
+  line.run(Conversation::kTimeOut + milliseconds(100));
+  line.is_silent = false;
+  line.asked.clear();
+  line.run(milliseconds(1000));
+  EXPECT_EQ(line.host.phase(), Phase::Ready);
+  EXPECT_EQ(line.asked.find("pp1"), std::string::npos) << line.asked;
+  EXPECT_EQ(line.asked.find("pp2"), std::string::npos) << line.asked;
+  EXPECT_NE(line.asked.find("h "), std::string::npos) << line.asked;
+}
+
+TEST(Conversation, late_answers_are_borne) {
+  Line line;
+  line.delay = milliseconds(300);
+  line.host.begin(line.now);
+  line.run(milliseconds(9000));
+  EXPECT_EQ(line.host.phase(), Phase::Ready);
+  EXPECT_TRUE(line.faults.empty());
+  EXPECT_GT(line.gazes.size(), 2U);
+}
+
+/// Puts the line right again, and checks that what the host believes is true.
+void check_recovery(Line& line) {
+  line.delay = milliseconds(2);
+  line.garbage = 0;
+  for (int i = 0; i < 10'000 && line.host.phase() != Phase::Ready; ++i) {
+    if (line.host.phase() == Phase::Lost) line.host.begin(line.now);
+    line.step();
+  }
+  line.run(milliseconds(2000));
+  ASSERT_EQ(line.host.phase(), Phase::Ready);
+  EXPECT_EQ(line.host.character(),
+            "pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees");
+  const double time = std::chrono::duration<double>(line.now).count();
+  EXPECT_NEAR(line.gazes.back().pan, line.unit.pan(time) * kStep, kStep);
+  EXPECT_NEAR(line.gazes.back().tilt, -line.unit.tilt(time) * kStep, kStep);
+}
+
+TEST(Conversation, answers_that_are_too_late_are_not_taken_for_others) {
+  Line line;
+  line.unit = Unit(700, -300);
+  line.delay = milliseconds(700);
+  line.host.begin(line.now);
+  for (int i = 0; i < 20'000; ++i) {
+    if (line.host.phase() == Phase::Lost) line.host.begin(line.now);
+    line.step();
+  }
+  for (const Gaze& gaze : line.gazes) {
+    EXPECT_NEAR(gaze.pan, 700 * kStep, kStep);
+    EXPECT_NEAR(gaze.tilt, 300 * kStep, kStep);
+  }
+  check_recovery(line);
+}
+
+TEST(Conversation, an_answer_to_an_older_question_is_found_out) {
+  Line line;
+  line.host.begin(line.now);
+  for (char byte : std::string("* 22\r\n")) line.coming.emplace_back(line.now, byte);
+  line.run(milliseconds(1000));
+  ASSERT_FALSE(line.faults.empty());
+  EXPECT_TRUE(line.faults[0].starts_with("garbage: ")) << line.faults[0];
+  check_recovery(line);
+}
+
+TEST(Conversation, a_spoilt_answer_is_not_believed_for_ever) {
+  Line line;
+  line.unit.take(1, "ft ed ci ");
+  line.host.begin(line.now);
+  line.host.bytes();
+  line.host.take(line.now, "*\r\n*\r\n*\r\n* 125.1428\r\n");
+  line.run(milliseconds(1000));
+  EXPECT_EQ(line.faults,
+            std::vector<std::string>{"garbage: \"185.1428\" answers nothing that was asked"});
+  check_recovery(line);
+}
+
+TEST(Conversation, garbage_is_told_and_got_over) {
+  Line line;
+  line.unit = Unit(700, -300);
+  line.begin();
+  line.garbage = 0.01;
+  std::size_t most = 0;
+  for (int i = 0; i < 30'000; ++i) {
+    if (line.host.phase() == Phase::Lost) line.host.begin(line.now);
+    line.step();
+    if (line.host.phase() == Phase::Ready) ++most;
+  }
+  EXPECT_GT(most, 3000U);  // of 30,000 ms
+  ASSERT_FALSE(line.faults.empty());
+  EXPECT_TRUE(line.faults[0].starts_with("garbage: ")) << line.faults[0];
+  check_recovery(line);
+}
+
+TEST(Conversation, nothing_but_garbage_is_given_up) {
+  Line line;
+  line.garbage = 1;
+  line.host.begin(line.now);
+  line.run(milliseconds(2100));
+  EXPECT_EQ(line.host.phase(), Phase::Lost);
+}
+
+TEST(Conversation, a_unit_that_was_switched_off_and_on_is_made_terse_again) {
+  Line line;
+  line.begin();
+  line.host.set_pace(0.5, 0);
+  line.run(milliseconds(100));
+  line.unit = Unit(10, 20);
+  line.run(milliseconds(1500));
+  EXPECT_EQ(line.host.phase(), Phase::Ready);
+  EXPECT_NEAR(line.gazes.back().pan, 10 * kStep, 1e-9);
+  EXPECT_TRUE(line.unit.take(10, "ps ").find("* 557") != std::string::npos);
 }
 
 TEST(Conversation, a_pace_is_set_and_given_back) {
@@ -114,7 +334,9 @@ TEST(Conversation, a_pace_is_set_and_given_back) {
   EXPECT_EQ(line.commands(), "ps1000 ts1000 pa2000 ta2000 ");
 }
 
-TEST_F(Conversing, what_the_unit_refuses_or_runs_into_is_a_remark) {
+TEST(Conversation, what_the_unit_refuses_or_runs_into_is_a_remark) {
+  Line line;
+  line.begin();
   line.looks = false;
   line.run(milliseconds(50));
   line.host.take(line.now, "!T!P");
@@ -124,6 +346,19 @@ TEST_F(Conversing, what_the_unit_refuses_or_runs_into_is_a_remark) {
   line.host.take(line.now, "! Illegal command entered\r\n*\r\n");
   EXPECT_EQ(line.host.remark(), "refused: Illegal command entered");
   EXPECT_EQ(line.host.phase(), Phase::Ready);
+}
+
+TEST(Conversation, a_place_where_it_cannot_be_is_garbage) {
+  Line line;
+  line.begin();
+  line.looks = false;
+  line.run(milliseconds(50));
+  line.gazes.clear();
+  line.host.look(line.now);
+  line.host.bytes();
+  line.host.take(line.now, "* 2200\r\n* 0\r\n");
+  EXPECT_EQ(line.host.fault()->detail, "garbage: it cannot be at 2200");
+  EXPECT_FALSE(line.host.gaze());
 }
 
 }  // namespace
