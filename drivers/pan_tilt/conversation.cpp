@@ -38,6 +38,7 @@ void Conversation::end() {
   wanted_.reset();
   quiet_at_.reset();
   is_heading_sure_ = false;
+  has_halted_ = halt_follows_ = false;
 }
 
 void Conversation::try_anew(MonotonicTime now) {
@@ -51,8 +52,17 @@ void Conversation::try_anew(MonotonicTime now) {
   place_.reset();
   asked_ = 0;
   overdue_ = now + kTimeOut;
-  bytes_ = pan_tilt::command("ft") + pan_tilt::command("ed") + pan_tilt::command("ci") +
-           pan_tilt::command(kQuestions[0]);
+  halt_unheard(now);
+  bytes_ += pan_tilt::command("ft") + pan_tilt::command("ed") + pan_tilt::command("ci") +
+            pan_tilt::command(kQuestions[0]);
+}
+
+/// Halts a unit that may move and cannot be asked: once in a try.
+void Conversation::halt_unheard(MonotonicTime now) {
+  const bool is_left = may_move_ || (heading_ && is_late(now));
+  if (hold_.count() == 0 || !is_left || has_halted_) return;
+  bytes_ += pan_tilt::command("h");
+  has_halted_ = true;
 }
 
 /// Begins anew: at once where nothing came, else when no more garbage comes.
@@ -67,7 +77,7 @@ void Conversation::fail(MonotonicTime now, Error error) {
 }
 
 void Conversation::take(MonotonicTime now, std::string_view bytes) {
-  if (phase_ == Phase::Closed || phase_ == Phase::Lost) return;
+  if (phase_ == Phase::Closed || phase_ == Phase::Lost || bytes.empty()) return;
   if (quiet_at_) {
     quiet_at_ = now + kQuiet;
     return;
@@ -90,6 +100,7 @@ void Conversation::take(MonotonicTime now, std::string_view bytes) {
 }
 
 void Conversation::hear_at_begin(MonotonicTime now, const Reply& reply) {
+  if (asked_ > 0 && reply.kind == Reply::Kind::Done && std::exchange(halt_follows_, false)) return;
   const auto value = number(reply.text);
   const bool is_number = reply.kind == Reply::Kind::Result && value;
   if (asked_ == 0) {
@@ -112,6 +123,8 @@ void Conversation::become_ready(MonotonicTime now) {
   if (!is_sound) return fail(now, {Code::Malformed, "garbage: limits that make no sense"});
   phase_ = Phase::Ready;
   tries_ = 0;
+  may_move_ = false;
+  if (std::exchange(halt_follows_, false)) say(now, "", {Awaits::Halted});
   const Pace told = {bounded(s[kPS], 1, 1e6), bounded(s[kTS], 1, 1e6), bounded(s[kPA], 1, 1e6),
                      bounded(s[kTA], 1, 1e6)};
   if (!own_pace_) own_pace_ = told;
@@ -139,16 +152,19 @@ void Conversation::look(MonotonicTime now) {
   say(now, pan_tilt::command("pp") + pan_tilt::command("tp"), {Awaits::Pan, Awaits::Tilt});
 }
 
-bool Conversation::command(MonotonicTime now, double pan, double tilt) {
+bool Conversation::command(MonotonicTime now, double pan, double tilt,
+                           std::chrono::nanoseconds life) {
   if (phase_ != Phase::Ready) return false;
   const auto& s = settings_;
   commanded_ = now;
+  wanted_until_ = now + life;
   wanted_ = {bounded(pan / step(0), s[kPN], s[kPX]), bounded(-tilt / step(1), s[kTN], s[kTX])};
   send_wanted(now);
   return true;
 }
 
 void Conversation::send_wanted(MonotonicTime now) {
+  if (now > wanted_until_) wanted_.reset();
   if (!wanted_ || awaits(Awaits::TiltSet)) return;
   const Places places = *std::exchange(wanted_, std::nullopt);
   if (is_heading_sure_ && heading_ == places) return;
@@ -216,6 +232,8 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   if (axis == 0) return;
   place_ = heard_;
   place_time_ = looked_;
+  // One that was asked so long ago has waited to be read: nobody knows when it was.
+  if (now - looked_ >= kTimeOut) return;
   gaze_ = Gaze{heard_[0] * step(0), -heard_[1] * step(1), looked_ + (now - looked_) / 2};
 }
 
@@ -229,17 +247,26 @@ void Conversation::pass(MonotonicTime now) {
   if (phase_ == Phase::Begins) {
     const bool is_quiet = quiet_at_ && now >= *quiet_at_;
     if (!quiet_at_ && now >= overdue_) fault_ = Error{Code::Closed, "the unit does not answer"};
-    if (is_quiet || now >= overdue_) try_anew(now);
+    if (is_quiet || now >= overdue_) {
+      try_anew(now);
+    } else if (!has_halted_) {
+      halt_unheard(now);
+      halt_follows_ = has_halted_ && !quiet_at_;
+    }
   }
   if (phase_ != Phase::Ready) return;
   if (!awaited_.empty() && now >= overdue_)
     return fail(now, {Code::Closed, "the unit does not answer"});
   send_pace(now);
-  const bool is_late = hold_.count() > 0 && now - commanded_ > hold_;
-  if (!is_late || !heading_ || awaits(Awaits::Halted) || arrived()) return;
+  if (!is_late(now) || !heading_ || awaits(Awaits::Halted) || arrived()) return;
   wanted_.reset();
   is_heading_sure_ = false;  // and is no heading any more once the answer has come
   say(now, pan_tilt::command("h"), {Awaits::Halted});
+}
+
+/// Whether no command has come for too long.
+bool Conversation::is_late(MonotonicTime now) const {
+  return hold_.count() > 0 && now - commanded_ > hold_;
 }
 
 double Conversation::step(int axis) const {

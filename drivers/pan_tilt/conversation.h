@@ -26,12 +26,13 @@ struct Gaze {
 /// is ready when both agree. At most one question (both positions), one command (both axes), one
 /// pace and one halt are without answer at a time; of commands that come meanwhile the newest is
 /// sent. A line that brings garbage or no answer for kTimeOut is begun anew; what was commanded
-/// before is not sent again.
+/// before is not sent again, and its motion is halted, whether the unit can be heard or not.
 class Conversation {
  public:
   static constexpr std::chrono::milliseconds kTimeOut{500};
   static constexpr std::chrono::milliseconds kQuiet{60};  ///< behind garbage, before a new try
   static constexpr int kTries = 3;                        ///< before the line is lost
+  static constexpr std::chrono::milliseconds kLife{200};  ///< of a command
 
   enum class Phase {
     Closed,  ///< there is no line
@@ -54,10 +55,14 @@ class Conversation {
   void look(MonotonicTime now);
   /// Has it turn there, or to the nearest it can; false when it is not ready, and nothing is done
   /// then. The angles are finite [rad].
-  bool command(MonotonicTime now, double pan, double tilt);
+  ///
+  /// @param life  how long it may be sent yet: one that waits longer for the answer to another is
+  /// forgotten.
+  bool command(MonotonicTime now, double pan, double tilt, std::chrono::nanoseconds life = kLife);
   /// How fast it turns [rad/s, rad/s²]; 0: as it did when it was met.
   void set_pace(double speed, double acceleration);
-  /// Halts a motion that was commanded when no command came for so long; 0: never.
+  /// Halts a motion that was commanded when no command was taken for so long, and what the unit may
+  /// be at when it is met; 0: never.
   void set_hold(std::chrono::nanoseconds hold) { hold_ = hold; }
   /// What ends the motion that was commanded, if there may be one: for the end of a program.
   [[nodiscard]] std::string last_words() const { return heading_ ? "h " : ""; }
@@ -89,6 +94,8 @@ class Conversation {
   void send_pace(MonotonicTime now);
   [[nodiscard]] bool awaits(Awaits answer) const;
   [[nodiscard]] bool arrived() const;
+  [[nodiscard]] bool is_late(MonotonicTime now) const;
+  void halt_unheard(MonotonicTime now);
   [[nodiscard]] double step(int axis) const;  // [rad]
 
   Phase phase_ = Phase::Closed;
@@ -97,6 +104,9 @@ class Conversation {
   std::optional<Gaze> gaze_;
   std::optional<Error> fault_;
 
+  bool may_move_ = true;       // as somebody else has left it
+  bool has_halted_ = false;    // in this try
+  bool halt_follows_ = false;  // its answer comes behind that to the first question
   int tries_ = 0;
   std::size_t asked_ = 0;  // while it begins: the setting that is being asked
   bool is_known_ = false;  // settings have been heard on this line
@@ -109,6 +119,7 @@ class Conversation {
   MonotonicTime overdue_{0};  // when the oldest answer is
   MonotonicTime looked_{0}, heading_since_{0}, commanded_{0};
   std::optional<Places> wanted_, heading_, place_;
+  MonotonicTime wanted_until_{0};
   bool is_heading_sure_ = false;  // the unit has taken the command
   Places heard_ = {};
   MonotonicTime place_time_{0};  // when place_ was asked

@@ -219,16 +219,6 @@ TEST(Conversation, no_old_command_is_sent_when_the_unit_is_back_but_its_motion_i
   EXPECT_NE(line.asked.find("h "), std::string::npos) << line.asked;
 }
 
-TEST(Conversation, late_answers_are_borne) {
-  Line line;
-  line.delay = milliseconds(300);
-  line.host.begin(line.now);
-  line.run(milliseconds(9000));
-  EXPECT_EQ(line.host.phase(), Phase::Ready);
-  EXPECT_TRUE(line.faults.empty());
-  EXPECT_GT(line.gazes.size(), 2U);
-}
-
 /// Puts the line right again, and checks that what the host believes is true.
 void check_recovery(Line& line) {
   line.delay = milliseconds(2);
@@ -244,6 +234,116 @@ void check_recovery(Line& line) {
   const double time = std::chrono::duration<double>(line.now).count();
   EXPECT_NEAR(line.gazes.back().pan, line.unit.pan(time) * kStep, kStep);
   EXPECT_NEAR(line.gazes.back().tilt, -line.unit.tilt(time) * kStep, kStep);
+}
+
+TEST(Conversation, a_command_that_has_waited_too_long_is_not_sent) {
+  Line line;
+  line.begin();
+  line.delay = milliseconds(300);
+  line.commands();
+  line.host.command(line.now, 10 * kStep, 0);
+  line.run(milliseconds(50));
+  line.host.command(line.now, 20 * kStep, 0);  // too old when the answer to the first one comes
+  line.run(milliseconds(300));
+  EXPECT_EQ(line.commands(), "pp10 tp0 ");
+  line.host.command(line.now, 30 * kStep, 0);
+  line.run(milliseconds(50));
+  line.host.command(line.now, 40 * kStep, 0, milliseconds(400));
+  line.run(milliseconds(300));
+  EXPECT_EQ(line.commands(), "pp30 tp0 pp40 tp0 ");
+  line.run(milliseconds(400));
+  line.host.command(line.now, 50 * kStep, 0);
+  line.host.command(line.now, 60 * kStep, 0);
+  line.now += milliseconds(1000);  // nobody has looked for so long: the process was stopped
+  line.host.take(line.now, "*\r\n*\r\n*\r\n*\r\n");
+  EXPECT_EQ(line.host.bytes().find("pp60"), std::string::npos);
+}
+
+TEST(Conversation, a_motion_is_halted_though_nothing_can_be_heard) {
+  for (bool is_silent : {false, true}) {
+    Line line;
+    line.host.set_hold(milliseconds(200));
+    line.begin();
+    line.host.command(line.now, 2.5, 0);
+    line.run(milliseconds(100));
+    line.is_silent = is_silent;
+    line.garbage = 1;
+    for (int i = 0; i < 1500; ++i) {
+      line.host.command(line.now, 2.5, 0);  // who commands does not know
+      line.step();
+    }
+    const double seconds = std::chrono::duration<double>(line.now).count();
+    const double pan = line.unit.pan(seconds);
+    EXPECT_GT(pan, 50);
+    EXPECT_LT(pan, 1000);  // it would get to 2785
+    EXPECT_EQ(line.unit.pan(seconds + 1), pan);
+    line.is_silent = false;
+    check_recovery(line);
+  }
+}
+
+TEST(Conversation, what_somebody_else_has_left_moving_is_halted) {
+  Line line;
+  line.unit.take(1, "ci pp2000 ");
+  line.host.set_hold(milliseconds(200));
+  line.begin();
+  EXPECT_TRUE(line.asked.starts_with("h ft ed ci pr ")) << line.asked;
+  EXPECT_LT(line.unit.pan(9), 100);
+}
+
+TEST(Conversation, a_halt_amid_the_first_questions_is_borne) {
+  for (int late = 1; late < 100; late += 7) {
+    Line line;
+    line.host.set_hold(milliseconds(200));
+    line.begin();
+    line.host.command(line.now, 2, 0);
+    line.run(milliseconds(200 - late));
+    line.host.end();
+    line.coming.clear();
+    line.delay = milliseconds(30);
+    line.host.begin(line.now);
+    line.run(milliseconds(2000));
+    EXPECT_TRUE(line.faults.empty()) << line.faults[0];
+    EXPECT_LT(line.unit.pan(9), 400);
+  }
+}
+
+TEST(Conversation, a_halt_whose_answer_comes_when_it_is_ready_is_borne) {
+  Line line;
+  line.host.set_hold(milliseconds(200));
+  line.begin();
+  line.looks = false;
+  line.host.command(line.now, 2, 0);
+  line.run(milliseconds(50));
+  line.host.take(line.now, "x\r\n");
+  line.delay = milliseconds(150);
+  line.run(milliseconds(1000));
+  EXPECT_EQ(line.faults.size(), 1U) << line.asked;
+  EXPECT_EQ(line.host.phase(), Phase::Ready);
+  EXPECT_LT(line.unit.pan(9), 500);
+}
+
+TEST(Conversation, an_answer_that_nobody_has_looked_at_tells_no_gaze) {
+  Line line;
+  line.begin();
+  line.looks = false;
+  line.run(milliseconds(50));
+  line.gazes.clear();
+  line.host.look(line.now);
+  line.host.bytes();
+  line.host.take(line.now + milliseconds(1000), "* 0\r\n* 0\r\n");
+  EXPECT_FALSE(line.host.gaze());
+  EXPECT_EQ(line.host.phase(), Phase::Ready);
+}
+
+TEST(Conversation, late_answers_are_borne) {
+  Line line;
+  line.delay = milliseconds(300);
+  line.host.begin(line.now);
+  line.run(milliseconds(9000));
+  EXPECT_EQ(line.host.phase(), Phase::Ready);
+  EXPECT_TRUE(line.faults.empty());
+  EXPECT_GT(line.gazes.size(), 2U);
 }
 
 TEST(Conversation, answers_that_are_too_late_are_not_taken_for_others) {

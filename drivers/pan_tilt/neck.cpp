@@ -79,6 +79,7 @@ void Neck::work(MonotonicTime now) {
 
 void Neck::pass(MonotonicTime now) {
   if (!serial_ && !device_.empty() && now >= try_at_) open(now);
+  read(now);  // what has come is not overdue, however long nobody has looked
   conversation_.pass(now);
   work(now);
   if (conversation_.phase() != Phase::Ready) return;
@@ -95,8 +96,8 @@ void Neck::look(MonotonicTime now) {
   work(now);
 }
 
-bool Neck::command(MonotonicTime now, double pan, double tilt) {
-  const bool is_taken = conversation_.command(now, pan, tilt);
+bool Neck::command(MonotonicTime now, double pan, double tilt, std::chrono::nanoseconds life) {
+  const bool is_taken = conversation_.command(now, pan, tilt, life);
   work(now);
   return is_taken;
 }

@@ -35,7 +35,8 @@ class Neck {
   void pass(MonotonicTime now);
 
   void look(MonotonicTime now);
-  bool command(MonotonicTime now, double pan, double tilt);
+  bool command(MonotonicTime now, double pan, double tilt,
+               std::chrono::nanoseconds life = Conversation::kLife);
   /// Halts a motion that was commanded, and lets go of the line.
   void leave();
 

@@ -92,6 +92,19 @@ TEST_F(NeckTest, a_silent_unit_is_told_once_and_so_is_its_return) {
   EXPECT_EQ(told_, std::vector<std::string>{path() + ": answers again"});
 }
 
+TEST_F(NeckTest, an_answer_that_came_while_nobody_looked_is_no_silence) {
+  plug();
+  open();
+  run(milliseconds(1500));
+  told_.clear();
+  neck_.look(now_);
+  terminal_->write(unit_.take(2.6, terminal_->read()));
+  now_ += milliseconds(1000);  // as long as the process was stopped
+  neck_.pass(now_);
+  run(milliseconds(1000));
+  EXPECT_TRUE(told_.empty()) << told_[0];
+}
+
 TEST_F(NeckTest, a_new_rate_opens_the_line_anew) {
   plug();
   open();

@@ -54,6 +54,8 @@ int main(int argc, char** argv) {
                               "truth: 0, tilt, pan as they are [rad]");
   auto device = module.output("device", hc::string(),
                               "what to open; empty while unplugged; each second and on change");
+  auto received =
+      module.output("received", hc::string(), "what has come on its line, in pieces as it came");
   auto pan = module.parameter("pan", 0.0, "rad", "where it stands at the start",
                               {.least = -3.2, .most = 3.2, .fixed = true});
   auto tilt =
@@ -99,7 +101,13 @@ int main(int argc, char** argv) {
     if (*unplugged == terminal.has_value()) plug();
     const double now = seconds();
     if (terminal) to_unit->put(now, terminal->read(), {0, *bytes_per_second, 0});
-    std::string said = unit->take(now, to_unit->take(now)) + unit->pass(now);
+    const std::string heard = to_unit->take(now);
+    if (!heard.empty() && received.linked()) {
+      auto text = hc::string(heard);
+      text.header.time = module.now();
+      received.send(text);
+    }
+    std::string said = unit->take(now, heard) + unit->pass(now);
     if (!*silent) from_unit->put(now, said, {*answer_delay, *bytes_per_second, *garbage});
     if (terminal) terminal->write(from_unit->take(now));
     std::optional<double> next;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The robot's neck: a pan-tilt unit at a serial line turns the head, and tells where it looks.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -19,12 +20,12 @@ class LeftOut {
     if (count++ == 0) module_.log("command: left out, as others may be: " + why);
   }
   void tell() const {
-    if (late + wrong + unready == 0) return;
+    if (late + untimed + wrong + unready == 0) return;
     module_.log("command: left out: " + std::to_string(late) + " of another time, " +
-                std::to_string(unready) + " while there was no unit, " + std::to_string(wrong) +
-                " without numbers");
+                std::to_string(untimed) + " without a time, " + std::to_string(unready) +
+                " while there was no unit, " + std::to_string(wrong) + " without numbers");
   }
-  std::int64_t late = 0, wrong = 0, unready = 0;
+  std::int64_t late = 0, untimed = 0, wrong = 0, unready = 0;
 
  private:
   hc::Module& module_;
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
   auto baud = module.parameter("baud", 9600, "", "its rate", {.least = 300, .most = 4e6});
   auto rate = module.parameter("rate", 50.0, "Hz", "how often the unit is asked where it looks",
                                {.least = 0, .most = 1000});
-  auto age = module.parameter("age", 0.2, "s", "a command that is older, or newer, is left out",
+  auto age = module.parameter("age", 0.2, "s", "a command that is older, newer, or without a time, is left out",
                               {.least = 0.001, .most = 60});
   auto hold = module.parameter("hold", 0.2, "s",
                                "without a command for so long the unit is halted, 0: never",
@@ -108,24 +109,31 @@ int main(int argc, char** argv) {
     if (message.header.width != 1 || message.header.height != 1 || !std::isfinite(numbers[1]) ||
         !std::isfinite(numbers[2]))
       return left_out.add(left_out.wrong, "it is not one gaze of finite angles");
-    if (const std::int64_t time = message.header.time; time != 0) {
-      const double seconds = static_cast<double>(module.now() - time) * 1e-9;
-      if (std::abs(seconds) > *age)
-        return left_out.add(left_out.late, std::to_string(std::abs(seconds)) + " s " +
-                                               (seconds > 0 ? "old" : "in the future"));
-    }
-    if (!neck.command(clock.monotonic(), numbers[2], numbers[1]))
+    // It may have waited anywhere, for as long as this process was stopped.
+    if (message.header.time == 0)
+      return left_out.add(left_out.untimed, "it does not say when it was made (time 0)");
+    const double seconds = static_cast<double>(module.now() - message.header.time) * 1e-9;
+    if (std::abs(seconds) > *age)
+      return left_out.add(left_out.late, std::to_string(std::abs(seconds)) + " s " +
+                                             (seconds > 0 ? "old" : "in the future"));
+    const std::chrono::duration<double> life(*age - std::max(seconds, 0.0));
+    if (!neck.command(clock.monotonic(), numbers[2], numbers[1],
+                      std::chrono::duration_cast<std::chrono::nanoseconds>(life)))
       left_out.add(left_out.unready, "there is no unit yet");
   });
+  auto send_seen = [&] {
+    if (auto seen = neck.conversation().gaze()) send(*seen);
+  };
   module.on_readable([&] { return neck.descriptor(); },
                      [&] {
                        neck.read(clock.monotonic());
-                       if (auto seen = neck.conversation().gaze()) send(*seen);
+                       send_seen();
                      });
   module.every(rate, [&] { neck.look(clock.monotonic()); });
   module.every(kTick, [&] {
     follow_parameters();
     neck.pass(clock.monotonic());
+    send_seen();
   });
   const int status = module.run(argc, argv);
   neck.leave();

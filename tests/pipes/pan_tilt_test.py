@@ -4,6 +4,8 @@
 
 import math
 import os
+import pathlib
+import re
 import signal
 import socket
 import threading
@@ -93,40 +95,47 @@ class PanTilt(Pipes):
         self.environment["TMPDIR"] = self.folder.name
         self.name = os.path.basename(self.folder.name) + "-"
 
-    def start_fake(self, words=""):
+    def start_fake(self, words="", device=None):
+        """Starts the unit; `device` is a file that its name goes to, else the driver reads it."""
         name = self.name
+        device = "file:" + device if device else "unix-listen:@%sdevice?stay=1&keep=latest" % name
         self.fake = Program(
             self.start(
                 "exec %sfake_pan_tilt --control unix-listen:@%scontrol_fake"
-                " --out 'device=unix-listen:@%sdevice?stay=1&keep=latest'"
-                " --out 'motion=unix-listen:@%smotion?stay=1&keep=latest' %s"
-                % (PROGRAMS, name, name, name, words)
+                " --out 'device=%s' --out 'motion=unix-listen:@%smotion?stay=1&keep=latest' %s"
+                % (PROGRAMS, name, device, name, words)
             ),
             name + "control_fake",
         )
         self.motion = Reader(name + "motion")
 
-    def start_neck(self, words=""):
+    def start_neck(self, words="", age=10, device=None):
+        """Starts the driver; `device` is its name, else the fake tells it."""
         name = self.name
+        told = "--in 'device=unix:@%sdevice?reconnect=600'" % name
+        device = told if device is None else "--device " + device
         self.neck = Program(
             self.start(
-                "exec %span_tilt --age 10 --control unix-listen:@%scontrol_neck"
-                " --in 'device=unix:@%sdevice?reconnect=600' --in command=unix-listen:@%scommand"
+                "exec %span_tilt --age %g --control unix-listen:@%scontrol_neck"
+                " %s --in command=unix-listen:@%scommand"
                 " --out 'gaze=unix-listen:@%sgaze?stay=1&keep=latest'"
                 " --out 'pose=unix-listen:@%spose?stay=1&keep=latest' %s"
-                % (PROGRAMS, name, name, name, name, name, words)
+                % (PROGRAMS, age, name, device, name, name, name, words)
             ),
             name + "control_neck",
         )
         self.gaze = Reader(name + "gaze")
         self.pose = Reader(name + "pose")
         self.commands = connected(name + "command")
+
+    def start_ready(self, words="", age=10):
+        self.start_neck(words, age)
         self.gaze.wait()
         self.motion.wait()
 
     def start_both(self, neck="", fake=""):
         self.start_fake(fake)
-        self.start_neck(neck)
+        self.start_ready(neck)
 
     def command(self, pan, tilt, seconds=0.0, timed=True):
         """Commands a gaze as one who lives so many seconds later."""
@@ -198,7 +207,7 @@ class PanTilt(Pipes):
 
     def test_commands_beyond_the_limits_go_to_the_limit(self):
         self.start_both("--hold 0 --speed 2.5")
-        self.command(9.0, 9.0, timed=False)
+        self.command(9.0, 9.0)
         self.wait_motion(3090 * STEP, 907 * STEP)
         self.assertEqual(self.neck.count("refused"), 0)
 
@@ -207,13 +216,95 @@ class PanTilt(Pipes):
         self.command(-1.0, 0.0, -30)
         self.command(-1.0, 0.0, +30)
         self.command(float("nan"), 0.0)
+        self.command(-1.0, 0.0, timed=False)
         self.command(0.3, 0.0)
         self.wait_motion(0.3)
         self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), 0)
-        self.assertEqual(self.neck.count("left out, as others"), 2)
+        self.assertEqual(self.neck.count("left out, as others"), 3)
         self.neck.process.terminate()
-        self.neck.wait_line("left out: 2 of another time, 0 while there was no unit, 1 without")
+        self.neck.wait_line("left out: 2 of another time, 1 without a time, 0 while there was no unit, 1 without")
         self.assertEqual(self.neck.process.wait(), 0)
+
+    def stop_for(self, nanoseconds, program, meanwhile):
+        """Stops a program as a debugger does, does something, and lets it go on later."""
+        program.process.send_signal(signal.SIGSTOP)
+        meanwhile()
+        end = self.motion.wait()[0] + nanoseconds
+        wait_until(lambda: self.motion.messages[-1][0] > end)
+        program.process.send_signal(signal.SIGCONT)
+
+    def test_commands_that_waited_for_the_driver_are_not_carried_out(self):
+        self.start_fake("--out received=file:%s" % self.path("received"))
+        self.start_ready(age=0.2)
+
+        def command_all():
+            for tenth in range(5, 25):
+                self.command(-tenth / 10, 0.0)
+                self.command(-tenth / 10, 0.0, 0.1)  # a little ahead of its time
+                self.command(-tenth / 10, 0.0, timed=False)
+
+        self.stop_for(1_000_000_000, self.neck, command_all)
+        self.drive(0.3, lambda pan: abs(pan - 0.3) < STEP)
+        pans = set(re.findall(r"pp(-?\d+)", pathlib.Path(self.path("received")).read_text()))
+        self.assertEqual(pans, {str(round(0.3 / STEP))})
+        self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), -STEP)
+        # And there is no talk of a fault: the answers have waited too.
+        self.assertEqual(self.neck.count("left out, as others"), 2)
+        self.assertEqual(len(self.neck.lines), 3, self.neck.lines)
+        self.neck.process.terminate()
+        self.neck.wait_line("left out: 40 of another time, 20 without a time")
+
+    def test_the_unit_stops_when_the_driver_is_killed_and_started_again(self):
+        self.start_both()
+        self.drive(2.5, lambda pan: pan > 0.05)
+        self.neck.process.send_signal(signal.SIGKILL)
+        self.neck.process.wait()
+        self.start_ready()
+        self.assertLess(self.wait_rest(), 2.4)
+
+    def test_garbage_does_not_keep_the_unit_from_being_stopped(self):
+        self.start_both()
+        self.drive(2.5, lambda pan: pan > 0.05)
+        self.fake.set("garbage=1")
+        self.neck.wait_line("garbage")
+        begin = len(self.motion.messages)
+        stands = lambda pans: len(pans) > 100 and min(pans[-100:]) == max(pans[-100:])
+        # Whoever commands does not know.
+        wait_until(
+            lambda: self.command(2.5, 0.0) or stands([p for _, p in self.motion.angles()[begin:]])
+        )
+        self.assertLess(self.motion.angles()[-1][1], 2.4)
+
+    def test_a_name_that_stays_is_opened_when_it_is_there_and_there_again(self):
+        link = self.path("neck")
+        self.start_neck("--hold 0", device=link)
+        self.neck.wait_line("neck: open: No such file")
+        self.command(1.0, 0.0)
+        self.neck.wait_line("there is no unit yet")
+        self.start_fake(device=self.path("told"))
+
+        def told():
+            file = pathlib.Path(self.path("told"))
+            return re.findall(r"(/dev/\S+)\n", file.read_text()) if file.exists() else []
+
+        def plug(before):
+            wait_until(lambda: len(told()) > before)
+            os.symlink(told()[-1], link + ".new")
+            os.rename(link + ".new", link)
+
+        plug(0)
+        self.gaze.wait()
+        for pan in 0.2, -0.2:
+            begin = len(self.neck.lines)
+            self.fake.set("unplugged=true")
+            self.neck.wait_line("the device has gone", begin)
+            before = len(told())
+            self.fake.set("unplugged=false")
+            plug(before)
+            self.answers_again(begin)
+            self.assertLessEqual(len(self.neck.lines) - begin, 3, self.neck.lines)
+            self.command(pan, 0.0)
+            self.wait_motion(pan)
 
     def test_the_unit_stops_when_commands_end(self):
         self.start_both()
@@ -297,7 +388,7 @@ class PanTilt(Pipes):
         self.motion.wait()
         self.neck.process.send_signal(signal.SIGKILL)
         self.neck.process.wait()
-        self.start_neck("--hold 0")
+        self.start_ready("--hold 0")
         self.command(0.2, 0.0)
         self.wait_motion(0.2)
         begin = len(self.neck.lines)
