@@ -48,7 +48,8 @@ int main(int argc, char** argv) {
   auto baud = module.parameter("baud", 9600, "", "its rate", {.least = 300, .most = 4e6});
   auto rate = module.parameter("rate", 50.0, "Hz", "how often the unit is asked where it looks",
                                {.least = 0, .most = 1000});
-  auto age = module.parameter("age", 0.2, "s", "a command that is older, newer, or without a time, is left out",
+  auto age = module.parameter("age", 0.2, "s",
+                              "a command that is older, newer, or without a time, is left out",
                               {.least = 0.001, .most = 60});
   auto hold = module.parameter("hold", 0.2, "s",
                                "without a command for so long the unit is halted, 0: never",

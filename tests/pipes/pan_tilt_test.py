@@ -222,7 +222,9 @@ class PanTilt(Pipes):
         self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), 0)
         self.assertEqual(self.neck.count("left out, as others"), 3)
         self.neck.process.terminate()
-        self.neck.wait_line("left out: 2 of another time, 1 without a time, 0 while there was no unit, 1 without")
+        self.neck.wait_line(
+            "left out: 2 of another time, 1 without a time, 0 while there was no unit, 1 without"
+        )
         self.assertEqual(self.neck.process.wait(), 0)
 
     def stop_for(self, nanoseconds, program, meanwhile):

@@ -1,0 +1,312 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tasks that want the head at once: what the unit is told on its line is of the task in focus."""
+
+import math
+import os
+import pathlib
+import re
+import signal
+import socket
+import threading
+import time
+import unittest
+
+from graphs import Graphs
+from harness import ROOT, wait_until
+
+STEP = math.radians(185.1428 / 3600)  # of the unit [rad]
+LEFT, RIGHT, POINT = 1, 2, 3  # modes
+TILT = 0.2  # [rad] of what the task to the left looks at; to the right it is up, by stick 0
+ENOUGH = 5  # commands that the unit is told of a task before something changes
+
+GRAPH = """
+[graphs.head]
+file = "HEAD"
+parameters.eyes = { rate = 0.1, width = 80, height = 60 }
+
+[modes]
+left = 1
+right = 2
+point = 3
+
+[workspace]
+module = "workspace"
+
+[modules.workspace]
+parameters = { rate = 200, dwell = 0.05 }
+
+[modules.left]
+program = "gaze"
+mode = "left"
+parameters = { salience = 0.5, patience = 60, acceleration = 0 }
+
+[modules.right]
+program = "gaze"
+mode = "right"
+parameters = { salience = 0.2, patience = 60, acceleration = 0 }
+
+[modules.point]
+program = "gaze"
+mode = "point"
+parameters = { salience = 1, patience = 0.3, acceleration = 0, tilt_least = 0, tilt_most = 0 }
+
+[[links]]
+from = "unix-listen:left"
+to = "left.wish"
+
+[[links]]
+from = "unix-listen:right"
+to = "right.wish"
+
+[[links]]
+from = "unix-listen:stick"
+to = "point.stick"
+
+[[links]]
+from = "head_neck.gaze"
+to = "point.gaze"
+keep = "latest"
+
+[[links]]
+from = "left.bid"
+to = "workspace.bids"
+
+[[links]]
+from = "right.bid"
+to = "workspace.bids"
+
+[[links]]
+from = "point.bid"
+to = "workspace.person"
+
+[[links]]
+from = "workspace.focus"
+to = "file:focus"
+
+[[links]]
+from = "head_unit.received"
+to = "file:received"
+"""
+
+COMMAND_LINK = """
+[[links]]
+from = "%s.command"
+to = "COMMANDS"
+keep = "latest"
+rate = 500
+"""
+
+
+class Feeder:
+    """Sends a message to a module again and again, also when that was started anew."""
+
+    def __init__(self, path, message):
+        """`message` gives info, coord, width and the row, from the time [s]; nothing: silence."""
+        self.path, self.message = path, message
+        self.is_over = threading.Event()
+        self.thread = threading.Thread(target=self.feed, daemon=True)
+        self.thread.start()
+
+    def feed(self):
+        link = None
+        while not self.is_over.wait(0.005):
+            made = self.message(time.monotonic())
+            if made is None:
+                continue
+            try:
+                if link is None:
+                    link = socket.socket(socket.AF_UNIX)
+                    link.connect(self.path)
+                info, coord, width, row = made
+                stamp = time.time_ns()
+                text = "1 1 0 0 8 %d %d 0 %d %d 1\n%s\n" % (stamp, info, coord, width, row)
+                link.sendall(text.encode())
+            except OSError:  # it is being started
+                link.close()
+                link = None
+        if link:
+            link.close()
+
+    def end(self):
+        self.is_over.set()
+        self.thread.join()
+
+
+def wish(side):
+    """Looks to a side, down or up, and to and fro a little, so that each command is another."""
+
+    def message(now):
+        pan = side * (1 + 0.2 * math.sin(3 * now))
+        return 20390, 13, 1, "0 %r %r" % (side * TILT, pan)
+
+    return message
+
+
+def owner_of(pan, tilt):
+    """The mode of the task that has commanded that [position], 0 of none."""
+    pan, tilt = pan * STEP, -tilt * STEP
+    if abs(tilt) < STEP:
+        return POINT
+    side = 1 if tilt > 0 else -1
+    is_whole = abs(tilt - side * TILT) < 0.05 and 0.6 < side * pan < 1.4
+    return (LEFT if side > 0 else RIGHT) if is_whole else 0
+
+
+class Mixed(AssertionError):
+    """The unit was told what no task in focus has commanded."""
+
+
+def told_in(stints, commands):
+    """How many commands the unit has been told in each stint of the focus.
+
+    stints: (begin, mode); commands: (time, mode). Commands of a stint come behind its begin, and
+    none of an older one behind those of a newer one. When a stint's last command comes nothing
+    says: it may be on its way while the focus changes.
+    """
+    counts, now = [0] * len(stints), 0
+    for number, (at, mode) in enumerate(commands):
+        fitting = [i for i, each in enumerate(stints) if each[1] == mode and each[0] <= at]
+        if not fitting or fitting[-1] < now:
+            around = [each[1] for each in commands[max(0, number - 5) : number + 5]]
+            raise Mixed("command %d is of mode %d, among those of %s" % (number, mode, around))
+        now = fitting[-1]
+        counts[now] += 1
+    return counts
+
+
+class OneNeck(Graphs):
+    def start_tasks(self, is_exclusive=True):
+        head, commands, more = ROOT / "graphs/simulated_head.toml", "head_neck.command", ""
+        if not is_exclusive:
+            text = head.read_text()
+            self.assertEqual(text.count('exclusive = ["command"]\n'), 1)
+            self.write(text.replace('exclusive = ["command"]\n', ""), "head.toml")
+            # A neck that takes all has one sender, or the graph would be refused.
+            head, commands = "head.toml", "relay.in"
+            more = '[modules.relay]\n[[links]]\nfrom = "relay.out"\nto = "head_neck.command"\n'
+        links = "".join(COMMAND_LINK % task for task in ("left", "right", "point"))
+        self.write((GRAPH + links).replace("HEAD", str(head)).replace("COMMANDS", commands) + more)
+        self.process = self.start("exec hc run g.toml 2>said")
+        self.stick = 0.0
+        pushed = lambda now: (120190, 0, 2, "%g 0" % self.stick) if self.stick else None
+        self.feeders = [
+            Feeder(self.path("left"), wish(1)),
+            Feeder(self.path("right"), wish(-1)),
+            Feeder(self.path("stick"), pushed),
+        ]
+        self.addCleanup(lambda: [feeder.end() for feeder in self.feeders])
+        self.wait_told(LEFT)
+
+    def said(self):
+        return pathlib.Path(self.path("said")).read_text()
+
+    def messages(self, name):
+        """Time and row of the messages of a recording, but for one that is not whole yet."""
+        path = pathlib.Path(self.path(name))
+        lines = path.read_text().split("\n")[:-1] if path.exists() else []
+        pairs = zip(lines[::2], lines[1::2])
+        return [(int(header.split()[5]), row) for header, row in pairs]
+
+    def stints(self):
+        changes = [(0, 0)]
+        for at, row in self.messages("focus"):
+            if int(row) != changes[-1][1]:
+                changes.append((at, int(row)))
+        return changes
+
+    def commands(self):
+        """When and by whom the unit has been told where to go."""
+        words, rest = [], ""
+        for at, piece in self.messages("received"):
+            rest += piece
+            *whole, rest = re.split(r"(?<= )", rest)
+            words += [(at, word.strip()) for word in whole]
+        found, pan = [], None
+        for at, word in words:
+            if command := re.fullmatch(r"([pt]p)(-?\d+)", word):
+                if command[1] == "pp":
+                    self.assertIsNone(pan, "twice pan, without tilt")
+                    pan = int(command[2])
+                else:
+                    found.append((at, owner_of(pan, int(command[2]))))
+                    pan = None
+            elif word == "h":
+                pan = None
+        return found
+
+    def wait_told(self, mode):
+        """Waits until the unit has been told enough from now on by a task that has the focus."""
+        known = len(self.commands())
+
+        def is_enough():
+            begin, focus = self.stints()[-1]
+            since = [owner for at, owner in self.commands()[known:] if at >= begin]
+            return focus == mode and since.count(mode) >= ENOUGH
+
+        try:
+            wait_until(is_enough)
+        except AssertionError:
+            self.fail((mode, self.stints()[-3:], self.commands()[-9:], self.said()[-3000:]))
+
+    def set_saliences(self, left, right):
+        sets = ["set left.salience=%g" % left, "set right.salience=%g" % right]
+        self.assertEqual(self.ask(self.process, *sets), ["ok"])
+
+    def send_signal(self, name, number):
+        messages = self.observe(self.process)
+        state = self.state(messages, lambda state: self.module(state, name)["pid"])
+        os.kill(self.module(state, name)["pid"], number)
+
+    def kill(self, name):
+        starts = self.said().count(name + ": started")
+        self.send_signal(name, signal.SIGKILL)
+        wait_until(lambda: self.said().count(name + ": started") > starts)
+
+    def finish(self):
+        self.stop(self.process)
+        return told_in(self.stints(), self.commands())
+
+    def test_the_unit_is_told_nothing_but_by_the_task_in_focus(self):
+        self.start_tasks()
+        for change in range(10):
+            self.set_saliences(0.2, 0.5 + 0.04 * change)
+            self.wait_told(RIGHT)
+            self.set_saliences(0.9 - 0.04 * change, 0.1)
+            self.wait_told(LEFT)
+        for push in (1, -1, 0.3):  # a person cuts in, and the head is given back
+            self.stick = push
+            self.wait_told(POINT)
+            self.stick = 0.0
+            self.wait_told(LEFT)
+        self.set_saliences(0.6, 0.3)
+        self.kill("left")  # and is back before its bid has expired
+        self.wait_told(LEFT)
+        for number in (signal.SIGCONT, signal.SIGKILL, signal.SIGCONT):
+            self.send_signal("left", signal.SIGSTOP)
+            self.wait_told(RIGHT)
+            self.send_signal("left", number)
+            self.wait_told(LEFT)
+        self.stick = 1.0
+        self.wait_told(POINT)
+        self.kill("point")
+        self.stick = 0.0
+        self.wait_told(LEFT)
+        self.kill("head_neck")
+        self.wait_told(LEFT)
+        self.set_saliences(0.1, 0.9)
+        self.wait_told(RIGHT)
+        counts = self.finish()
+        self.assertGreaterEqual(sum(count >= ENOUGH for count in counts), 36, counts)
+
+    def test_a_neck_that_takes_all_is_told_by_all(self):
+        """What the test above looks for would be found."""
+        self.start_tasks(is_exclusive=False)
+        self.set_saliences(0.2, 0.5)
+        self.wait_told(RIGHT)
+        with self.assertRaises(Mixed):
+            self.finish()
+
+
+if __name__ == "__main__":
+    unittest.main()
