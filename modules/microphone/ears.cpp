@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <utility>
 
 using hc::Result;
 using hc::audio::Converter;
@@ -49,7 +50,14 @@ std::optional<Piece> DeviceEar::next(std::chrono::milliseconds timeout, int stop
     return std::nullopt;
   }
   auto heard = capture_->take(timeout, stop);
-  if (!heard) return std::nullopt;
+  const auto now = clock.monotonic();
+  if (!heard) {
+    if (now - heard_at_ > kPatience && !std::exchange(told_silent_, true))
+      tell_("the microphone gives nothing; waits for it");
+    return std::nullopt;
+  }
+  heard_at_ = now;
+  if (std::exchange(told_silent_, false)) tell_("the microphone gives sound again");
   if (!told_lost_ && capture_->lost() > 0) {
     told_lost_ = true;
     tell_("sound is lost, since nobody takes it in time");
@@ -61,6 +69,7 @@ std::optional<Piece> DeviceEar::next(std::chrono::milliseconds timeout, int stop
 void DeviceEar::look(hc::MonotonicTime now) {
   if (capture_ != nullptr && !capture_->is_there()) {
     capture_.reset();
+    told_silent_ = false;
     tell_("the microphone has gone; looks for it");
     told_missing_ = true;
   }
@@ -73,6 +82,7 @@ void DeviceEar::look(hc::MonotonicTime now) {
     return;
   }
   capture_ = std::move(*opened);
+  heard_at_ = now;
   retry_.succeeded();
   if (was_there_ || told_missing_) tell_("the microphone is there");
   was_there_ = true;

@@ -43,9 +43,11 @@ class FileEar {
   bool is_finished_ = false;
 };
 
-/// A microphone that may not be there, go, and come back. What happens to it is told once each.
+/// A microphone that may not be there, go, give nothing for kPatience, and come back. What happens
+/// to it is told once each.
 class DeviceEar {
  public:
+  static constexpr std::chrono::seconds kPatience{3};  ///< some servers begin late
   using Tell = std::function<void(std::string_view line)>;
   DeviceEar(std::string device, const hc::audio::Format& format, int frames, Tell tell)
       : device_(std::move(device)),
@@ -67,5 +69,6 @@ class DeviceEar {
   hc::audio::FrameClock times_;
   hc::audio::Retry retry_;
   std::unique_ptr<hc::audio::Capture> capture_;
-  bool was_there_ = false, told_missing_ = false, told_lost_ = false;
+  hc::MonotonicTime heard_at_{0};  // or opened
+  bool was_there_ = false, told_missing_ = false, told_silent_ = false, told_lost_ = false;
 };

@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 using hc::Status;
@@ -58,7 +59,7 @@ Status Player::give_out() {
   look();
   wait_until_at_most(options_.buffer);
   look();
-  if (playback_ != nullptr)
+  if (playback_ != nullptr && !stuck_at_)
     playback_->put(samples);
   else
     ++dropped_;
@@ -66,11 +67,30 @@ Status Player::give_out() {
 }
 
 void Player::wait_until_at_most(double seconds) {
+  const hc::SystemClock clock;
   const auto most = std::llround(seconds * format_->rate);
-  while (playback_ != nullptr && playback_->is_there() && playback_->waiting() > most) {
+  auto last = std::numeric_limits<std::int64_t>::max();
+  auto since = clock.monotonic();
+  while (playback_ != nullptr && playback_->is_there() && !stuck_at_) {
+    const auto waiting = playback_->waiting();
+    if (waiting <= most) return;
+    if (waiting < last) since = clock.monotonic();
+    last = waiting;
+    if (clock.monotonic() - since > kPatience) {
+      stuck_at_ = waiting;
+      return tell_("the loudspeaker takes no sound; what comes is dropped until it does");
+    }
     pollfd stop{stop_, POLLIN, 0};
     if (::poll(&stop, 1, kLook) != 0) return;
   }
+}
+
+void Player::look_whether_stuck() {
+  if (!stuck_at_ || playback_->waiting() >= *stuck_at_) return;
+  stuck_at_.reset();
+  tell_("the loudspeaker takes sound again; " + std::to_string(dropped_ - dropped_told_) +
+        " messages were dropped");
+  dropped_told_ = dropped_;
 }
 
 void Player::look() {
@@ -78,10 +98,12 @@ void Player::look() {
   const auto now = hc::SystemClock().monotonic();
   if (playback_ != nullptr && !playback_->is_there()) {
     playback_.reset();
+    stuck_at_.reset();
     told_missing_ = true;
     tell_("the loudspeaker has gone; what comes is dropped until it is back");
   }
-  if (playback_ != nullptr || !retry_.is_due(now)) return;
+  if (playback_ != nullptr) return look_whether_stuck();
+  if (!retry_.is_due(now)) return;
   auto opened = hc::audio::Playback::open(options_.device, *format_);
   if (!opened) {
     retry_.failed(now);

@@ -2,6 +2,7 @@
 #pragma once
 // Where sound goes: a loudspeaker that may not be there, go, and come back, and a WAV file.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -28,13 +29,15 @@ struct PlayerOptions {
 /// Plays sound and writes it down. What happens to the device is told once each.
 class Player {
  public:
+  static constexpr std::chrono::seconds kPatience{1};
   using Tell = std::function<void(std::string_view line)>;
   /// @param stop  descriptor that is readable when waiting is to end.
   Player(PlayerOptions options, Tell tell, int stop)
       : options_(std::move(options)), tell_(std::move(tell)), stop_(stop) {}
 
-  /// Takes a sound; waits while more than `buffer` waits to be played. While there is no device,
-  /// the sound is lost to it, and counted; it goes to the file all the same.
+  /// Takes a sound; waits while more than `buffer` waits to be played. While there is no device, or
+  /// it has taken nothing for kPatience, the sound is lost to it, and counted; it goes to the file
+  /// all the same.
   ///
   /// Errors: Unsupported (such a format), System, TooLarge (the file).
   template <typename T>
@@ -52,6 +55,7 @@ class Player {
   hc::Status prepare(hc::audio::Converter::Scalar scalar, const hc::audio::Format& format);
   hc::Status give_out();
   void wait_until_at_most(double seconds);
+  void look_whether_stuck();
 
   PlayerOptions options_;
   Tell tell_;
@@ -62,5 +66,6 @@ class Player {
   std::unique_ptr<hc::audio::Playback> playback_;
   hc::audio::Retry retry_;
   bool told_missing_ = false;
+  std::optional<std::int64_t> stuck_at_;  // frames that wait, since the device takes none
   std::int64_t dropped_ = 0, dropped_told_ = 0;
 };

@@ -79,7 +79,7 @@ TEST_F(PlayerTest, says_why_a_file_cannot_be_written) {
 TEST_F(PlayerTest, what_is_played_is_heard_and_written) {
   std::vector<std::int16_t> samples;
   for (int i = 0; i < 4000; ++i) samples.push_back(static_cast<std::int16_t>(7 * i + 1));
-  auto both = player({.is_heard = true, .device = "", .file = wav, .buffer = 0.05});
+  auto both = player({.is_heard = true, .device = "", .file = wav, .buffer = 0.2});
   ASSERT_TRUE(both.play<std::int16_t>(samples, {16000, 1}));
   ASSERT_TRUE(both.play<std::int16_t>(samples, {16000, 1}));
   ASSERT_TRUE(both.finish());

@@ -327,6 +327,29 @@ class SoundServer(Bodies):
         self.stop(speaker)
         self.stop(ears)
 
+    def test_a_device_that_hangs_and_goes_on(self):
+        server = self.start_server()
+        speaker = self.start_tone(free_port())
+        ears = self.start("exec hc microphone --out mono=file:heard.mtp 2>ears", stdout=-3)
+        heard = pathlib.Path(self.path("heard.mtp"))
+        ears_said = lambda: pathlib.Path(self.path("ears")).read_text().splitlines()
+        wait_until(lambda: heard.exists() and heard.stat().st_size > 0)
+        for times in (1, 2):
+            server.send_signal(signal.SIGSTOP)
+            self.wait_for("the loudspeaker takes no sound; what comes is dropped until", times)
+            wait_until(lambda: len(ears_said()) == 2 * times - 1)
+            server.send_signal(signal.SIGCONT)
+            self.wait_for("the loudspeaker takes sound again; ", times)
+            wait_until(lambda: len(ears_said()) == 2 * times)
+            size = heard.stat().st_size
+            wait_until(lambda: heard.stat().st_size > size)
+        change = ["microphone: the microphone gives nothing; waits for it"]
+        change += ["microphone: the microphone gives sound again"]
+        self.assertEqual(ears_said(), 2 * change)
+        self.assertEqual(len(self.said().splitlines()), 4, self.said())
+        self.stop(speaker)
+        self.stop(ears)
+
 
 class Speech(Bodies):
     WORDS = "hello robot seven window"
