@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPatience{100};  // of a thread that is to notice its end
 constexpr std::chrono::milliseconds kFirstPause{100}, kLongestPause{2000};
+constexpr std::chrono::seconds kSettled{1};  // one that is lost sooner is waited for longer
 
 }  // namespace
 
@@ -82,7 +83,7 @@ void LiveCameras::run(Camera& camera) {
 /// Takes a camera's pictures until it is lost, or all is to end.
 void LiveCameras::serve(Camera& camera, Device& device) {
   Adjustment adjusted;
-  bool any = false;
+  std::optional<std::chrono::steady_clock::time_point> first;
   while (true) {
     Adjustment wanted;
     {
@@ -106,10 +107,11 @@ void LiveCameras::serve(Camera& camera, Device& device) {
       camera.told = true;
       return;
     }
-    if (!any) {
+    const auto now = std::chrono::steady_clock::now();
+    if (first && now - *first > kSettled) camera.wait = kFirstPause;
+    if (!first) {
       // It is there when it gives a picture, and not when it can merely be opened.
-      any = true;
-      camera.wait = kFirstPause;
+      first = now;
       if (std::exchange(camera.told, false)) remarks_.push_back(camera.how.name + ": is back");
     }
     const bool is_alone = std::none_of(cameras_.begin(), cameras_.end(), [&](const auto& other) {

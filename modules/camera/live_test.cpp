@@ -13,13 +13,15 @@ using std::chrono::milliseconds;
 struct Plug {
   std::atomic<bool> is_in = true;
   std::atomic<int> opened = 0, adjusted = 0;
+  std::atomic<bool> is_loose = false;  // each picture is the last one
 };
 
 class FakeDevice final : public Device {
  public:
   explicit FakeDevice(Plug& plug) : plug_(plug) {}
   hc::Result<std::optional<Frame>> next(milliseconds) override {
-    if (!plug_.is_in) return hc::Error{hc::Code::Closed, "pulled out"};
+    if (!plug_.is_in || (plug_.is_loose && ++given_ > 1))
+      return hc::Error{hc::Code::Closed, "pulled out"};
     std::this_thread::sleep_for(milliseconds(1));  // its rate
     // Of one clock for all, or those of one that was away would have no partners.
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -34,6 +36,7 @@ class FakeDevice final : public Device {
 
  private:
   Plug& plug_;
+  int given_ = 0;
 };
 
 LiveCamera camera(const std::string& name, Plug& plug) {
@@ -104,6 +107,21 @@ TEST(LiveCameras, one_that_is_not_there_is_waited_for) {
   while (plug.opened < 2) std::this_thread::yield();
   EXPECT_EQ(cameras.remarks(),
             std::vector<std::string>{"eye: not there: no such camera; trying again"});
+}
+
+TEST(LiveCameras, one_that_comes_and_goes_is_looked_for_less_and_less_often) {
+  Plug plug;
+  plug.is_loose = true;
+  const auto begin = std::chrono::steady_clock::now();
+  LiveCameras cameras({camera("eye", plug)}, true, {});
+  std::size_t said = 0;
+  while (plug.opened < 5) {
+    EXPECT_TRUE(cameras.next(milliseconds(20)));
+    said += cameras.remarks().size();
+  }
+  EXPECT_LE(said, 9);  // two for each time
+  // 0.1 s, 0.2 s, 0.4 s, 0.8 s: however slow the machine is, it is not less.
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(1500));
 }
 
 TEST(LiveCameras, without_reopen_a_loss_is_an_error) {

@@ -132,6 +132,31 @@ class HeadTracker(Bodies):
         self.assertEqual(self.said().count("ignores"), 1, self.said())
         self.assertIn("head_tracker: 7 packets ignored", self.said())
 
+    def test_a_flood_of_packets_costs_no_memory_and_no_pose(self):
+        process = self.start_tracker()
+
+        def memory():  # [kB]
+            text = pathlib.Path("/proc/%d/status" % process.pid).read_text()
+            return int(re.search(r"VmRSS:\s*(\d+)", text)[1])
+
+        self.feed(0, 0, 0, 0, 0, 0)
+        before = memory()
+        good = struct.pack("<6d", 0, 0, 0, 10, 0, 0)
+        bad = b"x" * 49, struct.pack("<6d", *[math.nan] * 6), b"", b"y" * 1400
+        for number in range(100_000):
+            self.socket.sendto(
+                bad[number % 8 // 2] if number % 2 else good, ("127.0.0.1", self.port)
+            )
+        turned = lambda: abs(self.rows("rotation")[-1][2] - math.pi / 2) < 1e-9
+        wait_until(lambda: self.send(0, 0, 0, -90, 0, 0) or turned())
+        self.assertLess(memory() - before, 10_000)
+        self.assertEqual(
+            {round(math.degrees(row[2])) for row in self.rows("rotation")}, {0, -10, 90}
+        )
+        self.stop(process)
+        self.assertEqual(self.said().count("ignores"), 1, self.said())
+        self.assertRegex(self.said(), r"head_tracker: \d+ packets ignored")
+
     def test_silence_and_return_are_told_once_each(self):
         process = self.start_tracker("--silence 0.1")
         self.wait_for("no tracker is heard", 1)

@@ -4,6 +4,7 @@
 
 import json
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -130,6 +131,21 @@ class CameraDevices(Pipes):
         wait_until(lambda: self.seen() > count)
         self.assertEqual(len(self.said()), 2)
 
+    def test_a_camera_that_hangs_and_goes_on(self):
+        fake = self.fake(1)
+        camera = self.camera("aravis:127.0.0.1")
+        wait_until(lambda: os.path.exists(self.path("seen")) and self.seen() > 3)
+        for times in (1, 2):
+            fake.send_signal(signal.SIGSTOP)
+            wait_until(lambda: len(self.said()) == 2 * times - 1)
+            self.assertRegex(self.said()[-1], ": lost: .*; trying again$")
+            fake.send_signal(signal.SIGCONT)
+            wait_until(lambda: len(self.said()) == 2 * times)
+            self.assertEqual(self.said()[-1], "camera: aravis:127.0.0.1: is back")
+            count = self.seen()
+            wait_until(lambda: self.seen() > count)
+        self.assertIsNone(camera.poll())
+
     def test_a_camera_that_comes_later(self):
         self.camera("aravis:127.0.0.1")
         wait_until(self.said)
@@ -170,6 +186,16 @@ class CameraDevices(Pipes):
         self.fake(2)
         wait_until(lambda: self.seen("src 2") > rights + 1)
         self.assertEqual(self.said()[-1], "camera: aravis:127.0.0.2: is back")
+
+        def pairs():
+            with open(self.path("seen"), encoding="utf8") as file:
+                found = re.findall(r"src ([12]) seq \d+ in \S+ at (\S+ \S+)\n", file.read())
+            lefts, rights = ({at for src, at in found if src == side} for side in "12")
+            return len(lefts & rights)
+
+        count = pairs()
+        self.assertGreater(count, 0)
+        wait_until(lambda: pairs() > count)  # and they are taken together again
 
 
 if __name__ == "__main__":

@@ -3,12 +3,14 @@
 """The scored tasks in which a person drives the head, shortened. Their figures depend on how busy
 the machine is; the bounds here are those that only a broken system exceeds."""
 
+import os
+import pathlib
 import re
 import socket
 import time
 import unittest
 
-from harness import ROOT, Pipes
+from harness import ROOT, Pipes, wait_until
 
 
 def free_udp_port():
@@ -48,6 +50,47 @@ class Driving(Pipes):
             self.skipTest("the same port was free twice")
         rms, _, _ = self.telepresence(port, other)
         self.assertGreater(rms, 15)
+
+    def start_gaze(self, port):
+        self.start(
+            "exec hc gaze --mode 1 --patience 1 --acceleration 0 --in %s=unix-listen:link"
+            " --out command=file:commands --out bid=file:bids" % port
+        )
+        wait_until(lambda: os.path.exists(self.path("link")))
+        link = socket.socket(socket.AF_UNIX)
+        self.addCleanup(link.close)
+        link.connect(self.path("link"))
+        return link
+
+    def rows(self, name):
+        path = pathlib.Path(self.path(name))
+        lines = path.read_text().split("\n")[:-1] if path.exists() else []
+        return [[float(word) for word in line.split()] for line in lines[1::2]]
+
+    def wait_bid_end(self):
+        """Waits until the bid ends, as it does when the patience has."""
+        wait_until(lambda: [row[0] for row in self.rows("bids")][-2:] == [0.5, 0])
+
+    def test_a_push_that_is_not_told_again_ends(self):
+        self.start_gaze("stick").sendall(b"1 1 0 0 8 %d 120190 0 0 2 1\n1 0\n" % time.time_ns())
+        self.wait_bid_end()
+        # Each 5 ms for 0.1 s, where a patience has 200.
+        self.assertTrue(1 <= len(self.rows("commands")) <= 40, len(self.rows("commands")))
+        self.assertLess(max(row[2] for row in self.rows("commands")), 0.2)
+
+    def test_a_wish_that_is_not_told_again_does_not_run_away(self):
+        link = self.start_gaze("wish")
+        now = time.time_ns()
+        for i in range(-100, 1):  # a head that turns by 1 rad/s, to 1 rad
+            stamp = now + i * 10_000_000
+            link.sendall(b"1 1 0 0 8 %d 20390 0 13 1 1\n0 0 %r\n" % (stamp, 1 + i / 100))
+        link.sendall(
+            b"1 1 0 0 8 %d 20390 0 13 1 1\n0 0 1\n" % (now + 3600 * 10**9)
+        )  # by no clock
+        self.wait_bid_end()
+        pans = [row[2] for row in self.rows("commands")]
+        self.assertGreater(max(pans), 0.99)
+        self.assertLess(max(pans), 1.3)
 
     def test_a_stick_moves_the_head_each_time(self):
         median, most, moved, pushes = self.score(
