@@ -13,8 +13,8 @@ class Neck {
   /// Takes in how the head was turned. @param time  over 0 [ns].
   void add(std::int64_t time, const Eigen::Quaterniond& R_robot_head);
 
-  /// Whether a gaze is still to come that tells more of a time: as long as gazes come, at most 0.1 s
-  /// apart; the head stands still without any.
+  /// Whether a gaze is still to come that tells more of a time: as long as gazes come, at most 0.1
+  /// s apart; the head stands still without any.
   [[nodiscard]] bool awaits(std::int64_t time, std::int64_t now) const;
 
   /// T_world_head at a time: between two gazes of a second or less what lies between, else the one
