@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the test vectors of MTP/1: the cases of valid_cases.py and invalid_cases.py.
+"""Writes the test vectors of MTP/1: the cases of valid_*.py and invalid_cases.py.
 
 python3 make.py           write valid/ and invalid/
 python3 make.py --check   tell whether the files are what this program writes
@@ -14,6 +14,8 @@ sys.dont_write_bytecode = True
 import cases  # noqa: E402
 import invalid_cases  # noqa: E402,F401  takes down its cases
 import valid_cases  # noqa: E402,F401
+import valid_compressed  # noqa: E402,F401
+import valid_numbers  # noqa: E402,F401
 
 HERE = pathlib.Path(__file__).resolve().parent
 
