@@ -15,7 +15,7 @@ struct FollowerOptions {
   double noise = 0.003;       ///< standard deviation of an angle as it is seen, over 0 [rad]
   double acceleration = 2.0;  ///< standard deviation of what speeds it up, over 0 [rad/s²]
   double gap = 0.5;           ///< after so long unseen, it is another [s]
-  double horizon = 0.3;       ///< so long unseen its rates go on; then it is taken to stand [s]
+  double horizon = 0.2;       ///< so long unseen its rates go on; then it is taken to stand [s]
 };
 
 /// A target's angles and their rates.

@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   auto predict = module.parameter("predict", 0.03, "s",
                                   "how far ahead: what passes from a command to the motion",
                                   {.least = 0, .most = 1});
-  auto horizon = module.parameter("horizon", 0.3, "s",
+  auto horizon = module.parameter("horizon", 0.2, "s",
                                   "so long a target that is not seen any more goes on as it moved",
                                   {.least = 0, .most = 10, .fixed = true});
   auto acceleration =

@@ -95,7 +95,7 @@ def memory(process):
 class Endurance(Graphs):
     def begin(self, text, options=""):
         """A graph that runs, once it can be observed; what it says goes into a file."""
-        self.write(text)
+        self.write_graph(text)
         picture = pathlib.Path(self.path("picture.ppm"))
         if not picture.exists():
             size = 800 * 600 * 3

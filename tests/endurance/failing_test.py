@@ -38,7 +38,7 @@ class Failing(Endurance):
         moments, used = [time.monotonic()], [processor_time([process.pid])]
         for period in range(2):
             if period == 1:
-                self.write(IMAGES + FAILING)
+                self.write_graph(IMAGES + FAILING)
             time.sleep(PERIOD)
             moments.append(time.monotonic())
             used.append(processor_time([process.pid]))

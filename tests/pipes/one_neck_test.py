@@ -181,12 +181,12 @@ class OneNeck(Graphs):
         if not is_exclusive:
             text = head.read_text()
             self.assertEqual(text.count('exclusive = ["command"]\n'), 1)
-            self.write(text.replace('exclusive = ["command"]\n', ""), "head.toml")
+            self.write("head.toml", text.replace('exclusive = ["command"]\n', ""))
             # A neck that takes all has one sender, or the graph would be refused.
             head, commands = "head.toml", "relay.in"
             more = '[modules.relay]\n[[links]]\nfrom = "relay.out"\nto = "head_neck.command"\n'
         links = "".join(COMMAND_LINK % task for task in ("left", "right", "point"))
-        self.write((GRAPH + links).replace("HEAD", str(head)).replace("COMMANDS", commands) + more)
+        self.write_graph((GRAPH + links).replace("HEAD", str(head)).replace("COMMANDS", commands) + more)
         self.process = self.start("exec hc run g.toml 2>said")
         self.stick = 0.0
         pushed = lambda now: (120190, 0, 2, "%g 0" % self.stick) if self.stick else None
