@@ -9,8 +9,10 @@
 namespace hc::pan_tilt {
 namespace {
 
-constexpr std::array<const char*, 12> kQuestions = {"pr", "tr", "pn", "px", "tn", "tx",
-                                                    "pu", "tu", "ps", "ts", "pa", "ta"};
+constexpr std::array<const char*, 14> kQuestions = {"pr", "tr", "pn", "px", "tn", "tx", "pu",
+                                                    "tu", "pl", "tl", "ps", "ts", "pa", "ta"};
+// Part of a word that somebody has left in the unit becomes one that it refuses.
+constexpr const char* kNoWord = "-";
 constexpr double kArcsecond = std::numbers::pi / 180 / 3600;  // [rad]
 constexpr double kSlack = 50;  // of a place beyond what the greatest speed allows [position]
 
@@ -52,6 +54,7 @@ void Conversation::try_anew(MonotonicTime now) {
   place_.reset();
   asked_ = 0;
   overdue_ = now + kTimeOut;
+  bytes_ = pan_tilt::command(kNoWord);
   halt_unheard(now);
   bytes_ += pan_tilt::command("ft") + pan_tilt::command("ed") + pan_tilt::command("ci") +
             pan_tilt::command(kQuestions[0]);
@@ -118,18 +121,23 @@ void Conversation::hear_at_begin(MonotonicTime now, const Reply& reply) {
 void Conversation::become_ready(MonotonicTime now) {
   const auto& s = settings_;
   const bool is_sound = s[kPR] > 0 && s[kTR] > 0 && s[kPN] < s[kPX] && s[kTN] < s[kTX] &&
-                        s[kPU] > 0 && s[kTU] > 0 &&
+                        s[kPL] >= 0 && s[kTL] >= 0 && s[kPU] > 0 && s[kTU] > 0 &&
+                        s[kPL] <= s[kPU] && s[kTL] <= s[kTU] &&
                         std::all_of(s.begin(), s.end(), [](double v) { return std::abs(v) < 1e6; });
   if (!is_sound) return fail(now, {Code::Malformed, "garbage: limits that make no sense"});
   phase_ = Phase::Ready;
   tries_ = 0;
   may_move_ = false;
   if (std::exchange(halt_follows_, false)) say(now, "", {Awaits::Halted});
-  const Pace told = {bounded(s[kPS], 1, 1e6), bounded(s[kTS], 1, 1e6), bounded(s[kPA], 1, 1e6),
-                     bounded(s[kTA], 1, 1e6)};
-  if (!own_pace_) own_pace_ = told;
+  Pace told;
+  for (std::size_t i = 0; i < told.size(); ++i) told[i] = bounded(s[kPS + i], -1e6, 1e6);
+  // Who moved it by its speed alone has left one with a sign, or none.
+  if (!own_pace_)
+    own_pace_ = {reachable_speed(0, std::abs(s[kPS])), reachable_speed(1, std::abs(s[kTS])),
+                 std::max(told[2], 1), std::max(told[3], 1)};
   // One that was switched off and on meanwhile has forgotten its pace.
   pace_.reset();
+  pace_at_ = now;
   if (!is_known_) pace_ = told;
   is_known_ = true;
   send_pace(now);
@@ -154,7 +162,7 @@ void Conversation::look(MonotonicTime now) {
 
 bool Conversation::command(MonotonicTime now, double pan, double tilt,
                            std::chrono::nanoseconds life) {
-  if (phase_ != Phase::Ready) return false;
+  if (phase_ != Phase::Ready || !pace_) return false;
   const auto& s = settings_;
   commanded_ = now;
   wanted_until_ = now + life;
@@ -165,7 +173,7 @@ bool Conversation::command(MonotonicTime now, double pan, double tilt,
 
 void Conversation::send_wanted(MonotonicTime now) {
   if (now > wanted_until_) wanted_.reset();
-  if (!wanted_ || awaits(Awaits::TiltSet)) return;
+  if (!wanted_ || awaits(Awaits::TiltSet) || awaits(Awaits::PaceSet)) return;
   const Places places = *std::exchange(wanted_, std::nullopt);
   if (is_heading_sure_ && heading_ == places) return;
   heading_ = places;
@@ -176,20 +184,30 @@ void Conversation::send_wanted(MonotonicTime now) {
 }
 
 void Conversation::set_pace(double speed, double acceleration) {
+  if (speed != speed_ || acceleration != acceleration_) pace_at_ = MonotonicTime::min();
   speed_ = speed;
   acceleration_ = acceleration;
 }
 
+/// The nearest speed that an axis can turn with [position/s].
+int Conversation::reachable_speed(std::size_t axis, double wanted) const {
+  return bounded(wanted, std::max(settings_[kPL + axis], 1.0), settings_[kPU + axis]);
+}
+
 void Conversation::send_pace(MonotonicTime now) {
-  if (awaits(Awaits::PaceSet)) return;
+  if (awaits(Awaits::PaceSet) || now < pace_at_) return;
   const auto& s = settings_;
   Pace pace = *own_pace_;
   for (std::size_t axis : {0U, 1U}) {
     const double size = step(static_cast<int>(axis));
-    if (speed_ > 0) pace[axis] = bounded(speed_ / size, 1, s[kPU + axis]);
+    if (speed_ > 0) pace[axis] = reachable_speed(axis, speed_ / size);
     if (acceleration_ > 0) pace[2 + axis] = bounded(acceleration_ / size, 1, 1e6);
   }
   if (pace_ == pace) return;
+  for (std::size_t axis : {0U, 1U})
+    if (const double least = pace[axis] * step(static_cast<int>(axis));
+        speed_ > 0 && pace[axis] <= s[kPL + axis] && speed_ < least)
+      remark_ = "turns no slower than " + std::to_string(least) + " rad/s";
   pace_ = pace;
   std::string bytes;
   for (std::size_t i = 0; i < pace.size(); ++i)
@@ -211,6 +229,11 @@ void Conversation::hear(MonotonicTime now, const Reply& reply) {
     remark_ = "refused: " + reply.text;
     if (awaited == Awaits::PanSet || awaited == Awaits::TiltSet) is_heading_sure_ = false;
     if (is_place) return fail(now, garbage("! " + reply.text));
+    if (awaited == Awaits::PaceSet) {  // it would turn with another, and so it is not to turn
+      pace_.reset();
+      pace_at_ = now + kTimeOut;
+      wanted_.reset();
+    }
   } else if (awaited == Awaits::Halted && !awaits(Awaits::TiltSet)) {
     heading_.reset();
   } else if (is_place) {

@@ -22,10 +22,10 @@ struct Gaze {
   MonotonicTime time{0};  ///< between question and answer
 };
 
-/// Begins with `ft ed ci`, asks what the unit is like, twice, since a wrong answer would stay, and
-/// is ready when both agree. At most one question (both positions), one command (both axes), one
-/// pace and one halt are without answer at a time; of commands that come meanwhile the newest is
-/// sent. A line that brings garbage or no answer for kTimeOut is begun anew; what was commanded
+/// Begins with `- ft ed ci`, asks what the unit is like, twice, since a wrong answer would stay,
+/// and is ready when both agree. At most one question (both positions), one command (both axes),
+/// one pace and one halt are without answer at a time; of commands that come meanwhile the newest
+/// is sent. A line that brings garbage or no answer for kTimeOut is begun anew; what was commanded
 /// before is not sent again, and its motion is halted, whether the unit can be heard or not.
 class Conversation {
  public:
@@ -59,7 +59,8 @@ class Conversation {
   /// @param life  how long it may be sent yet: one that waits longer for the answer to another is
   /// forgotten.
   bool command(MonotonicTime now, double pan, double tilt, std::chrono::nanoseconds life = kLife);
-  /// How fast it turns [rad/s, rad/s²]; 0: as it did when it was met.
+  /// How fast it turns [rad/s, rad/s²], or the nearest it can; 0: as it did when it was met. While
+  /// the unit refuses a pace it is asked again every kTimeOut, and takes no commands.
   void set_pace(double speed, double acceleration);
   /// Halts a motion that was commanded when no command was taken for so long, and what the unit may
   /// be at when it is met; 0: never.
@@ -78,7 +79,7 @@ class Conversation {
 
  private:
   // In the order in which they are asked.
-  enum Setting { kPR, kTR, kPN, kPX, kTN, kTX, kPU, kTU, kPS, kTS, kPA, kTA, kSettings };
+  enum Setting { kPR, kTR, kPN, kPX, kTN, kTX, kPU, kTU, kPL, kTL, kPS, kTS, kPA, kTA, kSettings };
   enum class Awaits { Pan, Tilt, PanSet, TiltSet, PaceSet, Halted };
   using Places = std::array<int, 2>;  // pan, tilt [position]
   using Pace = std::array<int, 4>;    // PS TS PA TA
@@ -97,6 +98,7 @@ class Conversation {
   [[nodiscard]] bool is_late(MonotonicTime now) const;
   void halt_unheard(MonotonicTime now);
   [[nodiscard]] double step(int axis) const;  // [rad]
+  [[nodiscard]] int reachable_speed(std::size_t axis, double wanted) const;
 
   Phase phase_ = Phase::Closed;
   ReplyReader reader_;
@@ -111,7 +113,8 @@ class Conversation {
   std::size_t asked_ = 0;  // while it begins: the setting that is being asked
   bool is_known_ = false;  // settings have been heard on this line
   std::array<double, kSettings> settings_ = {};
-  std::optional<Pace> own_pace_, pace_;  // as it was met; as it is
+  std::optional<Pace> own_pace_, pace_;  // as it was met; as it is, none: refused
+  MonotonicTime pace_at_{0};             // no pace is sent before
   double speed_ = 0, acceleration_ = 0;
   std::optional<MonotonicTime> quiet_at_;  // a new try, once nothing comes any more
 

@@ -10,8 +10,10 @@ TEST(Conversation, begins_as_drivers_do_and_asks_what_is_there) {
   Line line;
   line.looks = false;
   line.begin();
-  EXPECT_EQ(line.asked,
-            "ft ed ci pr tr pn px tn tx pu tu ps ts pa ta pr tr pn px tn tx pu tu ps ts pa ta ");
+  EXPECT_EQ(
+      line.asked,
+      "- ft ed ci pr tr pn px tn tx pu tu pl tl ps ts pa ta pr tr pn px tn tx pu tu pl tl ps ts "
+      "pa ta ");
   EXPECT_TRUE(line.faults.empty()) << line.faults[0];
   EXPECT_EQ(line.host.character(),
             "pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees");
@@ -118,7 +120,7 @@ TEST(Conversation, late_answers_are_borne) {
   Line line;
   line.delay = milliseconds(300);
   line.host.begin(line.now);
-  line.run(milliseconds(9000));
+  line.run(milliseconds(10'200));
   EXPECT_EQ(line.host.phase(), Phase::Ready);
   EXPECT_TRUE(line.faults.empty());
   EXPECT_GT(line.gazes.size(), 2U);
@@ -210,6 +212,72 @@ TEST(Conversation, a_pace_is_set_and_given_back) {
   line.host.set_pace(0, 0);
   line.run(milliseconds(50));
   EXPECT_EQ(line.commands(), "ps1000 ts1000 pa2000 ta2000 ");
+}
+
+TEST(Conversation, asked_slower_than_it_can_the_unit_turns_as_slowly_as_it_can) {
+  Line line;
+  line.host.set_pace(0.02, 0);
+  line.begin();
+  line.run(milliseconds(50));
+  EXPECT_NE(line.commands().find("ps31 ts31 "), std::string::npos);
+  EXPECT_EQ(line.remarks, std::vector<std::string>{"turns no slower than 0.027826 rad/s"});
+  line.host.command(line.now, 0.5, 0);
+  line.run(milliseconds(1000));
+  EXPECT_NEAR(line.gazes.back().pan, 31 * kStep, 3 * kStep);
+}
+
+TEST(Conversation, no_command_is_taken_until_a_pace_is_accepted) {
+  Line line;
+  line.begin();
+  line.unit.take(1.3, "pl200 tl200 ");  // by somebody else, behind the host's back
+  line.commands();
+  line.host.set_pace(0.05, 0);
+  line.host.pass(line.now);
+  EXPECT_TRUE(line.host.command(line.now, 1, 0));  // waits for the pace to be taken
+  line.run(milliseconds(100));
+  EXPECT_EQ(line.commands(), "ps56 ts56 pa2000 ta2000 ");
+  ASSERT_FALSE(line.remarks.empty());
+  EXPECT_EQ(line.remarks[0], "refused: Tilt speed cannot be below 200 positions/sec");
+  EXPECT_FALSE(line.host.command(line.now, 1, 0));
+  line.run(Conversation::kTimeOut);
+  EXPECT_EQ(line.commands(), "ps56 ts56 pa2000 ta2000 ");
+  line.unit.take(2, "pl31 tl31 ");
+  line.run(Conversation::kTimeOut);
+  line.commands();
+  EXPECT_TRUE(line.host.command(line.now, 1, 0));
+  line.run(milliseconds(1000));
+  EXPECT_EQ(line.commands(), "pp1114 tp0 ");
+  EXPECT_NEAR(line.gazes.back().pan, 56 * kStep, 3 * kStep);
+  // Another pace is tried at once.
+  line.unit.take(10, "pl200 ");
+  line.host.set_pace(0.06, 0);
+  line.run(milliseconds(50));
+  EXPECT_FALSE(line.host.command(line.now, 1, 0));
+  line.host.set_pace(0.5, 0);
+  line.run(milliseconds(50));
+  EXPECT_TRUE(line.host.command(line.now, 1, 0));
+}
+
+TEST(Conversation, speeds_with_a_sign_or_none_are_no_pace_of_a_unit) {
+  Line line;
+  line.unit.take(1, "ft ed cv ps-500 ts0 ");
+  line.begin();
+  line.run(milliseconds(50));
+  EXPECT_NE(line.commands().find("ps500 ts31 pa2000 ta2000 "), std::string::npos);
+  EXPECT_TRUE(line.faults.empty()) << line.faults[0];
+}
+
+TEST(Conversation, half_a_word_that_was_left_in_the_unit_is_not_carried_out) {
+  for (const char* left : {"pp30", "p", "h", "cv", "ps-"}) {
+    Line line;
+    line.unit.take(1, left);
+    line.begin();
+    EXPECT_TRUE(line.faults.empty()) << line.faults[0];
+    EXPECT_TRUE(line.host.command(line.now, 0, 0));
+    line.run(milliseconds(50));
+    EXPECT_EQ(line.unit.pan(std::chrono::duration<double>(line.now).count()), 0) << left;
+    EXPECT_EQ(line.unit.take(2, "f e c "), "* terse mode\r\n* OFF\r\n* Independent Mode\r\n");
+  }
 }
 
 TEST(Conversation, what_the_unit_refuses_or_runs_into_is_a_remark) {

@@ -103,7 +103,7 @@ TEST(Halting, what_somebody_else_has_left_moving_is_halted) {
   line.unit.take(1, "ci pp2000 ");
   line.host.set_hold(milliseconds(200));
   line.begin();
-  EXPECT_TRUE(line.asked.starts_with("h ft ed ci pr ")) << line.asked;
+  EXPECT_TRUE(line.asked.starts_with("- h ft ed ci pr ")) << line.asked;
   EXPECT_LT(line.unit.pan(9), 100);
 }
 
