@@ -60,7 +60,15 @@ std::optional<double> Unit::next() const {
 std::string Unit::take(double time, std::string_view bytes) {
   std::string said = pass(time);
   for (char byte : bytes) {
-    if (waiting_.size() >= kMostWaiting) continue;
+    if (!skips_ && waiting_.size() == kMostWaiting) {
+      const auto last = std::find_if(waiting_.rbegin(), waiting_.rend(), is_delimiter);
+      waiting_.erase(last.base(), waiting_.end());
+      skips_ = true;
+    }
+    if (skips_) {
+      skips_ = !is_delimiter(byte);
+      continue;
+    }
     waiting_ += byte;
     obey(time);
   }

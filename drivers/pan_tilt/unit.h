@@ -28,7 +28,8 @@ class Unit {
   explicit Unit(double pan = 0, double tilt = 0);
 
   /// Takes bytes that came at a time; gives what it answers at once, to all up to an `A` or `R`,
-  /// which keeps the rest waiting: up to 256 bytes of it, others are lost.
+  /// which keeps the rest waiting: up to 256 bytes of it. A word for which there is no room is lost
+  /// as a whole.
   std::string take(double time, std::string_view bytes);
   /// What it says by itself up to a time: a motion has ended that was waited for, or at a limit.
   std::string pass(double time);
@@ -65,6 +66,7 @@ class Unit {
 
   std::array<Axis, 2> axes_;
   std::string waiting_;  // not obeyed yet
+  bool skips_ = false;   // a word for which there was no room, until it ends
   std::string said_;
   Busy busy_ = Busy::No;
   bool echoes_ = true, verbose_ = true, limits_ = true, controls_speed_ = false;

@@ -71,7 +71,26 @@ TEST(Unit, refuses_what_is_no_command) {
   Unit unit = quiet_unit();
   for (const char* words : {"x ", "ppx ", "pp1x ", "pp- ", "pp99999999999 ", "pr5 ", "p ", "* "})
     EXPECT_EQ(unit.take(0, words), "! Illegal command entered\r\n") << words;
-  EXPECT_EQ(unit.take(0, std::string(1000, 'p') + " pp "), "");  // of which 256 are kept
+}
+
+TEST(Unit, a_word_that_is_too_long_is_left_out_and_the_next_one_is_obeyed) {
+  Unit unit = quiet_unit();
+  for (std::size_t size : {255U, 256U, 257U, 1000U}) {
+    unit.take(0, std::string(size, 'x'));
+    unit.take(0, " ");
+    EXPECT_EQ(unit.take(0, "pp "), "* 0\r\n") << size;
+  }
+}
+
+TEST(Unit, of_what_waits_only_whole_words_are_lost) {
+  Unit unit = quiet_unit();
+  std::string words = "pp500 a ";
+  for (int i = 0; i < 100; ++i) words += "tp-100 ";
+  EXPECT_EQ(unit.take(0, words), "*\r\n");  // 7 bytes each: the room ends within one
+  std::string said;
+  for (int i = 0; i < 1 + 256 / 7; ++i) said += "*\r\n";
+  EXPECT_EQ(unit.pass(0.5), said);
+  EXPECT_EQ(unit.take(1, "pp tp "), "* 500\r\n* -100\r\n");
 }
 
 TEST(Unit, awaits_the_end_of_a_motion) {
