@@ -28,7 +28,11 @@ class Wire {
   std::string take(double time);
   /// When the next one comes out.
   [[nodiscard]] std::optional<double> next() const;
-  void clear() { bytes_.clear(); }
+  /// Forgets all that is on its way, as if it were new.
+  void clear() {
+    bytes_.clear();
+    free_at_ = 0;
+  }
 
  private:
   struct Byte {

@@ -34,6 +34,15 @@ TEST(Wire, keeps_the_order_when_the_delay_falls) {
   EXPECT_EQ(wire.take(1), "ab");
 }
 
+TEST(Wire, is_free_at_once_when_it_is_cleared) {
+  Wire wire(1);
+  wire.put(0, "a", {.delay = 60});
+  wire.clear();
+  EXPECT_FALSE(wire.next());
+  wire.put(1, "b", {});
+  EXPECT_EQ(wire.take(1), "b");
+}
+
 TEST(Wire, carries_so_many_bytes_a_second) {
   Wire wire(1);
   wire.put(0, std::string(20, 'x'), {.bytes_per_second = 10});
