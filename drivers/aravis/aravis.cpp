@@ -214,6 +214,22 @@ Status Camera::set_gain(double gain) {
   return {};
 }
 
+Status Camera::choose_exposure() {
+  Failure failure;
+  if (arv_camera_is_exposure_auto_available(handles_->camera, failure.out()))
+    arv_camera_set_exposure_time_auto(handles_->camera, ARV_AUTO_CONTINUOUS, failure.out());
+  if (failure) return failure.error();
+  return {};
+}
+
+Status Camera::choose_gain() {
+  Failure failure;
+  if (arv_camera_is_gain_auto_available(handles_->camera, failure.out()))
+    arv_camera_set_gain_auto(handles_->camera, ARV_AUTO_CONTINUOUS, failure.out());
+  if (failure) return failure.error();
+  return {};
+}
+
 Result<double> Camera::exposure() const {
   Failure failure;
   const double microseconds = arv_camera_get_exposure_time(handles_->camera, failure.out());
@@ -226,6 +242,20 @@ Result<double> Camera::gain() const {
   const double gain = arv_camera_get_gain(handles_->camera, failure.out());
   if (failure) return failure.error();
   return gain;
+}
+
+Result<bool> Camera::chooses_exposure() const {
+  Failure failure;
+  const ArvAuto mode = arv_camera_get_exposure_time_auto(handles_->camera, failure.out());
+  if (failure) return failure.error();
+  return mode == ARV_AUTO_CONTINUOUS;
+}
+
+Result<bool> Camera::chooses_gain() const {
+  Failure failure;
+  const ArvAuto mode = arv_camera_get_gain_auto(handles_->camera, failure.out());
+  if (failure) return failure.error();
+  return mode == ARV_AUTO_CONTINUOUS;
 }
 
 }  // namespace hc::aravis

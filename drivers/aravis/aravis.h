@@ -49,8 +49,14 @@ class Camera {
   Status set_exposure(double exposure);
   /// Sets the gain and ends the camera's own choice of it. [the camera's unit, mostly dB]
   Status set_gain(double gain);
+  /// Lets the camera choose, all the time, if it can; else nothing is done.
+  /// Errors: System.
+  Status choose_exposure();
+  Status choose_gain();                           ///< the same
   [[nodiscard]] Result<double> exposure() const;  ///< [s]
   [[nodiscard]] Result<double> gain() const;
+  [[nodiscard]] Result<bool> chooses_exposure() const;  ///< whether it does now
+  [[nodiscard]] Result<bool> chooses_gain() const;
 
  private:
   struct Handles;

@@ -43,6 +43,20 @@ TEST(Aravis, sets_exposure_and_gain) {
   EXPECT_TRUE(wait_for_picture(**camera));
 }
 
+TEST(Aravis, chooses_the_gain_itself_until_it_is_set_and_when_it_is_to_again) {
+  auto camera = Camera::open("Fake_1");
+  ASSERT_TRUE(camera) << camera.error().text();
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE((*camera)->choose_gain());
+    EXPECT_TRUE((*camera)->chooses_gain().value_or(false));
+    ASSERT_TRUE((*camera)->set_gain(3));
+    EXPECT_FALSE((*camera)->chooses_gain().value_or(true));
+  }
+  // Of the exposure this one has no choice, and that is no error.
+  EXPECT_FALSE((*camera)->chooses_exposure());
+  EXPECT_TRUE((*camera)->choose_exposure());
+}
+
 TEST(Aravis, takes_the_pixel_format_that_is_asked_for) {
   for (const char* format : {"Mono8", "BayerRG8", "RGB8"}) {
     auto camera = Camera::open("Fake_1", format);

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::string_view kAravis = "aravis:";
 constexpr int kStreamTimeout = 3000;  // of an RTSP server [ms]
-// V4L2: exposure_absolute counts in 100 µs, and 1 is the manual mode of exposure_auto.
-constexpr double kExposureUnit = 1e-4, kManual = 1;
 
 bool is_number(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(),
@@ -30,10 +28,10 @@ class AravisDevice final : public Device {
     return std::optional<Frame>(Frame{(*picture)->bgr, (*picture)->time});
   }
   hc::Status adjust(const Adjustment& adjustment) override {
-    if (adjustment.exposure > 0)
-      if (auto set = camera_->set_exposure(adjustment.exposure); !set) return set;
-    if (adjustment.gain >= 0) return camera_->set_gain(adjustment.gain);
-    return {};
+    auto exposure = adjustment.exposure > 0 ? camera_->set_exposure(adjustment.exposure)
+                                            : camera_->choose_exposure();
+    if (!exposure) return exposure;
+    return adjustment.gain >= 0 ? camera_->set_gain(adjustment.gain) : camera_->choose_gain();
   }
 
  private:
@@ -44,8 +42,11 @@ class AravisDevice final : public Device {
 /// silent V4L2 device.
 class CaptureDevice final : public Device {
  public:
-  CaptureDevice(cv::VideoCapture capture, bool is_device)
-      : capture_(std::move(capture)), is_device_(is_device) {}
+  CaptureDevice(cv::VideoCapture capture, bool is_device, std::string remark)
+      : capture_(std::move(capture)),
+        is_device_(is_device),
+        found_{capture_.get(cv::CAP_PROP_EXPOSURE), capture_.get(cv::CAP_PROP_GAIN)},
+        remark_(std::move(remark)) {}
   hc::Result<std::optional<Frame>> next(std::chrono::milliseconds) override {
     Frame frame;
     if (!capture_.read(frame.picture)) return hc::Error{hc::Code::Closed, "gives no picture"};
@@ -53,15 +54,12 @@ class CaptureDevice final : public Device {
     return std::optional<Frame>(std::move(frame));
   }
   hc::Status adjust(const Adjustment& adjustment) override {
-    if (adjustment.exposure > 0) {
-      capture_.set(cv::CAP_PROP_AUTO_EXPOSURE, kManual);  // some have no other mode
-      if (!capture_.set(cv::CAP_PROP_EXPOSURE, adjustment.exposure / kExposureUnit))
-        return hc::Error{hc::Code::Unsupported, "does not take this exposure"};
-    }
-    if (adjustment.gain >= 0 && !capture_.set(cv::CAP_PROP_GAIN, adjustment.gain))
-      return hc::Error{hc::Code::Unsupported, "does not take this gain"};
+    for (const auto& setting : settings_of(adjustment, found_))
+      if (!capture_.set(setting.property, setting.value) && !setting.refusal.empty())
+        return hc::Error{hc::Code::Unsupported, setting.refusal};
     return {};
   }
+  [[nodiscard]] std::string remark() const override { return remark_; }
 
  private:
   /// V4L2 says when a picture was taken, by the monotonic clock.
@@ -77,9 +75,11 @@ class CaptureDevice final : public Device {
 
   cv::VideoCapture capture_;
   bool is_device_;
+  Found found_;
+  std::string remark_;
 };
 
-hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name) {
+hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name, const CaptureMode& mode) {
   cv::VideoCapture capture;
   const std::string path = is_number(name) ? "/dev/video" + name : name;
   const bool is_device = path.starts_with("/dev/");
@@ -88,7 +88,18 @@ hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name) {
                                                 {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kStreamTimeout,
                                                  cv::CAP_PROP_READ_TIMEOUT_MSEC, kStreamTimeout});
   if (!is_open) return hc::Error{hc::Code::NotFound, "cannot be opened as a camera"};
-  return std::unique_ptr<Device>(std::make_unique<CaptureDevice>(std::move(capture), is_device));
+  std::string remark;
+  if (is_device) {
+    const auto settings = settings_to_open(mode);
+    if (!settings) return settings.error();
+    for (const auto& setting : *settings) capture.set(setting.property, setting.value);
+    if (!capture.isOpened()) return hc::Error{hc::Code::Closed, "does not bear to be set"};
+    remark = difference(mode, cvRound(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
+                        cvRound(capture.get(cv::CAP_PROP_FRAME_HEIGHT)),
+                        capture.get(cv::CAP_PROP_FOURCC));
+  }
+  return std::unique_ptr<Device>(
+      std::make_unique<CaptureDevice>(std::move(capture), is_device, std::move(remark)));
 }
 
 }  // namespace
@@ -99,12 +110,12 @@ bool is_live(const std::string& name) {
          name.starts_with("rtsp://");
 }
 
-LiveCamera live_camera(const std::string& name, const std::string& pixel_format) {
-  if (!name.starts_with(kAravis)) return {name, [name] { return open_capture(name); }};
+LiveCamera live_camera(const std::string& name, const CaptureMode& mode) {
+  if (!name.starts_with(kAravis)) return {name, [=] { return open_capture(name, mode); }};
   return {name,
           [device = name.substr(kAravis.size()),
-           pixel_format]() -> hc::Result<std::unique_ptr<Device>> {
-            auto camera = hc::aravis::Camera::open(device, pixel_format);
+           format = mode.pixel_format]() -> hc::Result<std::unique_ptr<Device>> {
+            auto camera = hc::aravis::Camera::open(device, format);
             if (!camera) return camera.error();
             return std::unique_ptr<Device>(std::make_unique<AravisDevice>(std::move(*camera)));
           }};

@@ -7,9 +7,11 @@
 #include <string>
 
 #include "live.h"
+#include "v4l2.h"
 
 /// Whether a source is one: "aravis:…", a number, "/dev/…", "rtsp://…".
 bool is_live(const std::string& name);
 
-/// How such a source is opened. @param pixel_format  of aravis: alone, see hc::aravis::Camera.
-LiveCamera live_camera(const std::string& name, const std::string& pixel_format);
+/// How such a source is opened. @param mode  what it is asked for: of aravis: the pixel format
+/// alone (see hc::aravis::Camera), of an RTSP stream nothing.
+LiveCamera live_camera(const std::string& name, const CaptureMode& mode);

@@ -17,6 +17,7 @@ struct LiveCameras::Camera {
   LiveCamera how;
   std::optional<Frame> newest;  // of one that is alone
   bool told = false;            // that it is not there
+  std::string remark;           // as it was told
   std::chrono::milliseconds wait = kFirstPause;
   std::thread thread;
 };
@@ -57,6 +58,9 @@ void LiveCameras::run(Camera& camera) {
   do {
     auto device = camera.how.open();
     if (device) {
+      const std::string remark = (*device)->remark();
+      if (remark != std::exchange(camera.remark, remark) && !remark.empty())
+        tell(camera.how.name + ": " + remark);
       serve(camera, **device);
     } else {
       const std::lock_guard lock(mutex_);
@@ -82,7 +86,7 @@ void LiveCameras::run(Camera& camera) {
 
 /// Takes a camera's pictures until it is lost, or all is to end.
 void LiveCameras::serve(Camera& camera, Device& device) {
-  Adjustment adjusted;
+  std::optional<Adjustment> adjusted;
   std::optional<std::chrono::steady_clock::time_point> first;
   while (true) {
     Adjustment wanted;

@@ -20,8 +20,8 @@
 
 /// What can be set while a camera runs.
 struct Adjustment {
-  double exposure = 0;  ///< [s]; 0: as the camera has it
-  double gain = -1;     ///< in the camera's unit; less than 0: as the camera has it
+  double exposure = 0;  ///< [s]; 0: the camera's own choice
+  double gain = -1;     ///< in the camera's unit; less than 0: the camera's own choice
   bool operator==(const Adjustment&) const = default;
 };
 
@@ -32,6 +32,8 @@ class Device {
   /// Waits for a picture; nothing when none comes in time. Errors: any, the camera is lost.
   virtual hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) = 0;
   virtual hc::Status adjust(const Adjustment& adjustment) = 0;
+  /// What it does otherwise than it was asked to when it was opened; "": nothing.
+  [[nodiscard]] virtual std::string remark() const { return {}; }
 };
 
 /// Opens a camera; is called on its thread, again and again while it fails.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live.h"
 
+#include <algorithm>
 #include <atomic>
 
 #include <gtest/gtest.h>
@@ -14,6 +15,7 @@ struct Plug {
   std::atomic<bool> is_in = true;
   std::atomic<int> opened = 0, adjusted = 0;
   std::atomic<bool> is_loose = false;  // each picture is the last one
+  std::atomic<bool> is_small = false;
 };
 
 class FakeDevice final : public Device {
@@ -33,6 +35,7 @@ class FakeDevice final : public Device {
     if (adjustment.gain > 10) return hc::Error{hc::Code::Unsupported, "too much gain"};
     return {};
   }
+  [[nodiscard]] std::string remark() const override { return plug_.is_small ? "is small" : ""; }
 
  private:
   Plug& plug_;
@@ -132,6 +135,26 @@ TEST(LiveCameras, without_reopen_a_loss_is_an_error) {
   auto taken = cameras.next(milliseconds(20));
   while (taken) taken = cameras.next(milliseconds(20));
   EXPECT_EQ(taken.error().detail, "eye: pulled out");
+}
+
+TEST(LiveCameras, what_it_does_otherwise_is_told_once) {
+  Plug plug;
+  plug.is_small = true;
+  LiveCameras cameras({camera("eye", plug)}, true, {});
+  auto any = [](const LiveCameras::Taken&) { return true; };
+  EXPECT_EQ(take_until(cameras, any), std::vector<std::string>{"eye: is small"});
+  plug.is_in = false;
+  while (plug.opened < 2) std::this_thread::yield();
+  plug.is_in = true;
+  const auto said = take_until(cameras, [&](const auto&) { return plug.opened > 2; });
+  EXPECT_EQ(std::count(said.begin(), said.end(), "eye: is small"), 0);
+}
+
+TEST(LiveCameras, is_set_to_its_own_choice_from_the_beginning) {
+  Plug plug;
+  LiveCameras cameras({camera("eye", plug)}, true, {});
+  take_until(cameras, [](const auto&) { return true; });
+  EXPECT_EQ(plug.adjusted, 1);
 }
 
 TEST(LiveCameras, what_cannot_be_set_is_told_and_pictures_go_on) {

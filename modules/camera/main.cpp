@@ -29,7 +29,9 @@ int main(int argc, char** argv) {
       module.parameter("right_source", "", "", "the same of the right eye", {.positional = true});
   auto side_by_side = module.parameter("side_by_side", false, "",
                                        "each picture holds both eyes', the left one on the left");
-  auto width = module.parameter("width", 0, "px", "width to scale and cut to, 0: as it comes",
+  auto width = module.parameter("width", 0, "px",
+                                "width to scale and cut to, 0: as it comes; with the height also "
+                                "what a V4L2 device is opened with",
                                 {.least = 0, .most = 65535});
   auto height = module.parameter("height", 0, "px", "height to scale and cut to, 0: as it comes",
                                  {.least = 0, .most = 65535});
@@ -37,21 +39,24 @@ int main(int argc, char** argv) {
       module.parameter("smooth", true, "", "mix pixels when scaling; false takes the nearest");
   auto rectified = module.parameter("rectified", false, "", "the pictures are rectified already");
   auto stamped = module.parameter("stamped", true, "", "give the pictures a time");
-  auto rate = module.parameter("rate", 0.0, "Hz", "pictures a second, 0: as they come",
+  auto rate = module.parameter("rate", 0.0, "Hz",
+                               "pictures a second, 0: as they come; a V4L2 device is asked for it",
                                {.least = 0, .most = 1e4});
   auto count = module.parameter("count", 0, "", "pictures to give, 0: all", {.least = 0});
   auto loop = module.parameter("loop", false, "", "begin again at the end");
 
   auto reopen = module.parameter(
       "reopen", true, "", "try again when a camera is lost: aravis, device, rtsp", {.fixed = true});
-  auto exposure = module.parameter("exposure", 0.0, "s", "of a camera, 0: its own choice",
+  auto exposure = module.parameter("exposure", 0.0, "s",
+                                   "of a camera, 0: its own choice, automatic if it has that",
                                    {.least = 0, .most = 100});
   auto gain =
       module.parameter("gain", -1.0, "", "in the camera's unit, mostly dB; -1: its own choice",
                        {.least = -1, .most = 1e4});
-  auto pixel_format =
-      module.parameter("pixel_format", "", "",
-                       "of aravis, as BayerRG8, RGB8, Mono8; empty: the camera's", {.fixed = true});
+  auto pixel_format = module.parameter(
+      "pixel_format", "", "",
+      "of aravis, as BayerRG8, RGB8, Mono8; of V4L2 a FourCC, as MJPG; empty: the camera's",
+      {.fixed = true});
 
   std::unique_ptr<PictureSource> left_source, right_source;
   std::unique_ptr<LiveCameras> cameras;
@@ -66,8 +71,10 @@ int main(int argc, char** argv) {
       if (!right_name->empty() && *side_by_side)
         throw hc::ModuleError("side_by_side and right_source do not go together");
       adjust();
-      std::vector<LiveCamera> live{live_camera(*left_name, *pixel_format)};
-      if (!right_name->empty()) live.push_back(live_camera(*right_name, *pixel_format));
+      const CaptureMode mode{static_cast<int>(*width) * (*side_by_side ? 2 : 1),
+                             static_cast<int>(*height), *rate, *pixel_format};
+      std::vector<LiveCamera> live{live_camera(*left_name, mode)};
+      if (!right_name->empty()) live.push_back(live_camera(*right_name, mode));
       cameras = std::make_unique<LiveCameras>(std::move(live), *reopen, adjustment);
       return;
     }
