@@ -118,7 +118,32 @@ class HeadTracker(Bodies):
         wait_until(lambda: abs(self.feed(0, 0, 0, -40, 0, 0)[0][2]) < 1e-9)
         rotation, _ = self.feed(0, 0, 0, -50, 0, 0)
         self.assert_close(rotation, [0, 0, math.radians(10)])
+        self.assertNotIn("first pose", self.said())
         self.stop(process)
+
+    def test_what_the_first_pose_makes_the_zero_is_told(self):
+        process = self.start_tracker()
+        self.feed(0, 0, 0, -40, 0, 0)
+        self.feed(0, 0, 0, -50, 0, 0)
+        zero = "is the zero: the tracker's roll 0.00, pitch 0.00, yaw 0.70 rad\n"
+        self.assertEqual(self.said().count(zero), 1, self.said())
+        self.stop(process)
+
+    def test_a_port_in_use_is_told_once_and_waited_for(self):
+        self.socket.bind(("127.0.0.1", 0))
+        self.port = self.socket.getsockname()[1]
+        process = self.run_module(
+            "hc head_tracker --port %d --out rotation=file:rotation --out position=file:position"
+            % self.port
+        )
+        self.wait_for("UDP port %d of 127.0.0.1: Address already in use; trying again" % self.port)
+        self.socket.close()
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(self.socket.close)
+        self.wait_for("listens at UDP 127.0.0.1:%d" % self.port)
+        self.feed(0, 0, 0, 0, 0, 0)
+        self.stop(process)
+        self.assertEqual(self.said().count("trying again"), 1, self.said())
 
     def test_garbage_is_ignored_told_once_and_counted(self):
         process = self.start_tracker()
@@ -173,11 +198,7 @@ class HeadTracker(Bodies):
         for before, after in zip(lines, lines[1:]):
             self.assertNotEqual(before, after)
 
-    def test_a_port_in_use_is_a_clear_error(self):
-        self.socket.bind(("127.0.0.1", 0))
-        port = self.socket.getsockname()[1]
-        self.shell("hc head_tracker --port %d" % port, status=1)
-        self.assertIn("UDP port %d of 127.0.0.1: Address already in use" % port, self.err)
+    def test_a_host_that_is_none_is_a_clear_error(self):
         self.shell("hc head_tracker --host nowhere.invalid --port 0", status=2)
         self.assertIn('head_tracker: Usage: host "nowhere.invalid": ', self.err)
 
