@@ -55,6 +55,11 @@ class WavWriter {
  public:
   /// Errors: System (cannot be written).
   static Result<WavWriter> create(const std::string& path, const Format& format);
+  /// Goes on behind what is in a file that another WavWriter of this format wrote, or who writes
+  /// the same plain header; sizes in it that are wrong, as of one that was killed, are mended. Any
+  /// other file is begun anew, as by create().
+  /// Errors: as of create().
+  static Result<WavWriter> append(const std::string& path, const Format& format);
   WavWriter(WavWriter&& other) noexcept;
   WavWriter& operator=(WavWriter&&) = delete;
   ~WavWriter();
@@ -63,6 +68,8 @@ class WavWriter {
   Status write(std::span<const std::int16_t> samples);
 
   [[nodiscard]] const Format& format() const { return format_; }
+  /// Sample frames in the file.
+  [[nodiscard]] std::int64_t frames() const { return data_bytes_ / (2 * format_.channels); }
 
  private:
   WavWriter(int file, std::string path, const Format& format)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -18,12 +20,68 @@ static_assert(std::endian::native == std::endian::little, "samples are written a
 
 constexpr std::int64_t kHeaderBytes = 44, kMostBytes = 0xFFFFFFFF - kHeaderBytes;
 
+using Header = std::array<std::byte, kHeaderBytes>;
+
+Header header_of(const Format& format, std::int64_t data_bytes) {
+  Header header{};
+  std::size_t at = 0;
+  auto add_name = [&](const char* name) {
+    std::memcpy(header.data() + at, name, 4);
+    at += 4;
+  };
+  auto add = [&](std::int64_t value, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) header[at++] = std::byte(value >> (8 * i) & 0xFF);
+  };
+  const std::int64_t frame = 2 * format.channels;
+  add_name("RIFF");
+  add(kHeaderBytes - 8 + data_bytes, 4);
+  add_name("WAVE");
+  add_name("fmt ");
+  add(16, 4);
+  add(1, 2);  // integers
+  add(format.channels, 2);
+  add(format.rate, 4);
+  add(format.rate * frame, 4);
+  add(frame, 2);
+  add(16, 2);
+  add_name("data");
+  add(data_bytes, 4);
+  return header;
+}
+
+/// What a header says of its samples [byte].
+std::int64_t said_in(const Header& header) {
+  std::uint32_t bytes = 0;
+  std::memcpy(&bytes, header.data() + kHeaderBytes - sizeof bytes, sizeof bytes);
+  return bytes;
+}
+
 }  // namespace
 
 Result<WavWriter> WavWriter::create(const std::string& path, const Format& format) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) return Error{Code::System, path + ": " + std::generic_category().message(errno)};
   WavWriter writer(file, path, format);
+  if (auto put = writer.put_header(); !put) return put.error();
+  return writer;
+}
+
+Result<WavWriter> WavWriter::append(const std::string& path, const Format& format) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) return create(path, format);
+  WavWriter writer(file, path, format);
+  struct stat about {};
+  Header found{};
+  const bool is_ours = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode) &&
+                       ::pread(file, found.data(), found.size(), 0) == kHeaderBytes &&
+                       found == header_of(format, said_in(found));
+  if (!is_ours) return create(path, format);
+  // What is there counts: who was killed may have told of less, and a full disk have taken less.
+  const std::int64_t frame = 2 * format.channels;
+  writer.data_bytes_ =
+      std::min<std::int64_t>(about.st_size - kHeaderBytes, kMostBytes) / frame * frame;
+  if (::ftruncate(file, kHeaderBytes + writer.data_bytes_) != 0)
+    return Error{Code::System, path + ": " + std::generic_category().message(errno)};
   if (auto put = writer.put_header(); !put) return put.error();
   return writer;
 }
@@ -50,30 +108,7 @@ Status WavWriter::put(std::span<const std::byte> bytes, std::int64_t at) {
 }
 
 Status WavWriter::put_header() {
-  std::array<std::byte, kHeaderBytes> header{};
-  std::size_t at = 0;
-  auto add_name = [&](const char* name) {
-    std::memcpy(header.data() + at, name, 4);
-    at += 4;
-  };
-  auto add = [&](std::int64_t value, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i) header[at++] = std::byte(value >> (8 * i) & 0xFF);
-  };
-  const std::int64_t frame = 2 * format_.channels;
-  add_name("RIFF");
-  add(kHeaderBytes - 8 + data_bytes_, 4);
-  add_name("WAVE");
-  add_name("fmt ");
-  add(16, 4);
-  add(1, 2);  // integers
-  add(format_.channels, 2);
-  add(format_.rate, 4);
-  add(format_.rate * frame, 4);
-  add(frame, 2);
-  add(16, 2);
-  add_name("data");
-  add(data_bytes_, 4);
-  return put(header, 0);
+  return put(header_of(format_, data_bytes_), 0);
 }
 
 Status WavWriter::write(std::span<const std::int16_t> samples) {

@@ -27,8 +27,10 @@ int main(int argc, char** argv) {
   auto device = module.parameter("device", "", "",
                                  "SDL's name of the loudspeaker, \"\": the default, \"none\": none",
                                  {.fixed = true});
-  auto save = module.parameter("save", "", "", "WAV file to write too, whole at every moment",
-                               {.fixed = true});
+  auto save = module.parameter(
+      "save", "", "",
+      "WAV file to write too, whole at every moment; one of the same format is gone on with",
+      {.fixed = true});
   auto rate =
       module.parameter("rate", 0, "Hz", "to play and write with, 0: that of the first sound",
                        {.least = 0, .most = 192000, .fixed = true});

@@ -43,9 +43,9 @@ Status Player::prepare(Converter::Scalar scalar, const Format& format) {
     converter_.emplace(std::move(*made));
   }
   if (!options_.file.empty() && !writer_) {
-    auto created = hc::audio::WavWriter::create(options_.file, *format_);
-    if (!created) return created.error();
-    writer_.emplace(std::move(*created));
+    auto opened = hc::audio::WavWriter::append(options_.file, *format_);
+    if (!opened) return opened.error();
+    writer_.emplace(std::move(*opened));
   }
   return {};
 }

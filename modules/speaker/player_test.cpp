@@ -58,6 +58,14 @@ TEST_F(PlayerTest, writes_a_file_that_is_whole_at_once) {
   EXPECT_EQ(to_file.dropped(), 0);
 }
 
+TEST_F(PlayerTest, one_that_is_started_again_goes_on_with_its_file) {
+  for (std::size_t i = 1; i <= 3; ++i) {
+    auto to_file = player({.is_heard = false, .device = "", .file = wav});
+    ASSERT_TRUE(to_file.play<std::int16_t>(kSome, {8000, 2}));
+    EXPECT_EQ(written({8000, 2}).size(), 6 * i);
+  }
+}
+
 TEST_F(PlayerTest, takes_other_formats_after_the_first) {
   auto to_file = player({.is_heard = false, .device = "", .file = wav});
   const std::vector<std::int16_t> second(16000, 1000);

@@ -263,22 +263,39 @@ class Sound(Bodies):
         heard = self.read_bytes("heard.raw")
         self.assertIn(samples.tobytes(), heard)
 
-    def test_a_file_is_whole_after_the_speaker_was_killed(self):
-        port = free_port()
-        process = self.run_module(
-            "hc speaker --device none --save out.wav --in tcp-listen:%d" % port
-        )
-        wait_until(lambda: listens(port))
+    def test_a_file_is_whole_after_the_speaker_was_killed_and_gone_on_with(self):
         samples = tone(8000, 0.2)
         self.write_wav("in.wav", samples, 8000)
-        self.shell(
-            "hc microphone in.wav --rate 8000 --paced=false --out mono=tcp:127.0.0.1:%d" % port
-        )
         path = pathlib.Path(self.path("out.wav"))
-        wait_until(lambda: path.exists() and path.stat().st_size == 44 + 2 * len(samples))
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-        self.assertEqual(self.read_wav("out.wav"), (8000, 1, samples))
+        for times in 1, 2, 3:
+            port = free_port()
+            process = self.run_module(
+                "hc speaker --device none --save out.wav --in tcp-listen:%d" % port
+            )
+            wait_until(lambda: listens(port))
+            self.shell(
+                "hc microphone in.wav --rate 8000 --paced=false --out mono=tcp:127.0.0.1:%d" % port
+            )
+            size = 44 + 2 * len(samples) * times
+            wait_until(lambda: path.exists() and path.stat().st_size == size)
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            self.assertEqual(self.read_wav("out.wav"), (8000, 1, samples * times))
+
+    def test_a_long_sound_does_not_keep_the_speaker_from_its_end(self):
+        port = free_port()
+        process = self.run_module(
+            "env SDL_AUDIODRIVER=dummy hc speaker --save out.wav --in tcp-listen:%d" % port
+        )
+        wait_until(lambda: listens(port))
+        frames = 600 * 8000
+        message = b"1 1 0 0 8 0 100131 0 20 %d 1\n" % frames + bytes(2 * frames) + b"\n"
+        with socket.create_connection(("127.0.0.1", port)) as connection:
+            connection.sendall(2 * message)
+            path = pathlib.Path(self.path("out.wav"))
+            # The second waits until there is room for it.
+            wait_until(lambda: path.exists() and path.stat().st_size == 44 + 4 * frames)
+            self.stop(process)
 
     def test_without_a_device_sound_is_dropped_and_counted(self):
         self.write_wav("in.wav", tone(16000, 0.1), 16000)
