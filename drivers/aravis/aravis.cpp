@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <drivers/aravis/aravis.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <arv.h>
@@ -15,6 +17,7 @@ namespace {
 
 constexpr int kBuffers = 8;
 constexpr std::chrono::milliseconds kSilence{1000};
+constexpr std::chrono::milliseconds kForEver = std::chrono::hours(24 * 365 * 100);
 constexpr std::chrono::milliseconds kBeginning{2000};  // so much more until the first picture
 // A camera's time that is further from ours is by another clock.
 constexpr std::int64_t kMostAge = 10'000'000'000;  // [ns]
@@ -79,8 +82,31 @@ Status choose_format(ArvCamera* camera, const std::string& wanted) {
   return Error{Code::Unsupported, "has none of Mono8, RGB8, BGR8 and 8-bit Bayer"};
 }
 
-void note_loss(ArvGvDevice*, std::atomic<bool>* is_lost) {
-  *is_lost = true;
+/// A flag of its own life: Aravis may be about to set it when its camera is let go.
+using Flag = std::shared_ptr<std::atomic<bool>>;
+
+void note_loss(ArvDevice*, Flag* is_lost) {
+  **is_lost = true;
+}
+
+void forget_flag(gpointer flag, GClosure*) {
+  delete static_cast<Flag*>(flag);
+}
+
+/// Asks for a rate; how long the camera may be silent, for ever when it waits for a trigger.
+std::chrono::milliseconds choose_rate(ArvCamera* camera, double rate) {
+  Failure ignored;  // many have no such thing
+  const char* trigger = arv_camera_is_feature_available(camera, "TriggerMode", ignored.out())
+                            ? arv_camera_get_string(camera, "TriggerMode", ignored.out())
+                            : nullptr;
+  if (trigger != nullptr && std::string_view(trigger) == "On") return kForEver;
+  if (arv_camera_is_frame_rate_available(camera, ignored.out())) {
+    if (rate > 0) arv_camera_set_frame_rate(camera, rate, ignored.out());
+    const double told = arv_camera_get_frame_rate(camera, ignored.out());
+    if (!ignored && told > 0) rate = told;
+  }
+  if (!(rate > 0)) return kSilence;
+  return kSilence + std::chrono::milliseconds(std::llround(std::min(2 / rate, 1e6) * 1e3));
 }
 
 }  // namespace
@@ -88,7 +114,9 @@ void note_loss(ArvGvDevice*, std::atomic<bool>* is_lost) {
 struct Camera::Handles {
   ArvCamera* camera = nullptr;
   ArvStream* stream = nullptr;
-  std::atomic<bool> is_lost = false;  // set on Aravis' thread
+  Flag is_lost = std::make_shared<std::atomic<bool>>(false);  // set on Aravis' thread
+  gulong handler = 0;                                         // of what sets it
+  std::chrono::milliseconds patience = kSilence;              // beside that for the exposure
   std::chrono::steady_clock::time_point heard = std::chrono::steady_clock::now();
   double exposure = 0;  // as we have set it [s]
 
@@ -98,8 +126,8 @@ struct Camera::Handles {
   ~Handles() {
     const std::lock_guard lock(search_mutex());
     if (camera != nullptr) {
-      g_signal_handlers_disconnect_by_data(arv_camera_get_device(camera), &is_lost);
-      if (!is_lost && stream != nullptr) {
+      if (handler != 0) g_signal_handler_disconnect(arv_camera_get_device(camera), handler);
+      if (!*is_lost && stream != nullptr) {
         Failure ignored;  // it may be gone
         arv_camera_stop_acquisition(camera, ignored.out());
       }
@@ -113,7 +141,7 @@ Camera::Camera(std::unique_ptr<Handles> handles) : handles_(std::move(handles)) 
 Camera::~Camera() = default;
 
 Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
-                                             const std::string& pixel_format) {
+                                             const std::string& pixel_format, double rate) {
   auto handles = std::make_unique<Handles>();
   Failure failure;
   {
@@ -128,11 +156,13 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
     }
   }
   ArvCamera* camera = handles->camera;
-  g_signal_connect(arv_camera_get_device(camera), "control-lost", G_CALLBACK(note_loss),
-                   &handles->is_lost);
+  handles->handler =
+      g_signal_connect_data(arv_camera_get_device(camera), "control-lost", G_CALLBACK(note_loss),
+                            new Flag(handles->is_lost), forget_flag, static_cast<GConnectFlags>(0));
   if (auto chosen = choose_format(camera, pixel_format); !chosen) return chosen.error();
   arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.out());
   if (failure) return failure.error();
+  handles->patience = choose_rate(camera, rate);
   handles->stream = arv_camera_create_stream(camera, nullptr, nullptr, failure.out());
   if (failure || handles->stream == nullptr) return failure.error();
   const auto bytes = arv_camera_get_payload(camera, failure.out());
@@ -147,7 +177,7 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
 
 Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
   auto& all = *handles_;
-  if (all.is_lost) return Error{Code::Closed, "it has gone"};
+  if (*all.is_lost) return Error{Code::Closed, "it has gone"};
   ArvBuffer* buffer = arv_stream_timeout_pop_buffer(
       all.stream, static_cast<guint64>(std::chrono::microseconds(timeout).count()));
   const auto now = std::chrono::steady_clock::now();
@@ -155,10 +185,10 @@ Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
       buffer != nullptr && arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
   if (!is_whole) {
     if (buffer != nullptr) arv_stream_push_buffer(all.stream, buffer);
-    const auto patience = kSilence + std::chrono::milliseconds(std::llround(all.exposure * 1e3));
-    if (all.is_lost) return Error{Code::Closed, "it has gone"};
-    if (now - all.heard > patience) {
-      all.is_lost = true;
+    const auto exposure = std::chrono::milliseconds(std::llround(all.exposure * 1e3));
+    if (*all.is_lost) return Error{Code::Closed, "it has gone"};
+    if (now - all.heard - exposure > all.patience) {
+      *all.is_lost = true;
       return Error{Code::Closed, "it is silent"};
     }
     return std::optional<Picture>();
@@ -166,9 +196,11 @@ Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
   all.heard = now;
   std::size_t bytes = 0;
   const auto* data = static_cast<const std::byte*>(arv_buffer_get_data(buffer, &bytes));
+  int padding = 0, ignored = 0;
+  arv_buffer_get_image_padding(buffer, &padding, &ignored);
   auto bgr = to_bgr(static_cast<std::uint32_t>(arv_buffer_get_image_pixel_format(buffer)),
                     arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer),
-                    std::span(data, bytes));
+                    std::span(data, bytes), padding);
   const auto came = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
   arv_stream_push_buffer(all.stream, buffer);
   if (!bgr) return bgr.error();

@@ -28,10 +28,13 @@ class Camera {
   /// @param pixel_format  as GenICam calls it, such as BayerRG8; "" as the camera is set, or where
   ///     that is none of Mono8, RGB8, BGR8 and 8-bit Bayer, one of these.
   ///
+  /// @param rate  of pictures [1/s], where the camera can; 0: as it is set.
+  ///
   /// Errors: NotFound (no such camera), Unsupported (the format), System (what Aravis says).
   /// Cost: blocks for some 10 ms, and for up to 3 s where no camera answers.
   static Result<std::unique_ptr<Camera>> open(const std::string& name,
-                                              const std::string& pixel_format = "");
+                                              const std::string& pixel_format = "",
+                                              double rate = 0);
   ~Camera();
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
@@ -39,9 +42,10 @@ class Camera {
   /// Waits for the next picture; ones that came incomplete are passed over.
   /// @returns  nothing when none came within `timeout`.
   ///
-  /// Errors: Closed (the camera is lost: it says so itself, or has
-  /// been silent for a second beyond its exposure, and two more at first), Malformed, Unsupported
-  /// (what it sends).
+  /// Errors: Closed (the camera is lost: Aravis says so, or it has been silent for a second
+  /// beyond its exposure and two periods of its rate, and two more at first; one that waits for a
+  /// trigger may be silent),
+  /// Malformed, Unsupported (what it sends).
   Result<std::optional<Picture>> next(std::chrono::milliseconds timeout);
 
   /// Sets the time of exposure and ends the camera's own choice of it. [s]

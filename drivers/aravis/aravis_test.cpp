@@ -30,6 +30,16 @@ TEST(Aravis, gives_pictures_with_rising_times) {
   EXPECT_GT(before, 1'700'000'000'000'000'000);
 }
 
+TEST(Aravis, a_slow_camera_is_not_lost) {
+  auto camera = Camera::open("Fake_1", "", 0.6);
+  ASSERT_TRUE(camera) << camera.error().text();
+  auto first = wait_for_picture(**camera);
+  auto second = wait_for_picture(**camera);
+  auto third = wait_for_picture(**camera);
+  ASSERT_TRUE(first && second && third);
+  EXPECT_GT(third->time - second->time, 1'000'000'000);
+}
+
 TEST(Aravis, sets_exposure_and_gain) {
   auto camera = Camera::open("Fake_1");
   ASSERT_TRUE(camera) << camera.error().text();

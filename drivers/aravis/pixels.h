@@ -26,11 +26,12 @@ bool is_known(std::uint32_t format);
 
 /// A picture of a camera's pixels, in memory of its own.
 ///
-/// @param pixels  rows without gaps; more than a picture is passed over.
+/// @param pixels  more than a picture is passed over.
+/// @param padding  behind each row [byte].
 /// @returns  (height, width, 3) u8: blue, green, red. Bayer's colours are interpolated.
 ///
 /// Errors: Unsupported (the format), Malformed (too few bytes for the size).
 Result<cv::Mat> to_bgr(std::uint32_t format, int width, int height,
-                       std::span<const std::byte> pixels);
+                       std::span<const std::byte> pixels, int padding = 0);
 
 }  // namespace hc::aravis

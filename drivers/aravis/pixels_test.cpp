@@ -55,6 +55,24 @@ TEST(Pixels, rgb_and_grey) {
             cv::Vec3b(2, 2, 2));
 }
 
+TEST(Pixels, what_stands_behind_the_rows_is_left_out) {
+  std::vector<std::uint8_t> values;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x)
+      for (int shift : {0, 1, 2}) values.push_back(static_cast<std::uint8_t>(10 * y + shift));
+    if (y < kHeight - 1) values.insert(values.end(), {255, 255, 255, 255, 255});
+  }
+  const auto picture = to_bgr(number(PixelFormat::Rgb8), kWidth, kHeight, bytes(values), 5);
+  ASSERT_TRUE(picture) << picture.error().text();
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      EXPECT_EQ(picture->at<cv::Vec3b>(y, x), cv::Vec3b(static_cast<std::uint8_t>(10 * y + 2),
+                                                        static_cast<std::uint8_t>(10 * y + 1),
+                                                        static_cast<std::uint8_t>(10 * y)));
+  values.pop_back();
+  EXPECT_FALSE(to_bgr(number(PixelFormat::Rgb8), kWidth, kHeight, bytes(values), 5));
+}
+
 TEST(Pixels, refuses_what_it_does_not_know_and_what_is_cut) {
   const std::vector<std::uint8_t> values(kWidth * kHeight);
   constexpr std::uint32_t kMono16 = 0x01100007;

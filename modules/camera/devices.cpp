@@ -113,9 +113,8 @@ bool is_live(const std::string& name) {
 LiveCamera live_camera(const std::string& name, const CaptureMode& mode) {
   if (!name.starts_with(kAravis)) return {name, [=] { return open_capture(name, mode); }};
   return {name,
-          [device = name.substr(kAravis.size()),
-           format = mode.pixel_format]() -> hc::Result<std::unique_ptr<Device>> {
-            auto camera = hc::aravis::Camera::open(device, format);
+          [device = name.substr(kAravis.size()), mode]() -> hc::Result<std::unique_ptr<Device>> {
+            auto camera = hc::aravis::Camera::open(device, mode.pixel_format, mode.rate);
             if (!camera) return camera.error();
             return std::unique_ptr<Device>(std::make_unique<AravisDevice>(std::move(*camera)));
           }};

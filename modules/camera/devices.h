@@ -13,5 +13,5 @@
 bool is_live(const std::string& name);
 
 /// How such a source is opened. @param mode  what it is asked for: of aravis: the pixel format
-/// alone (see hc::aravis::Camera), of an RTSP stream nothing.
+/// and rate (see hc::aravis::Camera), of an RTSP stream nothing.
 LiveCamera live_camera(const std::string& name, const CaptureMode& mode);

@@ -12,6 +12,16 @@ constexpr std::chrono::seconds kSettled{1};  // one that is lost sooner is waite
 
 }  // namespace
 
+bool Thinning::takes(std::int64_t time, double rate) {
+  if (rate <= 0) return true;
+  const double period = 1e9 / rate, now = static_cast<double>(time);
+  if (due_ <= 0 || due_ > now + 2 * period) due_ = now;  // the first, or the clock was set back
+  // One of a camera that keeps the rate itself may be a little early.
+  if (now < due_ - period / 4) return false;
+  due_ = std::max(due_, now - period) + period;
+  return true;
+}
+
 struct LiveCameras::Camera {
   std::size_t side = 0;
   LiveCamera how;

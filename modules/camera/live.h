@@ -25,6 +25,16 @@ struct Adjustment {
   bool operator==(const Adjustment&) const = default;
 };
 
+/// Thins out pictures to a rate, by their times, without holding any back. Pure.
+class Thinning {
+ public:
+  /// Whether a picture of such a time [ns] is taken at a rate [1/s]; 0: all are.
+  bool takes(std::int64_t time, double rate);
+
+ private:
+  double due_ = 0;  // of the next one [ns]
+};
+
 /// An open camera, which belongs to one thread.
 class Device {
  public:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -135,6 +136,25 @@ TEST(LiveCameras, without_reopen_a_loss_is_an_error) {
   auto taken = cameras.next(milliseconds(20));
   while (taken) taken = cameras.next(milliseconds(20));
   EXPECT_EQ(taken.error().detail, "eye: pulled out");
+}
+
+TEST(Thinning, keeps_a_rate_and_holds_nothing_back) {
+  auto taken = [](double camera, double rate) {
+    Thinning thinning;
+    int count = 0;
+    for (int i = 0; i < 10 * camera; ++i)
+      count += thinning.takes(1'000'000'000'000 + std::llround(i * 1e9 / camera), rate) ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(taken(30, 0), 300);
+  EXPECT_NEAR(taken(30, 20), 200, 2);
+  EXPECT_NEAR(taken(30, 7), 70, 2);
+  EXPECT_EQ(taken(20, 20), 200);
+  EXPECT_EQ(taken(5, 20), 50);
+  Thinning thinning;
+  EXPECT_TRUE(thinning.takes(1'000'000'000'000, 10));
+  EXPECT_FALSE(thinning.takes(1'000'050'000'000, 10));
+  EXPECT_TRUE(thinning.takes(5'000'000'000, 10));  // by a clock that was set back
 }
 
 TEST(LiveCameras, what_it_does_otherwise_is_told_once) {

@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   auto rectified = module.parameter("rectified", false, "", "the pictures are rectified already");
   auto stamped = module.parameter("stamped", true, "", "give the pictures a time");
   auto rate = module.parameter("rate", 0.0, "Hz",
-                               "pictures a second, 0: as they come; a V4L2 device is asked for it",
+                               "pictures a second, 0: as they come; a camera is asked for it",
                                {.least = 0, .most = 1e4});
   auto count = module.parameter("count", 0, "", "pictures to give, 0: all", {.least = 0});
   auto loop = module.parameter("loop", false, "", "begin again at the end");
@@ -116,6 +116,7 @@ int main(int argc, char** argv) {
       send(right, right_picture, time, *rectified ? kRightRectified : kRightImage);
     ++given;
   };
+  Thinning thinning;
   auto take_live = [&] {
     adjust();
     auto taken = cameras->next(kPatience);
@@ -125,12 +126,13 @@ int main(int argc, char** argv) {
     const auto& [left_frame, right_frame] = **taken;
     // A pair has one time, as who takes both together expects.
     const std::int64_t time = left_frame ? left_frame->time : right_frame->time;
+    if (!thinning.takes(time, *rate)) return;
     send_all(left_frame ? left_frame->picture : cv::Mat(),
              right_frame ? right_frame->picture : cv::Mat(), *stamped ? time : 0);
   };
   module.generate([&] {
     if (*count > 0 && given == *count) return false;
-    if (*rate > 0) module.keep_rate(*rate);
+    if (*rate > 0 && cameras == nullptr) module.keep_rate(*rate);
     if (cameras != nullptr) {
       take_live();
       return true;
