@@ -2,6 +2,7 @@
 #include "devices.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <string_view>
 
 #include <drivers/aravis/aravis.h>
@@ -38,8 +39,8 @@ class AravisDevice final : public Device {
   std::unique_ptr<hc::aravis::Camera> camera_;
 };
 
-/// A V4L2 device or an RTSP stream, by OpenCV. A read waits as long as OpenCV does: 10 s for a
-/// silent V4L2 device.
+/// A V4L2 device or an RTSP stream, by OpenCV. A read of a silent one waits for silence_of() or
+/// kStreamTimeout.
 class CaptureDevice final : public Device {
  public:
   CaptureDevice(cv::VideoCapture capture, bool is_device, std::string remark)
@@ -111,6 +112,9 @@ bool is_live(const std::string& name) {
 }
 
 LiveCamera live_camera(const std::string& name, const CaptureMode& mode) {
+  // OpenCV has no property of a V4L2 device for it, and reads this once, before the first picture;
+  // here, since no camera's thread runs yet.
+  ::setenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT", std::to_string(silence_of(mode)).c_str(), 0);
   if (!name.starts_with(kAravis)) return {name, [=] { return open_capture(name, mode); }};
   return {name,
           [device = name.substr(kAravis.size()), mode]() -> hc::Result<std::unique_ptr<Device>> {

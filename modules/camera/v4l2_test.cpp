@@ -71,4 +71,12 @@ TEST(V4l2, what_it_gives_otherwise_is_told) {
   EXPECT_EQ(difference({}, 640, 480, mjpg), "");
 }
 
+TEST(V4l2, a_silent_device_is_lost_after_two_seconds_or_periods) {
+  EXPECT_EQ(silence_of({}), 2);
+  EXPECT_EQ(silence_of({0, 0, 30, ""}), 2);
+  EXPECT_EQ(silence_of({0, 0, 0.3, ""}), 7);
+  EXPECT_FALSE(live_camera("/dev/no_such_camera", {0, 0, 0.3, ""}).open());
+  EXPECT_STREQ(std::getenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT"), "7");
+}
+
 }  // namespace
