@@ -16,13 +16,17 @@ class Announcer {
   /// Takes a reading.
   ///
   /// @param time  when the picture was taken [ns].
+  /// @param is_heard  whether anybody hears what is said now, as those who wait for the focus do
+  ///     not while another mode has it.
   /// @returns  whether its text is to be said now: it is sure, and another than was said last, or
-  ///     that was said long ago.
-  bool take(const std::string& text, double confidence, std::int64_t time, const Rules& rules);
+  ///     that was said long ago, or not heard.
+  bool take(const std::string& text, double confidence, std::int64_t time, const Rules& rules,
+            bool is_heard = true);
 
  private:
   std::string read_;  // last, and how often in a row
   std::int64_t times_ = 0;
-  std::string said_;  // last, and when
+  std::string said_;  // last, and when, and whether it was heard
   std::int64_t said_at_ = 0;
+  bool was_heard_ = false;
 };

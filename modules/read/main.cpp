@@ -75,9 +75,10 @@ int main(int argc, char** argv) {
     read_at = time;
     const cv::Mat straight = hc::vision::straighten(pixels, line);
     auto reading = recogniser->read(straight);
-    if (*upper_case) reading.text = by_shape(straight, reading.text);
+    if (*upper_case) reading.text = by_shape(straight, reading);
     confidence.send(hc::table({reading.confidence}));
-    if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again}))
+    if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again},
+                       module.has_focus()))
       text.send(hc::string(reading.text));
   });
   return module.run(argc, argv);

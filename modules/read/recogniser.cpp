@@ -66,8 +66,13 @@ Reading Recogniser::read(const cv::Mat& line) {
   int count = 0;
   if (letter != nullptr) {
     do {
-      sum += letter->Confidence(tesseract::RIL_SYMBOL);
+      const std::unique_ptr<char[]> symbol(letter->GetUTF8Text(tesseract::RIL_SYMBOL));
+      const double sure = letter->Confidence(tesseract::RIL_SYMBOL);
+      sum += sure;
       ++count;
+      if (symbol != nullptr && symbol[0] > ' ' && symbol[1] == '\0')
+        reading.letters.push_back({symbol[0], sure, letter->IsAtBeginningOf(tesseract::RIL_WORD),
+                                   letter->WordIsFromDictionary()});
     } while (letter->Next(tesseract::RIL_SYMBOL));
   }
   if (count > 0) reading.confidence = std::clamp(sum / count / 100, 0.0, 1.0);

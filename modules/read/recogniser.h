@@ -4,13 +4,23 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <hc/base/result.h>
 #include <opencv2/core.hpp>
 
+/// A letter that was read, of those that are one byte in UTF-8 (ASCII).
+struct Letter {
+  char letter = ' ';
+  double confidence = 0;     ///< [%]
+  bool begins_word = false;  ///< a space stands before it, or nothing
+  bool is_known = false;     ///< its word is in Tesseract's dictionary
+};
+
 struct Reading {
-  std::string text;       ///< UTF-8, without space around it; may be empty
-  double confidence = 0;  ///< 0 … 1
+  std::string text;             ///< UTF-8, without space around it; may be empty
+  double confidence = 0;        ///< 0 … 1
+  std::vector<Letter> letters;  ///< what the text is made of, but for other letters
 };
 
 class Recogniser {

@@ -15,12 +15,15 @@ struct Attention {
   std::int32_t own = 0;             ///< mode of all its messages, where it is a task
   double idle_rate = 0;             ///< what it does out of focus [Hz]; 0: as much as in focus
   std::int32_t focus = 0;           ///< as last heard; 0: none, or there is no workspace
+  bool is_told = false;             ///< whether anybody tells the focus
 
   [[nodiscard]] bool in_focus() const {
     return modes.empty() || std::find(modes.begin(), modes.end(), focus) != modes.end();
   }
   /// Whether an exclusive input takes messages of a mode: none of them while nobody has the focus.
   [[nodiscard]] bool has_focus(std::int32_t mode) const { return mode != 0 && mode == focus; }
+  /// Whether an exclusive input takes what the module sends of its own mode, as far as it knows.
+  [[nodiscard]] bool is_heard() const { return !is_told || own == 0 || has_focus(own); }
   /// Whether it is to do less now.
   [[nodiscard]] bool is_idle() const { return idle_rate > 0 && !in_focus(); }
   /// A rate as it is now. [Hz]

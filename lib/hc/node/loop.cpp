@@ -51,6 +51,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
                                      arguments.control ? open(*arguments.control) : nullptr);
   open_inputs(arguments);
   for (const auto& uri : arguments.focus) focus_.push_back({uri.text(), open(uri), {}});
+  module_.attention_.is_told = !focus_.empty();
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   module_.loop_ = this;
 }

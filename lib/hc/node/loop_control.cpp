@@ -129,6 +129,7 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
       const auto uri = link->uri.text();
       std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
       focus_.push_back({uri, std::move(*source), {}});
+      module_.attention_.is_told = true;
     } else if (is_input) {
       open_input(link->uri, {module_.inputs_[link->port].get()});
     } else {
