@@ -10,16 +10,16 @@
 namespace {
 
 // As measured of Liberation Sans, Sans Narrow and Serif, DejaVu Sans and Serif, condensed and bold
-// ones too, and OpenCV's four Hershey fonts with strokes of several widths, sharp and blurred. Width
-// by height of the middle of the stroke: 0 up to 0.69, O from 0.73, seen from the side by some
-// degrees. Between these limits it is left. An O of a typewriter's font is as narrow as a 0.
+// ones too, and OpenCV's four Hershey fonts with strokes of several widths, sharp and blurred.
+// Width by height of the middle of the stroke: 0 up to 0.69, O from 0.73, seen from the side by
+// some degrees. Between these limits it is left. An O of a typewriter's font is as narrow as a 0.
 constexpr double kNarrow = 0.695, kRound = 0.72;
 // How far the left side stands out in the middle of its upper part, by the width: 5 up to 0.03, S
 // from 0.07.
 constexpr double kStraight = 0.045, kBulging = 0.06;
-constexpr double kBar = 0.28;   // width by height of an I without serifs at most; 1 from 0.33
-constexpr double kSure = 96;  // [%] what is surer was not read twice
-constexpr double kGap = 1.6;    // by the median of those in words; a space is wider
+constexpr double kBar = 0.28;  // width by height of an I without serifs at most; 1 from 0.33
+constexpr double kSure = 96;   // [%] what is surer was not read twice
+constexpr double kGap = 1.6;   // by the median of those in words; a space is wider
 
 constexpr std::string_view kAlike[] = {"0OQ9", "1I!", "2Z", "35S9", "368BES", "4A", "VY"};
 
@@ -69,6 +69,17 @@ double left_side(const cv::Mat& glyph, double from, double to) {
 double bulge(const cv::Mat& glyph) {
   const double ends = (left_side(glyph, 0.02, 0.12) + left_side(glyph, 0.3, 0.4)) / 2;
   return 2 * (ends - left_side(glyph, 0.14, 0.26)) / glyph.cols;
+}
+
+/// Whether a stroke sticks out to the left of the stem at the top and none to the right, as of a 1;
+/// serifs stick out to both.
+bool has_flag(const cv::Mat& glyph) {
+  cv::Mat mirrored;
+  cv::flip(glyph, mirrored, 1);
+  const auto sticks_out = [](const cv::Mat& side) {
+    return (left_side(side, 0.55, 0.85) - left_side(side, 0.12, 0.28)) / side.rows;
+  };
+  return sticks_out(glyph) > 0.08 && sticks_out(mirrored) < 0.03;
 }
 
 /// Whether a glyph is one straight stroke from top to bottom, where a ! has a gap above its dot.
@@ -160,6 +171,8 @@ char by_shape(const cv::Mat& glyph, char letter) {
       const double is = bulge(glyph);
       return is < kStraight ? '5' : is > kBulging ? 'S' : letter;
     }
+    case 'I':
+      return has_flag(glyph) ? '1' : letter;
     case '1':
     case '!':
       return is_bar(glyph) ? 'I' : letter;

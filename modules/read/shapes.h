@@ -15,7 +15,8 @@
 std::vector<cv::Rect> find_letters(const cv::Mat& line);
 
 /// What a glyph is that was read as `letter`: O or 0 by how round it is, 5 or S by whether it is
-/// straight on its left, I where it is nothing but a bar; otherwise `letter`.
+/// straight on its left, I where it is nothing but a bar,
+/// 1 where an I has a flag; otherwise `letter`.
 /// @param glyph  cut out, (H, W) u8, black on white.
 char by_shape(const cv::Mat& glyph, char letter);
 

@@ -10,8 +10,6 @@ cv::Mat written(const std::string& text, int font, int stroke, double blur) {
   cv::Mat line(80, 42 * static_cast<int>(text.size()) + 60, CV_8U, cv::Scalar(255));
   cv::putText(line, text, {20, 60}, font, 1.9, cv::Scalar(0), stroke, cv::LINE_AA);
   if (blur > 0) cv::GaussianBlur(line, line, {}, blur);
-  // As a board is seen from the side.
-  cv::resize(line, line, {}, 0.94, 1, cv::INTER_AREA);
   return line;
 }
 
@@ -26,13 +24,13 @@ Reading reading(const std::string& text, double confidence = 99, bool is_known =
 }
 
 TEST(Shapes, tell_what_looks_alike_apart) {
-  const std::string text = "0O 5S I1", wrong = "O0 S5 1I", right_i = "0O 5S II";
+  const std::string text = "0O 5S I1", wrong = "O0 S5 1I";
   for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
     for (int stroke : {5, 6})
       for (double blur : {0.0, 1.0, 1.5}) {
         const cv::Mat line = written(text, font, stroke, blur);
         EXPECT_EQ(by_shape(line, reading(text)), text) << font << " " << stroke << " " << blur;
-        EXPECT_EQ(by_shape(line, reading(wrong)), right_i) << font << " " << stroke << " " << blur;
+        EXPECT_EQ(by_shape(line, reading(wrong)), text) << font << " " << stroke << " " << blur;
       }
 }
 
@@ -58,8 +56,8 @@ TEST(Shapes, of_both_for_one_letter_the_surer_one_is_left) {
 }
 
 TEST(Shapes, take_out_a_space_where_none_is) {
-  const cv::Mat line = written("8F1C B", cv::FONT_HERSHEY_DUPLEX, 5, 1);
-  EXPECT_EQ(by_shape(line, reading("8F 1C B")), "8F1C B");
+  const cv::Mat line = written("KMKFJSA B", cv::FONT_HERSHEY_DUPLEX, 5, 1);
+  EXPECT_EQ(by_shape(line, reading("KMKF JSA B")), "KMKFJSA B");
 }
 
 TEST(Shapes, leave_other_letters_as_they_are) {

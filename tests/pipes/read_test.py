@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The module read before the simulator's board; reading.py computes the same over many seeds."""
 
+import json
+import os
+import pathlib
 import unittest
 
-from harness import BUILD, Pipes
+from harness import BUILD, Pipes, WATCHDOG, wait_until
 import reading
 
 
@@ -43,6 +46,63 @@ class Read(Pipes):
             " --text '' --out left=eye.mtp --in gaze=/dev/null"
         )
         self.assertEqual(self.shell("hc read --in image=eye.mtp | hc cat"), "")
+
+    def draw(self, text, font, size=40):
+        """A picture of 800 x 600 with a text in a TrueType font, by Graphviz; gives its name."""
+        node = (
+            'graph { graph [size="8.3333,6.25!", dpi=96, margin=0, pad=0]; n [shape=plaintext,'
+            'label="%s", fontname="%s", fontsize=%d, width=8.33, height=6.25, fixedsize=true] }'
+        )
+        self.shell("dot -Tpng -o drawn.png", data=(node % (text, font, size)).encode())
+        return "drawn.png"
+
+    def test_words_in_real_fonts_are_read_without_an_error(self):
+        fonts = [
+            "Liberation Sans",
+            "Liberation Sans Bold",
+            "Liberation Mono",
+            "Liberation Serif",
+            "DejaVu Sans",
+            "DejaVu Sans Bold",
+        ]
+        for font in fonts:
+            for text in ("READ A TEXT", "STOP AT LAB 4", "OLD ROBOT 2", "EXIT 105"):
+                for size in (40, 20):
+                    with self.subTest(font=font, text=text, size=size):
+                        picture = self.draw(text, font, size)
+                        read = self.shell(
+                            "hc camera --source %s --loop --count 2 | hc read --rate 0 --in image=-"
+                            " --out text=- | hc cat --json" % picture
+                        )
+                        lines = [json.loads(line)["elements"][0] for line in read.splitlines()]
+                        self.assertEqual(lines, [text])
+
+    def test_what_was_said_out_of_focus_is_said_anew_in_focus(self):
+        self.draw("LOOK HERE", "DejaVu Sans")
+        self.shell("hc camera --source drawn.png --count 1 --out left=eye.mtp")
+        picture = pathlib.Path(self.path("eye.mtp")).read_bytes()
+        os.mkfifo(self.path("focus"))
+        focus = [self.shell("hc send --type table --scalar i32 %d" % mode) for mode in (2, 1)]
+        command = "hc read --rate 0 --mode 1 --in image=- --in focus=focus --out text=text.mtp"
+        read = self.start(command, stdin=-1)
+        said = pathlib.Path(self.path("text.mtp"))
+
+        def count_said():
+            return said.read_bytes().count(b"LOOK HERE") if said.exists() else 0
+
+        def is_said(times):
+            # Each picture has the same time, so that none is due again.
+            read.stdin.write(picture)
+            read.stdin.flush()
+            return count_said() >= times
+
+        with open(self.path("focus"), "wb", buffering=0) as link:
+            link.write(focus[0].encode())
+            wait_until(lambda: is_said(1))
+            link.write(focus[1].encode())
+            wait_until(lambda: is_said(2))
+        read.communicate(timeout=WATCHDOG)
+        self.assertEqual(count_said(), 2)
 
     def test_a_language_that_is_missing_is_one_line(self):
         self.shell("hc read --language no_such --in image=/dev/null", status=1)

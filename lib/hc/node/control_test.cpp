@@ -134,6 +134,31 @@ TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   EXPECT_EQ(last_counters(*reports).at(0).at(7), 4);
 }
 
+TEST_F(RunningModule, KnowsWhetherItsModeHasTheFocus) {
+  auto has_focus = [&](std::vector<std::string> words, std::int32_t mode) {
+    Module module{"task", "Knows."};
+    auto in = module.input("in", table<double>(), "");
+    bool has = false;
+    module.on(in, [&](const auto&) { has = module.has_focus(); });
+    const std::string name = uri("in") + std::to_string(mode) + std::to_string(words.size());
+    auto sink = sink_of(name), focus = sink_of(name + "focus");
+    EXPECT_TRUE(focus->send(table<std::int32_t>({mode})));
+    EXPECT_TRUE(sink->send(table({1.0})));
+    EXPECT_TRUE(sink->close());
+    words.push_back("--in=" + name);
+    if (mode >= 0) words.insert(words.end(), {"--in", "focus=" + name + "focus"});
+    start(module, words);
+    EXPECT_EQ(join(), 0);
+    return has;
+  };
+  constexpr std::int32_t kNobodyTells = -1;
+  EXPECT_TRUE(has_focus({"--mode=2"}, kNobodyTells));
+  EXPECT_FALSE(has_focus({"--mode=2"}, 0));
+  EXPECT_FALSE(has_focus({"--mode=2"}, 1));
+  EXPECT_TRUE(has_focus({"--mode=2"}, 2));
+  EXPECT_TRUE(has_focus({}, 1));
+}
+
 TEST_F(RunningModule, DoesLessWhileAnotherModeHasTheFocus) {
   Module module{"busy", "Works."};
   auto in = module.input("in", table<double>(), "");

@@ -191,8 +191,8 @@ class Module {
   /// Number of the system mode in focus, as last heard; 0: none, or nobody tells it.
   [[nodiscard]] std::int32_t focus() const { return attention_.focus; }
 
-  /// Whether the module's mode has the focus, so that exclusive inputs take what it sends. Also when
-  /// it has no mode of its own (`--mode`), and when nobody tells the focus.
+  /// Whether the module's mode has the focus, so that exclusive inputs take what it sends. Also
+  /// when it has no mode of its own (`--mode`), and when nobody tells the focus.
   [[nodiscard]] bool has_focus() const { return attention_.is_heard(); }
 
   /// Runs the module as the command line says, until its inputs end, all its readers have gone, or
