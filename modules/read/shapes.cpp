@@ -17,9 +17,10 @@ constexpr double kNarrow = 0.695, kRound = 0.72;
 // How far the left side stands out in the middle of its upper part, by the width: 5 up to 0.03, S
 // from 0.07.
 constexpr double kStraight = 0.045, kBulging = 0.06;
-constexpr double kBar = 0.28;  // width by height of an I without serifs at most; 1 from 0.33
-constexpr double kSure = 96;   // [%] what is surer was not read twice
-constexpr double kGap = 1.6;   // by the median of those in words; a space is wider
+constexpr double kOpen = -0.2;  // what is open there is a 3
+constexpr double kBar = 0.28;   // width by height of an I without serifs at most; 1 from 0.33
+constexpr double kSure = 96;    // [%] what is surer was not read twice
+constexpr double kGap = 1.6;    // by the median of those in words; a space is wider
 
 constexpr std::string_view kAlike[] = {"0OQ9", "1I!", "2Z", "35S9", "368BES", "4A", "VY"};
 
@@ -132,9 +133,9 @@ void join_words(std::vector<Letter>& letters, const std::vector<cv::Rect>& boxes
 
 }  // namespace
 
-std::vector<cv::Rect> find_letters(const cv::Mat& line) {
+std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker) {
   cv::Mat labels, stats, middles;
-  const int count = cv::connectedComponentsWithStats(line < 128, labels, stats, middles, 8);
+  const int count = cv::connectedComponentsWithStats(line < darker, labels, stats, middles, 8);
   std::vector<cv::Rect> boxes;
   for (int label = 1; label < count; ++label) {
     const int* of = stats.ptr<int>(label);
@@ -169,6 +170,7 @@ char by_shape(const cv::Mat& glyph, char letter) {
     case '5':
     case 'S': {
       const double is = bulge(glyph);
+      if (is < kOpen) return '3';
       return is < kStraight ? '5' : is > kBulging ? 'S' : letter;
     }
     case 'I':
@@ -183,8 +185,16 @@ char by_shape(const cv::Mat& glyph, char letter) {
 
 std::string by_shape(const cv::Mat& line, const Reading& reading) {
   auto letters = reading.letters;
-  const auto boxes = find_letters(line);
-  leave_out_twice(letters, boxes.size());
+  // What is darker is ink; less of it where letters touch.
+  std::vector<cv::Rect> boxes;
+  for (const int darker : {128, 96, 64, 32}) {
+    boxes = find_letters(line, darker);
+    if (boxes.size() >= letters.size()) break;
+  }
+  if (boxes.size() < letters.size()) {
+    boxes = find_letters(line);
+    leave_out_twice(letters, boxes.size());
+  }
   if (letters.size() != boxes.size()) return reading.text;
   join_words(letters, boxes);
   for (std::size_t i = 0; i < letters.size(); ++i)

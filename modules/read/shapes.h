@@ -12,10 +12,11 @@
 
 /// The boxes of the letters of a straight line, from left to right; what stands one above the
 /// other, as the parts of a !, is one. @param line (H, W) u8, black on white.
-std::vector<cv::Rect> find_letters(const cv::Mat& line);
+/// @param darker  what is darker is ink.
+std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 
-/// What a glyph is that was read as `letter`: O or 0 by how round it is, 5 or S by whether it is
-/// straight on its left, I where it is nothing but a bar,
+/// What a glyph is that was read as `letter`: O or 0 by how round it is, 5, S or 3 by whether it
+/// is straight, stands out or is open on its left, I where it is nothing but a bar,
 /// 1 where an I has a flag; otherwise `letter`.
 /// @param glyph  cut out, (H, W) u8, black on white.
 char by_shape(const cv::Mat& glyph, char letter);
