@@ -20,10 +20,8 @@ std::optional<Eigen::Vector3d> Binocular::see(const Eyes& eyes, Side side, std::
     if (p_head) range_ = p_head->norm();
     return p_head;
   }
-  // Its partner comes yet, unless it did not come the last time.
-  const bool was_pair = before && other && std::abs(before->time - other->time) <= kPair;
-  const bool is_behind = other && other->time > time && other->time - time < kLate;
-  if (was_pair || is_behind) return std::nullopt;
+  const std::int64_t period = before ? std::abs(time - before->time) : kLate;
+  if (other && other->time < time + kLate && time - other->time < 3 * period) return std::nullopt;
   return eyes.place(side) + (range_ > 0 ? range_ : distance) * eyes.direction(side, pixel);
 }
 

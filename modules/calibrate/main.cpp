@@ -184,6 +184,11 @@ int main(int argc, char** argv) {
   module.every(std::chrono::seconds(1), [&] {
     if (found) tell();
   });
-  module.on_end([&] { stop.request_stop(); });
-  return module.run(argc, argv);
+  // Of all the pictures that came the result is told; who is asked to stop does not wait for it.
+  module.on_end([&] {
+    if (work.valid()) take();
+  });
+  const int status = module.run(argc, argv);
+  stop.request_stop();
+  return status;
 }

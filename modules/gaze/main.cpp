@@ -2,6 +2,7 @@
 // Turns the head to where a task wants it to look, and bids for the head while it wants that.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include <frames/track.h>
@@ -27,6 +28,14 @@ constexpr std::chrono::milliseconds kSteer{5};
 constexpr std::int64_t kAhead = 200'000'000;
 /// Reports come in the order of time, but where a clock was set back [ns].
 constexpr std::int64_t kSetBack = 1'000'000'000;
+
+/// A target as it came.
+struct Sensed {
+  std::int64_t time;
+  std::int32_t coord;
+  Eigen::Vector3d p;
+};
+constexpr std::size_t kMostSensed = 64;  // that wait
 
 double seconds(std::int64_t time) {
   return static_cast<double>(time) * kSecond;
@@ -107,6 +116,7 @@ int main(int argc, char** argv) {
   hc::gaze::Eyes eyes;
   std::optional<hc::vision::StereoCalibration> cameras;
   std::optional<hc::gaze::Follower> follower;
+  std::deque<Sensed> sensed;  // of which it is not known yet how the head stood
   hc::gaze::Binocular binocular;
   hc::gaze::Stick steering;
   hc::frames::Track gazes{hc::frames::Memory{}};
@@ -175,6 +185,16 @@ int main(int argc, char** argv) {
         binocular.see(eyes, is_left ? Side::Left : Side::Right, time, pixel, *distance);
     if (p_head) see(time, R_robot_head(time) * *p_head);
   };
+  /// Takes in the targets of whose times it is known how the head stood.
+  auto see_sensed = [&] {
+    for (; !sensed.empty() && !gazes.awaits(sensed.front().time, module.now()); sensed.pop_front()) {
+      const auto& [time, coord, p] = sensed.front();
+      if (coord == kLeftImage || coord == kRightImage)
+        see_pixel(coord == kLeftImage, time, p.head<2>());
+      else
+        see(time, coord == kHead ? R_robot_head(time) * p : p);
+    }
+  };
 
   /// When something was sensed, by the time of its message; nothing of what is to come, since it
   /// would hold back all that is sensed until then.
@@ -205,32 +225,29 @@ int main(int argc, char** argv) {
     hc::frames::Pose pose;
     pose.q = *q;
     gazes.add(time, pose);
+    see_sensed();
   });
   module.on(target, [&](const auto& message) {
     if (message.header.empty()) return;
     const auto numbers = message.matrix().numbers();
-    const auto sensed = sensed_at(message.header.time);
-    if (!sensed) return;
-    const std::int64_t time = *sensed;
+    const auto time = sensed_at(message.header.time);
     const Eigen::Vector3d p(numbers[0], numbers[1], numbers[2]);
-    if (!p.allFinite()) return;
-    if (message.header.coord == kLeftImage || message.header.coord == kRightImage)
-      see_pixel(message.header.coord == kLeftImage, time, p.head<2>());
-    else if (message.header.coord == kHead)
-      see(time, R_robot_head(time) * p);
-    else if (message.header.coord == kRobot)
-      see(time, p);
-    else
-      throw hc::ModuleError("target: coordinate system " + std::to_string(message.header.coord) +
+    if (!time || !p.allFinite()) return;
+    const std::int32_t coord = message.header.coord;
+    if (coord != kLeftImage && coord != kRightImage && coord != kHead && coord != kRobot)
+      throw hc::ModuleError("target: coordinate system " + std::to_string(coord) +
                             " is none of 2, 3, 7, 8");
+    if (sensed.size() == kMostSensed) sensed.pop_front();
+    sensed.push_back({*time, coord, p});
+    see_sensed();
     follow();
   });
   module.on(wish, [&](const auto& message) {
     const auto q = hc::rotation_of(message);
     if (!q) return module.log("wish: " + q.error().detail);
-    const auto sensed = sensed_at(message.header.time);
-    if (!sensed) return;
-    follower->see(seconds(*sensed), hc::gaze::angles_of(*q));
+    const auto time = sensed_at(message.header.time);
+    if (!time) return;
+    follower->see(seconds(*time), hc::gaze::angles_of(*q));
     follow();
   });
   /// Whether it wants the head.
@@ -263,7 +280,10 @@ int main(int argc, char** argv) {
     steer();
   });
 
-  module.every(rate, follow);
+  module.every(rate, [&] {
+    see_sensed();
+    follow();
+  });
   module.every(kSteer, steer);
   module.every(std::chrono::milliseconds(100), tell_bid);
   return module.run(argc, argv);

@@ -17,6 +17,8 @@ constexpr double kNarrow = 0.695, kRound = 0.72;
 // How far the left side stands out in the middle of its upper part, by the width: 5 up to 0.03, S
 // from 0.07.
 constexpr double kStraight = 0.045, kBulging = 0.06;
+// Where the middle of the hole is, from the top: of a 9 at 0.33 at most, of a Q from 0.40.
+constexpr double kUpper = 0.355, kMiddle = 0.375;
 constexpr double kOpen = -0.2;  // what is open there is a 3
 constexpr double kBar = 0.28;   // width by height of an I without serifs at most; 1 from 0.33
 constexpr double kSure = 96;    // [%] what is surer was not read twice
@@ -30,22 +32,22 @@ bool are_alike(char a, char b) {
          });
 }
 
-/// Width by height of the middle of the stroke of a ring; nothing of what is no ring.
-std::optional<double> roundness(const cv::Mat& glyph) {
+/// The one hole that a glyph has, in it [px]; nothing of one that has none or several.
+std::optional<cv::Rect> hole_of(const cv::Mat& glyph) {
   cv::Mat ground, labels, stats, middles;
   cv::copyMakeBorder(glyph >= 128, ground, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
   const int count = cv::connectedComponentsWithStats(ground, labels, stats, middles, 4);
   // The holes are what is not connected with the ground outside; specks are none.
   const int outside = labels.at<std::int32_t>(0, 0);
-  std::optional<cv::Size> hole;
+  std::optional<cv::Rect> hole;
   for (int label = 1; label < count; ++label) {
     const int* of = stats.ptr<int>(label);
     if (label == outside || of[cv::CC_STAT_AREA] * 50 < static_cast<int>(glyph.total())) continue;
     if (hole) return {};
-    hole = cv::Size(of[cv::CC_STAT_WIDTH], of[cv::CC_STAT_HEIGHT]);
+    hole = cv::Rect(of[cv::CC_STAT_LEFT] - 1, of[cv::CC_STAT_TOP] - 1, of[cv::CC_STAT_WIDTH],
+                    of[cv::CC_STAT_HEIGHT]);
   }
-  if (!hole) return {};
-  return static_cast<double>(glyph.cols + hole->width) / (glyph.rows + hole->height);
+  return hole;
 }
 
 /// Where the ink begins, from the left, in rows given as parts of the height: the median [px].
@@ -163,9 +165,18 @@ char by_shape(const cv::Mat& glyph, char letter) {
   switch (letter) {
     case '0':
     case 'O': {
-      const auto round = roundness(glyph);
-      if (!round) return letter;
-      return *round < kNarrow ? '0' : *round > kRound ? 'O' : letter;
+      const auto hole = hole_of(glyph);
+      if (!hole) return letter;
+      const double round =
+          static_cast<double>(glyph.cols + hole->width) / (glyph.rows + hole->height);
+      return round < kNarrow ? '0' : round > kRound ? 'O' : letter;
+    }
+    case '9':
+    case 'Q': {
+      const auto hole = hole_of(glyph);
+      if (!hole) return letter;
+      const double middle = (hole->y + hole->height / 2.0) / glyph.rows;
+      return middle < kUpper ? '9' : middle > kMiddle ? 'Q' : letter;
     }
     case '5':
     case 'S': {

@@ -24,7 +24,7 @@ Reading reading(const std::string& text, double confidence = 99, bool is_known =
 }
 
 TEST(Shapes, tell_what_looks_alike_apart) {
-  const std::string text = "0O 5S I1", wrong = "O0 S5 1I";
+  const std::string text = "0O 5S I1 9Q", wrong = "O0 S5 1I Q9";
   for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
     for (int stroke : {5, 6})
       for (double blur : {0.0, 1.0, 1.5}) {

@@ -9,13 +9,6 @@ void Neck::add(std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
   gazes_.add(time, pose);
 }
 
-bool Neck::awaits(std::int64_t time, std::int64_t now) const {
-  constexpr std::int64_t kSilent = 100'000'000;  // [ns]
-  if (gazes_.empty()) return false;
-  const std::int64_t last = gazes_.known().last;
-  return last < time && now - last < kSilent;
-}
-
 Eigen::Isometry3d Neck::at(std::int64_t time) const {
   Eigen::Isometry3d T_world_head(Eigen::Translation3d(0, 0, kNeckHeight));
   if (gazes_.empty()) return T_world_head;

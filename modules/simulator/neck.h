@@ -13,9 +13,10 @@ class Neck {
   /// Takes in how the head was turned. @param time  over 0 [ns].
   void add(std::int64_t time, const Eigen::Quaterniond& R_robot_head);
 
-  /// Whether a gaze is still to come that tells more of a time: as long as gazes come, at most 0.1
-  /// s apart; the head stands still without any.
-  [[nodiscard]] bool awaits(std::int64_t time, std::int64_t now) const;
+  /// Whether a gaze is still to come that tells more of a time; the head stands still without any.
+  [[nodiscard]] bool awaits(std::int64_t time, std::int64_t now) const {
+    return gazes_.awaits(time, now);
+  }
 
   /// T_world_head at a time: between two gazes of a second or less what lies between, else the one
   /// told before, since the head rests while nothing tells of it; before all of them the first, and

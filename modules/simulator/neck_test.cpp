@@ -34,14 +34,6 @@ TEST(Neck, turns_evenly_between_gazes_and_rests_outside_them) {
   EXPECT_EQ(neck.at(15 * kMillisecond).translation(), Eigen::Vector3d(0, 0, kNeckHeight));
 }
 
-TEST(Neck, awaits_a_gaze_as_long_as_they_come) {
-  Neck neck;
-  neck.add(20 * kMillisecond, hc::frames::rotation(0, 0, 0.3));
-  EXPECT_FALSE(neck.awaits(20 * kMillisecond, 20 * kMillisecond));
-  EXPECT_TRUE(neck.awaits(20 * kMillisecond + 1, 119 * kMillisecond));
-  EXPECT_FALSE(neck.awaits(20 * kMillisecond + 1, 120 * kMillisecond));
-}
-
 TEST(Neck, rests_while_nothing_tells_of_it) {
   Neck neck;
   neck.add(1000 * kMillisecond, hc::frames::rotation(0, 0, 0.1));
