@@ -78,8 +78,9 @@ class Track {
   ///
   /// @param now  on the clock of the poses [ns].
   /// @param silence  after so long without a pose none is awaited.
-  [[nodiscard]] bool awaits(std::int64_t time, std::int64_t now,
-                            std::chrono::nanoseconds silence = std::chrono::milliseconds(100)) const;
+  [[nodiscard]] bool awaits(
+      std::int64_t time, std::int64_t now,
+      std::chrono::nanoseconds silence = std::chrono::milliseconds(100)) const;
 
   void clear() { samples_.clear(); }
 

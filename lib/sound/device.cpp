@@ -2,6 +2,7 @@
 #include <sound/device.h>
 
 #include <SDL2/SDL.h>
+#include <dlfcn.h>
 
 #include <cstdlib>
 #include <utility>
@@ -11,10 +12,26 @@ namespace hc::audio {
 constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
 constexpr std::int64_t kMostDrift = 50'000'000;  // [ns]
 
+namespace {
+
+/// ALSA, where SDL uses it, prints several lines whenever a device is not there; SDL_GetError()
+/// says that too.
+void hush_alsa() {
+  using Handler = void (*)(const char*, int, const char*, int, const char*, ...);
+  using SetHandler = int (*)(Handler);
+  static void* const alsa = ::dlopen("libasound.so.2", RTLD_LAZY);  // as SDL does, if it is there
+  if (alsa == nullptr) return;
+  if (auto set = reinterpret_cast<SetHandler>(::dlsym(alsa, "snd_lib_error_set_handler")))
+    set([](const char*, int, const char*, int, const char*, ...) {});
+}
+
+}  // namespace
+
 Result<AudioSystem> AudioSystem::start() {
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   // It would print; what fails is in SDL_GetError() too.
   SDL_LogSetOutputFunction([](void*, int, SDL_LogPriority, const char*) {}, nullptr);
+  hush_alsa();
   if (SDL_InitSubSystem(SDL_INIT_AUDIO) != 0)
     return Error{Code::System, std::string("no sound: ") + SDL_GetError()};
   return AudioSystem();

@@ -100,6 +100,14 @@ TEST_F(Device, none_is_an_error_that_says_so) {
   EXPECT_TRUE(Playback::open("", {16000, 1}));
 }
 
+TEST_F(Device, one_that_is_missing_is_told_by_its_error_alone) {
+  testing::internal::CaptureStderr();
+  ::setenv("SDL_AUDIODRIVER", "alsa", 1);
+  EXPECT_FALSE(Playback::open("no such device", {16000, 1}));
+  EXPECT_FALSE(Capture::open("no such device", {16000, 1}, 320));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(Retry, waits_longer_each_time_up_to_2_s) {
   Retry retry;
   milliseconds now{5000};

@@ -30,11 +30,10 @@ int main(int argc, char** argv) {
                                  "disparity of the left picture's pixels [px], 0 unknown");
   auto depth = module.output("depth", hc::intensity_image<float>().in(kDepth),
                              "depth along the optical axis [m], 0 unknown");
-  auto disparities =
-      module.parameter("disparities", 128, "px", "disparities searched, a multiple of 16",
-                       {.least = 16, .most = 1024});
-  auto block_size = module.parameter("block_size", 5, "px", "side of the window compared, odd",
-                                     {.least = 1, .most = 21});
+  auto disparities = module.parameter("disparities", 128, "px", "disparities searched",
+                                      {.least = 16, .most = 1024, .step = 16, .fixed = true});
+  auto block_size = module.parameter("block_size", 5, "px", "side of the window compared",
+                                     {.least = 1, .most = 21, .step = 2, .fixed = true});
   auto focal = module.parameter("focal", 800.0, "px", "focal length", {.least = 1e-3});
   auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes", {.least = 1e-6});
   auto offset = module.parameter("offset", 0.0, "px",
@@ -45,8 +44,6 @@ int main(int argc, char** argv) {
     double focal, baseline;
   } told{};  // by `intrinsics`; 0: not yet
   module.on_start([&] {
-    if (*disparities % 16 != 0) throw hc::ModuleError("disparities is not a multiple of 16");
-    if (*block_size % 2 == 0) throw hc::ModuleError("block_size is not odd");
     matcher.emplace(
         hc::vision::StereoOptions{static_cast<int>(*disparities), static_cast<int>(*block_size)});
   });

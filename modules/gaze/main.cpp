@@ -2,44 +2,26 @@
 // Turns the head to where a task wants it to look, and bids for the head while it wants that.
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 
-#include <frames/track.h>
-#include <gaze/binocular.h>
-#include <gaze/follower.h>
 #include <gaze/stick.h>
-#include <hc/adapter/eigen.h>
 #include <hc/adapter/pose.h>
 #include <hc/node/module.h>
-#include <vision/calibration.h>
+
+#include "parameters.h"
+#include "targets.h"
 
 namespace {
 
 using hc::gaze::Angles;
-using hc::gaze::Side;
 
-constexpr std::int32_t kRobot = 2, kHead = 3, kLeftImage = 7, kRightImage = 8, kGaze = 13;
-constexpr double kSecond = 1e-9;  // of a nanosecond
+constexpr std::int32_t kGaze = 13;
+
 /// How often a push is said again: the first time may come before the head is given to who pushes.
 constexpr std::chrono::milliseconds kSteer{5};
 
 /// A target may be so far in the future, by another clock [ns].
 constexpr std::int64_t kAhead = 200'000'000;
-/// Reports come in the order of time, but where a clock was set back [ns].
-constexpr std::int64_t kSetBack = 1'000'000'000;
-
-/// A target as it came.
-struct Sensed {
-  std::int64_t time;
-  std::int32_t coord;
-  Eigen::Vector3d p;
-};
-constexpr std::size_t kMostSensed = 64;  // that wait
-
-double seconds(std::int64_t time) {
-  return static_cast<double>(time) * kSecond;
-}
 
 }  // namespace
 
@@ -61,139 +43,51 @@ int main(int argc, char** argv) {
   auto bid = module.output("bid", hc::table<double>(),
                            "salience while there is a target, else that of rest");
 
-  auto rate =
-      module.parameter("rate", 100.0, "Hz", "commands a second", {.least = 1, .most = 1000});
-  auto salience = module.parameter("salience", 0.5, "", "of the bid", {.least = 0, .most = 1});
-  auto rest = module.parameter("rest", 0.0, "",
-                               "salience with which it looks straight ahead while there is no "
-                               "target, 0: it does nothing then",
-                               {.least = 0, .most = 1});
-  auto patience =
-      module.parameter("patience", 0.5, "s", "how long a target counts that is not seen any more",
-                       {.least = 0.01, .most = 60});
-  auto noise = module.parameter("noise", 0.003, "rad", "standard deviation of a target's angles",
-                                {.least = 1e-6, .most = 1, .fixed = true});
-  auto liveliness = module.parameter("liveliness", 2.0, "rad/s²",
-                                     "standard deviation of what speeds a target up: more follows "
-                                     "it more closely, and its noise",
-                                     {.least = 1e-3, .most = 1e3, .fixed = true});
-  auto predict = module.parameter("predict", 0.03, "s",
-                                  "how far ahead: what passes from a command to the motion",
-                                  {.least = 0, .most = 1});
-  auto horizon = module.parameter("horizon", 0.2, "s",
-                                  "so long a target that is not seen any more goes on as it moved",
-                                  {.least = 0, .most = 10, .fixed = true});
-  auto acceleration =
-      module.parameter("acceleration", 1.795, "rad/s²",
-                       "of the unit, which brakes to stand still where it is sent; 0: it does not",
-                       {.least = 0, .most = 1000});
-  auto base_speed =
-      module.parameter("base_speed", 0.8976, "rad/s",
-                       "with which the unit starts and stops at once; only faster it accelerates",
-                       {.least = 0, .most = 100});
-  auto dead_zone = module.parameter("dead_zone", 0.0, "rad",
-                                    "nothing is done about a target so near to the middle",
-                                    {.least = 0, .most = 1});
-  auto stick_rate = module.parameter("stick_rate", 1.0, "rad/s", "of a stick that is pushed fully",
-                                     {.least = 0.01, .most = 10});
-  auto pan_most =
-      module.parameter("pan_most", 2.77, "rad", "to either side", {.least = 0, .most = 3.2});
-  auto tilt_most = module.parameter("tilt_most", 0.81, "rad", "down", {.least = 0, .most = 1.6});
-  auto tilt_least = module.parameter("tilt_least", -0.54, "rad", "up", {.least = -1.6, .most = 0});
-  auto file = module.parameter("calibration_file", "", "",
-                               "what stereo_calibration and calibrate wrote; without it focal, cx, "
-                               "cy hold",
-                               {.fixed = true});
-  auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes",
-                                {.least = 1, .fixed = true});
-  auto cx = module.parameter("cx", 399.5, "px", "middle of the pictures", {.fixed = true});
-  auto cy = module.parameter("cy", 299.5, "px", "middle of the pictures", {.fixed = true});
-  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes",
-                                   {.least = 0, .most = 1, .fixed = true});
-  auto distance = module.parameter("distance", 2.5, "m", "of a target that one eye alone has seen",
-                                   {.least = 0.2});
+  const Parameters parameters{module};
 
-  hc::gaze::Eyes eyes;
-  std::optional<hc::vision::StereoCalibration> cameras;
-  std::optional<hc::gaze::Follower> follower;
-  std::deque<Sensed> sensed;  // of which it is not known yet how the head stood
-  hc::gaze::Binocular binocular;
+  std::optional<Targets> targets;
   hc::gaze::Stick steering;
-  hc::frames::Track gazes{hc::frames::Memory{}};
   bool was_wanted = false;  // as it was bid last
   bool was_ahead = false;   // the last target's time was in the future
 
   module.on_start([&] {
-    eyes.focal = *focal;
-    eyes.cx = *cx;
-    eyes.cy = *cy;
-    eyes.baseline = *baseline;
-    follower.emplace(hc::gaze::FollowerOptions{*noise, *liveliness, *patience, *horizon});
-    if (file->empty()) return;
-    cameras = hc::value_or_end(hc::vision::read_calibration(*file));
-    eyes.baseline = cameras->baseline();
-    if (!cameras->head.empty())
-      eyes.calibration = hc::value_or_end(hc::gaze::HeadCalibration::of(cameras->head));
-    else
-      eyes.calibration.offset = hc::gaze::rotation_vector(cameras->R_left_right());
+    targets.emplace(parameters.eyes(), parameters.follower(), *parameters.distance);
+    const auto& file = *parameters.calibration_file;
+    if (file.empty()) return;
+    const auto cameras = hc::value_or_end(hc::vision::read_calibration(file));
+    if (auto known = targets->know(cameras); !known) throw hc::ModuleError(known.error());
   });
 
   auto now = [&] { return seconds(module.now()); };
-  /// How the head stood at a time, as far as it is known.
-  auto R_robot_head = [&](std::int64_t time) {
-    if (gazes.empty()) return Eigen::Quaterniond::Identity();
-    return gazes.nearest(time).q;
-  };
-  auto stands = [&] { return hc::gaze::angles_of(R_robot_head(module.now())); };
-
+  auto stands = [&] { return hc::gaze::angles_of(targets->R_robot_head(module.now())); };
   auto send = [&](const Angles& to) {
+    const auto [pan, tilt] = parameters.within_limits(to);
     auto draft = command.loan(1, 1);
     draft.header.time = module.now();
     auto numbers = draft.matrix().numbers();
     numbers[0] = 0;
-    numbers[1] = std::clamp(to.tilt, *tilt_least, *tilt_most);
-    numbers[2] = std::clamp(to.pan, -*pan_most, *pan_most);
+    numbers[1] = tilt;
+    numbers[2] = pan;
     command.send(std::move(draft));
   };
-  auto lead = [&](double speed) {
-    return *acceleration > 0 ? hc::gaze::braking(speed, {*acceleration, *base_speed}) : 0;
+  /// Sends the head to where something is that moves, so that it stands there when it gets there.
+  auto send_ahead = [&](const hc::gaze::Motion& to) {
+    send({to.angles.pan + parameters.lead(to.pan_rate),
+          to.angles.tilt + parameters.lead(to.tilt_rate)});
+  };
+  auto is_fresh = [&](std::optional<double> last) {
+    return last && now() - *last <= *parameters.patience;
   };
   /// Sends the head to where the target is when it gets there.
   auto follow = [&] {
-    const auto seen = follower->last();
-    if (!seen || now() - *seen > *patience) {
-      if (*rest > 0) send({0, 0});
+    targets->take_in(module.now());
+    const auto& follower = targets->follower();
+    if (!is_fresh(follower.last())) {
+      if (*parameters.rest > 0) send({0, 0});
       return;
     }
-    const auto motion = *follower->at(now() + *predict);
-    if (hc::gaze::between(motion.angles, stands()) < *dead_zone) return;
-    send({motion.angles.pan + lead(motion.pan_rate), motion.angles.tilt + lead(motion.tilt_rate)});
-  };
-
-  auto see = [&](std::int64_t time, const Eigen::Vector3d& p_robot) {
-    follower->see(seconds(time), hc::gaze::aim(p_robot, eyes.cyclopean()));
-  };
-  auto see_pixel = [&](bool is_left, std::int64_t time, Eigen::Vector2d pixel) {
-    if (eyes.calibration.swapped) is_left = !is_left;
-    if (cameras) {
-      const auto ray =
-          hc::vision::ray_of(*cameras, is_left ? hc::vision::Eye::Left : hc::vision::Eye::Right,
-                             {pixel.x(), pixel.y()});
-      pixel = {eyes.cx + eyes.focal * ray[0], eyes.cy + eyes.focal * ray[1]};
-    }
-    const auto p_head =
-        binocular.see(eyes, is_left ? Side::Left : Side::Right, time, pixel, *distance);
-    if (p_head) see(time, R_robot_head(time) * *p_head);
-  };
-  /// Takes in the targets of whose times it is known how the head stood.
-  auto see_sensed = [&] {
-    for (; !sensed.empty() && !gazes.awaits(sensed.front().time, module.now()); sensed.pop_front()) {
-      const auto& [time, coord, p] = sensed.front();
-      if (coord == kLeftImage || coord == kRightImage)
-        see_pixel(coord == kLeftImage, time, p.head<2>());
-      else
-        see(time, coord == kHead ? R_robot_head(time) * p : p);
-    }
+    const auto motion = *follower.at(now() + *parameters.predict);
+    if (hc::gaze::between(motion.angles, stands()) >= *parameters.dead_zone) send_ahead(motion);
   };
 
   /// When something was sensed, by the time of its message; nothing of what is to come, since it
@@ -213,19 +107,12 @@ int main(int argc, char** argv) {
   module.on(calibration, [&](const auto& message) {
     auto found = hc::gaze::HeadCalibration::of(message.matrix().numbers());
     if (!found) return module.log("calibration: " + found.error().detail);
-    eyes.calibration = *found;
+    targets->know(*found);
   });
   module.on(report, [&](const auto& message) {
-    const std::int64_t time = message.header.time;
     const auto q = hc::rotation_of(message);
     if (!q) return module.log("gaze: " + q.error().detail);
-    if (time <= 0) return;
-    // A clock that was set back: what was known is not of its times.
-    if (!gazes.empty() && gazes.known().last - time > kSetBack) gazes.clear();
-    hc::frames::Pose pose;
-    pose.q = *q;
-    gazes.add(time, pose);
-    see_sensed();
+    if (message.header.time > 0) targets->report(message.header.time, *q);
   });
   module.on(target, [&](const auto& message) {
     if (message.header.empty()) return;
@@ -234,12 +121,10 @@ int main(int argc, char** argv) {
     const Eigen::Vector3d p(numbers[0], numbers[1], numbers[2]);
     if (!time || !p.allFinite()) return;
     const std::int32_t coord = message.header.coord;
-    if (coord != kLeftImage && coord != kRightImage && coord != kHead && coord != kRobot)
+    if (!Targets::can_see(coord))
       throw hc::ModuleError("target: coordinate system " + std::to_string(coord) +
                             " is none of 2, 3, 7, 8");
-    if (sensed.size() == kMostSensed) sensed.pop_front();
-    sensed.push_back({*time, coord, p});
-    see_sensed();
+    targets->see(*time, coord, p);
     follow();
   });
   module.on(wish, [&](const auto& message) {
@@ -247,43 +132,39 @@ int main(int argc, char** argv) {
     if (!q) return module.log("wish: " + q.error().detail);
     const auto time = sensed_at(message.header.time);
     if (!time) return;
-    follower->see(seconds(*time), hc::gaze::angles_of(*q));
+    targets->wish(*time, hc::gaze::angles_of(*q));
     follow();
   });
   /// Whether it wants the head.
-  auto wants = [&] {
-    auto is_fresh = [&](std::optional<double> last) { return last && now() - *last <= *patience; };
-    return is_fresh(follower->last()) || is_fresh(steering.last());
-  };
+  auto wants = [&] { return is_fresh(targets->follower().last()) || is_fresh(steering.last()); };
   auto tell_bid = [&] {
     was_wanted = wants();
-    auto message = hc::table({was_wanted ? *salience : *rest});
+    auto message = hc::table({was_wanted ? *parameters.salience : *parameters.rest});
     message.header.time = module.now();
     bid.send(message);
   };
   /// Sends the head on while a stick is pushed and told of.
   auto steer = [&] {
     constexpr double kLead = 0.02;  // so that it moves at once, and on if one comes late [s]
-    const auto motion = steering.at(now(), stands());
+    auto motion = steering.at(now(), stands());
     if (!motion) return;
-    send({motion->angles.pan + motion->pan_rate * kLead + lead(motion->pan_rate),
-          motion->angles.tilt + motion->tilt_rate * kLead + lead(motion->tilt_rate)});
+    motion->angles.pan += motion->pan_rate * kLead;
+    motion->angles.tilt += motion->tilt_rate * kLead;
+    send_ahead(*motion);
   };
   module.on(stick, [&](const auto& message) {
     const auto numbers = message.matrix().numbers();
     if (numbers.size() < 2 || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) return;
-    steering.push({std::clamp(numbers[0], -1.0, 1.0) * *stick_rate,
-                   std::clamp(numbers[1], -1.0, 1.0) * *stick_rate},
-                  now(), stands());
+    const double full = *parameters.stick_rate;
+    steering.push(
+        {std::clamp(numbers[0], -1.0, 1.0) * full, std::clamp(numbers[1], -1.0, 1.0) * full}, now(),
+        stands());
     // Who pushes does not wait for the next bid.
     if (!was_wanted && wants()) tell_bid();
     steer();
   });
 
-  module.every(rate, [&] {
-    see_sensed();
-    follow();
-  });
+  module.every(parameters.rate, follow);
   module.every(kSteer, steer);
   module.every(std::chrono::milliseconds(100), tell_bid);
   return module.run(argc, argv);

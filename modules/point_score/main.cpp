@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
   hc::Module module{"point_score", "Pushes a stick and measures when the head begins to move."};
   auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
+  auto report = module.input("gaze", hc::rotation<double>().in(kGaze),
+                             "how the head says that it stands: with the first it is ready");
   auto stick = module.output("stick", hc::table<double>(), "1 x 2: left > 0, down > 0, -1 to 1");
   auto result = module.output("score", hc::table<double>(),
                               "1 x 4: median and greatest time from the stick to the motion [s], "
@@ -45,7 +47,10 @@ int main(int argc, char** argv) {
     const auto q = hc::value_or_end(hc::rotation_of(message));
     pusher->hear(static_cast<double>(message.header.time) * 1e-9, hc::gaze::angles_of(q));
   });
+  bool is_ready = false;
+  module.on(report, [&](const auto&) { is_ready = true; });
   auto tell = [&] {
+    if (!is_ready) return;
     const std::int64_t now = module.now();
     const auto wish = pusher->look(static_cast<double>(now) * 1e-9);
     const bool is_out = wish.left != 0 || wish.down != 0;

@@ -16,8 +16,8 @@
 std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 
 /// What a glyph is that was read as `letter`: O or 0 by how round it is, 5, S or 3 by whether it
-/// is straight, stands out or is open on its left, Q or 9 by how low its hole is, I where it is nothing but a bar,
-/// 1 where an I has a flag; otherwise `letter`.
+/// is straight, stands out or is open on its left, Q or 9 by how low its hole is, I where it is
+/// nothing but a bar, 1 where an I has a flag; otherwise `letter`.
 /// @param glyph  cut out, (H, W) u8, black on white.
 char by_shape(const cv::Mat& glyph, char letter);
 

@@ -58,7 +58,8 @@ cv::Mat paint_poster(int width, int height, std::uint64_t seed) {
     // Greys, blues and ochres, of little saturation.
     const int base = random.uniform(40, 200), tint = random.uniform(-25, 25);
     const cv::Scalar colour(base + tint, base, base - tint);
-    const cv::Point a(random.uniform(0, width), random.uniform(0, height));
+    const int y = random.uniform(0, height), x = random.uniform(0, width);
+    const cv::Point a(x, y);
     const int size = random.uniform(width / 30, width / 8);
     if (i % 2 == 0)
       cv::circle(picture, a, size, colour, cv::FILLED, cv::LINE_AA);

@@ -36,7 +36,8 @@ cv::Mat paint(const Wish& wish) {
 std::vector<Plate> add_plates(Scenery& room) {
   const double d = 0.06;  // how far a place differs [m]
   auto near = [&](double x, double y, double z) {
-    return Vector3d(x + room.random(-d, d), y + room.random(-d, d), z + room.random(-d, d));
+    const double dz = room.random(-d, d), dy = room.random(-d, d), dx = room.random(-d, d);
+    return Vector3d(x + dx, y + dy, z + dz);
   };
   const Wish wishes[] = {
       // Straight before the neck: who looks at its middle looks along the world's x.

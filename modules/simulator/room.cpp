@@ -23,10 +23,10 @@ void add_room(Scenery& room) {
   const double length = kRoomFront - kRoomBack, middle = (kRoomFront + kRoomBack) / 2;
   auto wall = [&](const Vector3d& place, double yaw, double width) {
     const double grey = room.random(165, 200);
+    const auto seed = static_cast<std::uint64_t>(room.random(0, 1e6));
+    const double green = grey + room.random(-6, 6), blue = grey + room.random(-8, 8);
     room.add(make_rectangle(static_cast<float>(width), static_cast<float>(kRoomCeiling), {2, 1}),
-             paint_grains(512, 512, {grey, grey + room.random(-6, 6), grey + room.random(-8, 8)},
-                          26, static_cast<std::uint64_t>(room.random(0, 1e6))),
-             hang(place, yaw));
+             paint_grains(512, 512, {grey, green, blue}, 26, seed), hang(place, yaw));
   };
   wall({kRoomFront, 0, kRoomCeiling / 2}, 0, 2 * kRoomSide);
   wall({middle, kRoomSide, kRoomCeiling / 2}, kPi / 2, length);
@@ -57,13 +57,16 @@ void add_furniture(Scenery& room) {
     return paint_grains(128, 128, {r, g, b}, 34, static_cast<std::uint64_t>(room.random(0, 1e6)));
   };
   // A table behind the ball's bench, on the left, with a box and a pot on it.
-  const Vector3d table(3.3 + room.random(-0.1, 0.1), 1.2 + room.random(-0.1, 0.1), 0);
+  // Dice are thrown one by one: in what order a compiler throws those of one expression is open.
+  auto about = [&](double value, double most) { return value + room.random(-most, most); };
+  const double table_y = about(1.2, 0.1), table_x = about(3.3, 0.1);
+  const Vector3d table(table_x, table_y, 0);
   room.add_box({0.8, 1.4, 0.04}, table + Vector3d(0, 0, 0.74), wood);
   for (double x : {-0.35, 0.35})
     for (double y : {-0.63, 0.63})
       room.add_box({0.05, 0.05, 0.72}, table + Vector3d(x, y, 0.36), wood);
-  room.add_box({0.22, 0.3, 0.2}, table + Vector3d(-0.1, 0.35, 0.86), cloth(92, 104, 128),
-               room.random(-1, 1));
+  const double box_yaw = about(0, 1);
+  room.add_box({0.22, 0.3, 0.2}, table + Vector3d(-0.1, 0.35, 0.86), cloth(92, 104, 128), box_yaw);
   room.add(make_ball(0.14F), cloth(150, 146, 120),
            Isometry3d(Translation3d(table + Vector3d(-0.15, -0.3, 0.9))));
   // A shelf at the right of the front wall.
@@ -81,11 +84,14 @@ void add_furniture(Scenery& room) {
       y += thick + 0.004;
     }
   // Stools before and behind the bench, and a chest.
-  room.add_box({0.3, 0.3, 0.4}, {1.55 + room.random(-0.1, 0.1), 0.75 + room.random(-0.1, 0.1), 0.2},
-               cloth(118, 110, 96), room.random(-1, 1));
-  room.add_box({0.5, 0.9, 0.6}, {3.9, -0.4 + room.random(-0.2, 0.2), 0.3}, cloth(96, 100, 110));
-  room.add(make_ball(0.2F), cloth(170, 168, 160),
-           Isometry3d(Translation3d(3.0, -2.6 + room.random(-0.2, 0.2), 0.2)));
+  const double stool_yaw = about(0, 1);
+  const auto stool_cloth = cloth(118, 110, 96);
+  const double stool_x = about(1.55, 0.1), stool_y = about(0.75, 0.1);
+  room.add_box({0.3, 0.3, 0.4}, {stool_x, stool_y, 0.2}, stool_cloth, stool_yaw);
+  const auto chest_cloth = cloth(96, 100, 110);
+  room.add_box({0.5, 0.9, 0.6}, {3.9, about(-0.4, 0.2), 0.3}, chest_cloth);
+  const double cushion_y = about(-2.6, 0.2);
+  room.add(make_ball(0.2F), cloth(170, 168, 160), Isometry3d(Translation3d(3.0, cushion_y, 0.2)));
 }
 
 void add_bench(Scenery& room) {

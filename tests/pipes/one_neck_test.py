@@ -186,7 +186,9 @@ class OneNeck(Graphs):
             head, commands = "head.toml", "relay.in"
             more = '[modules.relay]\n[[links]]\nfrom = "relay.out"\nto = "head_neck.command"\n'
         links = "".join(COMMAND_LINK % task for task in ("left", "right", "point"))
-        self.write_graph((GRAPH + links).replace("HEAD", str(head)).replace("COMMANDS", commands) + more)
+        self.write_graph(
+            (GRAPH + links).replace("HEAD", str(head)).replace("COMMANDS", commands) + more
+        )
         self.process = self.start("exec hc run g.toml 2>said")
         self.stick = 0.0
         pushed = lambda now: (120190, 0, 2, "%g 0" % self.stick) if self.stick else None

@@ -23,6 +23,10 @@ std::string number_text(double value) {
 
 std::string range_in_words(const ParameterOptions& options) {
   const bool has_least = std::isfinite(options.least), has_most = std::isfinite(options.most);
+  if (has_least && options.step > 1)
+    return number_text(options.least) + ", " +
+           number_text(options.least + static_cast<double>(options.step)) + ", …" +
+           (has_most ? ", " + number_text(options.most) : "");
   if (has_least && has_most)
     return "from " + number_text(options.least) + " to " + number_text(options.most);
   if (has_least) return "at least " + number_text(options.least);
@@ -69,8 +73,10 @@ Status ParameterState::set(std::string_view given) {
   if (whole ? !read_all(given, integer) : !read_all(given, number))
     return refuse(whole ? "a whole number" : "a number");
   if (whole) number = static_cast<double>(integer);
-  if (!(number >= options.least && number <= options.most) || std::isnan(number))
-    return refuse(range_in_words(options));
+  const bool is_within = number >= options.least && number <= options.most;
+  const bool is_step = !whole || options.step == 1 || !std::isfinite(options.least) ||
+                       (integer - static_cast<std::int64_t>(options.least)) % options.step == 0;
+  if (!is_within || !is_step || std::isnan(number)) return refuse(range_in_words(options));
   if (whole)
     value = integer;
   else

@@ -22,7 +22,8 @@ using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 struct ParameterOptions {
   double least = -std::numeric_limits<double>::infinity();  ///< of a number
   double most = std::numeric_limits<double>::infinity();    ///< of a number
-  std::vector<std::string> choices = {};                    ///< of a string; empty: any string
+  std::int64_t step = 1;  ///< of a whole number that has a least one: from there in such steps
+  std::vector<std::string> choices = {};  ///< of a string; empty: any string
   bool positional = false;  ///< may be given without its name, in the order of declaration
   bool fixed = false;       ///< read at the start alone: the module is started anew to change it
 };

@@ -41,6 +41,10 @@ TEST(Parameter, KeepsItsRange) {
   EXPECT_EQ(refusal({.least = 0}, "-1"), "parameter p: \"-1\" is not at least 0");
   EXPECT_EQ(refusal({.most = 0}, "1"), "parameter p: \"1\" is not at most 0");
   EXPECT_EQ(refusal({}, "nan"), "parameter p: \"nan\" is not a number");
+  auto side = state(std::int64_t{5}, {.least = 1, .most = 21, .step = 2});
+  EXPECT_TRUE(side.set("21"));
+  EXPECT_EQ(side.set("4").error().detail, "parameter p: \"4\" is not 1, 3, …, 21");
+  EXPECT_EQ(side.set("23").error().detail, "parameter p: \"23\" is not 1, 3, …, 21");
   auto choice = state(std::string("auto"), {.choices = {"auto", "yes"}});
   EXPECT_TRUE(choice.set("yes"));
   EXPECT_EQ(choice.set("no").error().detail, "parameter p: \"no\" is not one of auto yes");

@@ -69,6 +69,7 @@ std::string describe_parameter(const ParameterState& parameter) {
       .add("default", value_as_json(parameter.otherwise))
       .add_number("least", parameter.options.least)
       .add_number("most", parameter.options.most);
+  if (parameter.options.step != 1) object.add("step", std::to_string(parameter.options.step));
   if (!parameter.options.choices.empty())
     object.add("choices", array(parameter.options.choices,
                                 [](const std::string& choice) { return in_quotes(choice); }));

@@ -23,6 +23,7 @@ bool is_description(const Json& json) {
   };
   auto is_text = [](const Json& value) { return value.is_string(); };
   auto is_number = [](const Json& value) { return value.is_number(); };
+  auto is_step = [](const Json& value) { return value.is_number_integer() && value >= 1; };
   auto is_flag = [](const Json& value) { return value.is_boolean(); };
   auto is_type = [&](const Json& type) {
     return has(type, "type", is_text) && has(type, "scalar", is_text) &&
@@ -36,7 +37,7 @@ bool is_description(const Json& json) {
   auto is_parameter = [&](const Json& parameter) {
     return has(parameter, "name", is_text) && has(parameter, "type", is_text) &&
            if_there(parameter, "least", is_number) && if_there(parameter, "most", is_number) &&
-           if_there(parameter, "fixed", is_flag) &&
+           if_there(parameter, "step", is_step) && if_there(parameter, "fixed", is_flag) &&
            if_there(parameter, "choices", [&](const Json& list) { return all(list, is_text); });
   };
   return has(json, "inputs", [&](const Json& list) { return all(list, is_port); }) &&
@@ -69,6 +70,7 @@ DescribedParameter parameter_from(const Json& json) {
   if (type == "string") state.value = std::string();
   state.options.least = json.value("least", state.options.least);
   state.options.most = json.value("most", state.options.most);
+  state.options.step = json.value("step", state.options.step);
   state.options.choices = json.value("choices", state.options.choices);
   parameter.fixed = json.value("fixed", false);
   return parameter;
