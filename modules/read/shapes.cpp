@@ -19,6 +19,8 @@ constexpr double kNarrow = 0.695, kRound = 0.72;
 constexpr double kStraight = 0.045, kBulging = 0.06;
 // Where the middle of the hole is, from the top: of a 9 at 0.33 at most, of a Q from 0.40.
 constexpr double kUpper = 0.355, kMiddle = 0.375;
+// How far the upper right corner is cut off: of a Z 0.05 at most, of a 2 from 0.14.
+constexpr double kCorner = 0.08, kRoundCorner = 0.11;
 constexpr double kOpen = -0.2;  // what is open there is a 3
 constexpr double kBar = 0.28;   // width by height of an I without serifs at most; 1 from 0.33
 constexpr double kSure = 96;    // [%] what is surer was not read twice
@@ -32,22 +34,26 @@ bool are_alike(char a, char b) {
          });
 }
 
-/// The one hole that a glyph has, in it [px]; nothing of one that has none or several.
-std::optional<cv::Rect> hole_of(const cv::Mat& glyph) {
+/// The holes of a glyph, in it [px].
+std::vector<cv::Rect> holes_of(const cv::Mat& glyph) {
   cv::Mat ground, labels, stats, middles;
   cv::copyMakeBorder(glyph >= 128, ground, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
   const int count = cv::connectedComponentsWithStats(ground, labels, stats, middles, 4);
   // The holes are what is not connected with the ground outside; specks are none.
   const int outside = labels.at<std::int32_t>(0, 0);
-  std::optional<cv::Rect> hole;
+  std::vector<cv::Rect> holes;
   for (int label = 1; label < count; ++label) {
     const int* of = stats.ptr<int>(label);
     if (label == outside || of[cv::CC_STAT_AREA] * 50 < static_cast<int>(glyph.total())) continue;
-    if (hole) return {};
-    hole = cv::Rect(of[cv::CC_STAT_LEFT] - 1, of[cv::CC_STAT_TOP] - 1, of[cv::CC_STAT_WIDTH],
-                    of[cv::CC_STAT_HEIGHT]);
+    holes.emplace_back(of[cv::CC_STAT_LEFT] - 1, of[cv::CC_STAT_TOP] - 1, of[cv::CC_STAT_WIDTH],
+                       of[cv::CC_STAT_HEIGHT]);
   }
-  return hole;
+  return holes;
+}
+
+/// Where the middle of a hole is, from the top, by the glyph's height.
+double middle_of(const cv::Rect& hole, const cv::Mat& glyph) {
+  return (hole.y + hole.height / 2.0) / glyph.rows;
 }
 
 /// Where the ink begins, from the left, in rows given as parts of the height: the median [px].
@@ -72,6 +78,13 @@ double left_side(const cv::Mat& glyph, double from, double to) {
 double bulge(const cv::Mat& glyph) {
   const double ends = (left_side(glyph, 0.02, 0.12) + left_side(glyph, 0.3, 0.4)) / 2;
   return 2 * (ends - left_side(glyph, 0.14, 0.26)) / glyph.cols;
+}
+
+/// How far the upper right corner of a 2 or Z is cut off, by the width.
+double cut_corner(const cv::Mat& glyph) {
+  cv::Mat mirrored;
+  cv::flip(glyph, mirrored, 1);
+  return left_side(mirrored, 0, 0.08) / glyph.cols;
 }
 
 /// Whether a stroke sticks out to the left of the stem at the top and none to the right, as of a 1;
@@ -162,24 +175,33 @@ std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker) {
 }
 
 char by_shape(const cv::Mat& glyph, char letter) {
+  const auto holes = holes_of(glyph);
+  const double middle = holes.size() == 1 ? middle_of(holes[0], glyph) : 0;
   switch (letter) {
     case '0':
     case 'O': {
-      const auto hole = hole_of(glyph);
-      if (!hole) return letter;
+      if (holes.size() != 1) return letter;
       const double round =
-          static_cast<double>(glyph.cols + hole->width) / (glyph.rows + hole->height);
+          static_cast<double>(glyph.cols + holes[0].width) / (glyph.rows + holes[0].height);
       return round < kNarrow ? '0' : round > kRound ? 'O' : letter;
     }
     case '9':
-    case 'Q': {
-      const auto hole = hole_of(glyph);
-      if (!hole) return letter;
-      const double middle = (hole->y + hole->height / 2.0) / glyph.rows;
+    case 'Q':
+      if (holes.size() != 1) return letter;
       return middle < kUpper ? '9' : middle > kMiddle ? 'Q' : letter;
+    case '2':
+    case 'Z': {
+      const double cut = cut_corner(glyph);
+      return cut > kRoundCorner ? '2' : cut < kCorner ? 'Z' : letter;
     }
+    case 'E':
+    case 'Y':
     case '5':
     case 'S': {
+      if (holes.size() == 2) return '8';
+      if (holes.size() == 1 && (middle < kUpper || middle > 1 - kUpper))
+        return middle < kUpper ? '9' : '6';
+      if (letter == 'E' || letter == 'Y') return letter;
       const double is = bulge(glyph);
       if (is < kOpen) return '3';
       return is < kStraight ? '5' : is > kBulging ? 'S' : letter;
