@@ -14,15 +14,16 @@ constexpr std::int64_t kMostDrift = 50'000'000;  // [ns]
 
 namespace {
 
+void say_nothing(const char*, int, const char*, int, const char*, ...) {}
+
 /// ALSA, where SDL uses it, prints several lines whenever a device is not there; SDL_GetError()
 /// says that too.
 void hush_alsa() {
-  using Handler = void (*)(const char*, int, const char*, int, const char*, ...);
-  using SetHandler = int (*)(Handler);
+  using SetHandler = int (*)(decltype(&say_nothing));
   static void* const alsa = ::dlopen("libasound.so.2", RTLD_LAZY);  // as SDL does, if it is there
   if (alsa == nullptr) return;
   if (auto set = reinterpret_cast<SetHandler>(::dlsym(alsa, "snd_lib_error_set_handler")))
-    set([](const char*, int, const char*, int, const char*, ...) {});
+    set(say_nothing);
 }
 
 }  // namespace

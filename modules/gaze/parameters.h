@@ -12,52 +12,66 @@
 struct Parameters {
   hc::Module& module;  ///< that has them
 
-  hc::Parameter<double> rate = module.parameter("rate", 100.0, "Hz", "commands a second", {.least = 1, .most = 1000});
-  hc::Parameter<double> salience = module.parameter("salience", 0.5, "", "of the bid", {.least = 0, .most = 1});
-  hc::Parameter<double> rest = module.parameter("rest", 0.0, "",
-                               "salience with which it looks straight ahead while there is no "
-                               "target, 0: it does nothing then",
-                               {.least = 0, .most = 1});
-  hc::Parameter<double> patience = module.parameter("patience", 0.5, "s", "how long a target counts that is not seen any more",
+  hc::Parameter<double> rate =
+      module.parameter("rate", 100.0, "Hz", "commands a second", {.least = 1, .most = 1000});
+  hc::Parameter<double> salience =
+      module.parameter("salience", 0.5, "", "of the bid", {.least = 0, .most = 1});
+  hc::Parameter<double> rest =
+      module.parameter("rest", 0.0, "",
+                       "salience with which it looks straight ahead while there is no "
+                       "target, 0: it does nothing then",
+                       {.least = 0, .most = 1});
+  hc::Parameter<double> patience =
+      module.parameter("patience", 0.5, "s", "how long a target counts that is not seen any more",
                        {.least = 0.01, .most = 60});
-  hc::Parameter<double> noise = module.parameter("noise", 0.003, "rad", "standard deviation of a target's angles",
-                                {.least = 1e-6, .most = 1, .fixed = true});
-  hc::Parameter<double> liveliness = module.parameter("liveliness", 2.0, "rad/s²",
-                                     "standard deviation of what speeds a target up: more follows "
-                                     "it more closely, and its noise",
-                                     {.least = 1e-3, .most = 1e3, .fixed = true});
-  hc::Parameter<double> predict = module.parameter("predict", 0.03, "s",
-                                  "how far ahead: what passes from a command to the motion",
-                                  {.least = 0, .most = 1});
-  hc::Parameter<double> horizon = module.parameter("horizon", 0.2, "s",
-                                  "so long a target that is not seen any more goes on as it moved",
-                                  {.least = 0, .most = 10, .fixed = true});
-  hc::Parameter<double> acceleration = module.parameter("acceleration", 1.795, "rad/s²",
+  hc::Parameter<double> noise =
+      module.parameter("noise", 0.003, "rad", "standard deviation of a target's angles",
+                       {.least = 1e-6, .most = 1, .fixed = true});
+  hc::Parameter<double> liveliness =
+      module.parameter("liveliness", 2.0, "rad/s²",
+                       "standard deviation of what speeds a target up: more follows "
+                       "it more closely, and its noise",
+                       {.least = 1e-3, .most = 1e3, .fixed = true});
+  hc::Parameter<double> predict = module.parameter(
+      "predict", 0.03, "s", "how far ahead: what passes from a command to the motion",
+      {.least = 0, .most = 1});
+  hc::Parameter<double> horizon = module.parameter(
+      "horizon", 0.2, "s", "so long a target that is not seen any more goes on as it moved",
+      {.least = 0, .most = 10, .fixed = true});
+  hc::Parameter<double> acceleration =
+      module.parameter("acceleration", 1.795, "rad/s²",
                        "of the unit, which brakes to stand still where it is sent; 0: it does not",
                        {.least = 0, .most = 1000});
-  hc::Parameter<double> base_speed = module.parameter("base_speed", 0.8976, "rad/s",
+  hc::Parameter<double> base_speed =
+      module.parameter("base_speed", 0.8976, "rad/s",
                        "with which the unit starts and stops at once; only faster it accelerates",
                        {.least = 0, .most = 100});
-  hc::Parameter<double> dead_zone = module.parameter("dead_zone", 0.0, "rad",
-                                    "nothing is done about a target so near to the middle",
-                                    {.least = 0, .most = 1});
-  hc::Parameter<double> stick_rate = module.parameter("stick_rate", 1.0, "rad/s", "of a stick that is pushed fully",
-                                     {.least = 0.01, .most = 10});
-  hc::Parameter<double> pan_most = module.parameter("pan_most", 2.77, "rad", "to either side", {.least = 0, .most = 3.2});
-  hc::Parameter<double> tilt_most = module.parameter("tilt_most", 0.81, "rad", "down", {.least = 0, .most = 1.6});
-  hc::Parameter<double> tilt_least = module.parameter("tilt_least", -0.54, "rad", "up", {.least = -1.6, .most = 0});
-  hc::Parameter<std::string> calibration_file = module.parameter("calibration_file", "", "",
-                               "what stereo_calibration and calibrate wrote; without it focal, cx, "
-                               "cy hold",
-                               {.fixed = true});
+  hc::Parameter<double> dead_zone = module.parameter(
+      "dead_zone", 0.0, "rad", "nothing is done about a target so near to the middle",
+      {.least = 0, .most = 1});
+  hc::Parameter<double> stick_rate = module.parameter(
+      "stick_rate", 1.0, "rad/s", "of a stick that is pushed fully", {.least = 0.01, .most = 10});
+  hc::Parameter<double> pan_most =
+      module.parameter("pan_most", 2.77, "rad", "to either side", {.least = 0, .most = 3.2});
+  hc::Parameter<double> tilt_most =
+      module.parameter("tilt_most", 0.81, "rad", "down", {.least = 0, .most = 1.6});
+  hc::Parameter<double> tilt_least =
+      module.parameter("tilt_least", -0.54, "rad", "up", {.least = -1.6, .most = 0});
+  hc::Parameter<std::string> calibration_file =
+      module.parameter("calibration_file", "", "",
+                       "what stereo_calibration and calibrate wrote; without it focal, cx, "
+                       "cy hold",
+                       {.fixed = true});
   hc::Parameter<double> focal = module.parameter("focal", 600.0, "px", "focal length of the eyes",
-                                {.least = 1, .fixed = true});
-  hc::Parameter<double> cx = module.parameter("cx", 399.5, "px", "middle of the pictures", {.fixed = true});
-  hc::Parameter<double> cy = module.parameter("cy", 299.5, "px", "middle of the pictures", {.fixed = true});
+                                                 {.least = 1, .fixed = true});
+  hc::Parameter<double> cx =
+      module.parameter("cx", 399.5, "px", "middle of the pictures", {.fixed = true});
+  hc::Parameter<double> cy =
+      module.parameter("cy", 299.5, "px", "middle of the pictures", {.fixed = true});
   hc::Parameter<double> baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes",
-                                   {.least = 0, .most = 1, .fixed = true});
-  hc::Parameter<double> distance = module.parameter("distance", 2.5, "m", "of a target that one eye alone has seen",
-                                   {.least = 0.2});
+                                                    {.least = 0, .most = 1, .fixed = true});
+  hc::Parameter<double> distance = module.parameter(
+      "distance", 2.5, "m", "of a target that one eye alone has seen", {.least = 0.2});
 
   /// Equal eyes that sit as they were built.
   [[nodiscard]] hc::gaze::Eyes eyes() const {

@@ -49,7 +49,8 @@ TEST(Targets, wait_for_the_report_of_their_time_as_long_as_reports_come) {
 TEST(Targets, are_looked_at_with_eyes_that_sit_as_they_were_found) {
   auto crooked = targets();
   crooked.know(hc::gaze::HeadCalibration{false, {0.1, 0}, Eigen::Vector3d::Zero(), 0});
-  crooked.see(kNow, kRobot, Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d(2, 0, 0));
+  crooked.see(kNow, kRobot,
+              Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d(2, 0, 0));
   crooked.take_in(kNow);
   EXPECT_NEAR(last(crooked).pan, 0.2, 1e-3);
 }

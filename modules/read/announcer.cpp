@@ -1,15 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "announcer.h"
 
+#include <algorithm>
+
+namespace {
+
+/// Whether two texts are the same but for a letter or two that are read so or so.
+bool are_near(const std::string& a, const std::string& b) {
+  constexpr std::ptrdiff_t kMost = 2;
+  constexpr std::size_t kLong = 5;  // shorter texts are easily near
+  if (a.size() > b.size()) return are_near(b, a);
+  if (a.size() < kLong || static_cast<std::ptrdiff_t>(b.size() - a.size()) > kMost) return false;
+  const auto [begin_a, begin_b] = std::mismatch(a.begin(), a.end(), b.begin());
+  const auto [end_a, end_b] = std::mismatch(a.rbegin(), a.rend(), b.rbegin());
+  return end_b.base() - begin_b <= kMost || end_a.base() - begin_a <= kMost;
+}
+
+}  // namespace
+
 bool Announcer::take(const std::string& text, double confidence, std::int64_t time,
                      const Rules& rules, bool is_heard) {
-  if (text.empty() || confidence < rules.confidence) {
-    times_ = 0;
-    return false;
-  }
-  times_ = times_ > 0 && text == read_ ? times_ + 1 : 1;
-  read_ = text;
-  if (times_ < rules.repeat) return false;
+  const bool is_sure = !text.empty() && confidence >= rules.confidence;
+  readings_.push_back(is_sure ? text : "");
+  constexpr std::int64_t kDoubt = 3;
+  const bool is_doubtful = text != said_ && are_near(text, said_);
+  const std::int64_t wanted = is_doubtful ? kDoubt * rules.repeat : rules.repeat;
+  while (std::ssize(readings_) > 2 * kDoubt * rules.repeat - 1) readings_.pop_front();
+  const auto first = readings_.end() - std::min(std::ssize(readings_), 2 * wanted - 1);
+  if (!is_sure || std::count(first, readings_.end(), text) < wanted) return false;
   // A clock that went back, as that of a recording which begins anew, does not silence it.
   const auto since = static_cast<double>(time - said_at_) * 1e-9;
   const bool is_due = rules.again > 0 && (since >= rules.again || since < 0);

@@ -3,13 +3,16 @@
 // Decides which of many readings of a text is said, and when. Pure: times come from the caller.
 
 #include <cstdint>
+#include <deque>
 #include <string>
 
 class Announcer {
  public:
   struct Rules {
     double confidence = 0;    ///< least confidence of a reading that counts, 0 … 1
-    std::int64_t repeat = 1;  ///< so many times in a row the same is to have been read
+    std::int64_t repeat = 1;  ///< so many of the last 2 · repeat − 1 readings, which is most of
+                              ///< them, are to be the same; of a text that is said already but
+                              ///< for a letter or two, thrice as many
     double again = 0;         ///< after so long, what is still there is said again, 0: never [s]
   };
 
@@ -24,9 +27,8 @@ class Announcer {
             bool is_heard = true);
 
  private:
-  std::string read_;  // last, and how often in a row
-  std::int64_t times_ = 0;
-  std::string said_;  // last, and when, and whether it was heard
+  std::deque<std::string> readings_;  // the last ones; "" unsure
+  std::string said_;                  // last, and when, and whether it was heard
   std::int64_t said_at_ = 0;
   bool was_heard_ = false;
 };

@@ -33,7 +33,8 @@ int main(int argc, char** argv) {
       "upper_case", true, "", "nothing but capital letters, digits and - . , ! ?", {.fixed = true});
   auto least = module.parameter("confidence", 0.4, "", "least confidence of a text that is given",
                                 {.least = 0, .most = 1});
-  auto repeat = module.parameter("repeat", 2, "", "times in a row that the same is to be read",
+  auto repeat = module.parameter("repeat", 2, "",
+                                 "so many of the last 2 repeat - 1 readings are to be the same",
                                  {.least = 1, .most = 1000});
   auto again =
       module.parameter("again", 10.0, "s", "until a text that stays is given again, 0: never",

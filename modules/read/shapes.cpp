@@ -177,6 +177,10 @@ std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker) {
 char by_shape(const cv::Mat& glyph, char letter) {
   const auto holes = holes_of(glyph);
   const double middle = holes.size() == 1 ? middle_of(holes[0], glyph) : 0;
+  constexpr std::string_view kRings = "0OQ9EYS56";
+  const bool is_ring = holes.size() == 1 && kRings.find(letter) != kRings.npos;
+  if (is_ring && middle < kUpper) return '9';
+  if (is_ring && middle > 1 - kUpper) return '6';
   switch (letter) {
     case '0':
     case 'O': {
@@ -187,8 +191,7 @@ char by_shape(const cv::Mat& glyph, char letter) {
     }
     case '9':
     case 'Q':
-      if (holes.size() != 1) return letter;
-      return middle < kUpper ? '9' : middle > kMiddle ? 'Q' : letter;
+      return holes.size() == 1 && middle > kMiddle ? 'Q' : letter;
     case '2':
     case 'Z': {
       const double cut = cut_corner(glyph);
@@ -199,8 +202,6 @@ char by_shape(const cv::Mat& glyph, char letter) {
     case '5':
     case 'S': {
       if (holes.size() == 2) return '8';
-      if (holes.size() == 1 && (middle < kUpper || middle > 1 - kUpper))
-        return middle < kUpper ? '9' : '6';
       if (letter == 'E' || letter == 'Y') return letter;
       const double is = bulge(glyph);
       if (is < kOpen) return '3';
