@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What a person steers the robot head with: head tracker and joystick."""
+
+import math
+import pathlib
+import re
+import socket
+import struct
+import unittest
+
+from bodies import Bodies
+from harness import free_port, listens, wait_until
+
+
+class HeadTracker(Bodies):
+    def setUp(self):
+        super().setUp()
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(self.socket.close)
+
+    def start_tracker(self, options=""):
+        process = self.run_module(
+            "hc head_tracker --port 0 --out rotation=file:rotation --out position=file:position "
+            + options
+        )
+        self.wait_for("listens at UDP")
+        self.port = int(re.search(r"listens at UDP \S+:(\d+)", self.said())[1])
+        return process
+
+    def send(self, *numbers):
+        self.socket.sendto(struct.pack("<6d", *numbers), ("127.0.0.1", self.port))
+
+    def feed(self, *numbers):
+        """Sends a pose, and waits until it has come through."""
+        before = len(self.rows("position"))
+        self.send(*numbers)
+        wait_until(lambda: len(self.rows("position")) > before)
+        return self.rows("rotation")[-1], self.rows("position")[-1]
+
+    def assert_close(self, found, expected):
+        self.assertEqual(len(found), len(expected))
+        for a, b in zip(found, expected):
+            self.assertAlmostEqual(a, b, places=9)
+
+    def test_signs_units_and_the_first_pose_as_zero(self):
+        process = self.start_tracker()
+        rotation, position = self.feed(1, 2, 3, 0, 0, 0)
+        self.assert_close(rotation + position, [0] * 6)
+        # To the right and up, tilted; 10 cm right, 20 cm up, 30 cm back.
+        rotation, position = self.feed(11, 22, 33, 30, 20, 10)
+        self.assert_close(rotation, [math.radians(a) for a in (10, -20, -30)])
+        self.assert_close(position, [-0.3, -0.1, 0.2])
+        header = self.read("rotation").split()
+        self.assertEqual(header[6:11], ["20390", "0", "14", "1", "1"])
+        self.assertGreater(int(header[5]), 1_600_000_000_000_000_000)
+        self.stop(process)
+
+    def test_is_centred_by_any_message(self):
+        port = free_port()
+        process = self.start_tracker("--centre_first=false --in centre=tcp-listen:%d" % port)
+        rotation, _ = self.feed(0, 0, 0, -40, 0, 0)
+        self.assert_close(rotation, [0, 0, math.radians(40)])
+        self.shell("hc send --out tcp:127.0.0.1:%d 1" % port)
+        wait_until(lambda: abs(self.feed(0, 0, 0, -40, 0, 0)[0][2]) < 1e-9)
+        rotation, _ = self.feed(0, 0, 0, -50, 0, 0)
+        self.assert_close(rotation, [0, 0, math.radians(10)])
+        self.assertNotIn("first pose", self.said())
+        self.stop(process)
+
+    def test_what_the_first_pose_makes_the_zero_is_told(self):
+        process = self.start_tracker()
+        self.feed(0, 0, 0, -40, 0, 0)
+        self.feed(0, 0, 0, -50, 0, 0)
+        zero = "is the zero: the tracker's roll 0.00, pitch 0.00, yaw 0.70 rad\n"
+        self.assertEqual(self.said().count(zero), 1, self.said())
+        self.stop(process)
+
+    def test_a_port_in_use_is_told_once_and_waited_for(self):
+        self.socket.bind(("127.0.0.1", 0))
+        self.port = self.socket.getsockname()[1]
+        process = self.run_module(
+            "hc head_tracker --port %d --out rotation=file:rotation --out position=file:position"
+            % self.port
+        )
+        self.wait_for("UDP port %d of 127.0.0.1: Address already in use; trying again" % self.port)
+        self.socket.close()
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(self.socket.close)
+        self.wait_for("listens at UDP 127.0.0.1:%d" % self.port)
+        self.feed(0, 0, 0, 0, 0, 0)
+        self.stop(process)
+        self.assertEqual(self.said().count("trying again"), 1, self.said())
+
+    def test_garbage_is_ignored_told_once_and_counted(self):
+        process = self.start_tracker()
+        self.send(0, 0, 0, math.nan, 0, 0)
+        self.send(math.inf, 0, 0, 0, 0, 0)
+        for size in (0, 1, 47, 49, 5000):
+            self.socket.sendto(b"x" * size, ("127.0.0.1", self.port))
+        self.feed(1, 1, 1, 1, 1, 1)
+        self.assertEqual(len(self.rows("rotation")), 1)
+        self.stop(process)
+        self.assertEqual(self.said().count("ignores"), 1, self.said())
+        self.assertIn("head_tracker: 7 packets ignored", self.said())
+
+    def test_a_flood_of_packets_costs_no_memory_and_no_pose(self):
+        process = self.start_tracker()
+
+        def memory():  # [kB]
+            text = pathlib.Path("/proc/%d/status" % process.pid).read_text()
+            return int(re.search(r"VmRSS:\s*(\d+)", text)[1])
+
+        self.feed(0, 0, 0, 0, 0, 0)
+        before = memory()
+        good = struct.pack("<6d", 0, 0, 0, 10, 0, 0)
+        bad = b"x" * 49, struct.pack("<6d", *[math.nan] * 6), b"", b"y" * 1400
+        for number in range(100_000):
+            self.socket.sendto(
+                bad[number % 8 // 2] if number % 2 else good, ("127.0.0.1", self.port)
+            )
+        turned = lambda: abs(self.rows("rotation")[-1][2] - math.pi / 2) < 1e-9
+        wait_until(lambda: self.send(0, 0, 0, -90, 0, 0) or turned())
+        self.assertLess(memory() - before, 10_000)
+        self.assertEqual(
+            {round(math.degrees(row[2])) for row in self.rows("rotation")}, {0, -10, 90}
+        )
+        self.stop(process)
+        self.assertEqual(self.said().count("ignores"), 1, self.said())
+        self.assertRegex(self.said(), r"head_tracker: \d+ packets ignored")
+
+    def test_silence_and_return_are_told_once_each(self):
+        process = self.start_tracker("--silence 0.1")
+        self.wait_for("no tracker is heard", 1)
+        self.feed(0, 0, 0, 0, 0, 0)
+        self.wait_for("hears a tracker", 1)
+        self.wait_for("no tracker is heard", 2)
+        self.assertEqual(len(self.rows("rotation")), 1)  # nothing is sent meanwhile
+        self.feed(0, 0, 0, 0, 0, 0)
+        self.wait_for("hears a tracker", 2)
+        self.stop(process)
+        lines = [
+            line for line in self.said().splitlines() if "tracker is" in line or "hears" in line
+        ]
+        for before, after in zip(lines, lines[1:]):
+            self.assertNotEqual(before, after)
+
+    def test_a_host_that_is_none_is_a_clear_error(self):
+        self.shell("hc head_tracker --host nowhere.invalid --port 0", status=2)
+        self.assertIn('head_tracker: Usage: host "nowhere.invalid": ', self.err)
+
+
+class Joystick(Bodies):
+    def test_waits_where_there_is_none(self):
+        process = self.run_module("hc joystick --out stick=file:stick --out buttons=file:buttons")
+        wait_until(lambda: self.said() or process.poll() is not None)
+        self.assertIsNone(process.poll())
+        if "waits for one" in self.said():  # a machine with a joystick says its name
+            self.assertEqual(self.rows("stick"), [])
+        self.stop(process)
+
+
+if __name__ == "__main__":
+    unittest.main()
