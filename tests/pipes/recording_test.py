@@ -111,8 +111,16 @@ class Recording(Pipes):
         device = wait_until(lambda: self.device())
         play = "hc play kept/%s.mtp --to %s | " % (command, seconds)
         self.replay("head_neck", ["command=-"], play, device=device)
-        kept, again = (self.rests(self.messages(f, "head_neck.gaze")) for f in ("kept", "again"))
-        self.assertGreaterEqual(len(again), 2)
+        kept, again = (
+            # Without the rest at 0, in which a unit begins: that may be too short to be seen.
+            [
+                rest
+                for rest in self.rests(self.messages(f, "head_neck.gaze"))
+                if max(map(abs, rest)) > 0.01
+            ]
+            for f in ("kept", "again")
+        )
+        self.assertGreaterEqual(len(again), 1)
         for one, other in zip(kept, again):
             for a, b in zip(one, other):
                 self.assertAlmostEqual(a, b, delta=0.05 * DEGREE)
