@@ -71,6 +71,38 @@ class Whole(Head):
         self.assertLess(float(error[1]), 10)
 
 
+class CalibrationFile(Head):
+    """What is found is kept, and taken from the file the next time."""
+
+    def run_crooked(self, graph, *settings):
+        settings = ["head_eyes.%s=%s" % each for each in Whole.CROOKED.items()] + list(settings)
+        options = "".join(" --set %s" % setting for setting in settings)
+        self.shell("hc run %s/graphs/%s.toml%s" % (ROOT, graph, options))
+        return self.err
+
+    def test_is_written_once_and_used_by_all(self):
+        first, second = (
+            self.run_crooked("score_calibrate", "calibrate.calibration_file=cal.yml")
+            for _ in range(2)
+        )
+        found = re.search(r"calibrate: (eyes swapped; .*)", first)
+        self.assertTrue(found, first)
+        self.assertIn("calibrate: by cal.yml: " + found[1], second)
+        said = self.run_crooked(
+            "score_track", "track.calibration_file=cal.yml", "track_score.duration=4"
+        )
+        error = re.search(r"track_score: RMS error (\S+)°, acquired after (\S+) s", said)
+        self.assertLess(float(error[1]), 10, said)  # without the file it is 18 degrees and more
+        self.assertGreater(float(error[2]), 0, said)
+        self.shell(
+            "hc simulator --count 1 --paced=false --start 1000000000 --in gaze=/dev/null"
+            " --out right=r.mtp;"
+            " hc rectify cal.yml --in left=/dev/null --in right=r.mtp --out left=rectified.mtp"
+        )
+        # Swapped: what the right camera's cable brings is the left eye's.
+        self.assertGreater(len(self.read_bytes("rectified.mtp")), 3 * 800 * 600)
+
+
 class Read(Head):
     def test_reads_aloud_without_an_error(self):
         line = self.score("read", "read_score.count=2", "speak.rate=450", "speaker.save=said.wav")
