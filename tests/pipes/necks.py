@@ -85,6 +85,8 @@ class Program:
 
 
 class Necks(Pipes):
+    """Tests that start both, or either."""
+
     def setUp(self):
         super().setUp()
         self.environment["TMPDIR"] = self.folder.name
