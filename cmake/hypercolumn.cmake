@@ -93,8 +93,8 @@ set(HC_TSAN_OPTIONS "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/races
 set(HC_TEST_ENVIRONMENT ${HC_TSAN_OPTIONS}
     "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp:print_suppressions=0")
 
-# hc_layer(wire DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
-# One layer of the core: target hc::wire, its headers installed, each of its tests a program.
+# hc_layer(mtp DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
+# One layer of the core: target hc::mtp, its headers installed, each of its tests a program.
 function(hc_layer name)
   cmake_parse_arguments(arg "" "" "DEPENDS;HEADERS;SOURCES;TESTS;LIBS;PUBLIC_LIBS" ${ARGN})
   set(target hc_${name})
@@ -120,7 +120,7 @@ function(hc_layer name)
   endforeach()
 endfunction()
 
-# hc_test(wire_test SOURCES a_test.cpp LIBS hc::wire)
+# hc_test(mtp_test SOURCES a_test.cpp LIBS hc::mtp)
 function(hc_test name)
   if(NOT HC_DEVELOPER_MODE)
     return()
@@ -128,6 +128,7 @@ function(hc_test name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE hc_flags ${arg_LIBS} GTest::gtest_main)
+  target_compile_options(${name} PRIVATE -O1)  # most of what a build takes is tests
   target_compile_definitions(${name} PRIVATE HC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              HC_BINARY_DIR="${PROJECT_BINARY_DIR}")
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
@@ -142,7 +143,7 @@ function(hc_module name)
   cmake_parse_arguments(arg "" "" "SOURCES;TESTS;LIBS" ${ARGN})
   if(arg_SOURCES)
     add_library(module_${name}_parts STATIC ${arg_SOURCES})
-    target_link_libraries(module_${name}_parts PRIVATE hc_flags hc::node ${arg_LIBS})
+    target_link_libraries(module_${name}_parts PRIVATE hc_flags hc::module ${arg_LIBS})
     list(APPEND arg_LIBS module_${name}_parts)
   endif()
   set(sources main.cpp)
@@ -154,7 +155,7 @@ function(hc_module name)
   add_executable(module_${name} ${sources})
   set_target_properties(module_${name} PROPERTIES
     OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/libexec/hypercolumn)
-  target_link_libraries(module_${name} PRIVATE hc_flags hc::node ${arg_LIBS})
+  target_link_libraries(module_${name} PRIVATE hc_flags hc::module ${arg_LIBS})
   install(TARGETS module_${name} DESTINATION ${HC_LIBEXEC})
   add_dependencies(programs module_${name})
   if(arg_TESTS)
@@ -165,7 +166,7 @@ function(hc_module name)
     if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp)
       list(APPEND test_sources ${name}.cpp)
     endif()
-    hc_test(module_${name}_test SOURCES ${test_sources} LIBS hc::node ${arg_LIBS})
+    hc_test(module_${name}_test SOURCES ${test_sources} LIBS hc::module ${arg_LIBS})
   endif()
   hc_cases(${name})
 endfunction()
@@ -186,7 +187,7 @@ function(hc_cases name)
   endforeach()
 endfunction()
 
-# hc_fuzz(header LIBS hc::wire): tests/fuzz/header.cpp, a fuzzer where libFuzzer is linked, and in
+# hc_fuzz(header LIBS hc::mtp): tests/fuzz/header.cpp, a fuzzer where libFuzzer is linked, and in
 # every other build a program that replays tests/fuzz/corpus/header as a test.
 function(hc_fuzz name)
   cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
@@ -205,7 +206,7 @@ function(hc_fuzz name)
   set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT ${HC_TEST_SECONDS})
 endfunction()
 
-# hc_bench(header LIBS hc::wire): bench/header.cpp with Google Benchmark.
+# hc_bench(header LIBS hc::mtp): bench/header.cpp with Google Benchmark.
 function(hc_bench name)
   cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
   add_executable(bench_${name} ${name}.cpp)
@@ -218,7 +219,7 @@ endfunction()
 function(hc_install_package)
   add_library(hc_all INTERFACE)
   set_target_properties(hc_all PROPERTIES EXPORT_NAME hc)
-  target_link_libraries(hc_all INTERFACE hc_base hc_wire hc_compress hc_link hc_node)
+  target_link_libraries(hc_all INTERFACE hc_base hc_mtp hc_compress hc_link hc_module)
   install(TARGETS hc_all EXPORT hypercolumn)
   set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/hypercolumn)
   install(EXPORT hypercolumn NAMESPACE hypercolumn:: DESTINATION ${folder}

@@ -11,23 +11,23 @@ PACKAGES = {"frames", "vision", "graphics", "sound", "gaze"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
     "base": set(),
-    "wire": {"base"},
-    "compress": {"base", "wire"},
-    "link": {"base", "wire"},
-    "node": {"base", "wire", "compress", "link"},
-    "graph": {"base", "wire", "link"},
-    "adapter": {"base", "wire", "frames"},
+    "mtp": {"base"},
+    "compress": {"base", "mtp"},
+    "link": {"base", "mtp"},
+    "module": {"base", "mtp", "compress", "link"},
+    "graph": {"base", "mtp", "link"},
+    "adapter": {"base", "mtp", "frames"},
     "frames": {"base"},
     "vision": {"base"},
     "gaze": {"base"},
     "graphics": {"base"},
     "sound": {"base"},
     "drivers": {"base"},
-    "modules": {"base", "wire", "compress", "node", "adapter", "drivers"} | PACKAGES,
-    "tools": {"base", "wire", "compress", "link", "graph"},
+    "modules": {"base", "mtp", "compress", "module", "adapter", "drivers"} | PACKAGES,
+    "tools": {"base", "mtp", "compress", "link", "graph"},
 }
-CORE = {"base", "wire", "compress", "link", "node", "graph"}
-# The wire layer is pure: no input or output, no threads, no clock.
+CORE = {"base", "mtp", "compress", "link", "module", "graph"}
+# The mtp layer is pure: no input or output, no threads, no clock.
 IMPURE = re.compile(
     r"<(sys/.*|unistd\.h|fcntl\.h|poll\.h|net.*|thread|mutex|atomic|condition_variable|future"
     r"|chrono|fstream|iostream|cstdio|filesystem)>"
@@ -78,8 +78,8 @@ def problems(root):
                 yield where + "%s may not include %s (%s)" % (layer, target, name)
             if layer == "modules" and ("modules/" in name or "../" in name):
                 yield where + "a module includes no other module"
-            if layer == "wire" and not is_test and IMPURE.match(name):
-                yield where + "the wire layer is pure, so no " + name
+            if layer == "mtp" and not is_test and IMPURE.match(name):
+                yield where + "the mtp layer is pure, so no " + name
             if layer in CORE and path.suffix == ".h" and not is_test and not target:
                 if not STANDARD.match(name):
                     yield where + "a header of the core shows no other library (%s)" % name

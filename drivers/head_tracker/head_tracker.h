@@ -26,7 +26,7 @@ class HeadTracker {
   /// @param host  an address of this machine: "127.0.0.1", "0.0.0.0" for all, "::1".
   /// @param port  0 takes a free one.
   ///
-  /// Errors: Usage (no address), System (the port is in use, …).
+  /// Errors: Invalid (no address), System (the port is in use, …).
   static Result<HeadTracker> open(const std::string& host, int port);
   HeadTracker(HeadTracker&& other) noexcept;
   HeadTracker& operator=(HeadTracker&&) = delete;

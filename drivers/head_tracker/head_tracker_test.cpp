@@ -99,7 +99,7 @@ TEST(HeadTracker, says_that_the_port_is_in_use) {
 TEST(HeadTracker, says_that_a_host_is_none) {
   auto tracker = HeadTracker::open("999.0.0.1.", 0);
   ASSERT_FALSE(tracker);
-  EXPECT_EQ(tracker.error().code, hc::Code::Usage);
+  EXPECT_EQ(tracker.error().code, hc::Code::Invalid);
   auto elsewhere = HeadTracker::open("192.0.2.1", 0);  // an address that this machine has not
   ASSERT_FALSE(elsewhere);
   EXPECT_EQ(elsewhere.error().code, hc::Code::System);

@@ -45,8 +45,8 @@ inline constexpr std::size_t kMostFrames = 1000;
 ///
 /// @param memory  of each joint that moves.
 ///
-/// Errors: Malformed, TooLarge, Usage (as Tree's): one line that names the frame, "frames: frame 2,
-/// left_eye: …".
+/// Errors: Malformed, TooLarge, Invalid (as Tree's): one line that names the frame, "frames: frame
+/// 2, left_eye: …".
 Result<GraphFrames> read_frames(std::string_view text, const Memory& memory = {});
 
 }  // namespace hc::frames

@@ -83,12 +83,12 @@ TEST(GraphFrames, ErrorsNameTheFrameAndWhatWouldBeRight) {
               "Malformed: frames: frame 1, a: \"" + std::string(output) + "\" is not MODULE.PORT");
   EXPECT_EQ(refusal("a 0 b c.d -1"), "Malformed: frames: frame 1, a: \"-1\" is no src of messages");
   EXPECT_EQ(refusal("a 0 b c.d 1; a 0 b c.e 2"),
-            "Usage: frames: frame 2, a: there is a frame a already");
+            "Invalid: frames: frame 2, a: there is a frame a already");
   EXPECT_EQ(refusal("a 100 b c.d 1; c 100 b c.e 2"),
-            "Usage: frames: frame 2, c: frame 100 is a already");
-  EXPECT_EQ(refusal("a 0 a c.d 1"), "Usage: frames: frame 1, a: a in a would close a cycle");
+            "Invalid: frames: frame 2, c: frame 100 is a already");
+  EXPECT_EQ(refusal("a 0 a c.d 1"), "Invalid: frames: frame 1, a: a in a would close a cycle");
   EXPECT_EQ(refusal("a 0 b c.d 1; b 0 a c.e 2"),
-            "Usage: frames: frame 2, b: b in a would close a cycle");
+            "Invalid: frames: frame 2, b: b in a would close a cycle");
   EXPECT_EQ(refusal("head 3 robot c.d 1; nose 0 haed c.e 2"),
             "Malformed: frames: frame 2, nose: there is no frame \"haed\", did you mean \"head\"?; "
             "the root is robot");

@@ -57,9 +57,9 @@ Tree Tree::standard() {
 Status Tree::add(std::int32_t number, std::string_view name) {
   std::string which = "frame " + std::to_string(number);
   if (number < 1 || number >= kFrameNumbers)
-    return error(Code::Usage, which + " is not within 1 … " + std::to_string(kFrameNumbers - 1));
+    return error(Code::Invalid, which + " is not within 1 … " + std::to_string(kFrameNumbers - 1));
   if (auto taken = by_number_.find(number); taken != by_number_.end())
-    return error(Code::Usage, which + " is " + nodes_[taken->second].name + " already");
+    return error(Code::Invalid, which + " is " + nodes_[taken->second].name + " already");
   auto added = add_node(which, name);
   if (added) by_number_.emplace(number, nodes_.size() - 1);
   return added;
@@ -70,11 +70,11 @@ Status Tree::add(std::string_view name) {
 }
 
 Status Tree::add_node(const std::string& which, std::string_view name) {
-  if (name.empty()) return error(Code::Usage, which + " has no name");
+  if (name.empty()) return error(Code::Invalid, which + " has no name");
   if (std::any_of(name.begin(), name.end(), [](char c) { return c >= 0 && c <= ' '; }))
-    return error(Code::Usage, which + " has a name with a blank");
+    return error(Code::Invalid, which + " has a name with a blank");
   if (by_name_.contains(name))
-    return error(Code::Usage, "there is a frame " + std::string(name) + " already");
+    return error(Code::Invalid, "there is a frame " + std::string(name) + " already");
   by_name_.emplace(name, nodes_.size());
   nodes_.emplace_back().name = name;
   return {};
@@ -118,10 +118,10 @@ Status Tree::attach(const Frame& parent, const Frame& child,
   if (!c) return c.error();
   Node& node = nodes_[*c];
   const std::string wanted = node.name + " in " + nodes_[*p].name;
-  if (node.parent == *p) return error(Code::Usage, wanted + " is given twice");
+  if (node.parent == *p) return error(Code::Invalid, wanted + " is given twice");
   if (node.parent != kNone)
-    return error(Code::Usage, wanted + " would be a second parent: there is " + joint_name(*c));
-  if (root(*p) == *c) return error(Code::Usage, wanted + " would close a cycle");
+    return error(Code::Invalid, wanted + " would be a second parent: there is " + joint_name(*c));
+  if (root(*p) == *c) return error(Code::Invalid, wanted + " would close a cycle");
   node.parent = *p;
   node.joint = std::move(joint);
   return {};
@@ -135,10 +135,10 @@ Status Tree::fix(const Frame& parent, const Frame& child, const Eigen::Isometry3
 
 Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory) {
   if (memory.span.count() <= 0 || memory.poses == 0)
-    return error(Code::Usage, "a memory of " + std::to_string(memory.poses) + " poses over " +
-                                  std::to_string(memory.span.count()) + " ns keeps nothing");
+    return error(Code::Invalid, "a memory of " + std::to_string(memory.poses) + " poses over " +
+                                    std::to_string(memory.span.count()) + " ns keeps nothing");
   if (memory.gap.count() <= 0)
-    return error(Code::Usage,
+    return error(Code::Invalid,
                  "a gap of " + std::to_string(memory.gap.count()) + " ns joins nothing");
   return attach(parent, child, Track(memory));
 }
@@ -150,10 +150,10 @@ Result<Fed> Tree::feed(const Frame& parent, const Frame& child, std::int64_t tim
   if (!c) return c.error();
   Node& node = nodes_[*c];
   if (node.parent != *p)
-    return error(Code::Usage,
+    return error(Code::Invalid,
                  node.name + " in " + nodes_[*p].name + " is fed, but these are not joined so");
   auto* track = std::get_if<Track>(&node.joint);
-  if (track == nullptr) return error(Code::Usage, joint_name(*c) + " is fed, but fixed");
+  if (track == nullptr) return error(Code::Invalid, joint_name(*c) + " is fed, but fixed");
   if (time <= 0) return error(Code::Malformed, joint_name(*c) + " is fed without a time");
   auto checked = rigid(T_parent_child.matrix());
   if (!checked) return checked.error();

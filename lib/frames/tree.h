@@ -62,7 +62,7 @@ class Tree {
   /// Makes a frame known.
   ///
   /// @param number  1 … 999.
-  /// Errors: Usage (a number out of range; a number or a name that is taken; a name that is
+  /// Errors: Invalid (a number out of range; a number or a name that is taken; a name that is
   /// empty or has a blank or control byte).
   Status add(std::int32_t number, std::string_view name);
   /// The same of a frame without a number.
@@ -70,14 +70,14 @@ class Tree {
 
   /// Joins `child` to `parent` for good.
   ///
-  /// Errors: NotFound (no such frame); Malformed (rigid() refuses it); Usage (the child has a
+  /// Errors: NotFound (no such frame); Malformed (rigid() refuses it); Invalid (the child has a
   /// parent; a cycle).
   Status fix(const Frame& parent, const Frame& child, const Eigen::Isometry3d& T_parent_child);
 
   /// Joins `child` to `parent` by a transformation that moves; it is known from the first feed()
   /// on.
   ///
-  /// Errors: NotFound (no such frame); Usage (the child has a parent; a cycle; a memory for
+  /// Errors: NotFound (no such frame); Invalid (the child has a parent; a cycle; a memory for
   /// nothing, or that joins nothing).
   Status join(const Frame& parent, const Frame& child, const Memory& memory = {});
 
@@ -86,9 +86,9 @@ class Tree {
   /// left out, which is no error but is told: a source whose clock went back needs forget().
   ///
   /// @param time  [ns], over 0.
-  /// Errors: NotFound (no such frame); Malformed (rigid() refuses it; a time of 0 or below); Usage
-  /// (these two are not joined so, or fixed). Nothing changes then.
-  /// Cost: constant, for the latest time; see Track::add().
+  /// Errors: NotFound (no such frame); Malformed (rigid() refuses it; a time of 0 or below);
+  /// Invalid (these two are not joined so, or fixed). Nothing changes then. Cost: constant, for the
+  /// latest time; see Track::add().
   Result<Fed> feed(const Frame& parent, const Frame& child, std::int64_t time,
                    const Eigen::Isometry3d& T_parent_child);
 

@@ -119,7 +119,7 @@ TEST(Tree, BridgesNoGap) {
   EXPECT_EQ(*tree.known("world", "left_eye"),
             (TimeSpan{kTime + 2 * kSecond + 1, kTime + 2 * kSecond + 1}));
   EXPECT_EQ(refusal(tree.join("world", "supervisor", {.gap = std::chrono::nanoseconds(0)})),
-            "Usage: frames: a gap of 0 ns joins nothing");
+            "Invalid: frames: a gap of 0 ns joins nothing");
 }
 
 TEST(Tree, KnownIsTheLatestSpanWithoutAGapOfAnyJoint) {
@@ -143,9 +143,9 @@ TEST(Tree, AFrameMayHaveANameAlone) {
   ASSERT_TRUE(tree.add("chip"));
   ASSERT_TRUE(tree.fix("head", "chip", shift(3)));
   EXPECT_TRUE(tree.lookup(3, "chip", 0)->isApprox(shift(3)));
-  EXPECT_EQ(refusal(tree.add("chip")), "Usage: frames: there is a frame chip already");
-  EXPECT_EQ(refusal(tree.add("")), "Usage: frames: a frame has no name");
-  EXPECT_EQ(refusal(tree.add("a b")), "Usage: frames: a frame has a name with a blank");
+  EXPECT_EQ(refusal(tree.add("chip")), "Invalid: frames: there is a frame chip already");
+  EXPECT_EQ(refusal(tree.add("")), "Invalid: frames: a frame has no name");
+  EXPECT_EQ(refusal(tree.add("a b")), "Invalid: frames: a frame has a name with a blank");
 }
 
 TEST(Tree, TellsOfFramesThatThereAreNot) {
@@ -167,19 +167,19 @@ TEST(Tree, StaysATree) {
   Tree tree = head_tree();
   EXPECT_EQ(
       refusal(tree.fix("cyclopean_eye", "left_eye", shift(0))),
-      "Usage: frames: left_eye in cyclopean_eye would be a second parent: there is left_eye in "
+      "Invalid: frames: left_eye in cyclopean_eye would be a second parent: there is left_eye in "
       "head");
   EXPECT_EQ(refusal(tree.fix("left_eye", "world", shift(0))),
-            "Usage: frames: world in left_eye would close a cycle");
+            "Invalid: frames: world in left_eye would close a cycle");
   EXPECT_EQ(refusal(tree.join("supervisor", "supervisor")),
-            "Usage: frames: supervisor in supervisor would close a cycle");
+            "Invalid: frames: supervisor in supervisor would close a cycle");
   EXPECT_EQ(refusal(tree.fix("robot", "head", shift(0))),
-            "Usage: frames: head in robot is given twice");
-  EXPECT_EQ(refusal(tree.add(3, "face")), "Usage: frames: frame 3 is head already");
-  EXPECT_EQ(refusal(tree.add(100, "head")), "Usage: frames: there is a frame head already");
-  EXPECT_EQ(refusal(tree.add(100, "")), "Usage: frames: frame 100 has no name");
+            "Invalid: frames: head in robot is given twice");
+  EXPECT_EQ(refusal(tree.add(3, "face")), "Invalid: frames: frame 3 is head already");
+  EXPECT_EQ(refusal(tree.add(100, "head")), "Invalid: frames: there is a frame head already");
+  EXPECT_EQ(refusal(tree.add(100, "")), "Invalid: frames: frame 100 has no name");
   for (const char* name : {"a b", "a\n", "\t"})
-    EXPECT_EQ(refusal(tree.add(100, name)), "Usage: frames: frame 100 has a name with a blank");
+    EXPECT_EQ(refusal(tree.add(100, name)), "Invalid: frames: frame 100 has a name with a blank");
   for (int number : {-1, 0, 1000}) EXPECT_FALSE(tree.add(number, "board"));
   EXPECT_TRUE(tree.add(999, "board"));
 }
@@ -187,9 +187,9 @@ TEST(Tree, StaysATree) {
 TEST(Tree, RefusesWhatCannotBeFed) {
   Tree tree = head_tree();
   EXPECT_EQ(refusal(tree.feed("head", "robot", kTime, shift(0))),
-            "Usage: frames: robot in head is fed, but these are not joined so");
+            "Invalid: frames: robot in head is fed, but these are not joined so");
   EXPECT_EQ(refusal(tree.feed("world", "robot", kTime, shift(0))),
-            "Usage: frames: robot in world is fed, but fixed");
+            "Invalid: frames: robot in world is fed, but fixed");
   for (std::int64_t time : {std::int64_t{0}, std::int64_t{-1}})
     EXPECT_EQ(refusal(tree.feed("robot", "head", time, shift(0))),
               "Malformed: frames: head in robot is fed without a time");
@@ -199,7 +199,7 @@ TEST(Tree, RefusesWhatCannotBeFed) {
   EXPECT_FALSE(tree.known("world", "head")) << "nothing changed";
   EXPECT_FALSE(tree.known("world", "supervisor"));
   EXPECT_EQ(refusal(tree.join("world", "supervisor", {.poses = 0})),
-            "Usage: frames: a memory of 0 poses over 10000000000 ns keeps nothing");
+            "Invalid: frames: a memory of 0 poses over 10000000000 ns keeps nothing");
   EXPECT_FALSE(tree.join("world", "supervisor", {.span = std::chrono::nanoseconds(0)}));
   EXPECT_TRUE(tree.join("world", "supervisor", {.poses = 1}));
 }

@@ -50,7 +50,7 @@ FollowScore score_follow(const std::vector<TimedAngles>& wish,
   score.samples = compared.size();
   score.rms = std::sqrt(mean_square(wish, compared, 0));
   for (const auto& sample : compared)
-    score.most = std::max(score.most, between(sample.angles, angles_at(wish, sample.time)));
+    score.max = std::max(score.max, between(sample.angles, angles_at(wish, sample.time)));
 
   // The error has one hollow as long as the delay is short against the movement: coarse, then fine.
   double best = 0, least = mean_square(wish, compared, 0);

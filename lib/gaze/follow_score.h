@@ -15,7 +15,7 @@ struct TimedAngles {
 };
 
 struct FollowScore {
-  double rms = 0, most = 0;  ///< angle between the two at equal times [rad]
+  double rms = 0, max = 0;  ///< angle between the two at equal times [rad]
   /// By which the one that follows fits best to the other when it is put ahead; < 0: it is ahead
   /// itself [s].
   double behind = 0;

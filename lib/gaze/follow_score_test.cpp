@@ -21,7 +21,7 @@ TEST(FollowScore, finds_what_is_behind_and_how_much_that_matters) {
   for (double behind : {-0.02, 0.0, 0.012, 0.25}) {
     const auto score = score_follow(turning(0, 100), turning(behind, 200), 1, 9);
     EXPECT_NEAR(score.behind, behind, 1.5e-3);
-    EXPECT_NEAR(score.most, std::abs(behind), 0.05 * std::abs(behind) + 2e-4);  // at 1 rad/s
+    EXPECT_NEAR(score.max, std::abs(behind), 0.05 * std::abs(behind) + 2e-4);  // at 1 rad/s
     EXPECT_EQ(score.samples, 1601U);
   }
 }

@@ -61,7 +61,7 @@ struct VideoScore {
 
 /// @param far  a blob farther away is not the ball [px].
 VideoScore score_video(const std::string& path, const Labels& labels, const BlobColour& colour,
-                       double least_area, double far) {
+                       double min_area, double far) {
   VideoScore score;
   BlobFinder finder(colour);
   cv::VideoCapture capture(path);
@@ -71,7 +71,7 @@ VideoScore score_video(const std::string& path, const Labels& labels, const Blob
     const auto truth = labels.at(number);
     if (!truth) continue;
     ++score.in_view;
-    const auto blob = finder.find(rgb, least_area);
+    const auto blob = finder.find(rgb, min_area);
     if (!blob) continue;
     const double error = std::hypot(blob->x - truth->x, blob->y - truth->y);
     if (error > far) {
@@ -94,8 +94,8 @@ TEST(BallVideo, TheYellowBallOnADarkFloor) {
   BlobColour yellow;
   yellow.hue = 0.165;
   yellow.hue_width = 0.05;
-  yellow.least_saturation = 0.2;
-  yellow.least_value = 0.35;
+  yellow.min_saturation = 0.2;
+  yellow.min_value = 0.35;
   const auto score = score_video(path, Labels("balle-jbart.csv"), yellow, 60, 12);
   EXPECT_GE(score.in_view, 250);
   EXPECT_GE(score.found, 0.98 * score.in_view);
@@ -105,7 +105,7 @@ TEST(BallVideo, TheRedBallInAClassroom) {
   const auto path = video("balle1-vp9.avi");
   if (path.empty()) GTEST_SKIP() << "python3-mecavideo is not there: ./dev test unpacks it";
   BlobColour red;
-  red.least_saturation = 0.45;
+  red.min_saturation = 0.45;
   const auto score = score_video(path, Labels("balle1-vp9.csv"), red, 40, 8);
   EXPECT_GE(score.in_view, 240);
   EXPECT_GE(score.found, 0.98 * score.in_view);

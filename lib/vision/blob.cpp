@@ -41,8 +41,8 @@ std::optional<BlobColour> colour_at(const cv::Mat& rgb, cv::Point at) {
   if (hsv[1] < kLeastSaturation || hsv[2] < kLeastValue) return std::nullopt;
   BlobColour colour;
   colour.hue = hsv[0];
-  colour.least_saturation = 0.55 * hsv[1];
-  colour.least_value = 0.45 * hsv[2];
+  colour.min_saturation = 0.55 * hsv[1];
+  colour.min_value = 0.45 * hsv[2];
   return colour;
 }
 
@@ -57,7 +57,7 @@ void BlobFinder::fill_table() {
         const auto hsv =
             hue_saturation_value({r * kStep + kMiddle, g * kStep + kMiddle, b * kStep + kMiddle});
         const bool is_it = hue_distance(hsv[0], colour_.hue) <= colour_.hue_width &&
-                           hsv[1] >= colour_.least_saturation && hsv[2] >= colour_.least_value;
+                           hsv[1] >= colour_.min_saturation && hsv[2] >= colour_.min_value;
         table_[at] = is_it ? 255 : 0;
       }
 }
@@ -108,7 +108,7 @@ std::optional<BlobFinder::Region> BlobFinder::largest(const cv::Mat& rgb) {
   return region;
 }
 
-std::optional<Blob> BlobFinder::find(const cv::Mat& rgb, double least_area) {
+std::optional<Blob> BlobFinder::find(const cv::Mat& rgb, double min_area) {
   if (rgb.empty()) return std::nullopt;
   CV_Assert(rgb.type() == CV_8UC3);
   // About 400 pixels wide: less to do, and less noise.
@@ -139,7 +139,7 @@ std::optional<Blob> BlobFinder::find(const cv::Mat& rgb, double least_area) {
         region->y += about.y;
       }
   }
-  if (region->area < least_area) return std::nullopt;
+  if (region->area < min_area) return std::nullopt;
   return Blob{region->x, region->y, std::sqrt(region->area / std::numbers::pi), region->area};
 }
 

@@ -15,8 +15,8 @@ namespace hc::vision {
 struct BlobColour {
   double hue = 0;           ///< 0 … 1
   double hue_width = 0.05;  ///< how far a pixel's hue may be from it, on either side
-  double least_saturation = 0.5;
-  double least_value = 0.2;
+  double min_saturation = 0.5;
+  double min_value = 0.2;
 
   bool operator==(const BlobColour&) const = default;
 };
@@ -47,10 +47,10 @@ class BlobFinder {
   [[nodiscard]] const BlobColour& colour() const { return colour_; }
 
   /// @param rgb  (H, W, 3) u8.
-  /// @param least_area  of what counts as found [px²].
+  /// @param min_area  of what counts as found [px²].
   /// @returns  nothing where no blob is as large.
   /// Cost: 1 ms at 800×600.
-  std::optional<Blob> find(const cv::Mat& rgb, double least_area);
+  std::optional<Blob> find(const cv::Mat& rgb, double min_area);
 
  private:
   struct Region {

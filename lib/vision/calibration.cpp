@@ -164,7 +164,7 @@ double difference(const BoardView& a, const BoardView& b) {
 
 Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& board, cv::Size size) {
   if (board.columns < 3 || board.rows < 3 || board.columns == board.rows || !(board.square > 0))
-    return Error{Code::Usage,
+    return Error{Code::Invalid,
                  "a board has 3 corners a row and a column at least, and not the same number"};
   if (views.size() < kLeastViews)
     return Error{Code::NotFound, std::to_string(views.size()) + " views of the board, at least " +

@@ -114,8 +114,8 @@ inline constexpr std::size_t kLeastViews = 3;  ///< that a calibration takes
 /// Finds the geometry of two cameras: each alone, then both together. Views whose error is more
 /// than three times the median's are left out, as long as two thirds stay.
 ///
-/// Errors: NotFound (fewer than kLeastViews); Usage (a board that is not so); Malformed (views that
-/// do not determine the cameras, as when all are the same). Cost: 0.1 to 1 s. Source: Zhang, A
+/// Errors: NotFound (fewer than kLeastViews); Invalid (a board that is not so); Malformed (views
+/// that do not determine the cameras, as when all are the same). Cost: 0.1 to 1 s. Source: Zhang, A
 /// Flexible New Technique for Camera Calibration, 2000 (as in OpenCV).
 Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& board, cv::Size size);
 

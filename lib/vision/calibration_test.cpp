@@ -142,7 +142,7 @@ TEST(Calibration, RefusesWhatDoesNotDetermineTheCameras) {
   EXPECT_EQ(found.error().code, Code::NotFound);
   EXPECT_NE(found.error().detail.find("2 views"), std::string::npos);
   pairs = made_up(squinting(), 4, 0.1);
-  EXPECT_EQ(calibrate(pairs.views, {6, 6, 0.04}, pairs.size).error().code, Code::Usage);
+  EXPECT_EQ(calibrate(pairs.views, {6, 6, 0.04}, pairs.size).error().code, Code::Invalid);
   for (auto& view : pairs.views) {
     std::fill(view.left.begin(), view.left.end(), cv::Point2f(5, 5));
     view.right = view.left;

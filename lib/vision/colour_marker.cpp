@@ -45,9 +45,9 @@ cv::Mat saturated(const cv::Mat& rgb) {
 }
 
 /// The square that an outline is, in perspective; clockwise.
-std::optional<Quad> quad_of(const std::vector<cv::Point>& outline, double least_side) {
+std::optional<Quad> quad_of(const std::vector<cv::Point>& outline, double min_side) {
   const double area = cv::contourArea(outline);
-  if (area < 0.6 * least_side * least_side) return std::nullopt;
+  if (area < 0.6 * min_side * min_side) return std::nullopt;
   std::vector<cv::Point> hull, corners;
   cv::convexHull(outline, hull);
   if (area < 0.85 * cv::contourArea(hull)) return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<Quad> quad_of(const std::vector<cv::Point>& outline, double least_
     longest = std::max(longest, side);
   }
   constexpr double kMostStretched = 5;
-  if (shortest < least_side / 2 || longest < least_side || longest > kMostStretched * shortest)
+  if (shortest < min_side / 2 || longest < min_side || longest > kMostStretched * shortest)
     return std::nullopt;
   return quad;
 }

@@ -260,7 +260,7 @@ double TextLine::width() const {
   return cv::norm((corners[1] + corners[2]) - (corners[0] + corners[3])) / 2;
 }
 
-std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score) {
+std::vector<TextLine> find_text_lines(const cv::Mat& picture, double min_score) {
   cv::Mat grey = mean_of_channels(picture);
   double noise = noise_of(grey);
   if (noise > 4) {
@@ -284,7 +284,7 @@ std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score
     const auto pieces = find_pieces(grey, noise, dark);
     for (const auto& letters : group(pieces))
       if (auto line = line_of(letters, pieces, grey, dark, noise);
-          line && line->score >= least_score) {
+          line && line->score >= min_score) {
         scale(*line, by);
         found.push_back(*line);
       }

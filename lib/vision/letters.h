@@ -29,10 +29,10 @@ struct TextLine {
 /// picture high, at most about 20° from level.
 ///
 /// @param picture  (H, W, 3) or (H, W, 1) u8; noise of a standard deviation of 20 does no harm.
-/// @param least_score  lines that are less like one on a board are left out.
+/// @param min_score  lines that are less like one on a board are left out.
 /// @returns  the best first; none overlaps a better one.
 /// Cost: about 10 ms for 800 × 600.
-std::vector<TextLine> find_text_lines(const cv::Mat& picture, double least_score = 0.4);
+std::vector<TextLine> find_text_lines(const cv::Mat& picture, double min_score = 0.4);
 
 /// Cuts a line out: level, with a margin, without noise, its ground white and its letters black.
 ///

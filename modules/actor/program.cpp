@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int run_actor(int argc, char** argv) {
   hc::Module module{"actor", "Takes commands, and tells which ones."};

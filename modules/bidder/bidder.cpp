@@ -25,7 +25,7 @@ hc::Result<Script> Script::parse(std::string_view text) {
     auto word = text.substr(0, text.find(' '));
     text.remove_prefix(word.size());
     auto wrong = [&](const char* what) {
-      return hc::Error{hc::Code::Usage, "\"" + std::string(word) + "\" " + what};
+      return hc::Error{hc::Code::Invalid, "\"" + std::string(word) + "\" " + what};
     };
     auto colon = std::min(word.find(':'), word.size());
     auto seconds = parse_number(word.substr(0, colon));

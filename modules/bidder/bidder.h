@@ -15,7 +15,7 @@
 ///     0:0.2 1.5:0.9 3:again       begins anew each 3 s
 class Script {
  public:
-  /// Errors: Usage (another form; seconds that do not grow; something behind `end` or `again`).
+  /// Errors: Invalid (another form; seconds that do not grow; something behind `end` or `again`).
   static hc::Result<Script> parse(std::string_view text);
 
   /// The salience so many seconds after the beginning; nothing: the script has ended.

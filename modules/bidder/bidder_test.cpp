@@ -29,7 +29,7 @@ TEST(Script, ends_or_begins_anew) {
 TEST(Script, what_is_wrong_is_named) {
   for (const char* bad : {"0", "0:", ":1", "x:1", "0:x", "0:1 0:2", "2:1 1:1", "-1:1", "nan:1",
                           "inf:1", "0:again", "0:1 1:end 2:0"})
-    EXPECT_EQ(Script::parse(bad).error().code, hc::Code::Usage) << bad;
+    EXPECT_EQ(Script::parse(bad).error().code, hc::Code::Invalid) << bad;
   EXPECT_TRUE(Script::parse("0:nan 1:-1").has_value());  // for the workspace to refuse
 }
 

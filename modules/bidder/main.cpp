@@ -3,7 +3,7 @@
 // whoever has the focus. What keeps it from acting out of focus is the actor's exclusive input.
 #include "bidder.h"
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"bidder", "Bids for the focus as a script says, and commands."};
@@ -13,10 +13,10 @@ int main(int argc, char** argv) {
   auto text = module.parameter("script", "0:0.5", "",
                                "SECONDS:SALIENCE …, at the end SECONDS:end or SECONDS:again",
                                {.positional = true, .fixed = true});
-  auto rate = module.parameter("rate", 20.0, "Hz", "bids and commands a second",
-                               {.least = 0.1, .most = 1e5});
+  auto rate =
+      module.parameter("rate", 20.0, "Hz", "bids and commands a second", {.min = 0.1, .max = 1e5});
   auto ttl = module.parameter("ttl", 8, "", "routers that a command may pass, and one",
-                              {.least = 0, .most = 255});
+                              {.min = 0, .max = 255});
 
   hc::SystemClock clock;
   Script script;

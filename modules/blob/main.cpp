@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/blob.h>
 
 int main(int argc, char** argv) {
@@ -18,16 +18,14 @@ int main(int argc, char** argv) {
                               "x, y of the blob's middle, its radius [px], in the coordinate "
                               "system of the picture; nothing while there is none");
   auto area = module.output("area", hc::table<double>(), "area of the blob [px²]");
-  auto hue =
-      module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue", {.least = 0, .most = 1});
+  auto hue = module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue", {.min = 0, .max = 1});
   auto hue_width = module.parameter("hue_width", 0.05, "", "how far a pixel's may be from it",
-                                    {.least = 0, .most = 0.5});
-  auto saturation = module.parameter("saturation", 0.5, "", "least saturation of a pixel",
-                                     {.least = 0, .most = 1});
-  auto value =
-      module.parameter("value", 0.2, "", "least value of a pixel", {.least = 0, .most = 1});
-  auto least_area = module.parameter("least_area", 60.0, "px²", "a smaller blob is none",
-                                     {.least = 0, .most = 1e9});
+                                    {.min = 0, .max = 0.5});
+  auto saturation =
+      module.parameter("saturation", 0.5, "", "least saturation of a pixel", {.min = 0, .max = 1});
+  auto value = module.parameter("value", 0.2, "", "least value of a pixel", {.min = 0, .max = 1});
+  auto min_area =
+      module.parameter("min_area", 60.0, "px²", "a smaller blob is none", {.min = 0, .max = 1e9});
 
   std::optional<hc::vision::BlobFinder> finder;
   std::optional<cv::Point2d> pointed;           // at the next picture
@@ -50,7 +48,7 @@ int main(int argc, char** argv) {
       taken = colour;
       hue_then = *hue;
       std::snprintf(line, sizeof line, "point: hue %.3f, saturation %.2f and value %.2f at least",
-                    colour->hue, colour->least_saturation, colour->least_value);
+                    colour->hue, colour->min_saturation, colour->min_value);
     }
     module.log(line);
   };
@@ -69,7 +67,7 @@ int main(int argc, char** argv) {
     const auto colour =
         taken.value_or(hc::vision::BlobColour{*hue, *hue_width, *saturation, *value});
     if (!finder || !(finder->colour() == colour)) finder.emplace(colour);
-    const auto blob = finder->find(picture, *least_area);
+    const auto blob = finder->find(picture, *min_area);
     if (!blob) return;
     auto position = hc::position(blob->x, blob->y, blob->radius);
     position.header.coord = message.header.coord;

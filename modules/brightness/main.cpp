@@ -3,7 +3,7 @@
 // the same on text.
 #include <numeric>
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"brightness", "Measures how bright pictures are."};

@@ -12,7 +12,7 @@
 
 #include <hc/adapter/opencv.h>
 #include <hc/adapter/pose.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <opencv2/imgproc.hpp>
 
 namespace {
@@ -44,16 +44,16 @@ int main(int argc, char** argv) {
       "of stereo_calibration's: the result is added to it, and taken from it where it is there",
       {.positional = true, .fixed = true});
   auto turn = module.parameter("turn", 0.28, "rad", "how far the head turns to each side",
-                               {.least = 0.05, .most = 0.6});
-  auto salience = module.parameter("salience", 0.9, "", "of the bid", {.least = 0, .most = 1});
+                               {.min = 0.05, .max = 0.6});
+  auto salience = module.parameter("salience", 0.9, "", "of the bid", {.min = 0, .max = 1});
   auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes, without a file",
-                                {.least = 1, .fixed = true});
+                                {.min = 1, .fixed = true});
   auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes, without a file",
-                                   {.least = 0.001, .fixed = true});
+                                   {.min = 0.001, .fixed = true});
   auto patience = module.parameter("patience", 5.0, "s", "for the head to rest where it is sent",
-                                   {.least = 0.5, .most = 600});
-  auto pause = module.parameter("pause", 30.0, "s", "after a try in vain", {.least = 0});
-  auto tries = module.parameter("tries", 3, "", "in vain, then it gives up", {.least = 1});
+                                   {.min = 0.5, .max = 600});
+  auto pause = module.parameter("pause", 30.0, "s", "after a try in vain", {.min = 0});
+  auto tries = module.parameter("tries", 3, "", "in vain, then it gives up", {.min = 1});
   auto forward = module.parameter("forward", 0.06, "m", "of the eyes from the unit's axes");
   auto up = module.parameter("up", 0.05, "m", "of the eyes from the unit's axes");
 

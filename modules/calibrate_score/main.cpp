@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"calibrate_score", "Compares a head's calibration with the truth."};
@@ -18,9 +18,8 @@ int main(int argc, char** argv) {
   auto offset_roll = module.parameter("offset_roll", 0.0, "rad", "truth");
   auto offset_pitch = module.parameter("offset_pitch", 0.0, "rad", "truth");
   auto offset_yaw = module.parameter("offset_yaw", 0.0, "rad", "truth");
-  auto patience =
-      module.parameter("patience", 60.0, "s", "after so long without a result it failed",
-                       {.least = 1, .most = 3600});
+  auto patience = module.parameter(
+      "patience", 60.0, "s", "after so long without a result it failed", {.min = 1, .max = 3600});
 
   bool is_done = false;
   module.on(result, [&](const auto& message) {

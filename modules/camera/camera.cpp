@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 

@@ -4,7 +4,7 @@
 #include "devices.h"
 
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/picture.h>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
@@ -32,27 +32,27 @@ int main(int argc, char** argv) {
   auto width = module.parameter("width", 0, "px",
                                 "width to scale and cut to, 0: as it comes; with the height also "
                                 "what a V4L2 device is opened with",
-                                {.least = 0, .most = 65535});
+                                {.min = 0, .max = 65535});
   auto height = module.parameter("height", 0, "px", "height to scale and cut to, 0: as it comes",
-                                 {.least = 0, .most = 65535});
+                                 {.min = 0, .max = 65535});
   auto smooth =
       module.parameter("smooth", true, "", "mix pixels when scaling; false takes the nearest");
   auto rectified = module.parameter("rectified", false, "", "the pictures are rectified already");
   auto stamped = module.parameter("stamped", true, "", "give the pictures a time");
   auto rate = module.parameter("rate", 0.0, "Hz",
                                "pictures a second, 0: as they come; a camera is asked for it",
-                               {.least = 0, .most = 1e4});
-  auto count = module.parameter("count", 0, "", "pictures to give, 0: all", {.least = 0});
+                               {.min = 0, .max = 1e4});
+  auto count = module.parameter("count", 0, "", "pictures to give, 0: all", {.min = 0});
   auto loop = module.parameter("loop", false, "", "begin again at the end");
 
   auto reopen = module.parameter(
       "reopen", true, "", "try again when a camera is lost: aravis, device, rtsp", {.fixed = true});
   auto exposure = module.parameter("exposure", 0.0, "s",
                                    "of a camera, 0: its own choice, automatic if it has that",
-                                   {.least = 0, .most = 100});
+                                   {.min = 0, .max = 100});
   auto gain =
       module.parameter("gain", -1.0, "", "in the camera's unit, mostly dB; -1: its own choice",
-                       {.least = -1, .most = 1e4});
+                       {.min = -1, .max = 1e4});
   auto pixel_format = module.parameter(
       "pixel_format", "", "",
       "of aravis, as BayerRG8, RGB8, Mono8; of V4L2 a FourCC, as MJPG; empty: the camera's",

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/stereo.h>
 
 namespace {
@@ -31,11 +31,11 @@ int main(int argc, char** argv) {
   auto depth = module.output("depth", hc::intensity_image<float>().in(kDepth),
                              "depth along the optical axis [m], 0 unknown");
   auto disparities = module.parameter("disparities", 128, "px", "disparities searched",
-                                      {.least = 16, .most = 1024, .step = 16, .fixed = true});
+                                      {.min = 16, .max = 1024, .step = 16, .fixed = true});
   auto block_size = module.parameter("block_size", 5, "px", "side of the window compared",
-                                     {.least = 1, .most = 21, .step = 2, .fixed = true});
-  auto focal = module.parameter("focal", 800.0, "px", "focal length", {.least = 1e-3});
-  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes", {.least = 1e-6});
+                                     {.min = 1, .max = 21, .step = 2, .fixed = true});
+  auto focal = module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3});
+  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes", {.min = 1e-6});
   auto offset = module.parameter("offset", 0.0, "px",
                                  "added to a disparity before depth is computed from it");
 

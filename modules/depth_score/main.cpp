@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/stereo.h>
 #include <opencv2/imgproc.hpp>
 
@@ -18,9 +18,9 @@ int main(int argc, char** argv) {
       "score", hc::table<double>(),
       "share of bad pixels among the valid, of holes, of bad or hole; pixels with known truth");
   auto truth_scale =
-      module.parameter("truth_scale", 1.0, "px", "disparity of one grey level", {.least = 1e-6});
+      module.parameter("truth_scale", 1.0, "px", "disparity of one grey level", {.min = 1e-6});
   auto threshold =
-      module.parameter("threshold", 2.0, "px", "an error above this is bad", {.least = 0});
+      module.parameter("threshold", 2.0, "px", "an error above this is bad", {.min = 0});
 
   module.on(hc::together(disparity, truth),
             [&](const hc::Message& found, const hc::Message& known) {

@@ -7,7 +7,7 @@
 
 #include <drivers/head_tracker/sender.h>
 #include <hc/base/clock.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "nod.h"
 
@@ -17,16 +17,16 @@ int main(int argc, char** argv) {
   auto rotation = module.output("rotation", hc::rotation<double>().in(kSupervisor),
                                 "truth: roll 0, pitch, yaw of the head [rad]");
   auto port = module.parameter("port", 4242, "", "UDP port of this machine that packets go to",
-                               {.least = 1, .most = 65535, .fixed = true});
-  auto rate = module.parameter("rate", 100.0, "Hz", "packets a second", {.least = 0, .most = 1000});
+                               {.min = 1, .max = 65535, .fixed = true});
+  auto rate = module.parameter("rate", 100.0, "Hz", "packets a second", {.min = 0, .max = 1000});
   auto amplitude = module.parameter("amplitude", 0.7, "rad", "how far the head turns to each side",
-                                    {.least = 0.01, .most = 1.5, .fixed = true});
+                                    {.min = 0.01, .max = 1.5, .fixed = true});
   auto speed = module.parameter("speed", 1.047, "rad/s", "of the head, at most",
-                                {.least = 0.01, .most = 20, .fixed = true});
+                                {.min = 0.01, .max = 20, .fixed = true});
   auto noise = module.parameter("noise", 0.0, "rad", "standard deviation of what the packets tell",
-                                {.least = 0, .most = 1});
+                                {.min = 0, .max = 1});
   auto seed = module.parameter("seed", 1, "", "of the noise, and of the side it turns to first",
-                               {.least = 0, .most = 1e9, .fixed = true});
+                               {.min = 0, .max = 1e9, .fixed = true});
 
   const hc::SystemClock clock;
   std::optional<hc::HeadPoseSender> sender;

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include <drivers/pan_tilt/unit.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "terminal.h"
 #include "wire.h"
@@ -57,22 +57,22 @@ int main(int argc, char** argv) {
   auto received =
       module.output("received", hc::string(), "what has come on its line, in pieces as it came");
   auto pan = module.parameter("pan", 0.0, "rad", "where it stands at the start",
-                              {.least = -3.2, .most = 3.2, .fixed = true});
+                              {.min = -3.2, .max = 3.2, .fixed = true});
   auto tilt =
-      module.parameter("tilt", 0.0, "rad", "the same", {.least = -3.2, .most = 3.2, .fixed = true});
+      module.parameter("tilt", 0.0, "rad", "the same", {.min = -3.2, .max = 3.2, .fixed = true});
   auto seed =
-      module.parameter("seed", 1, "", "of the garbage", {.least = 0, .most = 1e9, .fixed = true});
-  auto rate = module.parameter("rate", 200.0, "Hz", "of motion", {.least = 0, .most = 10000});
+      module.parameter("seed", 1, "", "of the garbage", {.min = 0, .max = 1e9, .fixed = true});
+  auto rate = module.parameter("rate", 200.0, "Hz", "of motion", {.min = 0, .max = 10000});
   auto answer_delay =
-      module.parameter("answer_delay", 0.0, "s", "of each answer", {.least = 0, .most = 60});
+      module.parameter("answer_delay", 0.0, "s", "of each answer", {.min = 0, .max = 60});
   auto silent = module.parameter("silent", false, "", "obeys, but answers nothing");
   auto garbage = module.parameter("garbage", 0.0, "", "share of its bytes that are spoilt",
-                                  {.least = 0, .most = 1});
+                                  {.min = 0, .max = 1});
   auto unplugged =
       module.parameter("unplugged", false, "", "the line is gone; afterwards there is a new one");
   auto bytes_per_second = module.parameter("bytes_per_second", 0.0, "1/s",
                                            "of the line, each way; 960 is 9600 baud, 0: unbounded",
-                                           {.least = 0, .most = 1e9});
+                                           {.min = 0, .max = 1e9});
 
   const hc::SystemClock clock;
   const auto start = clock.monotonic();

@@ -6,7 +6,7 @@
 #include <gaze/follow_score.h>
 #include <hc/adapter/eigen.h>
 #include <hc/adapter/pose.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   constexpr std::int32_t kGaze = 13;
@@ -18,12 +18,12 @@ int main(int argc, char** argv) {
                               "1 x 4: RMS error [rad], greatest error [rad], by how much it is "
                               "behind [s], samples");
   auto settle = module.parameter("settle", 2.0, "s", "from the first of both until it counts",
-                                 {.least = 0, .most = 1e6});
+                                 {.min = 0, .max = 1e6});
   auto duration =
-      module.parameter("duration", 10.0, "s", "how long it counts", {.least = 0.1, .most = 1e6});
+      module.parameter("duration", 10.0, "s", "how long it counts", {.min = 0.1, .max = 1e6});
 
   auto patience = module.parameter("patience", 60.0, "s", "for a gaze of each, or it has failed",
-                                   {.least = 1, .most = 3600});
+                                   {.min = 1, .max = 3600});
 
   std::vector<hc::gaze::TimedAngles> wished, turned;
   std::int64_t waits[2] = {};  // looks since one of each
@@ -53,11 +53,11 @@ int main(int argc, char** argv) {
     if (wished.back().time < end || turned.back().time < end) return true;
     const auto score = hc::gaze::score_follow(wished, turned, begin, end);
     result.send(
-        hc::table({score.rms, score.most, score.behind, static_cast<double>(score.samples)}));
+        hc::table({score.rms, score.max, score.behind, static_cast<double>(score.samples)}));
     constexpr double kDegrees = 180 / M_PI, kMilliseconds = 1000;
     char line[120];
     std::snprintf(line, sizeof line, "error %.2f° RMS, %.2f° at most, behind by %.0f ms",
-                  score.rms * kDegrees, score.most * kDegrees, score.behind * kMilliseconds);
+                  score.rms * kDegrees, score.max * kDegrees, score.behind * kMilliseconds);
     module.log(line);
     return false;
   });

@@ -20,7 +20,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
 }
 
 hc::Error usage(std::string_view word, const char* what) {
-  return {hc::Code::Usage, "\"" + std::string(word) + "\" " + what};
+  return {hc::Code::Invalid, "\"" + std::string(word) + "\" " + what};
 }
 
 bool parse(std::string_view word, std::int32_t& number) {

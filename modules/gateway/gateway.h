@@ -10,20 +10,20 @@
 #include <string_view>
 
 #include <hc/base/result.h>
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 /// Addresses on the other side by those on this one.
 using Renumbering = std::map<std::int32_t, std::int32_t>;
 
 /// Reads "12=112 13=113 -2=-5"; empty: every address stays.
 ///
-/// Errors: Usage (no number; a number on either side twice; an address becomes a group, 0 or -1, or
-/// they another).
+/// Errors: Invalid (no number; a number on either side twice; an address becomes a group, 0 or -1,
+/// or they another).
 hc::Result<Renumbering> parse_renumbering(std::string_view text);
 
 /// Reads "12 13 -1".
 ///
-/// Errors: Usage (no number, or one twice).
+/// Errors: Invalid (no number, or one twice).
 hc::Result<std::set<std::int32_t>> parse_addresses(std::string_view text);
 
 /// What may pass, and as what.

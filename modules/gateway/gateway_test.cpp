@@ -24,10 +24,10 @@ TEST(Gateway, reads_its_tables) {
   EXPECT_TRUE(parse_renumbering("")->empty());
   for (const char* bad : {"12", "12=", "=12", "a=1", "1=2x", "1=2 1=3", "1=2 3=2", "0=1", "1=0",
                           "-1=-2", "1=-2", "-2=1", "1=99999999999"})
-    EXPECT_EQ(parse_renumbering(bad).error().code, hc::Code::Usage) << bad;
+    EXPECT_EQ(parse_renumbering(bad).error().code, hc::Code::Invalid) << bad;
   EXPECT_EQ(*parse_addresses("12 -1 0"), (std::set<std::int32_t>{-1, 0, 12}));
   for (const char* bad : {"x", "1 1", "1,2"})
-    EXPECT_EQ(parse_addresses(bad).error().code, hc::Code::Usage) << bad;
+    EXPECT_EQ(parse_addresses(bad).error().code, hc::Code::Invalid) << bad;
 }
 
 TEST(Gateway, gives_src_and_dst_their_numbers_of_the_other_side) {

@@ -3,7 +3,7 @@
 // gateway is one way. How fast messages pass is its links' `rate`.
 #include "gateway.h"
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"gateway", "Passes messages from one graph to another, renumbered."};

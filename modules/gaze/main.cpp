@@ -6,7 +6,7 @@
 
 #include <gaze/stick.h>
 #include <hc/adapter/pose.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "parameters.h"
 #include "targets.h"

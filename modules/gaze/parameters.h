@@ -7,71 +7,71 @@
 
 #include <gaze/eyes.h>
 #include <gaze/follower.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 struct Parameters {
   hc::Module& module;  ///< that has them
 
   hc::Parameter<double> rate =
-      module.parameter("rate", 100.0, "Hz", "commands a second", {.least = 1, .most = 1000});
+      module.parameter("rate", 100.0, "Hz", "commands a second", {.min = 1, .max = 1000});
   hc::Parameter<double> salience =
-      module.parameter("salience", 0.5, "", "of the bid", {.least = 0, .most = 1});
+      module.parameter("salience", 0.5, "", "of the bid", {.min = 0, .max = 1});
   hc::Parameter<double> rest =
       module.parameter("rest", 0.0, "",
                        "salience with which it looks straight ahead while there is no "
                        "target, 0: it does nothing then",
-                       {.least = 0, .most = 1});
+                       {.min = 0, .max = 1});
   hc::Parameter<double> patience =
       module.parameter("patience", 0.5, "s", "how long a target counts that is not seen any more",
-                       {.least = 0.01, .most = 60});
+                       {.min = 0.01, .max = 60});
   hc::Parameter<double> noise =
       module.parameter("noise", 0.003, "rad", "standard deviation of a target's angles",
-                       {.least = 1e-6, .most = 1, .fixed = true});
+                       {.min = 1e-6, .max = 1, .fixed = true});
   hc::Parameter<double> liveliness =
       module.parameter("liveliness", 2.0, "rad/s²",
                        "standard deviation of what speeds a target up: more follows "
                        "it more closely, and its noise",
-                       {.least = 1e-3, .most = 1e3, .fixed = true});
+                       {.min = 1e-3, .max = 1e3, .fixed = true});
   hc::Parameter<double> predict = module.parameter(
       "predict", 0.03, "s", "how far ahead: what passes from a command to the motion",
-      {.least = 0, .most = 1});
+      {.min = 0, .max = 1});
   hc::Parameter<double> horizon = module.parameter(
       "horizon", 0.2, "s", "so long a target that is not seen any more goes on as it moved",
-      {.least = 0, .most = 10, .fixed = true});
+      {.min = 0, .max = 10, .fixed = true});
   hc::Parameter<double> acceleration =
       module.parameter("acceleration", 1.795, "rad/s²",
                        "of the unit, which brakes to stand still where it is sent; 0: it does not",
-                       {.least = 0, .most = 1000});
+                       {.min = 0, .max = 1000});
   hc::Parameter<double> base_speed =
       module.parameter("base_speed", 0.8976, "rad/s",
                        "with which the unit starts and stops at once; only faster it accelerates",
-                       {.least = 0, .most = 100});
+                       {.min = 0, .max = 100});
   hc::Parameter<double> dead_zone = module.parameter(
       "dead_zone", 0.0, "rad", "nothing is done about a target so near to the middle",
-      {.least = 0, .most = 1});
+      {.min = 0, .max = 1});
   hc::Parameter<double> stick_rate = module.parameter(
-      "stick_rate", 1.0, "rad/s", "of a stick that is pushed fully", {.least = 0.01, .most = 10});
-  hc::Parameter<double> pan_most =
-      module.parameter("pan_most", 2.77, "rad", "to either side", {.least = 0, .most = 3.2});
-  hc::Parameter<double> tilt_most =
-      module.parameter("tilt_most", 0.81, "rad", "down", {.least = 0, .most = 1.6});
-  hc::Parameter<double> tilt_least =
-      module.parameter("tilt_least", -0.54, "rad", "up", {.least = -1.6, .most = 0});
+      "stick_rate", 1.0, "rad/s", "of a stick that is pushed fully", {.min = 0.01, .max = 10});
+  hc::Parameter<double> pan_max =
+      module.parameter("pan_max", 2.77, "rad", "to either side", {.min = 0, .max = 3.2});
+  hc::Parameter<double> tilt_max =
+      module.parameter("tilt_max", 0.81, "rad", "down", {.min = 0, .max = 1.6});
+  hc::Parameter<double> tilt_min =
+      module.parameter("tilt_min", -0.54, "rad", "up", {.min = -1.6, .max = 0});
   hc::Parameter<std::string> calibration_file =
       module.parameter("calibration_file", "", "",
                        "what stereo_calibration and calibrate wrote; without it focal, cx, "
                        "cy hold",
                        {.fixed = true});
-  hc::Parameter<double> focal = module.parameter("focal", 600.0, "px", "focal length of the eyes",
-                                                 {.least = 1, .fixed = true});
+  hc::Parameter<double> focal =
+      module.parameter("focal", 600.0, "px", "focal length of the eyes", {.min = 1, .fixed = true});
   hc::Parameter<double> cx =
       module.parameter("cx", 399.5, "px", "middle of the pictures", {.fixed = true});
   hc::Parameter<double> cy =
       module.parameter("cy", 299.5, "px", "middle of the pictures", {.fixed = true});
   hc::Parameter<double> baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes",
-                                                    {.least = 0, .most = 1, .fixed = true});
+                                                    {.min = 0, .max = 1, .fixed = true});
   hc::Parameter<double> distance = module.parameter(
-      "distance", 2.5, "m", "of a target that one eye alone has seen", {.least = 0.2});
+      "distance", 2.5, "m", "of a target that one eye alone has seen", {.min = 0.2});
 
   /// Equal eyes that sit as they were built.
   [[nodiscard]] hc::gaze::Eyes eyes() const {
@@ -91,7 +91,6 @@ struct Parameters {
   }
   /// The nearest that the unit can take.
   [[nodiscard]] hc::gaze::Angles within_limits(const hc::gaze::Angles& to) const {
-    return {std::clamp(to.pan, -*pan_most, *pan_most),
-            std::clamp(to.tilt, *tilt_least, *tilt_most)};
+    return {std::clamp(to.pan, -*pan_max, *pan_max), std::clamp(to.tilt, *tilt_min, *tilt_max)};
   }
 };

@@ -9,7 +9,7 @@
 
 #include <hc/base/clock.h>
 #include <hc/base/program.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kLook{20};  // how long inputs and silence m
 class Opening {
  public:
   /// The tracker, when it is time to try and it can be heard; an error at a new fault.
-  /// Errors: Usage (it never will be), System (told once).
+  /// Errors: Invalid (it never will be), System (told once).
   hc::Result<std::optional<hc::HeadTracker>> attempt(hc::MonotonicTime now, const std::string& host,
                                                      int port) {
     if (now < due_) return std::optional<hc::HeadTracker>();
@@ -73,12 +73,12 @@ int main(int argc, char** argv) {
       module.parameter("host", "127.0.0.1", "",
                        "address of this machine to listen at, 0.0.0.0: all", {.fixed = true});
   auto port =
-      module.parameter("port", 4242, "", "UDP port", {.least = 0, .most = 65535, .fixed = true});
+      module.parameter("port", 4242, "", "UDP port", {.min = 0, .max = 65535, .fixed = true});
   auto centre_first =
       module.parameter("centre_first", true, "", "the first pose is the zero; else the tracker's");
   auto silence =
       module.parameter("silence", 1.0, "s", "a tracker that says nothing so long is gone",
-                       {.least = 0.01, .most = 3600});
+                       {.min = 0.01, .max = 3600});
 
   const hc::SystemClock clock;
   std::optional<hc::HeadTracker> tracker;
@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
   Opening opening;
   auto listen = [&] {
     auto opened = opening.attempt(clock.monotonic(), *host, static_cast<int>(*port));
-    if (!opened && opened.error().code == hc::Code::Usage) throw hc::ModuleError(opened.error());
+    if (!opened && opened.error().code == hc::Code::Invalid) throw hc::ModuleError(opened.error());
     if (!opened) return module.log(opened.error().detail + "; trying again");
     if (!*opened) return;
     tracker.emplace(std::move(**opened));

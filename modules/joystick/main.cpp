@@ -7,7 +7,7 @@
 
 #include <hc/base/clock.h>
 #include <hc/base/program.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 namespace {
 
@@ -35,10 +35,10 @@ int main(int argc, char** argv) {
                                "right stick, left and right shoulder, up, down, left, right, …");
   auto dead_zone = module.parameter("dead_zone", 0.1, "",
                                     "of the stick, what is nearer to the middle counts as 0",
-                                    {.least = 0, .most = 0.9});
+                                    {.min = 0, .max = 0.9});
   auto rate = module.parameter("rate", 50.0, "Hz",
                                "how often the stick is told while it is out of its middle",
-                               {.least = 0, .most = 1000});
+                               {.min = 0, .max = 1000});
 
   const hc::SystemClock clock;
   std::unique_ptr<hc::Joystick> joystick;

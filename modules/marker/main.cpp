@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/calibration.h>
 #include <vision/marker.h>
 #include <vision/marker_finder.h>
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
       "marker_frames", "", "", "numbers of markers' frames, as in \"aruco:23=101 colour:300=103\"");
   auto sides = module.parameter("sides", "", "m", "of single markers, as in \"aruco:23=0.18\"");
   auto side = module.parameter("side", 0.1, "m", "of all other markers' black or coloured square",
-                               {.least = 1e-4, .most = 100});
+                               {.min = 1e-4, .max = 100});
   auto use_aruco = module.parameter("aruco", true, "", "look for ArUco markers");
   auto dictionary =
       module.parameter("dictionary", "6X6_250", "",
@@ -74,15 +74,15 @@ int main(int argc, char** argv) {
   auto use_apriltag = module.parameter("apriltag", true, "", "look for AprilTags (36h11)");
   auto decimate =
       module.parameter("decimate", 1.0, "", "AprilTags: 2 is three times as fast, and misses some",
-                       {.least = 1, .most = 8, .fixed = true});
+                       {.min = 1, .max = 8, .fixed = true});
   auto use_colour = module.parameter("colour", true, "", "look for coloured squares on white");
   auto file = module.parameter("calibration_file", "", "",
                                "what stereo_calibration wrote; without it focal, cx, cy hold",
                                {.fixed = true});
-  auto focal = module.parameter("focal", 800.0, "px", "focal length", {.least = 1e-3, .most = 1e6});
+  auto focal = module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3, .max = 1e6});
   auto cx = module.parameter("cx", -1.0, "px", "where the optical axis is, -1: in the middle",
-                             {.least = -1, .most = 65535});
-  auto cy = module.parameter("cy", -1.0, "px", "the same downwards", {.least = -1, .most = 65535});
+                             {.min = -1, .max = 65535});
+  auto cy = module.parameter("cy", -1.0, "px", "the same downwards", {.min = -1, .max = 65535});
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<hc::vision::ArucoFinder> aruco;

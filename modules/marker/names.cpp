@@ -40,7 +40,7 @@ hc::Result<std::vector<NamedMarker>> read_names(const std::string& text, double 
     const std::string word = text.substr(at, end - at);
     const std::size_t colon = word.find(':'), equals = word.find('=');
     auto wrong = [&](const char* why) {
-      return hc::Error{hc::Code::Usage, "\"" + word + "\" " + why};
+      return hc::Error{hc::Code::Invalid, "\"" + word + "\" " + why};
     };
     if (colon == std::string::npos || equals == std::string::npos || equals < colon)
       return wrong("is not as in aruco:23=VALUE");

@@ -20,7 +20,7 @@ struct NamedMarker {
 ///
 /// @param least, most  what a value may be.
 /// @param whole  a value is a whole number.
-/// Errors: Usage, with the word that is wrong.
+/// Errors: Invalid, with the word that is wrong.
 hc::Result<std::vector<NamedMarker>> read_names(const std::string& text, double least, double most,
                                                 bool whole);
 

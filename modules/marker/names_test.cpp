@@ -35,7 +35,7 @@ TEST(Names, WhatIsWrongIsToldByItsWord) {
         "tag:5=5", "aruco:5=6=7", "aruco:5=6 aruco:5=7", "=:", "aruco:99999999999=5"}) {
     auto names = read_names(text, 1, 999, true);
     ASSERT_FALSE(names) << text;
-    EXPECT_EQ(names.error().code, hc::Code::Usage) << text;
+    EXPECT_EQ(names.error().code, hc::Code::Invalid) << text;
   }
   EXPECT_NE(read_names("aruco:1=2 what:3=4", 1, 9, true).error().detail.find("\"what:3=4\""),
             std::string::npos);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include <hc/base/program.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "ears.h"
 
@@ -35,9 +35,9 @@ int main(int argc, char** argv) {
   auto device = module.parameter(
       "device", "", "", "SDL's name of the microphone, \"\": the default", {.fixed = true});
   auto rate = module.parameter("rate", 16000, "Hz", "8000, 16000, 22050, 44100 or 48000",
-                               {.least = 8000, .most = 48000, .fixed = true});
+                               {.min = 8000, .max = 48000, .fixed = true});
   auto channels =
-      module.parameter("channels", 1, "", "1 or 2", {.least = 1, .most = 2, .fixed = true});
+      module.parameter("channels", 1, "", "1 or 2", {.min = 1, .max = 2, .fixed = true});
   auto paced =
       module.parameter("paced", true, "", "a file in real time; false: as fast as it is taken");
 
@@ -51,8 +51,8 @@ int main(int argc, char** argv) {
     auto known = hc::audio::coord_of(format.rate);
     if (!known)
       throw hc::ModuleError(
-          hc::Error{hc::Code::Usage, "parameter rate: " + std::to_string(*rate) +
-                                         " is not 8000, 16000, 22050, 44100 or 48000"});
+          hc::Error{hc::Code::Invalid, "parameter rate: " + std::to_string(*rate) +
+                                           " is not 8000, 16000, 22050, 44100 or 48000"});
     coord = *known;
     start = module.now();
     if (!file->empty())

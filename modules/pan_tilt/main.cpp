@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include <drivers/pan_tilt/neck.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 namespace {
 
@@ -45,19 +45,19 @@ int main(int argc, char** argv) {
                             "T_robot_head at the same time");
   auto device = module.parameter("device", "", "", "serial line of the unit, as /dev/ttyUSB0",
                                  {.positional = true});
-  auto baud = module.parameter("baud", 9600, "", "its rate", {.least = 300, .most = 4e6});
+  auto baud = module.parameter("baud", 9600, "", "its rate", {.min = 300, .max = 4e6});
   auto rate = module.parameter("rate", 50.0, "Hz", "how often the unit is asked where it looks",
-                               {.least = 0, .most = 1000});
+                               {.min = 0, .max = 1000});
   auto age = module.parameter("age", 0.2, "s",
                               "a command that is older, newer, or without a time, is left out",
-                              {.least = 0.001, .most = 60});
+                              {.min = 0.001, .max = 60});
   auto hold = module.parameter("hold", 0.2, "s",
                                "without a command for so long the unit is halted, 0: never",
-                               {.least = 0, .most = 60});
+                               {.min = 0, .max = 60});
   auto speed = module.parameter("speed", 0.0, "rad/s", "greatest of each axis, 0: the unit's own",
-                                {.least = 0, .most = 100});
+                                {.min = 0, .max = 100});
   auto acceleration =
-      module.parameter("acceleration", 0.0, "rad/s2", "the same", {.least = 0, .most = 1000});
+      module.parameter("acceleration", 0.0, "rad/s2", "the same", {.min = 0, .max = 1000});
   module.actor(command);
 
   const hc::SystemClock clock;

@@ -6,7 +6,7 @@
 
 #include <hc/adapter/eigen.h>
 #include <hc/adapter/pose.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "pusher.h"
 
@@ -21,18 +21,17 @@ int main(int argc, char** argv) {
   auto result = module.output("score", hc::table<double>(),
                               "1 x 4: median and greatest time from the stick to the motion [s], "
                               "pushes that moved the head, pushes");
-  auto count =
-      module.parameter("count", 20, "", "pushes", {.least = 1, .most = 1e6, .fixed = true});
+  auto count = module.parameter("count", 20, "", "pushes", {.min = 1, .max = 1e6, .fixed = true});
   auto seed = module.parameter("seed", 1, "", "of when, how far and how long it is pushed",
-                               {.least = 0, .most = 1e9, .fixed = true});
+                               {.min = 0, .max = 1e9, .fixed = true});
   auto rate = module.parameter("rate", 50.0, "Hz",
                                "how often the stick is told while it is out of its middle",
-                               {.least = 1, .most = 1000});
+                               {.min = 1, .max = 1000});
   auto acceleration = module.parameter("acceleration", 1.795, "rad/s²", "of the unit",
-                                       {.least = 0.01, .most = 1000, .fixed = true});
+                                       {.min = 0.01, .max = 1000, .fixed = true});
   auto base_speed =
       module.parameter("base_speed", 0.8976, "rad/s", "with which the unit starts at once",
-                       {.least = 0, .most = 100, .fixed = true});
+                       {.min = 0, .max = 100, .fixed = true});
 
   std::optional<Pusher> pusher;
   std::int64_t told = 0;  // when the stick was last [ns]

@@ -58,7 +58,7 @@ void Pusher::hear(double time, const hc::gaze::Angles& angles) {
   }
   if (!pushed_ || moved_ || time <= *pushed_) return;
   const double moved = way(angles, from_);
-  if (moved < options_.least_motion) return;
+  if (moved < options_.min_motion) return;
   moved_ = true;
   delays_.push_back(time - moving_since(moved, options_.unit) - *pushed_);
 }

@@ -14,11 +14,11 @@
 class Pusher {
  public:
   struct Options {
-    int count = 20;                ///< pushes
-    std::uint64_t seed = 1;        ///< of when, how long and where to
-    hc::gaze::Brakes unit;         ///< how the unit speeds up, too
-    double patience = 2;           ///< without motion for so long, a push had no effect [s]
-    double least_motion = 2.5e-4;  ///< as which a motion counts [rad]
+    int count = 20;              ///< pushes
+    std::uint64_t seed = 1;      ///< of when, how long and where to
+    hc::gaze::Brakes unit;       ///< how the unit speeds up, too
+    double patience = 2;         ///< without motion for so long, a push had no effect [s]
+    double min_motion = 2.5e-4;  ///< as which a motion counts [rad]
   };
   explicit Pusher(const Options& options) : options_(options), random_(options.seed) {}
 

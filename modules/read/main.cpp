@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/letters.h>
 
 #include "announcer.h"
@@ -32,19 +32,18 @@ int main(int argc, char** argv) {
   auto upper_case = module.parameter(
       "upper_case", true, "", "nothing but capital letters, digits and - . , ! ?", {.fixed = true});
   auto least = module.parameter("confidence", 0.4, "", "least confidence of a text that is given",
-                                {.least = 0, .most = 1});
+                                {.min = 0, .max = 1});
   auto repeat = module.parameter("repeat", 2, "",
                                  "so many of the last 2 repeat - 1 readings are to be the same",
-                                 {.least = 1, .most = 1000});
+                                 {.min = 1, .max = 1000});
   auto again =
       module.parameter("again", 10.0, "s", "until a text that stays is given again, 0: never",
-                       {.least = 0, .most = 1e6});
+                       {.min = 0, .max = 1e6});
   auto rate = module.parameter(
       "rate", 4.0, "Hz", "readings a second at most, 0: all; others are looked at for target alone",
-      {.least = 0, .most = 1000});
-  auto score =
-      module.parameter("score", 0.4, "", "least likeness of a line to one on a clean board",
-                       {.least = 0, .most = 1});
+      {.min = 0, .max = 1000});
+  auto score = module.parameter(
+      "score", 0.4, "", "least likeness of a line to one on a clean board", {.min = 0, .max = 1});
 
   std::optional<Recogniser> recogniser;
   Announcer announcer;

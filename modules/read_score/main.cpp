@@ -2,7 +2,7 @@
 // How well a robot reads aloud what is written before it.
 #include <cstdio>
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "read_score.h"
 
@@ -30,13 +30,13 @@ int main(int argc, char** argv) {
       module.output("score", hc::table<double>(),
                     "1 x 6: letters that are wrong, of 1; seen to spoken, median and most [s]; of "
                     "it since the picture that decided, median [s]; texts; texts not spoken");
-  auto seed = module.parameter("seed", 1, "", "of the texts", {.least = 0, .most = 1e9});
-  auto count = module.parameter("count", 5, "", "texts", {.least = 1, .most = 100'000});
+  auto seed = module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9});
+  auto count = module.parameter("count", 5, "", "texts", {.min = 1, .max = 100'000});
   auto time_out = module.parameter("time_out", 10.0, "s", "for a text, then comes the next",
-                                   {.least = 0.1, .most = 1000});
+                                   {.min = 0.1, .max = 1000});
   auto pause =
       module.parameter("pause", 0.3, "s", "from the end of what is spoken to the next text",
-                       {.least = 0, .most = 1000});
+                       {.min = 0, .max = 1000});
 
   std::mt19937_64 random;
   std::vector<ReadText> texts;

@@ -5,7 +5,7 @@
 
 #include <gaze/eyes.h>
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/calibration.h>
 #include <vision/rectifier.h>
 
@@ -37,9 +37,9 @@ int main(int argc, char** argv) {
                        "is assumed",
                        {.positional = true, .fixed = true});
   auto focal = module.parameter("focal", 800.0, "px", "focal length of an ideal pair",
-                                {.least = 1e-3, .most = 1e6, .fixed = true});
+                                {.min = 1e-3, .max = 1e6, .fixed = true});
   auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes of an ideal pair",
-                                   {.least = 1e-6, .most = 1000, .fixed = true});
+                                   {.min = 1e-6, .max = 1000, .fixed = true});
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<Rectifier> rectifiers[2];

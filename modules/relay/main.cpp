@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Passes on what comes. The smallest module with an input and an output.
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"relay", "Passes on what comes, as it is."};

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"router", "Sends each message to the links that its address leads to."};
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
       "without an address");
   auto remember =
       module.parameter("remember", 1.0, "s", "how long a message is known that comes once more",
-                       {.least = 0, .most = 3600, .fixed = true});
+                       {.min = 0, .max = 3600, .fixed = true});
   module.route_outputs();
 
   std::unique_ptr<Router> router;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <hc/base/clock.h>
-#include <hc/wire/header.h>
+#include <hc/mtp/header.h>
 
 /// Messages that came lately, to tell the second coming of one that goes in a circle.
 ///

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 class Ears {
  public:

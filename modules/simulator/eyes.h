@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <graphics/renderer.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "late.h"
 #include "parameters.h"

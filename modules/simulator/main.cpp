@@ -6,7 +6,7 @@
 
 #include <hc/adapter/opencv.h>
 #include <hc/adapter/pose.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "ball.h"
 #include "ears.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include <graphics/camera.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "ball.h"
 #include "head.h"
@@ -13,61 +13,59 @@
 struct Parameters {
   hc::Module& module;  ///< that has them
 
-  hc::Parameter<std::int64_t> seed =
-      module.parameter("seed", 1, "", "of the world, the ball and the noise",
-                       {.least = 0, .most = 1e9, .fixed = true});
+  hc::Parameter<std::int64_t> seed = module.parameter(
+      "seed", 1, "", "of the world, the ball and the noise", {.min = 0, .max = 1e9, .fixed = true});
   hc::Parameter<double> rate = module.parameter("rate", 20.0, "Hz", "pairs of pictures a second",
-                                                {.least = 0.1, .most = 1000, .fixed = true});
+                                                {.min = 0.1, .max = 1000, .fixed = true});
   hc::Parameter<std::int64_t> count =
-      module.parameter("count", 0, "", "pairs to give, 0: all", {.least = 0});
+      module.parameter("count", 0, "", "pairs to give, 0: all", {.min = 0});
   hc::Parameter<bool> paced = module.parameter(
       "paced", true, "", "in real time; false: as fast as they are drawn and gazes come",
       {.fixed = true});
   hc::Parameter<std::int64_t> start = module.parameter(
-      "start", 0, "ns", "time of the first picture, 0: now", {.least = 0, .fixed = true});
+      "start", 0, "ns", "time of the first picture, 0: now", {.min = 0, .fixed = true});
 
   hc::Parameter<std::int64_t> width = module.parameter("width", 800, "px", "of the pictures",
-                                                       {.least = 16, .most = 8192, .fixed = true});
+                                                       {.min = 16, .max = 8192, .fixed = true});
   hc::Parameter<std::int64_t> height = module.parameter("height", 600, "px", "of the pictures",
-                                                        {.least = 16, .most = 8192, .fixed = true});
+                                                        {.min = 16, .max = 8192, .fixed = true});
   hc::Parameter<double> focal = module.parameter("focal", 600.0, "px", "focal length of the eyes",
-                                                 {.least = 10, .most = 1e5, .fixed = true});
+                                                 {.min = 10, .max = 1e5, .fixed = true});
   hc::Parameter<double> baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes",
-                                                    {.least = 0, .most = 1, .fixed = true});
+                                                    {.min = 0, .max = 1, .fixed = true});
   hc::Parameter<double> noise = module.parameter(
-      "noise", 2.0, "", "standard deviation of the noise, of 255", {.least = 0, .most = 40});
-  hc::Parameter<double> blur = module.parameter("blur", 0.0, "px", "standard deviation of the blur",
-                                                {.least = 0, .most = 20});
+      "noise", 2.0, "", "standard deviation of the noise, of 255", {.min = 0, .max = 40});
+  hc::Parameter<double> blur =
+      module.parameter("blur", 0.0, "px", "standard deviation of the blur", {.min = 0, .max = 20});
   hc::Parameter<double> exposure =
-      module.parameter("exposure", 1.0, "", "1 is as it should be", {.least = 0, .most = 10});
+      module.parameter("exposure", 1.0, "", "1 is as it should be", {.min = 0, .max = 10});
   hc::Parameter<double> latency = module.parameter(
-      "latency", 0.0, "s", "from taking a picture to giving it", {.least = 0, .most = 2});
+      "latency", 0.0, "s", "from taking a picture to giving it", {.min = 0, .max = 2});
   hc::Parameter<bool> swapped =
       module.parameter("swapped", false, "", "the cables of the eyes are mixed up");
 
   hc::Parameter<double> zero_pan =
       module.parameter("zero_pan", 0.0, "rad", "where the eyes look with the unit at 0",
-                       {.least = -0.5, .most = 0.5, .fixed = true});
+                       {.min = -0.5, .max = 0.5, .fixed = true});
   hc::Parameter<double> zero_tilt = module.parameter("zero_tilt", 0.0, "rad", "the same of tilt",
-                                                     {.least = -0.5, .most = 0.5, .fixed = true});
+                                                     {.min = -0.5, .max = 0.5, .fixed = true});
   hc::Parameter<double> offset_roll =
       module.parameter("offset_roll", 0.0, "rad", "of the right eye, about its z",
-                       {.least = -0.5, .most = 0.5, .fixed = true});
+                       {.min = -0.5, .max = 0.5, .fixed = true});
   hc::Parameter<double> offset_pitch =
       module.parameter("offset_pitch", 0.0, "rad", "of the right eye, about its x",
-                       {.least = -0.5, .most = 0.5, .fixed = true});
+                       {.min = -0.5, .max = 0.5, .fixed = true});
   hc::Parameter<double> offset_yaw =
       module.parameter("offset_yaw", 0.0, "rad", "of the right eye, about its y",
-                       {.least = -0.5, .most = 0.5, .fixed = true});
+                       {.min = -0.5, .max = 0.5, .fixed = true});
 
   hc::Parameter<std::string> ball =
       module.parameter("ball", "roll", "", "what the ball does",
                        {.choices = {"still", "roll", "bounce", "hide", "gone"}, .fixed = true});
-  hc::Parameter<double> ball_speed =
-      module.parameter("ball_speed", 0.349, "rad/s", "as seen from the robot",
-                       {.least = 0, .most = 10, .fixed = true});
+  hc::Parameter<double> ball_speed = module.parameter(
+      "ball_speed", 0.349, "rad/s", "as seen from the robot", {.min = 0, .max = 10, .fixed = true});
   hc::Parameter<double> ball_hidden = module.parameter(
-      "ball_hidden", 2.0, "s", "rest behind the screen", {.least = 0, .most = 60, .fixed = true});
+      "ball_hidden", 2.0, "s", "rest behind the screen", {.min = 0, .max = 60, .fixed = true});
   hc::Parameter<std::string> text =
       module.parameter("text", "HELLO ROBOT", "", "what stands on the board");
 

@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <graphics/camera.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "ball.h"
 #include "head.h"

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <optional>
 
-#include <hc/node/module.h>
-#include <hc/wire/rows.h>
+#include <hc/module/module.h>
+#include <hc/mtp/rows.h>
 
 #include "synthesis.h"
 #include "words.h"
@@ -37,14 +37,14 @@ int main(int argc, char** argv) {
                              "each word: START END WORD [s since the sound begins]");
   auto voice =
       module.parameter("voice", "en", "", "language or voice, as espeak-ng --voices has it");
-  auto rate = module.parameter("rate", 175, "1/min", "words a minute", {.least = 80, .most = 450});
-  auto pitch = module.parameter("pitch", 50, "", "of the voice", {.least = 0, .most = 100});
-  auto volume = module.parameter("volume", 100, "", "of the voice", {.least = 0, .most = 200});
+  auto rate = module.parameter("rate", 175, "1/min", "words a minute", {.min = 80, .max = 450});
+  auto pitch = module.parameter("pitch", 50, "", "of the voice", {.min = 0, .max = 100});
+  auto volume = module.parameter("volume", 100, "", "of the voice", {.min = 0, .max = 200});
   auto paced = module.parameter("paced", true, "",
                                 "a text begins when the one before has been heard; false: at once");
   auto waiting =
       module.parameter("waiting", 4, "", "texts that may wait for their turn; the oldest make room",
-                       {.least = 1, .most = 1000});
+                       {.min = 1, .max = 1000});
 
   std::optional<Synthesis> synthesis;
   TextQueue queue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mouth: plays sound, and writes it down.
 #include <hc/base/program.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "player.h"
 
@@ -33,12 +33,12 @@ int main(int argc, char** argv) {
       {.fixed = true});
   auto rate =
       module.parameter("rate", 0, "Hz", "to play and write with, 0: that of the first sound",
-                       {.least = 0, .most = 192000, .fixed = true});
+                       {.min = 0, .max = 192000, .fixed = true});
   auto channels =
-      module.parameter("channels", 0, "", "the same", {.least = 0, .most = 8, .fixed = true});
+      module.parameter("channels", 0, "", "the same", {.min = 0, .max = 8, .fixed = true});
   auto buffer =
       module.parameter("buffer", 1.0, "s", "sound that may wait to be played before more is taken",
-                       {.least = 0, .most = 60, .fixed = true});
+                       {.min = 0, .max = 60, .fixed = true});
 
   std::optional<Player> player;
   bool told_rate = false;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <hc/adapter/opencv.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/calibration.h>
 
 namespace {
@@ -32,17 +32,17 @@ int main(int argc, char** argv) {
   auto file = module.parameter("calibration_file", "calibration.yml", "", "where it is written",
                                {.positional = true, .fixed = true});
   auto wanted = module.parameter("views", 20, "", "how many views to take",
-                                 {.least = hc::vision::kLeastViews, .most = 200});
+                                 {.min = hc::vision::kLeastViews, .max = 200});
   auto columns = module.parameter("columns", 9, "", "inner corners in a row of the board",
-                                  {.least = 3, .most = 50, .fixed = true});
+                                  {.min = 3, .max = 50, .fixed = true});
   auto rows = module.parameter("rows", 6, "", "inner corners in a column, another number",
-                               {.least = 3, .most = 50, .fixed = true});
+                               {.min = 3, .max = 50, .fixed = true});
   auto square = module.parameter("square", 0.025, "m", "side of a square",
-                                 {.least = 1e-4, .most = 10, .fixed = true});
+                                 {.min = 1e-4, .max = 10, .fixed = true});
   auto least = module.parameter(
       "difference", 0.02, "",
       "of the pictures' width: how far the corners of a view are at least from any other view's",
-      {.least = 0, .most = 1});
+      {.min = 0, .max = 1});
 
   hc::vision::Board board;
   std::vector<hc::vision::BoardView> views;
@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   };
   module.on_start([&] {
     if (*columns == *rows)
-      throw hc::ModuleError(hc::Error{hc::Code::Usage, "columns and rows are the same number"});
+      throw hc::ModuleError(hc::Error{hc::Code::Invalid, "columns and rows are the same number"});
     board = {static_cast<int>(*columns), static_cast<int>(*rows), *square};
   });
   module.on(hc::together(left, right), [&](const hc::Message& l, const hc::Message& r) {

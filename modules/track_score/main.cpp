@@ -8,7 +8,7 @@
 #include <gaze/track_score.h>
 #include <hc/adapter/eigen.h>
 #include <hc/adapter/pose.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   constexpr std::int32_t kWorld = 1, kWorldLeftEye = 1004;
@@ -24,13 +24,13 @@ int main(int argc, char** argv) {
                               "1 x 5: RMS error [rad], time to acquire it [s], times that it came "
                               "back, longest time to acquire it then [s], samples");
   auto duration =
-      module.parameter("duration", 20.0, "s", "how long it is scored", {.least = 0.1, .most = 1e6});
+      module.parameter("duration", 20.0, "s", "how long it is scored", {.min = 0.1, .max = 1e6});
   auto within = module.parameter("within", 0.0524, "rad", "an error up to this has acquired it",
-                                 {.least = 1e-4, .most = 1});
+                                 {.min = 1e-4, .max = 1});
   auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes");
 
   auto patience = module.parameter("patience", 60.0, "s", "for a picture, or it has failed",
-                                   {.least = 1, .most = 3600});
+                                   {.min = 1, .max = 3600});
 
   std::vector<hc::gaze::TrackSample> samples;
   bool has_begun = false;

@@ -11,7 +11,7 @@
 
 #include <hc/adapter/opencv.h>
 #include <hc/base/program.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 #include <vision/picture.h>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -67,13 +67,13 @@ int main(int argc, char** argv) {
       module.parameter("window", "auto", "", "show a window", {.choices = {"auto", "yes", "no"}});
   auto stay = module.parameter("stay", true, "",
                                "keep windows after the last picture, until a key is pressed");
-  auto least = module.parameter("least", 0.0, "", "value that is bluest; both 0: from the picture");
-  auto most = module.parameter("most", 0.0, "", "value that is reddest; both 0: from the picture");
+  auto min = module.parameter("min", 0.0, "", "value that is bluest; both 0: from the picture");
+  auto max = module.parameter("max", 0.0, "", "value that is reddest; both 0: from the picture");
 
   bool shows = false;
   std::set<std::string> windows;
   module.on_start([&] {
-    if (*least > *most) throw hc::ModuleError("least is above most");
+    if (*min > *max) throw hc::ModuleError("min is above max");
     bool wants_window = *window == "yes" || (*window == "auto" && save->empty());
     shows = wants_window && has_display();
     if (*window == "yes" && !shows) throw hc::ModuleError("window: there is no display");
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
     if (header.empty()) return;
     cv::Mat mat = hc::value_or_end(hc::as_mat(picture)), bgr;
     if (mat.depth() != CV_8U)
-      cv::cvtColor(hc::vision::colour_coded(mat, *least, *most), bgr, cv::COLOR_RGB2BGR);
+      cv::cvtColor(hc::vision::colour_coded(mat, *min, *max), bgr, cv::COLOR_RGB2BGR);
     else if (mat.channels() == 3)
       cv::cvtColor(mat, bgr, cv::COLOR_RGB2BGR);
     else

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 #include "workspace.h"
 
@@ -43,17 +43,16 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       "standings", hc::table<double>(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
   auto rate = module.parameter("rate", 20.0, "Hz", "how often it is decided who has the focus",
-                               {.least = 0.1, .most = 1000});
+                               {.min = 0.1, .max = 1000});
   auto margin = module.parameter("margin", 0.1, "",
                                  "by more than which a challenger's salience must be greater",
-                                 {.least = 0, .most = 1});
+                                 {.min = 0, .max = 1});
   auto dwell = module.parameter("dwell", 1.0, "s", "how long the focus stays where it is at least",
-                                {.least = 0, .most = 86400});
-  auto expiry = module.parameter("expiry", 1.0, "s", "how long a bid stands",
-                                 {.least = 0.001, .most = 86400});
-  auto person_expiry =
-      module.parameter("person_expiry", 60.0, "s", "how long a person's bid stands",
-                       {.least = 0.001, .most = 86400});
+                                {.min = 0, .max = 86400});
+  auto expiry =
+      module.parameter("expiry", 1.0, "s", "how long a bid stands", {.min = 0.001, .max = 86400});
+  auto person_expiry = module.parameter(
+      "person_expiry", 60.0, "s", "how long a person's bid stands", {.min = 0.001, .max = 86400});
 
   Workspace workspace;
   Complaints complaints;

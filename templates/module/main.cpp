@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What this module is for, in a line or two. Hypercolumn's doc/modules.md tells how one is written.
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"@NAME@", "Multiplies numbers by a factor."};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // f64 does not go out of a port of f32.
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 void send(hc::Output<hc::PositionKind<float>>& output) {
 #ifdef HC_WRONG

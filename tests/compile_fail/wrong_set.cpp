@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The handler of two inputs that are taken together takes two messages.
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 void take(hc::Module& module, const hc::Input<hc::PositionKind<double>>& left,
           const hc::Input<hc::PositionKind<double>>& right) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Text does not go out of a port of positions, and positions have no integers.
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 void send(hc::Output<hc::PositionKind<double>>& output) {
 #ifdef HC_WRONG

@@ -63,12 +63,12 @@ class BackwardBits:
 # -------------------------------------------------------------------------------------------- FSE
 
 
-def read_chances(source, most_accuracy):
+def read_chances(source, max_accuracy):
     """The accuracy and the symbols' chances of an FSE table. 4.1.1"""
     value = int.from_bytes(source.data[source.at :], "little")
     accuracy = (value & 15) + 5
-    if accuracy > most_accuracy:
-        raise ZstdError(f"an accuracy of {accuracy}, most {most_accuracy}")
+    if accuracy > max_accuracy:
+        raise ZstdError(f"an accuracy of {accuracy}, most {max_accuracy}")
     used = 4
     left = (1 << accuracy) + 1  # one more than the chances still to come
     chances = []

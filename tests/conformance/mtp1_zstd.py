@@ -228,14 +228,14 @@ class Frame:
         modes = block.number(1)
         if modes & 3:
             raise ZstdError("a reserved bit of the modes is set")
-        for index, (codes, default, most_accuracy) in enumerate(KINDS):
+        for index, (codes, default, max_accuracy) in enumerate(KINDS):
             mode = modes >> (6 - 2 * index) & 3
             if mode == 0:
                 self.tables[index] = fse_table(*default)
             elif mode == 1:
                 self.tables[index] = (0, [(check_code(block.number(1), codes), 0, 0)])
             elif mode == 2:
-                accuracy, chances = read_chances(block, most_accuracy)
+                accuracy, chances = read_chances(block, max_accuracy)
                 check_code(len(chances) - 1, codes)
                 self.tables[index] = fse_table(accuracy, chances)
             elif self.tables[index] is None:

@@ -15,8 +15,8 @@
 #include <actor/program.h>
 #include <hc/base/program.h>
 #include <hc/link/link.h>
-#include <hc/node/kind.h>
-#include <hc/wire/rows.h>
+#include <hc/module/kind.h>
+#include <hc/mtp/rows.h>
 #include <workspace/program.h>
 #include <workspace/workspace_conformance.h>
 

@@ -9,7 +9,7 @@
 
 #include <hc/base/clock.h>
 #include <hc/link/descriptor.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any message with compressed elements: it expands to just what its header promises, or is refused.
 #include <hc/compress/compress.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   hc::Message message;

@@ -11,7 +11,7 @@ constexpr const char* kPorts =
     R"({"name":"frames","types":[]}],"outputs":[{"name":"o",)"
     R"("types":[{"type":"table","components":1,"scalar":"f64","width":0,"height":0,"coord":0}]},)"
     R"({"name":"focus","types":[{"type":"table","components":1,"scalar":"i32","width":1,"height":1,)"
-    R"("coord":0}]}],"parameters":[{"name":"p","type":"integer","least":0,"fixed":true},)"
+    R"("coord":0}]}],"parameters":[{"name":"p","type":"integer","min":0,"fixed":true},)"
     R"({"name":"frames","type":"string"}],"transports":["shm","tcp","file"])";
 
 /// What a program says of itself: much of it hangs on its name's first letter.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any line: what is a header comes back as its canonical line, and that reads as the same header.
 #include <hc/base/check.h>
-#include <hc/wire/header.h>
+#include <hc/mtp/header.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view line{reinterpret_cast<const char*>(data), size};

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include <hc/wire/codec.h>
-#include <hc/wire/stream_reader.h>
+#include <hc/mtp/codec.h>
+#include <hc/mtp/stream_reader.h>
 
 namespace {
 

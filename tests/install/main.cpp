@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"twice", "Doubles tables."};

@@ -310,8 +310,8 @@ class Check(Pipes):
         lines = self.err.splitlines()
         for said, wanted in zip(lines, wanted_lines(text)):
             self.assertEqual(
-                said[: len("hc %s: Usage: %s" % (verb, wanted))],
-                "hc %s: Usage: %s" % (verb, wanted),
+                said[: len("hc %s: Invalid: %s" % (verb, wanted))],
+                "hc %s: Invalid: %s" % (verb, wanted),
                 text,
             )
         self.assertEqual(len(lines), len(wanted_lines(text)), (text, self.err))
@@ -357,7 +357,7 @@ class Check(Pipes):
         self.write("parts/ring.toml", RELAYS + '[[links]]\nfrom = "a.out"\nto = "c.in"\n')
         self.shell("hc check g.toml", 2)
         self.assertEqual(
-            self.err, 'hc check: Usage: parts/ring.toml:5: no module "x_c", did you mean "x_a"?\n'
+            self.err, 'hc check: Invalid: parts/ring.toml:5: no module "x_c", did you mean "x_a"?\n'
         )
 
     def test_what_is_no_text_file_is_told_in_one_line(self):
@@ -368,7 +368,7 @@ class Check(Pipes):
             self.shell("hc %s latin.toml" % verb, 2)
             self.assertEqual(
                 self.err,
-                "hc %s: Usage: latin.toml:2: a graph file is UTF-8, which this line is not\n"
+                "hc %s: Invalid: latin.toml:2: a graph file is UTF-8, which this line is not\n"
                 % verb,
             )
             self.write("part.toml", "[modules\n")
@@ -381,8 +381,8 @@ class Check(Pipes):
         self.assertEqual(
             self.err.splitlines(),
             [
-                'hc check: Usage: --set: no module "camra" in g.toml, did you mean "camera"?',
-                'hc check: Usage: --set: module camera: parameter width: "-1" is not from 0 to 65535',
+                'hc check: Invalid: --set: no module "camra" in g.toml, did you mean "camera"?',
+                'hc check: Invalid: --set: module camera: parameter width: "-1" is not from 0 to 65535',
             ],
         )
 

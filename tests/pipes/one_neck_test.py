@@ -49,7 +49,7 @@ parameters = { salience = 0.2, patience = 60, acceleration = 0 }
 [modules.point]
 program = "gaze"
 mode = "point"
-parameters = { salience = 1, patience = 0.3, acceleration = 0, tilt_least = 0, tilt_most = 0 }
+parameters = { salience = 1, patience = 0.3, acceleration = 0, tilt_min = 0, tilt_max = 0 }
 
 [[links]]
 from = "unix-listen:left"

@@ -147,7 +147,7 @@ class HeadTracker(Bodies):
 
     def test_a_host_that_is_none_is_a_clear_error(self):
         self.shell("hc head_tracker --host nowhere.invalid --port 0", status=2)
-        self.assertIn('head_tracker: Usage: host "nowhere.invalid": ', self.err)
+        self.assertIn('head_tracker: Invalid: host "nowhere.invalid": ', self.err)
 
 
 class Joystick(Bodies):

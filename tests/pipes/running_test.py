@@ -139,7 +139,7 @@ class Running(Graphs):
         self.state(observed, lambda state: self.module(state, "brightness")["restarts"] == 1)
         self.stop(process)
         _, err = asking.communicate(timeout=WATCHDOG)
-        self.assertEqual(err, b"hc graph: Usage: the graph is stopping\n")
+        self.assertEqual(err, b"hc graph: Invalid: the graph is stopping\n")
         self.assertTrue(self.has_ended(hangs))
 
     def test_a_program_that_hangs_does_not_outlive_a_killed_graph(self):

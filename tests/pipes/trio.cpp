@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A module for together_test.py: three inputs of different kinds, taken together within 10 ns.
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"trio", "Tells the times of three inputs that are taken together."};

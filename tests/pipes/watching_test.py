@@ -72,7 +72,7 @@ class Watching(Graphs):
         wait_until(lambda: "brightness" not in self.hc("graph" + of))
         self.assertEqual(
             self.hc("graph set camera.raet=50" + of, 2),
-            'hc graph: Usage: module camera has no parameter "raet", did you mean "rate"?\n',
+            'hc graph: Invalid: module camera has no parameter "raet", did you mean "rate"?\n',
         )
         self.hc("graph restart camera" + of)
         wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))

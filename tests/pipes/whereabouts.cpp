@@ -4,7 +4,7 @@
 #include <deque>
 
 #include <hc/adapter/pose.h>
-#include <hc/node/module.h>
+#include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"whereabouts", "Tells where a frame was at the times of messages."};
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   auto text = module.parameter("frames", "", "", "the graph's frames, filled in by hc run",
                                {.fixed = true});
   auto gap = module.parameter("gap", 1.0, "s", "between poses further apart nothing is known",
-                              {.least = 1e-9, .most = 1e9, .fixed = true});
+                              {.min = 1e-9, .max = 1e9, .fixed = true});
   auto target = module.parameter("target", "world", "", "the frame that points are wanted in");
   auto source = module.parameter("source", "left_eye", "", "the frame that they are given in");
   auto pose = module.output("pose", hc::transformation<double>(4, 4), "T_target_source");

@@ -23,24 +23,24 @@ def check(files):
 
 class Layers(unittest.TestCase):
     def test_a_good_tree_passes(self):
-        files = {"lib/hc/link/tcp.cpp": "#include <hc/wire/codec.h>\n#include <sys/socket.h>"}
+        files = {"lib/hc/link/tcp.cpp": "#include <hc/mtp/codec.h>\n#include <sys/socket.h>"}
         self.assertEqual(check(files)[0], 0)
 
     def test_each_wrong_arrow_is_named(self):
         for name, text in {
-            "lib/hc/base/a.cpp": "#include <hc/wire/codec.h>",
-            "lib/hc/wire/a.cpp": "#include <hc/link/link.h>",
-            "lib/hc/wire/b.cpp": "#include <sys/socket.h>",
-            "lib/hc/node/a.cpp": "#include <hc/graph/plan.h>",
-            "lib/hc/graph/a.cpp": "#include <hc/node/module.h>",
+            "lib/hc/base/a.cpp": "#include <hc/mtp/codec.h>",
+            "lib/hc/mtp/a.cpp": "#include <hc/link/link.h>",
+            "lib/hc/mtp/b.cpp": "#include <sys/socket.h>",
+            "lib/hc/module/a.cpp": "#include <hc/graph/plan.h>",
+            "lib/hc/graph/a.cpp": "#include <hc/module/module.h>",
             "lib/hc/link/a.h": "#include <fmt/format.h>",
-            "lib/vision/a.cpp": "#include <hc/wire/codec.h>",
-            "lib/frames/a.cpp": "#include <hc/wire/codec.h>",
-            "lib/hc/wire/c.h": "#include <frames/tree.h>",
+            "lib/vision/a.cpp": "#include <hc/mtp/codec.h>",
+            "lib/frames/a.cpp": "#include <hc/mtp/codec.h>",
+            "lib/hc/mtp/c.h": "#include <frames/tree.h>",
             "modules/a/main.cpp": '#include "../b/b.h"',
             "modules/b/main.cpp": "#include <hc/graph/plan.h>",
             "modules/c/main.cpp": 'std::cout << "hello";',
-            "lib/hc/node/b.cpp": 'printf("hello");',
+            "lib/hc/module/b.cpp": 'printf("hello");',
             "lib/hc/new/a.cpp": "#include <vector>",
         }.items():
             with self.subTest(name):

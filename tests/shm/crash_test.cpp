@@ -26,9 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-int rounds(const char* variable, int otherwise) {
+int rounds(const char* variable, int default_value) {
   const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::atoi(text);
+  return text == nullptr ? default_value : std::atoi(text);
 }
 int random_kills() {
   return rounds("HC_SHM_KILLS", 60);

@@ -155,9 +155,9 @@ class Dice {
 };
 
 /// How often hostile words are tried.
-inline std::int64_t rounds(std::int64_t otherwise) {
+inline std::int64_t rounds(std::int64_t default_value) {
   const char* text = std::getenv("HC_SHM_ROUNDS");
-  return text == nullptr ? otherwise : std::atoll(text);
+  return text == nullptr ? default_value : std::atoll(text);
 }
 
 /// A connection to the publisher of the name.

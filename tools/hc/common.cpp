@@ -31,7 +31,7 @@ bool is_program(const fs::path& path) {
 hc::Uri parse(const std::string& uri) {
   auto parsed = value_or_fail(hc::parse_uri(uri), uri);
   if (parsed.scheme == "inproc")
-    throw Failure(uri, hc::Error{hc::Code::Usage, "inproc links threads of one program"});
+    throw Failure(uri, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
   return parsed;
 }
 

@@ -31,7 +31,7 @@ struct Failure : std::runtime_error {
 
  private:
   static int status_of(hc::Code code) {
-    return code == hc::Code::Stopped ? 0 : code == hc::Code::Usage ? 2 : 1;
+    return code == hc::Code::Stopped ? 0 : code == hc::Code::Invalid ? 2 : 1;
   }
 };
 

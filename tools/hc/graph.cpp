@@ -144,7 +144,7 @@ hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
   if (!planned) throw Failure(planned.error());
   if (planned->plan) return std::move(*planned);
   for (const auto& line : planned->problems)
-    say(fmt::format("hc {}: {}", verb, hc::Error{hc::Code::Usage, line}.text()));
+    say(fmt::format("hc {}: {}", verb, hc::Error{hc::Code::Invalid, line}.text()));
   throw Failure(2);
 }
 

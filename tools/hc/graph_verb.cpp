@@ -70,7 +70,7 @@ void add_change(CLI::App& verb, Options& options, const std::string& name, const
     for (const auto* list : {given.get(), more.get()})
       for (const auto& word : *list) command += " " + word;
     if (command.find('\n') != std::string::npos)
-      throw Failure(hc::Error{hc::Code::Usage, "a command is one line"});
+      throw Failure(hc::Error{hc::Code::Invalid, "a command is one line"});
     ask(choose_running(options.running), {command});
   });
 }

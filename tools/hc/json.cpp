@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <hc/base/json_string.h>
-#include <hc/wire/text.h>
+#include <hc/mtp/text.h>
 
 namespace tool {
 namespace {

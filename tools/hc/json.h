@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace tool {
 

@@ -54,14 +54,14 @@ void write_file(const fs::path& path, const std::string& text) {
 
 void begin(const Options& options) {
   if (!is_snake_case(options.name))
-    throw Failure(hc::Error{hc::Code::Usage,
+    throw Failure(hc::Error{hc::Code::Invalid,
                             fmt::format("a module's name is snake_case, of at most {} letters, "
                                         "not \"{}\"",
                                         kMaxName, options.name)});
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))
-    throw Failure(hc::Error{hc::Code::Usage, folder.string() + " is there already"});
+    throw Failure(hc::Error{hc::Code::Invalid, folder.string() + " is there already"});
   fs::create_directories(folder, error);
   if (error) throw Failure(hc::Error{hc::Code::System, folder.string() + ": " + error.message()});
   for (const auto& file : options.is_python ? python_template() : cpp_template()) {

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace tool {
 

@@ -12,7 +12,7 @@
 
 #include <hc/base/program.h>
 #include <hc/base/suggestion.h>
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 #include "common.h"
 
@@ -94,7 +94,7 @@ RunningGraph choose_running(const std::string& name) {
                                                        hc::suggestion(name, names))});
   std::string list;
   for (const auto& graph : meant) list += (list.empty() ? "" : ", ") + graph.text();
-  throw Failure(hc::Error{hc::Code::Usage, "several graphs run: say which: " + list});
+  throw Failure(hc::Error{hc::Code::Invalid, "several graphs run: say which: " + list});
 }
 
 Observer::Observer(const RunningGraph& graph)
@@ -157,7 +157,7 @@ void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
   auto answer = hc::rows_of(message);
   if (answer == std::vector<std::string>{"ok"}) return;
   for (std::size_t i = 0; i + 1 < answer.size(); ++i) say("hc graph: " + answer[i]);
-  throw Failure(hc::Error{hc::Code::Usage, answer.empty() ? "an empty answer" : answer.back()});
+  throw Failure(hc::Error{hc::Code::Invalid, answer.empty() ? "an empty answer" : answer.back()});
 }
 
 }  // namespace tool

@@ -8,7 +8,7 @@
 #include <ctime>
 #include <limits>
 
-#include <hc/wire/text.h>
+#include <hc/mtp/text.h>
 
 namespace tool {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace tool {
 

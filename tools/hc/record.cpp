@@ -38,7 +38,7 @@ void run(const Options& options) {
   std::vector<Link> links;
   for (const auto& uri : options.links) {
     if (is_file(uri, options.file))
-      throw Failure(hc::Error{hc::Code::Usage, uri + " is the file that is written"});
+      throw Failure(hc::Error{hc::Code::Invalid, uri + " is the file that is written"});
     links.push_back({uri, open_source(uri, options.limit)});
   }
   auto sink = open_file_sink(options.file);

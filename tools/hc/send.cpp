@@ -14,7 +14,7 @@
 #include <system_error>
 
 #include <hc/compress/compress.h>
-#include <hc/wire/text.h>
+#include <hc/mtp/text.h>
 
 #include "common.h"
 #include "npy.h"
@@ -38,7 +38,7 @@ struct Options {
 template <typename E>
 E named(std::optional<E> value, const std::string& kind, const std::string& name) {
   if (!value)
-    throw Failure(hc::Error{hc::Code::Usage,
+    throw Failure(hc::Error{hc::Code::Invalid,
                             fmt::format("no {} \"{}\"; see spec/mtp-1.md, section 3", kind, name)});
   return *value;
 }
@@ -63,7 +63,7 @@ hc::Message message_of_numbers(const Options& options) {
     auto error = hc::find_error(header.info);
     if (!error) break;
     if (options.components != 0 || error->rule != 18)
-      throw Failure(hc::Error{hc::Code::Usage, fmt::format("R{}: {}", error->rule, error->what)});
+      throw Failure(hc::Error{hc::Code::Invalid, fmt::format("R{}: {}", error->rule, error->what)});
   }
   std::size_t elements = options.numbers.size() / header.info.components;
   std::size_t width = options.width > 0 ? static_cast<std::size_t>(options.width)
@@ -72,7 +72,7 @@ hc::Message message_of_numbers(const Options& options) {
   std::size_t height = width == 0 ? 0 : elements / width;
   if (width * height * header.info.components != options.numbers.size())
     throw Failure(hc::Error{
-        hc::Code::Usage,
+        hc::Code::Invalid,
         fmt::format("{} numbers do not make {} of {} components each", options.numbers.size(),
                     options.width > 0 ? fmt::format("rows of {} elements", width) : "elements",
                     header.info.components)});
@@ -143,7 +143,7 @@ void check(const Options& options) {
   if (!options.picture.empty()) given.emplace_back("--picture");
   if (!options.npy.empty()) given.emplace_back("--npy");
   if (!options.numbers.empty()) given.emplace_back("numbers");
-  auto refuse = [](const std::string& what) { throw Failure(hc::Error{hc::Code::Usage, what}); };
+  auto refuse = [](const std::string& what) { throw Failure(hc::Error{hc::Code::Invalid, what}); };
   if (given.empty() && !options.has_type)
     refuse("nothing to send: give numbers, --text, --picture or --npy");
   if (given.size() > 1) refuse(given[0] + " and " + given[1] + " do not go together");

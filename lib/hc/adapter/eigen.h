@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace hc {
 

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace hc {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include <frames/tree.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc {
 namespace {

@@ -8,7 +8,7 @@ namespace hc {
 namespace {
 
 Result<int> half(int value) {
-  if (value % 2 != 0) return Error{Code::Usage, std::to_string(value) + " is odd"};
+  if (value % 2 != 0) return Error{Code::Invalid, std::to_string(value) + " is odd"};
   return value / 2;
 }
 
@@ -19,7 +19,7 @@ TEST(Result, HoldsAValueOrAnError) {
   EXPECT_EQ(good.value_or(7), 2);
   auto failed = half(3);
   ASSERT_FALSE(failed.has_value());
-  EXPECT_EQ(failed.error().text(), "Usage: 3 is odd");
+  EXPECT_EQ(failed.error().text(), "Invalid: 3 is odd");
   EXPECT_EQ(failed.value_or(7), 7);
 }
 
@@ -48,7 +48,7 @@ TEST(Code, HasANameEach) {
       {Code::Malformed, "Malformed"}, {Code::Unsupported, "Unsupported"},
       {Code::TooLarge, "TooLarge"},   {Code::Truncated, "Truncated"},
       {Code::Closed, "Closed"},       {Code::NotFound, "NotFound"},
-      {Code::Usage, "Usage"},         {Code::System, "System"}};
+      {Code::Invalid, "Invalid"},     {Code::System, "System"}};
   for (const auto& [code, text] : names) EXPECT_EQ(name(code), text);
 }
 

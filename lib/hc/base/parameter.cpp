@@ -22,15 +22,15 @@ std::string number_text(double value) {
 }
 
 std::string range_in_words(const ParameterOptions& options) {
-  const bool has_least = std::isfinite(options.least), has_most = std::isfinite(options.most);
+  const bool has_least = std::isfinite(options.min), has_most = std::isfinite(options.max);
   if (has_least && options.step > 1)
-    return number_text(options.least) + ", " +
-           number_text(options.least + static_cast<double>(options.step)) + ", …" +
-           (has_most ? ", " + number_text(options.most) : "");
+    return number_text(options.min) + ", " +
+           number_text(options.min + static_cast<double>(options.step)) + ", …" +
+           (has_most ? ", " + number_text(options.max) : "");
   if (has_least && has_most)
-    return "from " + number_text(options.least) + " to " + number_text(options.most);
-  if (has_least) return "at least " + number_text(options.least);
-  return has_most ? "at most " + number_text(options.most) : "a number";
+    return "from " + number_text(options.min) + " to " + number_text(options.max);
+  if (has_least) return "at least " + number_text(options.min);
+  return has_most ? "at most " + number_text(options.max) : "a number";
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ std::string text(const ParameterValue& value) {
 
 Status ParameterState::set(std::string_view given) {
   auto refuse = [&](const std::string& wanted) {
-    return Error{Code::Usage,
+    return Error{Code::Invalid,
                  "parameter " + name + ": \"" + std::string(given) + "\" is not " + wanted};
   };
   double number = 0;
@@ -73,9 +73,9 @@ Status ParameterState::set(std::string_view given) {
   if (whole ? !read_all(given, integer) : !read_all(given, number))
     return refuse(whole ? "a whole number" : "a number");
   if (whole) number = static_cast<double>(integer);
-  const bool is_within = number >= options.least && number <= options.most;
-  const bool is_step = !whole || options.step == 1 || !std::isfinite(options.least) ||
-                       (integer - static_cast<std::int64_t>(options.least)) % options.step == 0;
+  const bool is_within = number >= options.min && number <= options.max;
+  const bool is_step = !whole || options.step == 1 || !std::isfinite(options.min) ||
+                       (integer - static_cast<std::int64_t>(options.min)) % options.step == 0;
   if (!is_within || !is_step || std::isnan(number)) return refuse(range_in_words(options));
   if (whole)
     value = integer;

@@ -20,8 +20,8 @@ using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 
 /// What a parameter may be, beyond its type.
 struct ParameterOptions {
-  double least = -std::numeric_limits<double>::infinity();  ///< of a number
-  double most = std::numeric_limits<double>::infinity();    ///< of a number
+  double min = -std::numeric_limits<double>::infinity();  ///< of a number
+  double max = std::numeric_limits<double>::infinity();   ///< of a number
   std::int64_t step = 1;  ///< of a whole number that has a least one: from there in such steps
   std::vector<std::string> choices = {};  ///< of a string; empty: any string
   bool positional = false;  ///< may be given without its name, in the order of declaration
@@ -34,12 +34,12 @@ struct ParameterState {
   std::string unit;  ///< [SI], "" for none
   std::string doc;
   ParameterOptions options;
-  ParameterValue otherwise;  ///< the default
+  ParameterValue default_value;  ///< the default
   ParameterValue value;
 
   /// Sets the value from text: true, false, 12, 0.5, any string.
   ///
-  /// Errors: Usage (not of the type, out of range, not one of the choices).
+  /// Errors: Invalid (not of the type, out of range, not one of the choices).
   Status set(std::string_view text);
 };
 

@@ -31,17 +31,17 @@ TEST(Parameter, ReadsItsOwnType) {
 }
 
 TEST(Parameter, KeepsItsRange) {
-  auto share = state(0.5, {.least = 0, .most = 1});
+  auto share = state(0.5, {.min = 0, .max = 1});
   EXPECT_TRUE(share.set("1"));
   EXPECT_EQ(share.set("1.01").error().detail, "parameter p: \"1.01\" is not from 0 to 1");
   EXPECT_EQ(text(share.value), "1");
   auto refusal = [](ParameterOptions options, const char* text) {
     return state(0.5, std::move(options)).set(text).error().detail;
   };
-  EXPECT_EQ(refusal({.least = 0}, "-1"), "parameter p: \"-1\" is not at least 0");
-  EXPECT_EQ(refusal({.most = 0}, "1"), "parameter p: \"1\" is not at most 0");
+  EXPECT_EQ(refusal({.min = 0}, "-1"), "parameter p: \"-1\" is not at least 0");
+  EXPECT_EQ(refusal({.max = 0}, "1"), "parameter p: \"1\" is not at most 0");
   EXPECT_EQ(refusal({}, "nan"), "parameter p: \"nan\" is not a number");
-  auto side = state(std::int64_t{5}, {.least = 1, .most = 21, .step = 2});
+  auto side = state(std::int64_t{5}, {.min = 1, .max = 21, .step = 2});
   EXPECT_TRUE(side.set("21"));
   EXPECT_EQ(side.set("4").error().detail, "parameter p: \"4\" is not 1, 3, …, 21");
   EXPECT_EQ(side.set("23").error().detail, "parameter p: \"23\" is not 1, 3, …, 21");

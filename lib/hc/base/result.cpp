@@ -19,8 +19,8 @@ std::string_view name(Code code) {
       return "Stopped";
     case Code::NotFound:
       return "NotFound";
-    case Code::Usage:
-      return "Usage";
+    case Code::Invalid:
+      return "Invalid";
     case Code::System:
       return "System";
   }

@@ -22,7 +22,7 @@ enum class Code {
   Closed,       ///< the other side has gone
   Stopped,      ///< this side was asked to stop while it waited
   NotFound,     ///< a name that nothing has, or a peer that never was there
-  Usage,        ///< arguments, parameters or a graph file that make no sense
+  Invalid,      ///< arguments, parameters or a graph file that make no sense
   System,       ///< a system call or a library failed; the detail says which and why
 };
 

@@ -16,7 +16,7 @@ TEST(Suggestion, IsNearOrNothing) {
 
 TEST(Suggestion, IsNotAnotherWordOfThatLength) {
   for (const char* name : {"", "x", "foo", "left", "speed"})
-    EXPECT_EQ(suggestion(name, {"y", "to", "keep", "least", "depth"}), "") << name;
+    EXPECT_EQ(suggestion(name, {"y", "to", "keep", "min", "depth"}), "") << name;
 }
 
 }  // namespace

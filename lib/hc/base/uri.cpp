@@ -18,7 +18,7 @@ bool is_scheme(std::string_view text) {
 }
 
 Error usage(std::string_view what, std::string_view text) {
-  return {Code::Usage, std::string(what) + ": \"" + std::string(text.substr(0, 80)) + "\""};
+  return {Code::Invalid, std::string(what) + ": \"" + std::string(text.substr(0, 80)) + "\""};
 }
 
 Status parse_options(std::string_view text, Uri& uri) {
@@ -39,10 +39,10 @@ Status parse_options(std::string_view text, Uri& uri) {
 
 }  // namespace
 
-std::string_view Uri::option(std::string_view key, std::string_view otherwise) const {
+std::string_view Uri::option(std::string_view key, std::string_view default_value) const {
   for (const auto& [name, value] : options)
     if (name == key) return value;
-  return otherwise;
+  return default_value;
 }
 
 std::string Uri::text() const {
@@ -58,11 +58,11 @@ std::string Uri::text() const {
 Result<Uri> parse_uri(std::string_view text) {
   if (text.empty()) return usage("a URI cannot be empty", text);
   if (text.size() > kMaxUriBytes)
-    return Error{Code::Usage,
+    return Error{Code::Invalid,
                  "a URI is at most 4096 bytes long, this one has " + std::to_string(text.size())};
   auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
   if (std::any_of(text.begin(), text.end(), is_control))
-    return Error{Code::Usage, "a URI holds no control characters"};
+    return Error{Code::Invalid, "a URI holds no control characters"};
 
   auto question = std::min(text.find('?'), text.size());
   std::string_view place = text.substr(0, question);

@@ -20,7 +20,7 @@ struct Uri {
   std::vector<std::pair<std::string, std::string>> options;  ///< after `?`, `key=value&key=value`
 
   /// The value of an option, or `otherwise` where it is not given.
-  [[nodiscard]] std::string_view option(std::string_view key, std::string_view otherwise) const;
+  [[nodiscard]] std::string_view option(std::string_view key, std::string_view default_value) const;
 
   /// The URI as text; parse_uri gives it back.
   [[nodiscard]] std::string text() const;
@@ -29,7 +29,7 @@ struct Uri {
 /// Takes a URI apart. `-` alone is standard input or output. A text without a scheme (no colon, or
 /// a `/` or `.` before it) is a file's path: `eyes.mtp` is `file:eyes.mtp`.
 ///
-/// Errors: Usage (empty; longer than 4096 bytes; a NUL, line end or other control byte; a scheme
+/// Errors: Invalid (empty; longer than 4096 bytes; a NUL, line end or other control byte; a scheme
 /// with other letters; an option without `=`, without a key, or given twice).
 Result<Uri> parse_uri(std::string_view text);
 
@@ -41,7 +41,7 @@ struct HostPort {
 
 /// Reads `[HOST:]PORT`; IPv6 addresses stand in brackets, `[::1]:7000`.
 ///
-/// Errors: Usage (no port, a port outside 0 … 65535, an unclosed bracket).
+/// Errors: Invalid (no port, a port outside 0 … 65535, an unclosed bracket).
 Result<HostPort> parse_host_port(std::string_view text);
 
 }  // namespace hc

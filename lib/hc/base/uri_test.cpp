@@ -35,7 +35,7 @@ TEST(Uri, RefusesWhatIsNone) {
                            std::string("tcp:x?a=1&a=2"), std::string(":x"), std::string("t p:x")}) {
     auto uri = parse_uri(text);
     ASSERT_FALSE(uri) << text;
-    EXPECT_EQ(uri.error().code, Code::Usage);
+    EXPECT_EQ(uri.error().code, Code::Invalid);
     EXPECT_EQ(uri.error().detail.find('\n'), std::string::npos);
   }
 }

@@ -4,7 +4,7 @@
 // R34 … R37). Uses libzstd and libjpeg-turbo; no state between calls, any thread.
 
 #include <hc/base/result.h>
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace hc {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace hc::internal {
 

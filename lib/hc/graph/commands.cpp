@@ -179,20 +179,20 @@ bool take_out(std::vector<std::string>& commands, const std::string& module) {
 
 Result<Command> parse_command(std::string_view line) {
   auto words = split(line);
-  if (words.empty()) return Error{Code::Usage, "there is no command"};
+  if (words.empty()) return Error{Code::Invalid, "there is no command"};
   auto form = std::find_if(kForms.begin(), kForms.end(),
                            [&](const Form& each) { return each.name == words[0]; });
   if (form == kForms.end()) {
     std::vector<std::string> names;
     for (const auto& each : kForms) names.emplace_back(each.name);
-    return Error{Code::Usage, "no command \"" + words[0] + "\"" + suggestion(words[0], names)};
+    return Error{Code::Invalid, "no command \"" + words[0] + "\"" + suggestion(words[0], names)};
   }
   Command command{form->verb, {words.begin() + 1, words.end()}};
   if (form->verb == Verb::Set && !command.words.empty())
     command.words = {std::string(line.substr(line.find(words[1], form->name.size())))};
   const std::size_t count = command.words.size();
   if (count < form->words || (count > form->words && !form->takes_more))
-    return Error{Code::Usage, "the command is: " + std::string(form->text)};
+    return Error{Code::Invalid, "the command is: " + std::string(form->text)};
   return command;
 }
 

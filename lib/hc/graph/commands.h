@@ -22,7 +22,7 @@ struct Command {
   [[nodiscard]] bool is_edit() const { return verb != Verb::Restart && verb != Verb::Stop; }
 };
 
-/// Errors: Usage.
+/// Errors: Invalid.
 Result<Command> parse_command(std::string_view line);
 
 /// Changes a graph as an edit says. Problems: what it names is not there, or is there already.

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <hc/graph/problems.h>
-#include <hc/wire/element.h>
+#include <hc/mtp/element.h>
 
 namespace hc {
 

@@ -19,7 +19,7 @@ Result<Graph> parse(std::string_view text) {
   if (problems.empty()) return graph;
   std::string all;
   for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
-  return Error{Code::Usage, all};
+  return Error{Code::Invalid, all};
 }
 
 TEST(GraphFile, HasModulesInTheirOrderAndLinks) {
@@ -105,7 +105,7 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
   for (const auto& [text, wanted] : cases) {
     auto graph = parse(text);
     ASSERT_FALSE(graph) << text;
-    EXPECT_EQ(graph.error().code, Code::Usage);
+    EXPECT_EQ(graph.error().code, Code::Invalid);
     EXPECT_TRUE(graph.error().detail.starts_with(wanted)) << graph.error().detail;
   }
   EXPECT_FALSE(parse(std::string(kMaxGraphBytes + 1, '\n')));

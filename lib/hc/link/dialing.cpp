@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
 
-/// None where the link is to end with its connection. Errors: Usage.
+/// None where the link is to end with its connection. Errors: Invalid.
 Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
   auto patience = number_option(uri, "reconnect", 0, kMostSeconds);
   if (!patience) return patience.error();

@@ -12,7 +12,7 @@ namespace hc::internal {
 
 /// A connection to a peer that listens, waiting for it as long as `wait` says.
 ///
-/// Errors: Usage, Closed (nobody listens), Stopped, System.
+/// Errors: Invalid, Closed (nobody listens), Stopped, System.
 Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options);
 
 /// Ends of a link to a peer that listens. With `reconnect` they are there at once, and the

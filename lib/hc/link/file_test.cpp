@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include <hc/link/link_conformance.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::testing {
 namespace {

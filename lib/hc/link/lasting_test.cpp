@@ -135,7 +135,7 @@ TEST_P(LastingLink, AnEndThatIsFollowedByItsOwnIsNotTold) {
 }
 
 TEST_P(LastingLink, StayIsYesOrNo) {
-  EXPECT_EQ(open_sink(*parse_uri(ends_.sink + "?stay=2")).error().code, Code::Usage);
+  EXPECT_EQ(open_sink(*parse_uri(ends_.sink + "?stay=2")).error().code, Code::Invalid);
 }
 
 }  // namespace

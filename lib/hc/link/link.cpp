@@ -58,7 +58,7 @@ Result<const Transport*> find_transport(const Uri& uri) {
     if (transport.scheme == uri.scheme) return &transport;
     known.append(known.empty() ? "" : ", ").append(transport.scheme);
   }
-  return Error{Code::Usage, "no transport \"" + uri.scheme + "\"; there are " + known};
+  return Error{Code::Invalid, "no transport \"" + uri.scheme + "\"; there are " + known};
 }
 
 Status check_options(const Uri& uri, std::string_view allowed) {
@@ -68,9 +68,9 @@ Status check_options(const Uri& uri, std::string_view allowed) {
     list.append(list.empty() ? ", only \"" : ", \"").append(word + '"');
   for (const auto& [key, value] : uri.options) {
     if (std::find(known.begin(), known.end(), key) == known.end())
-      return Error{Code::Usage, uri.scheme + " has no option \"" + key + "\" here" + list +
-                                    (is_option(key) ? "" : suggestion(key, known))};
-    if (value.empty()) return Error{Code::Usage, "option " + key + " has no value"};
+      return Error{Code::Invalid, uri.scheme + " has no option \"" + key + "\" here" + list +
+                                      (is_option(key) ? "" : suggestion(key, known))};
+    if (value.empty()) return Error{Code::Invalid, "option " + key + " has no value"};
   }
   return {};
 }
@@ -86,7 +86,7 @@ Status check_end(const Uri& uri, std::string_view allowed) {
   if (uri.scheme.starts_with("tcp")) {
     if (auto place = parse_host_port(uri.rest); !place) return place.error();
   } else if (uri.scheme != "-" && (uri.rest.empty() || uri.rest == "@")) {
-    return Error{Code::Usage, "there is no name"};
+    return Error{Code::Invalid, "there is no name"};
   }
   for (const char* key : {"wait", "reconnect", "readers", "stay", "spin"})
     if (auto number = internal::number_option(uri, key, 0); !number) return number.error();
@@ -221,16 +221,16 @@ Result<bool> receive(Source& source, Message& message, int stop) {
 
 namespace internal {
 
-Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t otherwise,
+Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,
                                    std::int64_t most) {
   auto text = uri.option(key, "");
-  if (text.empty()) return otherwise;
+  if (text.empty()) return default_value;
   std::int64_t value = 0;
   const char* end = text.data() + text.size();
   auto [stop, status] = std::from_chars(text.data(), end, value);
   if (stop != end || status != std::errc() || value < 0 || value > most)
-    return Error{Code::Usage, "option " + std::string(key) + " is a whole number from 0 to " +
-                                  std::to_string(most)};
+    return Error{Code::Invalid, "option " + std::string(key) + " is a whole number from 0 to " +
+                                    std::to_string(most)};
   return value;
 }
 

@@ -16,7 +16,7 @@
 #include <hc/base/log.h>
 #include <hc/base/result.h>
 #include <hc/base/uri.h>
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace hc {
 
@@ -171,14 +171,14 @@ struct LinkOptions {
 /// A source of shm may have a `keep` of its own; `all` makes no sink wait that drops.
 /// Bytes may be written with K, M or G (of 1024).
 ///
-/// Errors: Usage (no such scheme; an option that it does not have, or not with that value),
+/// Errors: Invalid (no such scheme; an option that it does not have, or not with that value),
 /// NotFound (no such file or host), Closed (nobody listens), Stopped, System (name in use, …).
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
 
 /// Whether a URI makes sense at a source or a sink, as far as can be told while nothing is opened.
 ///
-/// Errors: Usage.
+/// Errors: Invalid.
 Status check_source(const Uri& uri);
 Status check_sink(const Uri& uri);
 

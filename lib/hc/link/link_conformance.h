@@ -312,7 +312,7 @@ TEST_P(LinkConformance, OptionsOfAnotherTransportAreRefused) {
   auto [from, to] = GetParam().make();
   auto source = open_source(*parse_uri(with(from, "flavour=sweet")));
   ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, Code::Usage);
+  EXPECT_EQ(source.error().code, Code::Invalid);
 }
 
 }  // namespace hc::testing

@@ -9,7 +9,7 @@ namespace {
 TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
   auto source = open_source(*parse_uri("pigeon:home"));
   ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, Code::Usage);
+  EXPECT_EQ(source.error().code, Code::Invalid);
   EXPECT_EQ(
       source.error().detail,
       "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, unix, unix-listen, inproc, "
@@ -21,15 +21,15 @@ TEST(Open, OptionsAreChecked) {
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?speed=3")).error().detail,
             "tcp has no option \"speed\" here, only \"wait\", \"reconnect\"");
   EXPECT_EQ(open_source(*parse_uri("tcp:h:1?wait=")).error().text(),
-            "Usage: option wait has no value");
+            "Invalid: option wait has no value");
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
-  EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Usage);
+  EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Invalid);
   EXPECT_EQ(open_sink(*parse_uri("-?wait=3")).error().detail,
             "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"byte_rate\", "
             "\"byte_burst\", \"memory\"");
-  EXPECT_EQ(open_sink(*parse_uri("-?keep=some")).error().code, Code::Usage);
-  EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?wait=x")).error().code, Code::Usage);
-  EXPECT_EQ(open_sink(*parse_uri("unix-listen:@x?readers=-1")).error().code, Code::Usage);
+  EXPECT_EQ(open_sink(*parse_uri("-?keep=some")).error().code, Code::Invalid);
+  EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?wait=x")).error().code, Code::Invalid);
+  EXPECT_EQ(open_sink(*parse_uri("unix-listen:@x?readers=-1")).error().code, Code::Invalid);
 }
 
 TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
@@ -56,22 +56,23 @@ TEST(Open, NumbersHaveARange) {
   for (const char* end : {"tcp:localhost:1", "unix:@nobody", "shm:nobody"})
     for (std::string option : {"wait", "reconnect"})
       EXPECT_EQ(source_error(end + ("?" + option) + "=86401"),
-                "Usage: option " + option + " is a whole number from 0 to 86400");
+                "Invalid: option " + option + " is a whole number from 0 to 86400");
   EXPECT_EQ(sink_error("tcp-listen:0?readers=257"),
-            "Usage: option readers is a whole number from 0 to 256");
+            "Invalid: option readers is a whole number from 0 to 256");
   EXPECT_EQ(sink_error("unix-listen:@x?readers=257"),
-            "Usage: option readers is a whole number from 0 to 256");
-  EXPECT_EQ(sink_error("shm:x?readers=65"), "Usage: option readers is a whole number from 0 to 64");
-  EXPECT_EQ(sink_error("-?burst=2"), "Usage: option burst wants rate beside it");
+            "Invalid: option readers is a whole number from 0 to 256");
+  EXPECT_EQ(sink_error("shm:x?readers=65"),
+            "Invalid: option readers is a whole number from 0 to 64");
+  EXPECT_EQ(sink_error("-?burst=2"), "Invalid: option burst wants rate beside it");
   EXPECT_EQ(sink_error("-?byte_burst=2&rate=1"),
-            "Usage: option byte_burst wants byte_rate beside it");
+            "Invalid: option byte_burst wants byte_rate beside it");
 }
 
 TEST(Open, SharedMemoryHasAName) {
   EXPECT_EQ(open_source(*parse_uri("shm:?wait=1")).error().text(),
-            "Usage: a name of shared memory has 1 to 90 bytes, not 0");
-  EXPECT_EQ(open_sink(*parse_uri("shm:")).error().code, Code::Usage);
-  EXPECT_EQ(open_sink(*parse_uri("shm:" + std::string(91, 'x'))).error().code, Code::Usage);
+            "Invalid: a name of shared memory has 1 to 90 bytes, not 0");
+  EXPECT_EQ(open_sink(*parse_uri("shm:")).error().code, Code::Invalid);
+  EXPECT_EQ(open_sink(*parse_uri("shm:" + std::string(91, 'x'))).error().code, Code::Invalid);
   EXPECT_TRUE(open_sink(*parse_uri("shm:" + std::string(90, 'x'))));
 }
 

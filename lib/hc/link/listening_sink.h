@@ -7,7 +7,7 @@
 
 #include <hc/link/acceptor.h>
 #include <hc/link/outlet.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::internal {
 
@@ -19,7 +19,7 @@ namespace hc::internal {
 /// counted the link is closed, or stays: then only a policy that loses nothing waits for another.
 class ListeningSink final : public Sink {
  public:
-  /// A sink with the readers and the policy that the URI's options say. Errors: Usage, System.
+  /// A sink with the readers and the policy that the URI's options say. Errors: Invalid, System.
   static Result<std::unique_ptr<Sink>> make(ListeningSocket socket, const Uri& uri,
                                             const LinkOptions& options);
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <hc/link/stream_writer.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::internal {
 

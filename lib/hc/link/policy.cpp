@@ -27,9 +27,9 @@ Status read(const Uri& uri, std::string_view key, bool units, std::uint64_t& val
   const char* end = digits.data() + digits.size();
   auto [stop, status] = std::from_chars(digits.data(), end, number);
   if (stop != end || status != std::errc() || number == 0 || number > (TokenBucket::kMost >> shift))
-    return Error{Code::Usage, "option " + std::string(key) + " is a whole number from 1 to " +
-                                  std::to_string(TokenBucket::kMost) +
-                                  (units ? ", also as K, M or G" : "")};
+    return Error{Code::Invalid, "option " + std::string(key) + " is a whole number from 1 to " +
+                                    std::to_string(TokenBucket::kMost) +
+                                    (units ? ", also as K, M or G" : "")};
   value = number << shift;
   return {};
 }
@@ -42,7 +42,7 @@ Result<Policy> parse_policy(const Uri& uri) {
   auto kept = uri.option("keep", "all");
   if (kept != "all" && kept != "latest")
     if (auto got = read(uri, "keep", false, keep); !got)
-      return Error{Code::Usage, "option keep is all, latest, or how many messages"};
+      return Error{Code::Invalid, "option keep is all, latest, or how many messages"};
   if (kept != "all") policy.keep = keep;
   for (auto [key, units, value] : {std::tuple{"rate", false, &policy.rate},
                                    {"burst", false, &policy.burst},
@@ -51,7 +51,7 @@ Result<Policy> parse_policy(const Uri& uri) {
     if (auto got = read(uri, key, units, *value); !got) return got.error();
   for (auto [key, needed] : {std::pair{"burst", "rate"}, {"byte_burst", "byte_rate"}})
     if (!uri.option(key, "").empty() && uri.option(needed, "").empty())
-      return Error{Code::Usage, "option " + std::string(key) + " wants " + needed + " beside it"};
+      return Error{Code::Invalid, "option " + std::string(key) + " wants " + needed + " beside it"};
   if (policy.byte_rate > 0) policy.byte_burst = policy.byte_rate;
   if (auto got = read(uri, "byte_burst", true, policy.byte_burst); !got) return got.error();
   return policy;

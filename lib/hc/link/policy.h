@@ -39,7 +39,7 @@ constexpr std::string_view kPolicyOptions = "keep rate burst byte_rate byte_burs
 /// Reads `keep=all|latest|N`, `rate=`, `burst=` (default 1), `byte_rate=`, `byte_burst=` (default:
 /// of one second), `memory=`; the last three are bytes, perhaps with K, M or G (of 1024) behind.
 ///
-/// Errors: Usage; also for a burst without its rate.
+/// Errors: Invalid; also for a burst without its rate.
 Result<Policy> parse_policy(const Uri& uri);
 
 /// Lets `rate` tokens a second pass, and `burst` at once when none were taken for long. What costs

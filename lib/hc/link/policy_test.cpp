@@ -45,7 +45,7 @@ TEST(Policy, WhatMakesNoSenseIsRefused) {
   for (const char* options :
        {"?keep=0", "?keep=-1", "?keep=newest", "?keep=1K", "?rate=0", "?rate=x", "?rate=3M",
         "?burst=1.5", "?byte_rate=3T", "?byte_burst=K", "?memory=5G", "?memory=4294967297"})
-    EXPECT_EQ(policy_of(options).error().code, Code::Usage) << options;
+    EXPECT_EQ(policy_of(options).error().code, Code::Invalid) << options;
   EXPECT_EQ(policy_of("?keep=x").error().detail,
             "option keep is all, latest, or how many messages");
 }

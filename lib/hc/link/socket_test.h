@@ -17,7 +17,7 @@
 #include <hc/link/listening_source.h>
 #include <hc/link/loopback_test.h>
 #include <hc/link/stream_link.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::testing {
 

@@ -9,7 +9,7 @@
 
 #include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::testing {
 namespace {

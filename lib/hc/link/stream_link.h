@@ -9,7 +9,7 @@
 
 #include <hc/link/descriptor.h>
 #include <hc/link/link.h>
-#include <hc/wire/stream_reader.h>
+#include <hc/mtp/stream_reader.h>
 
 namespace hc::internal {
 

@@ -7,7 +7,7 @@
 
 #include <hc/link/link.h>
 #include <hc/link/outlet.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::internal {
 
@@ -21,7 +21,7 @@ class StreamSink final : public Sink {
   ///     dialer, which makes the connection anew when it is lost.
   /// @param uri  for its policy.
   ///
-  /// Errors: Usage, System.
+  /// Errors: Invalid, System.
   static Result<std::unique_ptr<Sink>> make(Descriptor descriptor, const Uri& uri,
                                             const LinkOptions& options,
                                             std::unique_ptr<Dialer> dialer = nullptr);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <hc/link/descriptor.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::internal {
 

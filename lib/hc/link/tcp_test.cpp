@@ -214,7 +214,7 @@ TEST(Tcp, AHostWithoutAnAddressIsNotFound) {
   auto source = open_source(*parse_uri("tcp:no.such.host.invalid:80"));
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, Code::NotFound);
-  EXPECT_EQ(open_source(*parse_uri("tcp:localhost")).error().code, Code::Usage);
+  EXPECT_EQ(open_source(*parse_uri("tcp:localhost")).error().code, Code::Invalid);
 }
 
 }  // namespace

@@ -34,11 +34,11 @@ Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri&, const LinkOptions&);
 Result<std::unique_ptr<Source>> open_shm_source(const Uri&, const LinkOptions&);
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri&, const LinkOptions&);
 
-/// Whether a `memory` is enough for shm, where it is all there is. Errors: Usage.
+/// Whether a `memory` is enough for shm, where it is all there is. Errors: Invalid.
 Status check_shm_memory(const Uri& uri);
 
-/// A URI's option that is a whole number from 0 to `most`. Errors: Usage.
-Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t otherwise,
+/// A URI's option that is a whole number from 0 to `most`. Errors: Invalid.
+Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,
                                    std::int64_t most = 1'000'000'000);
 
 }  // namespace hc::internal

@@ -33,9 +33,9 @@ Result<UnixAddress> address_of(const Uri& uri) {
   result.address.sun_family = AF_UNIX;
   // A path ends with a NUL; an abstract name begins with one in place of its @.
   if (uri.rest.empty() || uri.rest.size() >= sizeof result.address.sun_path)
-    return Error{Code::Usage, "a Unix socket's path has 1 to " +
-                                  std::to_string(sizeof result.address.sun_path - 1) +
-                                  " bytes: \"" + uri.rest + "\""};
+    return Error{Code::Invalid, "a Unix socket's path has 1 to " +
+                                    std::to_string(sizeof result.address.sun_path - 1) +
+                                    " bytes: \"" + uri.rest + "\""};
   std::copy(uri.rest.begin(), uri.rest.end(), result.address.sun_path);
   if (is_abstract(uri)) result.address.sun_path[0] = '\0';
   result.size = static_cast<unsigned>(offsetof(sockaddr_un, sun_path) + uri.rest.size() +

@@ -13,10 +13,10 @@ namespace hc::internal {
 std::string foreigner(int socket);
 
 /// A socket that listens at `unix:PATH` or `unix:@NAME`; of those that connect to a @NAME only
-/// processes of this user are let in. Errors: Usage, System.
+/// processes of this user are let in. Errors: Invalid, System.
 Result<ListeningSocket> listen_unix(const Uri& uri);
 
-/// Who listens there, to be connected to. Errors: Usage.
+/// Who listens there, to be connected to. Errors: Invalid.
 Result<Peer> unix_peer(const Uri& uri);
 
 }  // namespace hc::internal

@@ -73,8 +73,8 @@ TEST(Unix, OtherFilesAreNotTouched) {
 }
 
 TEST(Unix, NamesHaveALength) {
-  EXPECT_EQ(open_source(*parse_uri("unix:" + std::string(200, 'x'))).error().code, Code::Usage);
-  EXPECT_EQ(open_source(*parse_uri("unix:")).error().code, Code::Usage);
+  EXPECT_EQ(open_source(*parse_uri("unix:" + std::string(200, 'x'))).error().code, Code::Invalid);
+  EXPECT_EQ(open_source(*parse_uri("unix:")).error().code, Code::Invalid);
 }
 
 }  // namespace

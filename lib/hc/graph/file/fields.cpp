@@ -156,18 +156,18 @@ std::optional<std::string> Fields::expand(const Node& node, std::string_view tex
     }
     std::string variable{text.substr(begin + 2, end - begin - 2)};
     text.remove_prefix(end + 1);
-    std::optional<std::string> otherwise;
+    std::optional<std::string> default_value;
     if (auto split = variable.find(":-"); split != std::string::npos) {
-      otherwise = variable.substr(split + 2);
+      default_value = variable.substr(split + 2);
       variable.resize(split);
     }
     const char* value = environment_(variable.c_str());
     if (variable.empty())
       refuse("no name in ${}, which stands for a variable of the environment");
-    else if (value == nullptr && !otherwise)
+    else if (value == nullptr && !default_value)
       refuse("the environment has no variable " + variable + "; ${" + variable +
              ":-VALUE} gives a default");
-    result += value != nullptr && *value != '\0' ? value : otherwise.value_or("");
+    result += value != nullptr && *value != '\0' ? value : default_value.value_or("");
   }
 }
 

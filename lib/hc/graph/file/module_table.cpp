@@ -74,9 +74,9 @@ void read_module(const Fields& fields, const std::string& name, const Node& node
 
 }  // namespace
 
-Restart read_restart(const Fields& fields, const Node& table, Restart otherwise) {
+Restart read_restart(const Fields& fields, const Node& table, Restart default_value) {
   const Node* node = table.find("restart");
-  if (node == nullptr) return otherwise;
+  if (node == nullptr) return default_value;
   const auto* text = node->as<std::string>();
   const std::string word = text == nullptr ? "" : *text;
   if (word == "never") return Restart::Never;
@@ -84,7 +84,7 @@ Restart read_restart(const Fields& fields, const Node& table, Restart otherwise)
   if (word == "always") return Restart::Always;
   fields.add(*node, R"("restart" is "never", "failure" or "always")" +
                         suggestion(word, {"never", "failure", "always"}));
-  return otherwise;
+  return default_value;
 }
 
 void read_modules(const Fields& fields, const Node& root, Restart restart, Graph& graph) {

@@ -7,7 +7,7 @@
 namespace hc::internal {
 
 /// `restart` at the top or in a module; `otherwise` where it is not given.
-Restart read_restart(const Fields& fields, const Node& table, Restart otherwise);
+Restart read_restart(const Fields& fields, const Node& table, Restart default_value);
 
 /// [modules.NAME] @param restart  of those that do not say it.
 void read_modules(const Fields& fields, const Node& root, Restart restart, Graph& graph);

@@ -36,7 +36,7 @@ bool is_description(const Json& json) {
   };
   auto is_parameter = [&](const Json& parameter) {
     return has(parameter, "name", is_text) && has(parameter, "type", is_text) &&
-           if_there(parameter, "least", is_number) && if_there(parameter, "most", is_number) &&
+           if_there(parameter, "min", is_number) && if_there(parameter, "max", is_number) &&
            if_there(parameter, "step", is_step) && if_there(parameter, "fixed", is_flag) &&
            if_there(parameter, "choices", [&](const Json& list) { return all(list, is_text); });
   };
@@ -68,8 +68,8 @@ DescribedParameter parameter_from(const Json& json) {
   if (type == "integer") state.value = std::int64_t{0};
   if (type == "number") state.value = 0.0;
   if (type == "string") state.value = std::string();
-  state.options.least = json.value("least", state.options.least);
-  state.options.most = json.value("most", state.options.most);
+  state.options.min = json.value("min", state.options.min);
+  state.options.max = json.value("max", state.options.max);
   state.options.step = json.value("step", state.options.step);
   state.options.choices = json.value("choices", state.options.choices);
   parameter.fixed = json.value("fixed", false);

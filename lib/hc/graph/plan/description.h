@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <hc/base/parameter.h>
-#include <hc/wire/element.h>
+#include <hc/mtp/element.h>
 
 namespace hc::internal {
 

@@ -19,7 +19,7 @@ inline Result<std::string> describe(const std::string& program) {
   };
   auto module = [](const std::string& inputs, const std::string& outputs) {
     return R"({"name":"x","inputs":[)" + inputs + R"(],"outputs":[)" + outputs +
-           R"(],"parameters":[{"name":"rate","type":"number","least":0,"most":9},)"
+           R"(],"parameters":[{"name":"rate","type":"number","min":0,"max":9},)"
            R"({"name":"mode","type":"string","choices":["fast","good"]}]})";
   };
   if (program == "source")
@@ -89,7 +89,7 @@ inline Result<Plan> plan(const std::string& text,
   if (problems.empty()) return plan;
   std::string all;
   for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
-  return Error{Code::Usage, all};
+  return Error{Code::Invalid, all};
 }
 
 inline std::string text_of(const std::vector<std::string>& words) {

@@ -5,7 +5,7 @@
 
 #include <hc/base/uri.h>
 #include <hc/link/unix.h>
-#include <hc/wire/codec.h>
+#include <hc/mtp/codec.h>
 
 namespace hc::internal {
 
@@ -95,7 +95,7 @@ void Announcer::forget_those_who_left() {
 Status say_at_once(const std::string& uri, const Message& message) {
   auto parsed = parse_uri(uri);
   if (!parsed) return parsed.error();
-  if (parsed->scheme != "unix") return Error{Code::Usage, uri + ": only unix: can be said to"};
+  if (parsed->scheme != "unix") return Error{Code::Invalid, uri + ": only unix: can be said to"};
   auto peer = unix_peer(*parsed);
   if (!peer) return peer.error();
   const Address& address = peer->addresses.front();

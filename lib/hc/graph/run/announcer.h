@@ -9,7 +9,7 @@
 
 #include <hc/graph/run/event_loop.h>
 #include <hc/link/socket.h>
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace hc::internal {
 
@@ -24,7 +24,7 @@ class Announcer {
   /// @param uri  `unix-listen:…`
   /// @param welcome  gives what is said first to each who comes; may be empty.
   ///
-  /// Errors: Usage, System (the name is in use).
+  /// Errors: Invalid, System (the name is in use).
   static Result<std::unique_ptr<Announcer>> make(
       EventLoop& loop, const std::string& uri, std::function<std::vector<Message>()> welcome = {});
 
@@ -60,7 +60,7 @@ class Announcer {
 
 /// Says one message to who listens at `unix:…`, if it can be said at once.
 ///
-/// Errors: Usage (another URI), Closed (nobody listens), System.
+/// Errors: Invalid (another URI), Closed (nobody listens), System.
 Status say_at_once(const std::string& uri, const Message& message);
 
 }  // namespace hc::internal

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 namespace hc::internal {
 namespace {
@@ -93,7 +93,7 @@ TEST_F(AnnouncerTest, OneMessageIsSaidAtOnceOrNotAtAll) {
   auto refused = say_at_once("unix:" + name(), line("said"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Code::Closed);
-  EXPECT_EQ(say_at_once("tcp:1", line("said")).error().code, Code::Usage);
+  EXPECT_EQ(say_at_once("tcp:1", line("said")).error().code, Code::Invalid);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <hc/graph/run/running_test.h>
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 namespace hc {
 

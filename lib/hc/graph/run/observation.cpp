@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <hc/base/clock.h>
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 namespace hc::internal {
 namespace {

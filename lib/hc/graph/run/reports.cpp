@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 namespace hc::internal {
 namespace {

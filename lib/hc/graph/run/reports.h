@@ -13,7 +13,7 @@
 #include <hc/base/clock.h>
 #include <hc/graph/plan.h>
 #include <hc/link/link.h>
-#include <hc/wire/message.h>
+#include <hc/mtp/message.h>
 
 namespace hc::internal {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 namespace hc::internal {
 namespace {

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 namespace hc::internal {
 namespace {

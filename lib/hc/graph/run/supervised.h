@@ -37,7 +37,7 @@ class Supervised {
     std::function<void()> ended;    ///< for good
   };
 
-  /// Listens to a module, which is not started yet. Errors: Usage, System (a name is in use).
+  /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
   static Result<std::unique_ptr<Supervised>> make(EventLoop& loop, PlannedModule plan,
                                                   const SupervisionLimits& limits, Hear hear);
 

@@ -3,7 +3,7 @@
 #include <thread>
 
 #include <hc/graph/run/running_test.h>
-#include <hc/wire/rows.h>
+#include <hc/mtp/rows.h>
 
 namespace hc {
 namespace {

@@ -121,8 +121,8 @@ Uri meeting_place(const Uri& uri) {
 Status check_name(const Uri& uri) {
   constexpr std::size_t kMost = sizeof sockaddr_un::sun_path - 1 - kMeetingPlace.size();
   if (!uri.rest.empty() && uri.rest.size() <= kMost) return {};
-  return Error{Code::Usage, "a name of shared memory has 1 to " + std::to_string(kMost) +
-                                " bytes, not " + std::to_string(uri.rest.size())};
+  return Error{Code::Invalid, "a name of shared memory has 1 to " + std::to_string(kMost) +
+                                  " bytes, not " + std::to_string(uri.rest.size())};
 }
 
 Result<std::uint64_t> parse_keep(std::string_view text) {
@@ -130,8 +130,8 @@ Result<std::uint64_t> parse_keep(std::string_view text) {
   if (text == "latest") return std::uint64_t{1};
   auto count = number(text);
   if (!count || *count == 0)
-    return Error{Code::Usage, R"(keep is "all", "latest" or a number from 1 on, not ")" +
-                                  std::string(text) + "\""};
+    return Error{Code::Invalid, R"(keep is "all", "latest" or a number from 1 on, not ")" +
+                                    std::string(text) + "\""};
   return *count;
 }
 
@@ -176,11 +176,11 @@ Result<Offer> await_offer(int socket, int stop) {
   return std::move(**offer);
 }
 
-Result<Hello> take_hello(int socket, std::uint64_t otherwise) {
+Result<Hello> take_hello(int socket, std::uint64_t default_value) {
   auto greeting = take_greeting(socket);
   if (!greeting) return greeting.error();
   Hello hello;
-  hello.keep = otherwise;
+  hello.keep = default_value;
   if (auto text = word(greeting->text, "keep")) {
     auto keep = parse_keep(*text);
     if (!keep) return malformed(keep.error().detail);

@@ -38,7 +38,7 @@ struct Offer {
 
 /// The Unix socket where `shm:NAME` is met: abstract, so that nothing is left of it.
 Uri meeting_place(const Uri& uri);
-/// Whether the name is one. Errors: Usage.
+/// Whether the name is one. Errors: Invalid.
 Status check_name(const Uri& uri);
 
 /// The reader's side: says what it wants; never waits.
@@ -61,14 +61,14 @@ Result<Offer> await_offer(int socket, int stop);
 /// @param otherwise  what is kept for one who does not say, or who asks for all: a publisher that
 ///     waits for none says so here, and 0 where it waits.
 /// Errors: Malformed, Closed.
-Result<Hello> take_hello(int socket, std::uint64_t otherwise);
+Result<Hello> take_hello(int socket, std::uint64_t default_value);
 
 /// Hands the memory over, of `bytes`, with what else the offer says; never waits. Errors: Closed,
 /// System.
 Status answer(int socket, const Offer& offer, std::uint64_t bytes, int read_only_memory);
 void refuse(int socket, std::string_view why);
 
-/// How many messages wait: "all", which is 0, "latest" or a number from 1 on. Errors: Usage.
+/// How many messages wait: "all", which is 0, "latest" or a number from 1 on. Errors: Invalid.
 Result<std::uint64_t> parse_keep(std::string_view text);
 
 }  // namespace hc::internal

@@ -56,8 +56,9 @@ Status check_shm_memory(const Uri& uri) {
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
   if (policy->memory >= kLeastMemory) return {};
-  return Error{Code::Usage, "memory is at least " + std::to_string(kLeastMemory) +
-                                " bytes where it is shared, not " + std::to_string(policy->memory)};
+  return Error{Code::Invalid, "memory is at least " + std::to_string(kLeastMemory) +
+                                  " bytes where it is shared, not " +
+                                  std::to_string(policy->memory)};
 }
 
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/wire/digits.h>
+#include <hc/mtp/digits.h>
 
 namespace hc::internal {
 namespace {

@@ -12,7 +12,7 @@
 #include <hc/link/shm/slots.h>
 #include <hc/link/shm/waker.h>
 #include <hc/link/transports.h>
-#include <hc/wire/header_memo.h>
+#include <hc/mtp/header_memo.h>
 
 namespace hc::internal {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/wire/framing.h>
+#include <hc/mtp/framing.h>
 
 namespace hc::internal {
 namespace {

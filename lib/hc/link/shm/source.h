@@ -9,7 +9,7 @@
 #include <hc/link/shm/attachment.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/transports.h>
-#include <hc/wire/header_memo.h>
+#include <hc/mtp/header_memo.h>
 
 namespace hc::internal {
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A module's command line. Internal.
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hc/base/uri.h>
+#include <hc/module/module.h>
+
+namespace hc::internal {
+
+/// What a command line asks for. Parameters, and what it says of ports, are set in the module
+/// itself.
+struct Arguments {
+  enum class Task { Run, Help, Describe };
+  Task task = Task::Run;
+  std::string instance;                               ///< --name
+  std::vector<std::pair<std::size_t, Uri>> inputs;    ///< port, link
+  std::vector<std::pair<std::size_t, Uri>> outputs;   ///< port, link
+  std::vector<Uri> focus;                             ///< --in focus=URI
+  std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
+  Attention attention;                                ///< --mode, --modes, --idle-rate
+  bool by_messages = false;                           ///< --clock messages
+  std::optional<Uri> manage;                          ///< --manage
+  std::optional<Uri> control;                         ///< --control
+  Limits limits;                                      ///< --limit
+};
+
+/// Reads the command line (without the program's name).
+///
+/// Errors: Invalid, with what is wrong and what there would be.
+Result<Arguments> parse_arguments(const Module& module, const std::vector<std::string>& words);
+
+/// Where a link begins or ends at a module: the port, and its URI.
+struct PortLink {
+  bool is_focus = false;  ///< the input that every module has
+  std::size_t port = 0;
+  Uri uri;
+};
+
+/// Reads `[PORT=]URI`, as --in and --out have it. Errors: Invalid.
+Result<PortLink> parse_port_link(const Module& module, bool is_input, const std::string& text);
+
+/// Reads `PORT=URI WORDS`, as --route has it: the first word, and the others. Errors: Invalid.
+Result<std::pair<std::string, Route>> parse_link_route(std::string_view text);
+
+/// The text of --help.
+std::string help(const Module& module);
+
+/// The text of --describe: a JSON object of ports, parameters and what goes with them; see
+/// doc/modules.md.
+std::string describe(const Module& module);
+
+}  // namespace hc::internal

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// A module by the clock of its messages: --clock messages.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hc/module/arguments.h>
+#include <hc/module/running_module_test.h>
+
+namespace hc {
+namespace {
+
+using namespace std::chrono_literals;
+using Log = std::vector<std::string>;
+
+constexpr std::int64_t kFirst = 1'700'000'000'000'000'000;
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+/// A message so many milliseconds behind kFirst.
+Message at(std::int64_t milliseconds, std::int32_t mode = 0) {
+  auto message = table({static_cast<double>(milliseconds)});
+  message.header.time = kFirst + milliseconds * kMillisecond;
+  message.header.mode = mode;
+  return message;
+}
+Message without_time() {
+  return table({-1.0});
+}
+
+class ByMessages : public RunningModule {
+ protected:
+  ByMessages() {
+    module.on(a, [this](const auto& message) { note("a", message); });
+    module.on(b, [this](const auto& message) { note("b", message); });
+  }
+  /// "a 5 at 7": the number of a message, and what the clock says in milliseconds.
+  void note(const std::string& what, const Doubles& message) {
+    log.push_back(what + " " + std::to_string(std::llround(message.matrix().numbers()[0])) + now());
+  }
+  std::string now() {
+    EXPECT_EQ(module.monotonic().count(), module.now());
+    return " at " + std::to_string((module.now() - kFirst) / kMillisecond);
+  }
+  void feed(const std::string& input, const std::vector<Message>& messages) {
+    words.insert(words.end(), {"--in", input + "=" + uri(input)});
+    auto sink = sink_of(uri(input));
+    for (const auto& message : messages) ASSERT_TRUE(sink->send(message));
+    ASSERT_TRUE(sink->close());
+    sinks.push_back(std::move(sink));
+  }
+  Log run() {
+    start(module, words);
+    EXPECT_EQ(join(), 0);
+    return log;
+  }
+
+  Module module{"clocked", "Notes what comes when."};
+  Input<Kind<MatrixType::Table, double>> a = module.input("a", table<double>(), "");
+  Input<Kind<MatrixType::Table, double>> b = module.input("b", table<double>(), "");
+  std::vector<std::string> words{"--clock", "messages"};
+  std::vector<std::unique_ptr<Sink>> sinks;
+  Log log;
+};
+
+TEST_F(ByMessages, MessagesOfAllLinksComeInTheOrderOfTheirTimes) {
+  feed("a", {at(1), at(3), at(8), at(9)});
+  feed("b", {at(0), at(3), at(4)});
+  EXPECT_EQ(run(), Log({"b 0 at 0", "a 1 at 1", "a 3 at 3", "b 3 at 3", "b 4 at 4", "a 8 at 8",
+                        "a 9 at 9"}));
+}
+
+TEST_F(ByMessages, TheClockNeverGoesBack) {
+  feed("a", {at(5), at(2), without_time(), at(9)});
+  feed("b", {at(6)});
+  EXPECT_EQ(run(), Log({"a 5 at 5", "a 2 at 5", "a -1 at 5", "b 6 at 6", "a 9 at 9"}));
+}
+
+TEST_F(ByMessages, WhatIsDoneAgainAndAgainIsDoneBetweenMessages) {
+  feed("a", {at(10), at(30), at(31)});
+  feed("b", {at(27)});
+  module.on_start([&] { log.push_back("start" + now()); });
+  module.on_end([&] { log.push_back("end" + now()); });
+  module.every(10ms, [&] { log.push_back("ten" + now()); });
+  module.every(7ms, [&] { log.push_back("seven" + now()); });
+  EXPECT_EQ(run(), Log({"start at 10", "a 10 at 10", "seven at 17", "ten at 20", "seven at 24",
+                        "b 27 at 27", "ten at 30", "a 30 at 30", "seven at 31", "a 31 at 31",
+                        "end at 31"}));
+}
+
+TEST_F(ByMessages, ALongGapIsPassedAtOnce) {
+  const std::int64_t year = 365LL * 86400 * 1000;
+  feed("a", {at(0), at(year), at(year + 2)});
+  int fired = 0;
+  module.every(1ms, [&] { ++fired; });
+  run();
+  EXPECT_EQ(fired, 4);  // the one that was missed last, and three
+  EXPECT_EQ(log.size(), 3U);
+}
+
+TEST_F(ByMessages, AGeneratorKeepsItsRateByThem) {
+  feed("a", {at(0), at(15), at(18), at(40)});
+  module.generate([&] {
+    module.keep_rate(100);
+    log.push_back("look" + now());
+    return true;  // time ends with the messages
+  });
+  EXPECT_EQ(run(), Log({"a 0 at 0", "look at 0", "look at 10", "look at 20", "a 15 at 20",
+                        "a 18 at 20", "look at 30", "look at 40", "a 40 at 40", "look at 50"}));
+}
+
+TEST_F(ByMessages, AGeneratorThatKeepsNoRateIsCalledBetweenMessages) {
+  feed("a", {at(1), at(2)});
+  module.generate([&] {
+    log.push_back("look" + now());
+    return true;
+  });
+  EXPECT_EQ(run(), Log({"a 1 at 1", "look at 1", "a 2 at 2", "look at 2"}));
+}
+
+TEST_F(ByMessages, AGeneratorsEndIsTheModules) {
+  feed("a", {at(1), at(2), at(3)});
+  module.generate([&] { return module.now() < at(2).header.time; });
+  EXPECT_EQ(run(), Log({"a 1 at 1", "a 2 at 2"}));
+}
+
+TEST_F(ByMessages, TheFocusIsHeardInItsTime) {
+  feed("a", {at(1, 4), at(5, 4), at(9, 4)});
+  auto focus = [](std::int64_t milliseconds, std::int32_t mode) {
+    auto message = table({mode});
+    message.header.time = at(milliseconds).header.time;
+    return Message(message);
+  };
+  feed("focus", {focus(3, 4), focus(7, 2), focus(20, 4)});
+  words.insert(words.end(), {"--exclusive", "a"});
+  EXPECT_EQ(run(), Log({"a 5 at 5"}));
+}
+
+TEST_F(ByMessages, WhatIsIdleIsSoByTheirTime) {
+  feed("a", {at(0), at(400), at(999), at(1000), at(1500)});
+  words.insert(words.end(), {"--modes", "3", "--idle-rate", "1"});
+  EXPECT_EQ(run(), Log({"a 0 at 0", "a 1000 at 1000"}));
+}
+
+TEST_F(ByMessages, WhoIsBehindIsWaitedFor) {
+  reports_ = source_of(uri("reports"));
+  auto ahead = sink_of(uri("a")), behind = sink_of(uri("b"));
+  start(module, {"--clock=messages", "--in=a=" + uri("a"), "--in=b=" + uri("b"),
+                 "--manage=" + uri("reports")});
+  ASSERT_TRUE(behind->send(at(0)));
+  ASSERT_TRUE(ahead->send(at(2)));
+  // Until the module has it, and could handle it.
+  CounterRows rows;
+  do {
+    rows = next_counters(*reports_);
+  } while (rows[0][0] == 0);
+  ASSERT_TRUE(behind->send(at(1)));
+  ASSERT_TRUE(ahead->close());
+  ASSERT_TRUE(behind->close());
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(log, Log({"b 0 at 0", "b 1 at 1", "a 2 at 2"}));
+}
+
+TEST_F(ByMessages, AClockThatThereIsNotIsRefused) {
+  auto refused = [](Module& wrong, const std::string& clock) {
+    auto arguments = internal::parse_arguments(wrong, {"--clock", clock});
+    return arguments ? "" : arguments.error().text();
+  };
+  EXPECT_EQ(refused(module, "sun"), "Invalid: --clock is machine or messages, not \"sun\"");
+  EXPECT_EQ(refused(module, "machine"), "");
+  Module source{"source", "Has no inputs."};
+  EXPECT_EQ(refused(source, "messages"),
+            "Invalid: --clock messages wants inputs, and this module has none");
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a module is told while it runs: commands, modes, routes, timers.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+
+#include <hc/compress/compress.h>
+#include <hc/module/running_module_test.h>
+
+namespace hc {
+namespace {
+
+TEST_F(RunningModule, ObeysCommands) {
+  Module module{"gauge", "Multiplies."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  auto factor = module.parameter("factor", 2.0, "", "", {.min = 0, .max = 10});
+  auto title = module.parameter("title", "a", "", "", {.fixed = true});
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0) * *factor})); });
+  auto first = sink_of(uri("first"));
+  start_managed(module, {"--in=" + uri("first"), "--out=" + uri("out")});
+  next(*reports_, internal::Report::Parameters);
+  ::testing::internal::CaptureStderr();
+  ASSERT_TRUE(tell(*control_, "set factor=5"));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Parameters))[0], "factor=5");
+  auto from = source_of(uri("out"));
+  ASSERT_TRUE(first->send(table({2.0})));
+  Message message;
+  ASSERT_TRUE(*receive(*from, message));
+  EXPECT_EQ(message.view<double>()->at(0, 0), 10);
+
+  auto second = sink_of(uri("second"));
+  auto other = source_of(uri("other"));
+  ASSERT_TRUE(tell(*control_, "link in in=" + uri("second")));
+  next(*reports_, internal::Report::Links);
+  ASSERT_TRUE(tell(*control_, "link out out=" + uri("other")));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Links)).size(), 4U);
+  ASSERT_TRUE(second->send(table({3.0})));
+  for (auto* each : {from.get(), other.get()}) {
+    ASSERT_TRUE(*receive(*each, message));
+    EXPECT_EQ(message.view<double>()->at(0, 0), 15);
+  }
+  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("first")));
+  next(*reports_, internal::Report::Links);
+  ASSERT_TRUE(tell(*control_, "unlink out out=" + uri("out")));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Links)),
+            (std::vector<std::string>{"in in " + uri("second"), "out out " + uri("other")}));
+  ASSERT_TRUE(second->send(table({1.0})));
+  ASSERT_TRUE(*receive(*other, message));
+  EXPECT_FALSE(*receive(*from, message));
+
+  // What is wrong changes nothing, and is told.
+  for (const char* line : {"set factor=-1", "set factor", "set colour=1", "set title=b", "link up",
+                           "unlink out out=inproc:nowhere", "route out=x via=y", "jump"})
+    ASSERT_TRUE(tell(*control_, line));
+  for (const char* wrong :
+       {"\"set factor=-1\": parameter factor: \"-1\" is not from 0 to 10",
+        "\"set factor\": no parameter \"factor\", or no value",
+        "\"set colour=1\": no parameter \"colour\", or no value",
+        "\"set title=b\": parameter title is fixed while the module runs",
+        "\"link up\": a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish "
+        "PORT=URI, "
+        "route PORT=URI WORDS",
+        "\"unlink out out=inproc:nowhere\": there is no such link",
+        "\"route out=x via=y\": a route is to=ADDRESS,… and peer=NAME, not \"via\"",
+        "\"jump\": a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, "
+        "route PORT=URI WORDS"})
+    EXPECT_EQ(rows_of(next(*reports_, internal::Report::Refusal)),
+              std::vector{"command " + std::string(wrong)});
+  ASSERT_TRUE(tell(*control_, "set factor=7"));
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Parameters)),
+            (std::vector<std::string>{"factor=7", "title=a"}));
+  // One whose inputs have all been unlinked waits for others.
+  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("second")));
+  next(*reports_, internal::Report::Links);
+  auto third = sink_of(uri("third"));
+  ASSERT_TRUE(third->close());
+  ASSERT_TRUE(tell(*control_, "link in in=" + uri("third")));
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(*title, "a");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(RunningModule, WhoReportsToNobodyTellsOnStandardErrorWhatIsWrong) {
+  Module module{"gauge", "Waits."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
+  ::testing::internal::CaptureStderr();
+  ASSERT_TRUE(tell(*control, "set colour=1"));
+  ASSERT_TRUE(sink->close());
+  start(module, {"--in=" + uri("in"), "--control=" + uri("control")});
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "gauge: command \"set colour=1\": no parameter \"colour\", or no value\n");
+}
+
+TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
+  Module module{"actor", "Acts."};
+  auto in = module.input("command", table<double>(), "");
+  auto out = module.output("done", table<double>(), "");
+  module.actor(in);
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  auto commands = sink_of(uri("in")), focus = sink_of(uri("focus"));
+  auto done = source_of(uri("out"));
+  auto reports = source_of(uri("reports"));
+  start(module, {"--in=" + uri("in"), "--in", "focus=" + uri("focus"), "--out=" + uri("out"),
+                 "--exclusive=command", "--manage=" + uri("reports")});
+  auto set_focus = [&](std::int32_t mode) {
+    ASSERT_TRUE(focus->send(table<std::int32_t>({mode})));
+    while (next(*reports, internal::Report::State).view<std::int64_t>()->at(0, 0, 1) != mode) {
+    }
+  };
+  set_focus(2);
+  ASSERT_TRUE(commands->send(in_mode(table({1.0}), 1)));
+  ASSERT_TRUE(commands->send(in_mode(table({2.0}), 2)));
+  Message message;
+  ASSERT_TRUE(*receive(*done, message));
+  EXPECT_EQ(message.view<double>()->at(0, 0), 2);
+  EXPECT_EQ(message.header.mode, 2);
+  set_focus(1);
+  ASSERT_TRUE(commands->send(in_mode(table({3.0}), 2)));
+  ASSERT_TRUE(commands->send(in_mode(table({4.0}), 1)));
+  ASSERT_TRUE(*receive(*done, message));
+  EXPECT_EQ(message.view<double>()->at(0, 0), 4);
+  set_focus(0);  // nobody
+  ASSERT_TRUE(commands->send(in_mode(table({5.0}), 0)));
+  ASSERT_TRUE(commands->send(in_mode(table({6.0}), 1)));
+  ASSERT_TRUE(commands->close());
+  EXPECT_EQ(join(), 0);
+  EXPECT_FALSE(*receive(*done, message));
+  EXPECT_EQ(last_counters(*reports).at(0).at(7), 4);
+}
+
+TEST_F(RunningModule, KnowsWhetherItsModeHasTheFocus) {
+  auto has_focus = [&](std::vector<std::string> words, std::int32_t mode) {
+    Module module{"task", "Knows."};
+    auto in = module.input("in", table<double>(), "");
+    bool has = false;
+    module.on(in, [&](const auto&) { has = module.has_focus(); });
+    const std::string name = uri("in") + std::to_string(mode) + std::to_string(words.size());
+    auto sink = sink_of(name), focus = sink_of(name + "focus");
+    EXPECT_TRUE(focus->send(table<std::int32_t>({mode})));
+    EXPECT_TRUE(sink->send(table({1.0})));
+    EXPECT_TRUE(sink->close());
+    words.push_back("--in=" + name);
+    if (mode >= 0) words.insert(words.end(), {"--in", "focus=" + name + "focus"});
+    start(module, words);
+    EXPECT_EQ(join(), 0);
+    return has;
+  };
+  constexpr std::int32_t kNobodyTells = -1;
+  EXPECT_TRUE(has_focus({"--mode=2"}, kNobodyTells));
+  EXPECT_FALSE(has_focus({"--mode=2"}, 0));
+  EXPECT_FALSE(has_focus({"--mode=2"}, 1));
+  EXPECT_TRUE(has_focus({"--mode=2"}, 2));
+  EXPECT_TRUE(has_focus({}, 1));
+}
+
+TEST_F(RunningModule, DoesLessWhileAnotherModeHasTheFocus) {
+  Module module{"busy", "Works."};
+  auto in = module.input("in", table<double>(), "");
+  int handled = 0;
+  module.on(in, [&](const auto&) { ++handled; });
+  auto sink = sink_of(uri("in")), focus = sink_of(uri("focus"));
+  ASSERT_TRUE(focus->send(table<std::int32_t>({2})));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->close());
+  start(module,
+        {"--in=" + uri("in"), "--in", "focus=" + uri("focus"), "--modes=1,3", "--idle-rate=0.001"});
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(handled, 1);
+}
+
+TEST_F(RunningModule, AGeneratorIsSlowWhileIdleAndQuickAgainAtOnce) {
+  Module module{"source", "Makes numbers."};
+  auto out = module.output("out", table<double>(), "");
+  int made = 0;
+  module.generate([&] {
+    module.keep_rate(1000);
+    out.send(table({1.0}));
+    return ++made < 20;
+  });
+  auto focus = sink_of(uri("focus"));
+  auto source = source_of(uri("out"));
+  ASSERT_TRUE(focus->send(table<std::int32_t>({2})));
+  start(module,
+        {"--in", "focus=" + uri("focus"), "--modes=1", "--idle-rate=0.0001", "--out", uri("out")});
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));  // the next would be hours away
+  EXPECT_EQ(message.header.mode, 2);
+  ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(made, 20);
+  while (*source->take(message) == Got::Message) EXPECT_EQ(message.header.mode, 1);
+}
+
+TEST_F(RunningModule, ARateMayBeAsLowAsOneLikes) {
+  Module module{"busy", "Works."};
+  auto in = module.input("in", table<double>(), "");
+  auto never = module.parameter("never", 0.0, "Hz", "");
+  auto hardly = module.parameter("hardly", 1e-10, "Hz", "");
+  int handled = 0, ticks = 0;
+  module.on(in, [&](const auto&) { ++handled; });
+  module.every(never, [&] { ++ticks; });
+  module.every(hardly, [&] { ++ticks; });
+  module.every(std::chrono::nanoseconds::max(), [&] { ++ticks; });
+  auto sink = sink_of(uri("in")), focus = sink_of(uri("focus"));
+  ASSERT_TRUE(focus->send(table<std::int32_t>({2})));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->close());
+  start(module,
+        {"--in=" + uri("in"), "--in", "focus=" + uri("focus"), "--modes=1", "--idle-rate=1e-10"});
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(handled, 1);
+  EXPECT_EQ(ticks, 0);
+}
+
+TEST_F(RunningModule, ATimerHearsOfItsRateAtOnce) {
+  Module module{"clock", "Ticks."};
+  auto rate = module.parameter("rate", 0.0, "Hz", "");
+  auto sink = sink_of(uri("control"));
+  module.every(rate, [&] { throw ModuleError("tick"); });
+  start(module, {"--control=" + uri("control")});
+  ASSERT_TRUE(tell(*sink, "set rate=1000"));
+  EXPECT_EQ(join(), 1);
+}
+
+TEST_F(RunningModule, ATasksMessagesAreOfItsModeAndGoToAnAddress) {
+  Module module{"task", "Commands."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("command", table<double>(), "");
+  module.on(in, [&](const auto&) { out.send(table({1.0})); });
+  auto sink = sink_of(uri("in"));
+  auto source = source_of(uri("out"));
+  ASSERT_TRUE(sink->send(in_mode(table({1.0}), 9)));
+  ASSERT_TRUE(sink->close());
+  start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--mode=4", "--to=command=-5"});
+  EXPECT_EQ(join(), 0);
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.mode, 4);
+  EXPECT_EQ(message.header.dst, -5);
+}
+
+TEST_F(RunningModule, ForwardsByAddressButNeverBack) {
+  Module module{"router", "Passes on."};
+  auto in = module.input("in", anything(), "");
+  auto out = module.output("out", anything(), "");
+  module.route_outputs();
+  std::vector<std::size_t> taken;
+  module.on_raw(in, [&](const Message& message) { taken.push_back(out.forward(message)); });
+  auto from_a = sink_of(uri("from-a"));
+  auto to_a = source_of(uri("to-a")), to_b = source_of(uri("to-b"));
+  Message image =
+      Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 8, 8).finish();
+  image = *compress(image, Encoding::Zstd);
+  image.header.src = 77;
+  image.header.seq = 5;
+  ASSERT_TRUE(from_a->send(to(image, 21)));
+  ASSERT_TRUE(from_a->send(to(table({2.0}), -1)));
+  ASSERT_TRUE(from_a->send(to(table({3.0}), 11)));
+  ASSERT_TRUE(from_a->send(table({4.0})));
+  ASSERT_TRUE(from_a->close());
+  start(module, {"--in", "in=" + uri("from-a"), "--out", "out=" + uri("to-a"), "--out",
+                 "out=" + uri("to-b"), "--route", "in=" + uri("from-a") + " peer=a", "--route",
+                 "out=" + uri("to-a") + " to=11,-1 peer=a", "--route",
+                 "out=" + uri("to-b") + " to=21,-1 peer=b"});
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(taken, (std::vector<std::size_t>{1, 1, 0, 0}));
+  Message message;
+  ASSERT_TRUE(*receive(*to_b, message));
+  EXPECT_EQ(message.header.info.encoding, Encoding::Zstd);  // as it came
+  EXPECT_EQ(message.header.src, 77);
+  EXPECT_EQ(message.header.seq, 5);
+  ASSERT_TRUE(*receive(*to_b, message));
+  EXPECT_EQ(message.header.dst, -1);
+  EXPECT_FALSE(*receive(*to_b, message));
+  EXPECT_FALSE(*receive(*to_a, message));
+}
+
+TEST_F(RunningModule, TimersGoOnBetweenMessages) {
+  Module module{"clock", "Ticks."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  auto rate = module.parameter("rate", 1000.0, "Hz", "");
+  int ticks = 0, counted = 0;
+  auto sink = sink_of(uri("in"));
+  module.every(rate, [&] {
+    if (++ticks == 10) {
+      ASSERT_TRUE(sink->close());
+    }
+  });
+  module.every(std::chrono::hours(1), [&] { ++counted; });
+  start(module, {"--in=" + uri("in")});
+  EXPECT_EQ(join(), 0);
+  EXPECT_GE(ticks, 10);
+  EXPECT_EQ(counted, 0);
+}
+
+TEST_F(RunningModule, IsWokenByADescriptorOfItsOwn) {
+  Module module{"device", "Reads."};
+  auto in = module.input("in", table<double>(), "");
+  auto sink = sink_of(uri("in"));
+  std::array<int, 2> pipe = {};
+  ASSERT_EQ(::pipe2(pipe.data(), O_NONBLOCK | O_CLOEXEC), 0);
+  std::string read;
+  std::atomic<bool> is_first_read = false;
+  module.on(in, [&](const auto&) { ASSERT_EQ(::write(pipe[1], "a", 1), 1); });
+  module.on_readable([] { return -1; }, [] {});  // none now
+  module.on_readable([&] { return read == "ab" ? -1 : pipe[0]; },
+                     [&] {
+                       char byte = 0;
+                       if (::read(pipe[0], &byte, 1) < 1) return;
+                       read += byte;
+                       is_first_read = true;
+                       if (read == "ab") {
+                         ASSERT_TRUE(sink->close());
+                       }
+                     });
+  ASSERT_TRUE(sink->send(table({1.0})));
+  start(module, {"--in=" + uri("in")});
+  while (!is_first_read) std::this_thread::yield();
+  ASSERT_EQ(::write(pipe[1], "b", 1), 1);  // nothing but this wakes it
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(read, "ab");
+  for (int end : pipe) ::close(end);
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/module/kind.h>
+
+namespace hc {
+namespace {
+
+Error misfit(int rule, std::string_view field, const std::string& has, const std::string& wanted) {
+  std::string detail = "R" + std::to_string(rule) + " ";
+  detail.append(field).append(": ").append(has).append(" does not fit, the port takes ");
+  return {Code::Malformed, detail + wanted};
+}
+
+}  // namespace
+
+Status fits(const Header& header, const PortType& type) {
+  const Info& info = header.info;
+  if (info.type != type.info.type)
+    return misfit(17, "info", std::string(name(info.type)), std::string(name(type.info.type)));
+  if (info.components != type.info.components)
+    return misfit(18, "info", std::to_string(info.components) + " components",
+                  std::to_string(type.info.components));
+  if (info.scalar != type.info.scalar)
+    return misfit(19, "info", std::string(name(info.scalar)), std::string(name(type.info.scalar)));
+  if (type.width != 0 && header.width != type.width)
+    return misfit(15, "width", std::to_string(header.width), std::to_string(type.width));
+  if (type.height != 0 && header.height != type.height)
+    return misfit(16, "height", std::to_string(header.height), std::to_string(type.height));
+  if (type.coord != 0 && header.coord != 0 && header.coord != type.coord)
+    return misfit(44, "coord", "coordinate system " + std::to_string(header.coord),
+                  std::to_string(type.coord));
+  return {};
+}
+
+std::string in_words(const PortType& type) {
+  std::string text(name(type.info.type));
+  text += " " + std::to_string(type.info.components) + " x " + std::string(name(type.info.scalar));
+  if (type.width != 0) text += ", width " + std::to_string(type.width);
+  if (type.height != 0) text += ", height " + std::to_string(type.height);
+  if (type.coord != 0) text += ", coordinate system " + std::to_string(type.coord);
+  return text;
+}
+
+std::string in_words(const std::vector<PortType>& types) {
+  std::string text = types.empty() ? "anything" : "";
+  for (const auto& type : types) text.append(text.empty() ? "" : " or ").append(in_words(type));
+  return text;
+}
+
+}  // namespace hc

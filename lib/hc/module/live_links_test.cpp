@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// The links of a module that runs: what it reports of them, and how they come and go.
+#include <unistd.h>
+
+#include <hc/module/running_module_test.h>
+
+namespace hc {
+namespace {
+
+TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
+  Module module{"gauge", "Multiplies."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.parameter("factor", 2.0, "", "");
+  module.parameter("title", "a b", "", "", {.fixed = true});
+  module.on(in, [](const auto&) {});
+  auto sink = sink_of(uri("in"));
+  auto reports = source_of(uri("reports"));
+  start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--manage=" + uri("reports"),
+                 "--mode=3", "--factor=4"});
+  EXPECT_EQ(rows_of(next(*reports, internal::Report::Links)),
+            (std::vector<std::string>{"in in " + uri("in"), "out out " + uri("out")}));
+  EXPECT_EQ(rows_of(next(*reports, internal::Report::Parameters)),
+            (std::vector<std::string>{"factor=4", "title=a b"}));
+  auto state = next(*reports, internal::Report::State);
+  auto numbers = state.view<std::int64_t>()->row(0);
+  EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1, 0}));
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, TellsThatItWaitsForAReader) {
+  const std::string name = "early." + std::to_string(::getpid());
+  for (const auto& [listens, comes] :
+       {std::pair("shm:" + name, "shm:" + name), {"unix-listen:@" + name, "unix:@" + name}}) {
+    Module module{"early", "Sends at once."};
+    auto out = module.output("out", table<double>(), "");
+    module.generate([&] {
+      out.send(table({1.0}));
+      return false;
+    });
+    auto reports = source_of(uri("reports"));
+    auto awaits_reader = [&] {
+      return next(*reports, internal::Report::State).view<std::int64_t>()->at(0, 0, 3);
+    };
+    start(module, {"--out=" + listens, "--manage=" + uri("reports")});
+    EXPECT_EQ(awaits_reader(), 0);
+    EXPECT_EQ(awaits_reader(), 1);
+    auto reader = source_of(comes);
+    EXPECT_EQ(awaits_reader(), 0);
+    Message message;
+    EXPECT_TRUE(*receive(*reader, message));
+    EXPECT_EQ(join(), 0);
+  }
+}
+
+TEST_F(RunningModule, ReportsAgesAndGaps) {
+  Module module{"counted", "Counts."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  auto sink = sink_of(uri("in"));
+  auto reports = source_of(uri("reports"));
+  const std::int64_t hour = 3'600'000'000'000;
+  for (int i = 0; i < 3; ++i) {
+    Message message = table({1.0});
+    message.header.time = SystemClock().wall() - hour;
+    ASSERT_TRUE(sink->send(message));
+  }
+  ASSERT_TRUE(sink->close());
+  start(module, {"--in=" + uri("in"), "--manage=" + uri("reports")});
+  EXPECT_EQ(join(), 0);
+  const auto row = last_counters(*reports).at(0);
+  ASSERT_EQ(row.size(), 14U);
+  EXPECT_EQ(row[0], 3);
+  EXPECT_EQ(row[7], 0);                  // left out
+  for (std::size_t i : {8U, 9U, 10U}) {  // ages
+    EXPECT_GE(row[i], hour);
+    EXPECT_LT(row[i], hour + hour / 7);
+  }
+  for (std::size_t i : {11U, 12U, 13U}) EXPECT_GE(row[i], 0);  // gaps
+}
+
+TEST_F(RunningModule, HasOnlyTheLinksThatItIsToldOf) {
+  Module module{"relay", "Sends on."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  start_managed(module);
+  // Neither standard input, which may have ended, nor standard output.
+  EXPECT_TRUE(rows_of(next(*reports_, internal::Report::Links)).empty());
+  auto first = sink_of(uri("first"));
+  auto from = source_of(uri("out"));
+  ASSERT_TRUE(tell(*control_, "link out out=" + uri("out")));
+  ASSERT_TRUE(tell(*control_, "link in in=" + uri("first")));
+  ASSERT_TRUE(first->send(table({2.0})));
+  Message message;
+  ASSERT_TRUE(*receive(*from, message));
+  EXPECT_EQ(message.view<double>()->at(0, 0), 2);
+  ASSERT_TRUE(first->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, ReportsWithoutLinksToo) {
+  Module module{"idle", "Has nothing to do yet."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  start_managed(module);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(next(*reports_, internal::Report::Counters).header.height, 0);
+  ASSERT_TRUE(control_->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
+  Module module{"reader", "Reads."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  auto handled = source_of(uri("out"));
+  auto other = sink_of(uri("other"));
+  start_managed(module, {"--in=" + uri("other"), "--out=" + uri("out")});
+  Message message;
+  for (double i : {1, 2, 3}) {
+    auto sink = open_sink(*parse_uri(uri("in")));
+    while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has gone
+    ASSERT_TRUE(tell(*control_, "link in in=" + uri("in")));
+    ASSERT_TRUE((*sink)->send(table({i})));
+    ASSERT_TRUE(*receive(*handled, message));
+    ASSERT_TRUE((*sink)->close());
+  }
+  auto rows = next_counters(*reports_);
+  while (rows.back()[0] < 3) rows = next_counters(*reports_);
+  ASSERT_EQ(rows.size(), 3U) << "the other, this one, and that out";
+  EXPECT_EQ(rows[1][0], 3);
+  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("in")));
+  std::vector<std::string> links;
+  while (links.size() != 2) links = rows_of(next(*reports_, internal::Report::Links));
+  EXPECT_EQ(links, (std::vector{"in in " + uri("other"), "out out " + uri("out")}));
+  ASSERT_TRUE(other->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersTold) {
+  Module module{"relay", "Sends on."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  auto sink = sink_of(uri("in"));
+  auto from = source_of(uri("out"));
+  start_managed(module, {"--in=" + uri("in"), "--out=" + uri("out")});
+  EXPECT_EQ(next_counters(*reports_).size(), 2U);
+  Message message;
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(*receive(*from, message));
+  for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
+    ASSERT_TRUE(tell(*control_, "unlink " + end));
+    EXPECT_EQ(next_counters(*reports_).back()[0], 1);
+    next(*reports_, internal::Report::Links);
+  }
+  ASSERT_TRUE(control_->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
+  Module module{"relay", "Sends on."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  const std::string place = "shm:waits-" + std::to_string(::getpid());
+  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
+  auto reports = source_of(uri("reports"));
+  ::testing::internal::CaptureStderr();
+  start(module, {"--in=" + uri("in"), "--out=" + place + "?keep=2&byte_rate=1",
+                 "--manage=" + uri("reports"), "--control=" + uri("control")});
+  auto from = source_of(place + "?wait=60");
+  for (double i : {1, 2, 3}) ASSERT_TRUE(sink->send(table({i})));
+  while (next_counters(*reports).back()[0] < 3) {
+  }
+  ASSERT_TRUE(tell(*control, "unlink out out=" + place + "?keep=2&byte_rate=1"));
+  auto row = next_counters(*reports).back();
+  while (row[6] == 0) row = next_counters(*reports).back();
+  EXPECT_EQ(row[0], 3);
+  EXPECT_EQ(row[6], 2);
+  ASSERT_TRUE(control->close());
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "relay: out: 2 waiting, lost with the link\n");
+}
+
+TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
+  Module module{"pair", "Adds."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(together(left, right), [&](const Doubles& l, const Doubles& r) {
+    out.send(table({l.matrix().at(0, 0) + r.matrix().at(0, 0)}));
+  });
+  auto sums = source_of(uri("out"));
+  start_managed(module, {"--out=" + uri("out")});
+  next(*reports_, internal::Report::Links);
+  std::string place = uri("left");
+  auto l = sink_of(place), r = sink_of(uri("right"));
+  auto obeyed = [&](const std::string& command) {
+    ASSERT_TRUE(tell(*control_, command));
+    next(*reports_, internal::Report::Links);
+  };
+  obeyed("link in right=" + uri("right"));
+  obeyed("link in left=" + place);
+  Message message;
+  for (double i : {1, 2}) {
+    ASSERT_TRUE(l->send(table({i})));
+    ASSERT_TRUE(r->send(table({i})));
+    ASSERT_TRUE(*receive(*sums, message));
+    EXPECT_EQ(message.view<double>()->at(0, 0), 2 * i);
+    obeyed("unlink in left=" + place);
+    place += "_anew";
+    l = sink_of(place);
+    obeyed("link in left=" + place);
+  }
+  ASSERT_TRUE(l->close());
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
+  Module module{"busy", "Works."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {});
+  auto one = sink_of(uri("one")), other = sink_of(uri("other"));
+  start_managed(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other")});
+  next(*reports_, internal::Report::State);
+  ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
+  ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
+  next(*reports_, internal::Report::Links);
+  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Refusal)),
+            std::vector{"command \"unlink in focus=" + uri("one") + "\": there is no such link"});
+  ASSERT_TRUE(other->send(table<std::int32_t>({7})));
+  EXPECT_EQ(next(*reports_, internal::Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
+  ASSERT_TRUE(control_->close());
+  EXPECT_EQ(join(), 0);
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/module/loop.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include <hc/base/program.h>
+#include <hc/compress/compress.h>
+
+namespace hc {
+namespace {
+
+using internal::LinkedSink;
+using internal::LinkedSource;
+using internal::Stopped;
+
+constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
+
+/// The longest wait at a time: poll() counts in 32 bits.
+constexpr std::chrono::milliseconds kLongestWait = std::chrono::hours(1);
+
+/// What ends a module: cleanly when it was told to stop, else with the name of who failed.
+[[noreturn]] void fail(const std::string& who, const Error& error) {
+  if (error.code == Code::Stopped) throw Stopped();
+  throw ModuleError(Error{error.code, who + ": " + error.detail});
+}
+
+}  // namespace
+
+Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
+    : module_(module) {
+  options_.limits = arguments.limits;
+  options_.stop = stop;
+  options_.log = [this](Severity, std::string_view line) { module_.log(line); };
+  module_.attention_ = arguments.attention;
+  open_outputs(arguments);
+  std::unique_ptr<Sink> reports;
+  if (arguments.manage) {
+    Uri uri = *arguments.manage;
+    if (uri.option("keep", "").empty()) uri.options.emplace_back("keep", kReportsKept);
+    auto sink = open_sink(uri, options_);
+    if (!sink) fail(uri.text(), sink.error());
+    reports = std::move(*sink);
+  }
+  auto open = [&](const Uri& uri) {
+    auto source = open_source(uri, options_);
+    if (!source) fail(uri.text(), source.error());
+    return std::move(*source);
+  };
+  management_ = internal::Management(std::move(reports),
+                                     arguments.control ? open(*arguments.control) : nullptr);
+  open_inputs(arguments);
+  for (const auto& uri : arguments.focus) focus_.push_back({uri.text(), open(uri), {}});
+  module_.attention_.is_told = !focus_.empty();
+  for (const auto& [link, route] : arguments.routes) set_route(link, route);
+  module_.loop_ = this;
+}
+
+std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri) {
+  auto options = options_;
+  options.awaits_reader = [this](bool awaits) { tell_state(awaits); };
+  auto sink = open_sink(uri, options);
+  if (!sink) fail(uri.text(), sink.error());
+  auto link = std::make_shared<LinkedSink>();
+  link->uri = uri.text();
+  link->sink = std::move(*sink);
+  sinks_.push_back(link);
+  return link;
+}
+
+void Module::Loop::open_outputs(const internal::Arguments& arguments) {
+  for (const auto& [port, uri] : arguments.outputs)
+    module_.outputs_[port]->links.push_back(open_output(uri));
+  if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
+  auto standard_output = open_output({"-", "", {}});
+  for (auto& output : module_.outputs_) output->links.push_back(standard_output);
+}
+
+void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*> inputs) {
+  auto source = open_source(uri, options_);
+  if (!source) fail(uri.text(), source.error());
+  LinkedSource link;
+  link.uri = uri.text();
+  link.source = std::move(*source);
+  link.inputs = std::move(inputs);
+  for (auto* input : link.inputs)
+    if (input->matcher != nullptr) input->matcher->begin(input->place);
+  for (const auto& each : sources_)
+    if (each.is_same(link)) link.route = each.route;
+  sources_.push_back(std::move(link));
+  join_renewed();
+}
+
+/// Has links that were made anew count on from those that have ended in their place; whether there
+/// are any.
+bool Module::Loop::join_renewed() {
+  bool any = false;
+  for (auto link = sources_.begin(); link != sources_.end();) {
+    auto renewed = link->source != nullptr
+                       ? sources_.end()
+                       : std::find_if(link + 1, sources_.end(),
+                                      [&](const auto& each) { return each.is_same(*link); });
+    if (renewed == sources_.end()) {
+      ++link;
+      continue;
+    }
+    renewed->past += link->past;
+    renewed->left_out += link->left_out;
+    link = sources_.erase(link);
+    any = true;
+  }
+  return any;
+}
+
+void Module::Loop::open_inputs(const internal::Arguments& arguments) {
+  for (const auto& [port, uri] : arguments.inputs) open_input(uri, {module_.inputs_[port].get()});
+  if (!arguments.inputs.empty() || module_.inputs_.empty() || arguments.control) return;
+  std::vector<internal::InputState*> all;
+  for (auto& input : module_.inputs_) all.push_back(input.get());
+  open_input({"-", "", {}}, std::move(all));
+}
+
+void Module::Loop::run() {
+  end_unlinked();
+  end_unneeded();
+  now_ = module_.clock_.monotonic();
+  attend();
+  if (module_.message_time_) begin_clock();
+  for (auto& timer : module_.timers_) timer.last = time();
+  if (module_.start_) module_.start_();
+  while (true) {
+    if (stop_requested()) throw Stopped();
+    now_ = module_.clock_.monotonic();
+    attend();
+    fire_timers();
+    for (auto& watch : module_.watches_) watch.handler();
+    const bool any = module_.message_time_ ? take_earliest() : take_each();
+    end_unneeded();
+    if (join_renewed()) tell_links();
+    if (any) continue;
+    if (is_generators_turn()) {
+      if (!generate()) break;
+    } else if (all_ended()) {
+      break;
+    } else {
+      wait(true, next_timer());
+    }
+  }
+  for (const auto& together : module_.together_)
+    for (const auto& input : together->inputs) together->matcher.end(input->place);
+  module_.handled_time_ = 0;
+  if (module_.end_) module_.end_();
+}
+
+/// Whether nothing can come any more. A module that can be told to link an input anew waits for
+/// that where it has none; one without inputs has its timers.
+bool Module::Loop::all_ended() const {
+  if (sources_.empty() &&
+      (management_.commands() != nullptr || (module_.inputs_.empty() && !module_.timers_.empty())))
+    return false;
+  return std::all_of(sources_.begin(), sources_.end(),
+                     [](const LinkedSource& link) { return link.source == nullptr; });
+}
+
+void Module::Loop::fire_timers() {
+  for (auto& timer : module_.timers_) {
+    const auto due = timer.due();
+    if (due > time()) continue;
+    timer.handler();
+    now_ = module_.clock_.monotonic();
+    timer.last = std::max(due, time() - timer.period());
+  }
+}
+
+MonotonicTime Module::Loop::next_timer() const {
+  auto next = MonotonicTime::max();
+  for (const auto& timer : module_.timers_) next = std::min(next, timer.due());
+  return next;
+}
+
+/// Takes a message from each link, but from those with too many that wait for others' only when
+/// nothing else has any.
+bool Module::Loop::take_each() {
+  auto is_crowded = [](const LinkedSource& link) {
+    return std::any_of(link.inputs.begin(), link.inputs.end(), [](const auto* input) {
+      return input->matcher != nullptr && input->matcher->crowded(input->place);
+    });
+  };
+  bool any = false;
+  for (bool crowded : {false, true}) {
+    for (auto& link : sources_)
+      if (link.source != nullptr && is_crowded(link) == crowded) any = take_one(link) || any;
+    if (any) break;
+  }
+  return any;
+}
+
+bool Module::Loop::take_one(LinkedSource& link) {
+  Message message;
+  if (take(link, message) != Got::Message) return false;
+  if (management_.is_heard()) measure(link, message);
+  deliver(link, message);
+  return true;
+}
+
+/// What a link has now; one that has ended is ended here too.
+Got Module::Loop::take(LinkedSource& link, Message& message) {
+  auto got = link.source->take(message);
+  if (!got) {
+    bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
+    fail(is_of_link || link.inputs.size() > 1 ? link.uri : link.inputs[0]->name, got.error());
+  }
+  if (*got == Got::End) end(link);
+  return *got;
+}
+
+bool Module::Loop::is_linked(const internal::InputState& input) const {
+  return std::any_of(sources_.begin(), sources_.end(), [&](const LinkedSource& link) {
+    return link.source != nullptr &&
+           std::find(link.inputs.begin(), link.inputs.end(), &input) != link.inputs.end();
+  });
+}
+
+void Module::Loop::end(LinkedSource& link) {
+  link.past = link.traffic();
+  link.source.reset();
+  link.head.reset();
+  for (auto* input : link.inputs)
+    if (input->matcher != nullptr && !is_linked(*input)) input->matcher->end(input->place);
+}
+
+/// Ends inputs that are taken together and have no link, nor can be told of one.
+void Module::Loop::end_unlinked() {
+  const bool is_told = management_.commands() != nullptr;
+  for (const auto& together : module_.together_) {
+    std::string unlinked;
+    for (const auto& input : together->inputs) {
+      if (is_linked(*input)) continue;
+      unlinked = input->name;
+      if (!is_told) together->matcher.end(input->place);
+    }
+    for (const auto& input : together->inputs)
+      if (!unlinked.empty() && is_linked(*input))
+        module_.log(input->name + (is_told ? ": left out as long as " : ": not read, since ") +
+                    unlinked + " has no link");
+  }
+}
+
+/// Ends the links whose messages can have no partners any more.
+void Module::Loop::end_unneeded() {
+  if (module_.together_.empty()) return;
+  auto is_settled = [](const auto* input) {
+    return input->matcher != nullptr && input->matcher->done();
+  };
+  for (auto& link : sources_)
+    if (link.source != nullptr && std::all_of(link.inputs.begin(), link.inputs.end(), is_settled))
+      end(link);
+}
+
+void Module::Loop::tell_left_out() {
+  for (const auto& together : module_.together_)
+    for (const auto& input : together->inputs) {
+      const auto& left_out = together->matcher.left_out(input->place);
+      if (left_out.total() == 0) continue;
+      module_.log(input->name + ": left out: " + std::to_string(left_out.unmatched) +
+                  " unmatched, " + std::to_string(left_out.crowded) + " crowded out");
+    }
+}
+
+void Module::Loop::deliver(LinkedSource& link, const Message& message) {
+  std::string takers;
+  for (auto* input : link.inputs) {
+    auto fits_message = [&](const PortType& type) {
+      return fits(message.header, type).has_value();
+    };
+    if (!input->types.empty() &&
+        std::none_of(input->types.begin(), input->types.end(), fits_message)) {
+      takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
+      continue;
+    }
+    if (!input->handler) return;
+    if (!may_handle(*input, message)) {
+      ++link.left_out;
+      return;
+    }
+    module_.handled_time_ = message.header.time;
+    module_.handled_mode_ = message.header.mode;
+    module_.handled_peer_ = &link.route.peer;
+    auto plain = input->is_raw ? Result<Message>(message) : expand(message);
+    if (!plain) fail(input->name, plain.error());
+    input->handler(*plain);
+    module_.handled_time_ = 0;
+    module_.handled_mode_ = 0;
+    module_.handled_peer_ = nullptr;
+    return;
+  }
+  const auto& only = *link.inputs.back();
+  if (link.inputs.size() == 1 && only.types.size() == 1)
+    fail(only.name, fits(message.header, only.types[0]).error());
+  std::string what = text(message.header.info);
+  if (message.header.coord != 0)
+    what += ", coordinate system " + std::to_string(message.header.coord);
+  fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
+}
+
+/// Whether a message is handled now: where it is asked for, one of the mode in focus alone is; and
+/// of all others so many as the module does while idle.
+bool Module::Loop::may_handle(internal::InputState& input, const Message& message) {
+  const auto& attention = module_.attention_;
+  if (input.is_exclusive && !attention.has_focus(message.header.mode)) return false;
+  // What is taken together is left out together.
+  return input.matcher != nullptr || may_while_idle(input.handled_at);
+}
+
+bool Module::Loop::may_handle(internal::TogetherState& together) {
+  if (may_while_idle(together.handled_at)) return true;
+  ++together.left_out;
+  return false;
+}
+
+/// Whether it is time for the next, when the module does less than it could.
+bool Module::Loop::may_while_idle(std::optional<MonotonicTime>& last) const {
+  const auto& attention = module_.attention_;
+  if (!attention.is_idle()) return true;
+  if (last && time() - *last < internal::period_of(attention.idle_rate)) return false;
+  last = time();
+  return true;
+}
+
+/// Notes how old a message is, and how long after the one before it came.
+void Module::Loop::measure(LinkedSource& link, const Message& message) {
+  if (message.header.time != 0) link.ages.add(now_.count() + to_wall_ - message.header.time);
+  if (link.last_come.count() != 0) link.gaps.add((now_ - link.last_come).count());
+  link.last_come = now_;
+}
+
+/// Waits for a command, a report that is due, or a time; and, perhaps, for messages and what else
+/// the module reads.
+void Module::Loop::wait(bool for_messages, MonotonicTime until) {
+  std::vector<Source*> sources;
+  std::vector<internal::WatchedDescriptor> watched;
+  if (for_messages) {
+    for (const auto& link : sources_)
+      if (link.source != nullptr && !link.head) sources.push_back(link.source.get());
+    for (const auto& watch : module_.watches_) watched.emplace_back(watch.descriptor());
+    for (auto& each : watched) sources.push_back(&each);
+  }
+  for (const auto& link : focus_)
+    if (link.source != nullptr && !link.head) sources.push_back(link.source.get());
+  if (management_.commands() != nullptr) sources.push_back(management_.commands());
+  if (module_.message_time_) until = MonotonicTime::max();  // it is messages that pass the time
+  if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
+  auto timeout = std::chrono::milliseconds(-1);
+  if (until != MonotonicTime::max())
+    timeout = std::clamp(std::chrono::ceil<std::chrono::milliseconds>(until - now_),
+                         std::chrono::milliseconds(0), kLongestWait);
+  auto ready = wait_any(sources, options_.stop, timeout);
+  if (!ready) fail("poll", ready.error());
+  attended_ = {};  // so that one looks what woke us
+}
+
+void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
+  if (module_.message_time_) {
+    has_generated_ = false;
+    return pass_to(std::max(time(), due()));
+  }
+  for (now_ = module_.clock_.monotonic(); now_ < due(); now_ = module_.clock_.monotonic()) {
+    wait(false, due());
+    now_ = module_.clock_.monotonic();
+    attend();
+  }
+}
+
+void Module::Loop::close() {
+  tell_left_out();
+  const LinkedSink* failed = nullptr;
+  Status failure;  // the first; the other links are closed all the same
+  for (auto& link : sinks_) {
+    if (link->sink == nullptr) continue;
+    auto closed = link->sink->close();
+    link->traffic = link->sink->traffic();
+    if (closed || closed.error().code == Code::Closed || failed != nullptr) continue;
+    failed = link.get();
+    failure = closed;
+  }
+  tell_counters();
+  if (failed != nullptr) fail(failed->uri, failure.error());
+}
+
+}  // namespace hc

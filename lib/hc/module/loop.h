@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A module at work: takes messages from its links and hands them to the handlers, obeys commands,
+// and reports. Internal.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/module/arguments.h>
+#include <hc/module/management.h>
+#include <hc/module/module.h>
+#include <hc/module/quantiles.h>
+
+namespace hc {
+
+namespace internal {
+
+/// Thrown to end a module cleanly: nobody reads it any more, or it was told to stop.
+struct Stopped {};
+
+/// A link from which inputs are fed: one port, or all of them from standard input.
+struct LinkedSource {
+  std::string uri;
+  std::unique_ptr<Source> source;  ///< null once it has ended
+  std::vector<InputState*> inputs;
+  std::optional<Message> head;  ///< with --clock messages: taken, and to be handled in its time
+  Route route;                  ///< who is at the other end
+  Traffic past = {};            ///< of sources that have ended
+  std::int64_t left_out = 0;    ///< messages that no handler got: out of focus, or while idle
+  Quantiles ages, gaps;         ///< of the messages since the last report; gaps between them
+  MonotonicTime last_come{0};   ///< the message before; 0: none
+
+  [[nodiscard]] Traffic traffic() const {
+    Traffic all = past;
+    if (source != nullptr) all += source->traffic();
+    return all;
+  }
+  [[nodiscard]] bool is_same(const LinkedSource& other) const {
+    return uri == other.uri && inputs == other.inputs;
+  }
+};
+
+/// A link that tells the mode in focus.
+struct FocusLink {
+  std::string uri;
+  std::unique_ptr<Source> source;  ///< null once it has ended
+  std::optional<Message> head;     ///< as of a LinkedSource
+};
+
+/// A descriptor that the module reads by itself, to be waited for beside the links.
+class WatchedDescriptor final : public Source {
+ public:
+  explicit WatchedDescriptor(int number) : number_(number) {}
+  Result<Got> take(Message&) override { return Got::Nothing; }
+  [[nodiscard]] int descriptor() const override { return number_; }
+  [[nodiscard]] Traffic traffic() const override { return {}; }
+
+ private:
+  int number_;
+};
+
+}  // namespace internal
+
+struct Module::Loop {
+  static constexpr std::chrono::milliseconds kReportPeriod{500};
+
+  /// Opens the links: outputs first, since those that listen must be there before anybody waits.
+  Loop(Module& module, const internal::Arguments& arguments, int stop);
+  ~Loop() { module_.loop_ = nullptr; }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
+
+  /// Until all inputs have ended, and the generator has.
+  void run();
+  /// Waits until a time that `due` gives, which may change with the focus; obeys meanwhile.
+  void pause(const std::function<MonotonicTime()>& due);
+  /// Ends the outputs.
+  void close();
+  /// Whether a set of messages that were taken together is handled now.
+  [[nodiscard]] bool may_handle(internal::TogetherState& together);
+
+ private:
+  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri);
+  void open_outputs(const internal::Arguments& arguments);
+  void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
+  void open_inputs(const internal::Arguments& arguments);
+  bool join_renewed();
+  void set_route(const std::string& link, const internal::Route& route);
+
+  bool take_each();
+  bool take_one(internal::LinkedSource& link);
+  Got take(internal::LinkedSource& link, Message& message);
+  [[nodiscard]] bool is_linked(const internal::InputState& input) const;
+  [[nodiscard]] bool all_ended() const;
+  void end(internal::LinkedSource& link);
+  void end_unlinked();
+  void end_unneeded();
+  void tell_left_out();
+  void measure(internal::LinkedSource& link, const Message& message);
+  void deliver(internal::LinkedSource& link, const Message& message);
+  [[nodiscard]] bool may_handle(internal::InputState& input, const Message& message);
+  [[nodiscard]] bool may_while_idle(std::optional<MonotonicTime>& last) const;
+  void fire_timers();
+  [[nodiscard]] MonotonicTime next_timer() const;
+  void wait(bool for_messages, MonotonicTime until);
+
+  // loop_messages.cpp
+  [[nodiscard]] bool is_generators_turn() const;
+  bool generate();
+  void begin_clock();
+  bool take_earliest();
+  bool has_heads();
+  void pass_to(MonotonicTime time) { module_.message_time_ = time.count(); }
+
+  // loop_control.cpp
+  void attend();
+  void hear_focus();
+  void heed(const Message& focus);
+  void obey(const std::string& command);
+  Status carry_out(const std::string& command);
+  Status set_parameter(const std::string& assignment);
+  Status link(bool is_input, const std::string& text);
+  Status unlink(bool is_input, const std::string& text);
+  Status unlink_output(internal::OutputState& output, const std::string& uri);
+  Status finish(const std::string& text);
+  void report();
+  void tell_counters();
+  void tell_links();
+  void tell_parameters();
+  void tell_state(bool awaits_reader = false);
+
+  Module& module_;
+  LinkOptions options_;
+  std::vector<internal::LinkedSource> sources_;
+  std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;  // in the order of the command line
+  std::vector<internal::FocusLink> focus_;
+  internal::Management management_;
+  /// By the module's clock, at the last look.
+  [[nodiscard]] MonotonicTime time() const {
+    return module_.message_time_ ? MonotonicTime(*module_.message_time_) : now_;
+  }
+
+  MonotonicTime now_{0};      // of the machine, at the last look at the clock
+  std::int64_t to_wall_ = 0;  // from monotonic to wall clock, at the last report [ns]
+  MonotonicTime reported_{0}, attended_{0};
+  // With --clock messages: whether the generator is called next; has been since the last message,
+  // and keeps no rate; and whether all messages have been handled.
+  bool generates_next_ = false, has_generated_ = false, has_ended_ = false;
+};
+
+}  // namespace hc

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// A module's loop by the clock of its messages (--clock messages): the messages of all links in the
+// order of their times, and what is due between them. What the module does is then a matter of what
+// it is fed with, not of how fast it is fed.
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <hc/base/program.h>
+#include <hc/module/loop.h>
+
+namespace hc {
+namespace {
+
+using internal::Stopped;
+
+/// A longer time without any message is passed at once, as periods that were missed are not made up
+/// for: or one wrong time would have the module do what is due in years.
+constexpr MonotonicTime kLongestGap = std::chrono::hours(1);
+
+}  // namespace
+
+/// Has the next message of each link at hand; whether that could be done without waiting.
+bool Module::Loop::has_heads() {
+  bool all = true;
+  Message message;
+  for (auto& link : focus_) {
+    if (link.source == nullptr || link.head) continue;
+    const auto got = link.source->take(message);
+    if (got && *got == Got::Message) link.head = message.keep();
+    if (got && *got == Got::Nothing) all = false;
+    if (!got || *got == Got::End) link.source.reset();
+  }
+  for (auto& link : sources_) {
+    if (link.source == nullptr || link.head) continue;
+    const auto got = take(link, message);
+    if (got == Got::Message) link.head = message.keep();
+    if (got == Got::Nothing) all = false;
+  }
+  return all;
+}
+
+/// The clock begins with the first message that has a time.
+void Module::Loop::begin_clock() {
+  while (!has_heads()) {
+    if (stop_requested()) throw Stopped();
+    wait(true, MonotonicTime::max());
+    now_ = module_.clock_.monotonic();
+    attend();
+  }
+  std::optional<std::int64_t> first;
+  auto look = [&](const auto& link) {
+    if (!link.head || link.head->header.time == 0) return;
+    first = std::min(first.value_or(link.head->header.time), link.head->header.time);
+  };
+  for (const auto& link : focus_) look(link);
+  for (const auto& link : sources_) look(link);
+  if (first) pass_to(MonotonicTime(*first));
+}
+
+/// Handles the earliest message if its time has come, else lets time pass to what is due next.
+/// False when a message is to be waited for, the generator is next, or none comes any more.
+bool Module::Loop::take_earliest() {
+  generates_next_ = false;
+  if (!has_heads()) return false;
+  if (all_ended()) {
+    generates_next_ = !std::exchange(has_ended_, true);
+    return false;
+  }
+  internal::FocusLink* focus = nullptr;
+  internal::LinkedSource* input = nullptr;
+  std::int64_t earliest = 0;
+  auto is_first = [&](const auto& link) {
+    if (!link.head ||
+        ((focus != nullptr || input != nullptr) && link.head->header.time >= earliest))
+      return false;
+    earliest = link.head->header.time;
+    return true;
+  };
+  for (auto& link : focus_)
+    if (is_first(link)) focus = &link;
+  for (auto& link : sources_)
+    if (is_first(link)) input = &link;
+  // One without a time, or that is late, comes now.
+  const auto due = std::max(MonotonicTime(earliest), time());
+  if (due - time() > kLongestGap) {
+    pass_to(due);
+    return true;
+  }
+  if (const auto timer = next_timer(); timer > time() && timer <= due) {
+    pass_to(timer);
+    return true;
+  }
+  if (module_.generate_ && due > time() && !has_generated_) {
+    generates_next_ = true;
+    return false;
+  }
+  pass_to(due);
+  has_generated_ = false;
+  if (input != nullptr)
+    deliver(*input, *std::exchange(input->head, std::nullopt));
+  else if (focus != nullptr)
+    heed(*std::exchange(focus->head, std::nullopt));
+  return true;
+}
+
+bool Module::Loop::is_generators_turn() const {
+  return module_.generate_ && (!module_.message_time_ || generates_next_);
+}
+
+/// False at its end.
+bool Module::Loop::generate() {
+  has_generated_ = true;
+  return module_.generate_();
+}
+
+}  // namespace hc

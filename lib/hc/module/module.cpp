@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/module/module.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include <hc/base/program.h>
+#include <hc/compress/compress.h>
+#include <hc/module/loop.h>
+
+namespace hc {
+namespace {
+
+constexpr int kDone = 0, kFailure = 1, kUsage = 2;
+
+const SystemClock kSystemClock;
+
+}  // namespace
+
+Module::Module(std::string name, std::string summary)
+    : Module(std::move(name), std::move(summary), kSystemClock) {}
+
+Module::Module(std::string name, std::string summary, const Clock& clock)
+    : name_(std::move(name)), summary_(std::move(summary)), instance_(name_), clock_(clock) {}
+
+Module::~Module() = default;
+
+std::shared_ptr<internal::InputState> Module::add_input(std::string name,
+                                                        std::vector<PortType> types,
+                                                        std::string doc) {
+  auto state = std::make_shared<internal::InputState>();
+  state->name = std::move(name);
+  state->types = std::move(types);
+  state->doc = std::move(doc);
+  inputs_.push_back(state);
+  return state;
+}
+
+std::shared_ptr<internal::OutputState> Module::add_output(std::string name,
+                                                          std::vector<PortType> types,
+                                                          std::string doc) {
+  auto state = std::make_shared<internal::OutputState>();
+  state->name = std::move(name);
+  state->types = std::move(types);
+  state->doc = std::move(doc);
+  state->module = this;
+  outputs_.push_back(state);
+  state->address = static_cast<std::int32_t>(outputs_.size());
+  return state;
+}
+
+std::shared_ptr<ParameterState> Module::add_parameter(std::string name,
+                                                      const ParameterValue& default_value,
+                                                      std::string unit, std::string doc,
+                                                      ParameterOptions options) {
+  auto state = std::make_shared<ParameterState>();
+  *state = {std::move(name),    std::move(unit), std::move(doc),
+            std::move(options), default_value,   default_value};
+  parameters_.push_back(state);
+  return state;
+}
+
+void Module::add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
+                          const Matching& how, Matcher::Take handler) {
+  const auto index = together_.size();
+  auto take = [this, index, handler = std::move(handler)](std::span<const Message> set) {
+    if (loop_ != nullptr && !loop_->may_handle(*together_[index])) return;
+    const Header& latest =
+        std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
+          return a.header.time < b.header.time;
+        })->header;
+    handled_time_ = latest.time;
+    handled_mode_ = latest.mode;
+    handler(set);
+    handled_time_ = 0;
+    handled_mode_ = 0;
+  };
+  together_.push_back(std::make_unique<internal::TogetherState>(
+      internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take)), 0, {}}));
+  internal::TogetherState& state = *together_.back();
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    internal::InputState& input = *inputs[i];
+    HC_CHECK(!input.handler, input.name);
+    input.matcher = &state.matcher;
+    input.place = i;
+    input.handler = [this, &state, i](const Message& message) {
+      state.matcher.push(i, message.keep());
+      tell_left_out(state);
+    };
+  }
+}
+
+void Module::tell_left_out(const internal::TogetherState& together) const {
+  for (const auto& input : together.inputs)
+    if (!input->told && together.matcher.left_out(input->place).total() > 0) {
+      input->told = true;
+      log(input->name + ": a message has no partner and is left out, as others may be");
+    }
+}
+
+void Module::log(std::string_view line) const {
+  // Who cannot be told anything is not told so either.
+  static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + std::string(line) + "\n"));
+}
+
+void Module::keep_rate(double rate) {
+  auto period = [&] { return internal::period_of(attention_.rate(rate)); };
+  loop_->pause([&] { return last_period_ ? *last_period_ + period() : MonotonicTime(0); });
+  // Periods that were missed are not made up for.
+  auto now = monotonic();
+  last_period_ = std::max(last_period_ ? *last_period_ + period() : now, now - period());
+}
+
+namespace {
+
+/// Sends to a link; false when its reader has gone, which ends the link.
+bool send_to(internal::LinkedSink& link, const std::string& port, const Message& message) {
+  auto sent = link.sink->send(message);
+  if (sent) return true;
+  if (sent.error().code == Code::Stopped) throw internal::Stopped();
+  if (sent.error().code != Code::Closed)
+    throw ModuleError(Error{
+        sent.error().code,
+        (sent.error().code == Code::NotFound ? link.uri : port) + ": " + sent.error().detail});
+  link.traffic = link.sink->traffic();
+  link.sink.reset();
+  return false;
+}
+
+}  // namespace
+
+void internal::send(OutputState& output, Message message) {
+  Module& module = *output.module;
+  Header& header = message.header;
+  header.src = output.address;
+  header.seq = output.seq++;
+  if (header.dst == 0) header.dst = output.to;
+  if (header.mode == 0) header.mode = module.attention_.mode_of(module.handled_mode_);
+  if (header.coord == 0) header.coord = output.type().coord;
+  if (header.time == 0) header.time = module.handled_time_;
+  auto wanted = output.encoding.value_or(output.type().info.encoding);
+  if (message.plain() && (wanted == Encoding::Text || wanted == Encoding::Binary))
+    header.info.encoding = wanted;  // the same in memory
+  else
+    message = value_or_end(compress(message, wanted));
+  bool any_left = false;
+  for (auto& link : output.links)
+    if (link->sink != nullptr && link->route.takes(header.dst))
+      any_left = !send_to(*link, output.name, message) || any_left;
+  if (any_left && !module.is_read()) throw Stopped();
+}
+
+std::size_t internal::forward(OutputState& output, const Message& message) {
+  Module& module = *output.module;
+  const std::string* from = module.handled_peer_;
+  std::size_t taken = 0;
+  bool any_left = false;
+  for (auto& link : output.links) {
+    if (link->sink == nullptr || !link->route.takes(message.header.dst)) continue;
+    if (from != nullptr && !from->empty() && *from == link->route.peer) continue;
+    if (send_to(*link, output.name, message))
+      ++taken;
+    else
+      any_left = true;
+  }
+  if (any_left && !module.is_read()) throw Stopped();
+  return taken;
+}
+
+bool Module::is_read() const {
+  for (const auto& output : outputs_)
+    for (const auto& link : output->links)
+      if (link->sink != nullptr) return true;
+  return false;
+}
+
+int Module::run(int argc, char** argv) {
+  auto arguments = internal::parse_arguments(*this, {argv + 1, argv + argc});
+  if (!arguments) {
+    log(arguments.error().text());
+    return kUsage;
+  }
+  using Task = internal::Arguments::Task;
+  if (arguments->task != Task::Run) {
+    auto printed =
+        write_all(STDOUT_FILENO, arguments->task == Task::Help ? internal::help(*this)
+                                                               : internal::describe(*this));
+    if (printed || printed.error().code == Code::Closed) return kDone;
+    log(printed.error().text());
+    return kFailure;
+  }
+  if (!arguments->instance.empty()) instance_ = arguments->instance;
+  message_time_.reset();
+  if (arguments->by_messages) message_time_ = 0;
+  try {
+    Loop loop(*this, *arguments, stop_descriptor());
+    try {
+      loop.run();
+    } catch (const internal::Stopped&) {
+      // Its readers have gone, or it was told to stop: a clean end.
+    }
+    loop.close();
+  } catch (const internal::Stopped&) {
+    // Told to stop while its links opened or closed.
+  } catch (const ModuleError& error) {
+    log(error.what());
+    return error.is_usage ? kUsage : kFailure;
+  } catch (const std::exception& error) {
+    log(error.what());
+    return kFailure;
+  }
+  return kDone;
+}
+
+}  // namespace hc

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/module/module.h>
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include <hc/compress/compress.h>
+#include <hc/module/arguments.h>
+#include <hc/module/management.h>
+
+namespace hc {
+namespace {
+
+/// Runs a module on this thread with links inside the process.
+int run(Module& module, std::vector<std::string> words) {
+  words.insert(words.begin(), "module");
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  return module.run(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::unique_ptr<Source> source_of(const std::string& uri) {
+  return std::move(*open_source(*parse_uri(uri)));
+}
+std::unique_ptr<Sink> sink_of(const std::string& uri) {
+  return std::move(*open_sink(*parse_uri(uri)));
+}
+
+Message stamped(Message message, std::int64_t time, std::int32_t mode = 0) {
+  message.header.time = time;
+  message.header.mode = mode;
+  return message;
+}
+
+TEST(Module, AnswersEachMessageAndKeepsItsTime) {
+  Module module{"double", "Doubles positions."};
+  auto in = module.input("in", position<double>(), "");
+  auto out = module.output("out", position<double>().in(3), "");
+  auto factor = module.parameter("factor", 2.0, "", "");
+  module.on(in, [&](const auto& message) {
+    out.send(position(message.matrix().at(0, 0, 0) * *factor, 0.0, 0.0));
+  });
+  auto sink = sink_of("inproc:m1-in");
+  auto source = source_of("inproc:m1-out");
+  for (int i = 1; i <= 3; ++i)
+    ASSERT_TRUE(sink->send(stamped(position(i * 1.0, 0.0, 0.0), 1000 + i, 5)));
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(run(module, {"--in", "in=inproc:m1-in", "--out", "out=inproc:m1-out", "--factor", "10",
+                         "--address", "out=77"}),
+            0);
+  for (int i = 1; i <= 3; ++i) {
+    Message message;
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.view<double>()->at(0, 0, 0), 10.0 * i);
+    EXPECT_EQ(message.header.time, 1000 + i);
+    EXPECT_EQ(message.header.seq, i - 1);
+    EXPECT_EQ(message.header.src, 77);
+    EXPECT_EQ(message.header.mode, 5);
+    EXPECT_EQ(message.header.coord, 3);
+    EXPECT_EQ(message.header.ttl, 8);
+  }
+}
+
+TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
+  Module module{"copy", "Copies pictures."};
+  auto in = module.input("in", intensity_image<std::uint8_t>(), "");
+  auto out = module.output("out", intensity_image<std::uint8_t>(), "");
+  module.on(in, [&](const auto& message) {
+    auto draft = out.loan(message.header.width, message.header.height);
+    std::ranges::copy(message.matrix().numbers(), draft.matrix().numbers().begin());
+    out.send(std::move(draft));
+  });
+  Draft draft = Draft::make(intensity_image<std::uint8_t>().type.info, 32, 8);
+  for (auto& byte : draft.elements()) byte = std::byte{99};
+  auto sink = sink_of("inproc:m2-in");
+  auto source = source_of("inproc:m2-out");
+  ASSERT_TRUE(sink->send(*compress(std::move(draft).finish(), Encoding::Zstd)));
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(run(module, {"--in=inproc:m2-in", "--out=inproc:m2-out", "--encoding=jpeg"}), 0);
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.info.encoding, Encoding::Jpeg);
+  EXPECT_EQ(expand(message)->view<std::uint8_t>()->at(3, 3), 99);
+}
+
+/// Runs a module whose inputs have these messages and whose output is "out".
+std::vector<Message> run_on(Module& module,
+                            const std::vector<std::pair<std::string, std::vector<Message>>>& fed) {
+  std::vector<std::string> words{"--out", "inproc:together-out"};
+  auto source = source_of("inproc:together-out");
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (const auto& [input, messages] : fed) {
+    const std::string uri = "inproc:together-" + input;
+    words.insert(words.end(), {"--in", input + "=" + uri});
+    sinks.push_back(sink_of(uri));
+    for (const auto& message : messages) EXPECT_TRUE(sinks.back()->send(message));
+    EXPECT_TRUE(sinks.back()->close());
+  }
+  EXPECT_EQ(run(module, words), 0);
+  std::vector<Message> sent;
+  Message message;
+  while (*receive(*source, message)) sent.push_back(message);
+  return sent;
+}
+
+std::vector<Message> at_times(const std::vector<std::int64_t>& times) {
+  std::vector<Message> messages;
+  for (auto time : times)
+    messages.push_back(stamped(table({static_cast<double>(time)}), time, static_cast<int>(time)));
+  return messages;
+}
+
+TEST(Module, TakesTwoInputsTogetherByTime) {
+  Module module{"pair", "Pairs."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(together(left, right), [&](const auto& a, const auto& b) {
+    out.send(table({a.matrix().at(0, 0), b.matrix().at(0, 0)}));
+  });
+  testing::internal::CaptureStderr();
+  auto sent = run_on(module, {{"left", at_times({1, 2, 3, 5})}, {"right", at_times({2, 4, 5, 6})}});
+  ASSERT_EQ(sent.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::int64_t time = i == 0 ? 2 : 5;
+    EXPECT_EQ(sent[i].header.time, time);
+    EXPECT_EQ(sent[i].header.mode, time);
+    for (auto number : sent[i].view<double>()->numbers())
+      EXPECT_EQ(number, static_cast<double>(time));
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "pair: left: a message has no partner and is left out, as others may be\n"
+            "pair: right: a message has no partner and is left out, as others may be\n"
+            "pair: left: left out: 2 unmatched, 0 crowded out\n"
+            "pair: right: left out: 2 unmatched, 0 crowded out\n");
+}
+
+TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
+  Module module{"trio", "Takes three kinds."};
+  auto one = module.input("one", table<double>(), "");
+  auto two = module.input("two", position<float>(), "");
+  auto three = module.input("three", anything(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(together(one, two, three).within(std::chrono::nanoseconds(40)).max_waiting(2),
+            [&](const auto& a, const auto& b, const Message& c) {
+              EXPECT_EQ(a.header.time, 120);
+              EXPECT_EQ(b.matrix().at(0, 0, 0), 0.5F);
+              EXPECT_EQ(c.characters(), "hello");
+              out.send(table({1.0}));
+            });
+  auto sent = run_on(module, {{"one", at_times({50, 120})},
+                              {"two", {stamped(position(0.5F, 0.0F, 0.0F), 130, 7)}},
+                              {"three", {stamped(string("hello"), 100)}}});
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].header.time, 130);
+  EXPECT_EQ(sent[0].header.mode, 7);
+}
+
+TEST(Module, AnInputThatIsFarAheadWaitsToBeRead) {
+  Module module{"pair", "Pairs."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(together(left, right).max_waiting(3),
+            [&](const auto&, const auto&) { out.send(table({1.0})); });
+  std::vector<std::int64_t> often, seldom;
+  for (int i = 1; i <= 60; ++i) {
+    often.push_back(i);
+    if (i % 10 == 0) seldom.push_back(i);
+  }
+  EXPECT_EQ(run_on(module, {{"left", at_times(often)}, {"right", at_times(seldom)}}).size(), 6U);
+}
+
+TEST(Module, AnInputWithoutALinkEndsWhatIsTakenTogetherWithIt) {
+  Module module{"pair", "Pairs."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(together(left, right), [](const auto&, const auto&) { FAIL(); });
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(run_on(module, {{"left", at_times({1})}}).empty());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "pair: left: not read, since right has no link\n");
+}
+
+TEST(Module, AGeneratorsEndSettlesWhatWaits) {
+  Module module{"pair", "Pairs."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  int sets = 0, at_end = -1;
+  module.on(together(left, right).within(std::chrono::nanoseconds(5)),
+            [&](const auto&, const auto&) { ++sets; });
+  module.on_end([&] { at_end = sets; });
+  module.generate([&] { return false; });
+  auto left_sink = sink_of("inproc:m8-left"), right_sink = sink_of("inproc:m8-right");
+  ASSERT_TRUE(left_sink->send(stamped(table({1.0}), 10)));
+  ASSERT_TRUE(right_sink->send(stamped(table({1.0}), 12)));  // neither ends
+  EXPECT_EQ(run(module, {"--in", "left=inproc:m8-left", "--in", "right=inproc:m8-right"}), 0);
+  EXPECT_EQ(at_end, 1);
+}
+
+TEST(Module, AMessageThatDoesNotFitIsOneCleanLine) {
+  Module module{"strict", "Takes positions."};
+  auto in = module.input("in", position<double>(), "");
+  module.on(in, [](const auto&) { FAIL(); });
+  auto sink = sink_of("inproc:m4");
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "inproc:m4", "--name", "north"}), 1);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "north: Malformed: in: R17 info: table does not fit, the port takes position\n");
+}
+
+TEST(Module, EndsWhenNobodyReadsItAnyMore) {
+  Module module{"source", "Makes numbers."};
+  auto out = module.output("out", table<double>(), "");
+  module.generate([&] {
+    out.send(table({1.0}));
+    return true;
+  });
+  auto source = source_of("inproc:m5");
+  std::thread reader([&] {
+    Message message;
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(*receive(*source, message));
+    source.reset();
+  });
+  EXPECT_EQ(run(module, {"--out", "inproc:m5"}), 0);
+  reader.join();
+}
+
+TEST(Module, ReportsItsCounters) {
+  Module module{"counted", "Counts."};
+  auto in = module.input("in", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const auto&) { out.send(table({1.0, 2.0})); });
+  auto sink = sink_of("inproc:m6-in");
+  auto source = source_of("inproc:m6-out"), manage = source_of("inproc:m6-manage");
+  for (int i = 0; i < 7; ++i) ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->close());
+  EXPECT_EQ(run(module, {"--in=inproc:m6-in", "--out=inproc:m6-out", "--manage=inproc:m6-manage"}),
+            0);
+  Message message, last;
+  while (*manage->take(message) == Got::Message)
+    if (message.header.src == static_cast<int>(internal::Report::Counters)) last = message;
+  auto rows = *last.view<std::int64_t>();
+  ASSERT_EQ(rows.height(), 2U);
+  EXPECT_EQ(rows.at(0, 0, 0), 7);
+  EXPECT_EQ(rows.at(0, 0, 1), 7 * 8);
+  EXPECT_EQ(rows.at(1, 0, 0), 7);
+  EXPECT_EQ(rows.at(1, 0, 1), 7 * 16);
+}
+
+TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"--colour", "3"}, "no option \"--colour\"; parameters are: hue, on; see --help"},
+      {{"--hue", "2"}, "parameter hue: \"2\" is not from 0 to 1"},
+      {{"--hue"}, "--hue wants a value"},
+      {{"--on=maybe"}, "parameter on: \"maybe\" is not true or false"},
+      {{"--in", "up=-"}, "no input \"up\"; there are: in"},
+      {{"--in", "in="}, "a URI cannot be empty: \"\""},
+      {{"--address", "out=-1"}, "--address wants [PORT=]NUMBER, 0 to 2147483647, not \"out=-1\""},
+      {{"--encoding", "png"}, "--encoding is text, binary, zstd or jpeg, not \"png\""},
+      {{"--limit", "much"}, "--limit wants a number of bytes"},
+      {{"0.5", "extra"}, "one argument too many: \"extra\"; see --help"},
+  };
+  for (const auto& [words, line] : cases) {
+    Module module{"blob", "Finds blobs."};
+    auto in = module.input("in", position<double>(), "");
+    auto out = module.output("out", position<double>(), "");
+    auto hue = module.parameter("hue", 0.3, "turn", "", {.min = 0, .max = 1, .positional = true});
+    auto on = module.parameter("on", false, "", "");
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(run(module, words), 2);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+              "blob: Invalid: " + std::string(line) + "\n");
+  }
+}
+
+TEST(Module, DescribesItself) {
+  Module module{"blob", "Finds the \"largest\" blob."};
+  auto in = module.input("image", any_of(rgb_image<std::uint8_t>().in(7)), "picture");
+  auto depth = module.input("depth", anything(), "its depth");
+  module.on(together(in, depth), [](const auto&, const auto&) {});
+  auto out = module.output("target", position<double>(), "centre");
+  auto hue = module.parameter("hue", 0.5, "turn", "colour", {.min = 0, .max = 1});
+  auto how = module.parameter("how", "fast", "", "way", {.choices = {"fast", "good"}});
+  EXPECT_EQ(
+      internal::describe(module),
+      R"({"name":"blob","summary":"Finds the \"largest\" blob.","inputs":[{"name":"image","types":)"
+      R"([{"type":"rgb_image","components":3,"scalar":"u8","width":0,"height":0,"coord":7}],)"
+      R"("doc":"picture"},{"name":"depth","types":[],"doc":"its depth"}],)"
+      R"("together":[["image","depth"]],)"
+      R"("outputs":[{"name":"target","types":[{"type":"position","components":3,)"
+      R"("scalar":"f64","width":0,"height":0,"coord":0}],"encoding":"text","doc":"centre"}],)"
+      R"("parameters":[{"name":"hue","type":"number","unit":"turn","default":0.5,"min":0,"max":1,)"
+      R"("doc":"colour"},{"name":"how","type":"string","unit":"","default":"fast","choices":)"
+      R"(["fast","good"],"doc":"way"}],)"
+      R"("transports":["-","file","tcp","tcp-listen","unix","unix-listen","inproc","shm"],"control":true,)"
+      R"("routes":false})"
+      "\n");
+  std::string help = internal::help(module);
+  for (const char* part : {"Invalid: hc blob", "picture (rgb_image 3 x u8, coordinate system 7)",
+                           "Taken together, by their times: image, depth\n",
+                           "colour [turn] (default 0.5)", "way: fast, good (default fast)"})
+    EXPECT_NE(help.find(part), std::string::npos) << help;
+}
+
+TEST(Module, AWrongUriIsWrongUsage) {
+  Module module{"sink", "Takes."};
+  module.on(module.input("in", table<double>(), ""), [](const auto&) {});
+  for (const char* uri : {"tcp-listen:abc", "tcp:1?wait=x", "unix:"}) {
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(run(module, {"--in", uri}), 2) << uri;
+    EXPECT_TRUE(::testing::internal::GetCapturedStderr().starts_with("sink: Invalid: ")) << uri;
+  }
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "file:/nowhere/at/all"}), 1);
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("NotFound"), std::string::npos);
+}
+
+TEST(Module, HandlersFailWithOneLine) {
+  Module module{"broken", "Fails."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) { throw ModuleError("no camera"); });
+  auto sink = sink_of("inproc:m7");
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "inproc:m7"}), 1);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "broken: no camera\n");
+}
+
+}  // namespace
+}  // namespace hc

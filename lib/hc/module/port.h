@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Ports: where a module's messages come in and go out.
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hc/base/clock.h>
+#include <hc/link/link.h>
+#include <hc/module/kind.h>
+#include <hc/module/matcher.h>
+#include <hc/module/route.h>
+
+namespace hc {
+
+class Module;
+
+namespace internal {
+
+/// One end of a link, at a port.
+struct LinkedSink {
+  std::string uri;
+  std::unique_ptr<Sink> sink;  ///< null once the reader has gone
+  Traffic traffic;             ///< as it was when the link ended
+  Route route;                 ///< which messages go here
+};
+
+struct InputState {
+  std::string name, doc;
+  std::vector<PortType> types;  ///< what it takes; empty: anything
+  std::function<void(const Message&)> handler;
+  Matcher* matcher = nullptr;  ///< of the inputs that are taken together with this one
+  std::size_t place = 0;       ///< of this one among them
+  bool told = false;           ///< that messages are left out
+  bool is_raw = false;         ///< the handler gets messages as they came, compressed ones too
+  bool is_actor = false;       ///< moves something: one writer at a time is to have it
+  bool is_exclusive = false;   ///< takes messages of the mode in focus alone
+  std::optional<MonotonicTime> handled_at;  ///< the last message, while idle
+};
+
+/// Inputs that are taken together.
+struct TogetherState {
+  std::vector<std::shared_ptr<InputState>> inputs;
+  Matcher matcher;
+  std::int64_t left_out = 0;                ///< sets that were not handled while idle
+  std::optional<MonotonicTime> handled_at;  ///< the last, while idle
+};
+
+struct OutputState {
+  std::string name, doc;
+  std::vector<PortType> types;       ///< the one that it gives; empty: anything
+  std::int32_t address = 0;          ///< src of its messages
+  std::int32_t to = 0;               ///< dst of those that have none
+  std::optional<Encoding> encoding;  ///< asked for on the command line
+  std::int64_t seq = 0;
+  std::vector<std::shared_ptr<LinkedSink>> links;
+  Module* module = nullptr;
+
+  [[nodiscard]] const PortType& type() const { return types.at(0); }
+};
+
+/// Completes the header and sends to all links. What fails ends the module.
+void send(OutputState& output, Message message);
+
+/// Sends a message as it is; see Output<AnyKind>::forward.
+std::size_t forward(OutputState& output, const Message& message);
+
+}  // namespace internal
+
+/// An input port of kind K.
+template <typename K>
+struct Input {
+  std::shared_ptr<internal::InputState> state;
+};
+
+/// Inputs whose messages are taken together, by their times; see Matcher for the rules.
+template <typename... Kinds>
+struct Together {
+  std::vector<std::shared_ptr<internal::InputState>> inputs;
+  Matching how;
+
+  /// The same with times that may differ by so much; otherwise they are equal.
+  [[nodiscard]] Together within(std::chrono::nanoseconds difference) const {
+    return {inputs, {difference, how.max_waiting}};
+  }
+  /// The same with so many messages of each input that may wait for others, 1 … 32; otherwise 16.
+  [[nodiscard]] Together max_waiting(std::size_t messages) const {
+    return {inputs, {how.within, messages}};
+  }
+};
+
+/// Two inputs or more, of any kinds, for Module::on().
+template <typename... Kinds>
+requires(sizeof...(Kinds) >= 2) Together<Kinds...> together(const Input<Kinds>&... inputs) {
+  return {{inputs.state...}, {}};
+}
+
+/// An output port of kind K.
+template <typename K>
+class Output {
+ public:
+  explicit Output(std::shared_ptr<internal::OutputState> state) : state_(std::move(state)) {}
+
+  /// Sends a message to every link of the port. The header's src, seq and encoding are filled in;
+  /// dst, mode, coord and time where they are 0: dst by what the command line says (`--to`), coord
+  /// by the port's, mode and time by those of the message which is being handled, since what is
+  /// derived from a message keeps its time.
+  void send(const MessageOf<K>& message) { internal::send(*state_, message); }
+  void send(DraftOf<K>&& draft) { internal::send(*state_, std::move(draft).finish()); }
+
+  /// A message to be filled in place and sent, which saves a copy of large elements.
+  [[nodiscard]] DraftOf<K> loan(std::int32_t width, std::int32_t height) const {
+    Header header;
+    header.info = state_->type().info;
+    header.width = width;
+    header.height = height;
+    for (const auto& link : state_->links)
+      if (link->sink != nullptr) return {link->sink->loan(header)};
+    return {Draft::make(header)};
+  }
+
+  /// Whether anybody takes what is sent; a module may save itself the work otherwise.
+  [[nodiscard]] bool linked() const {
+    return std::any_of(state_->links.begin(), state_->links.end(),
+                       [](const auto& link) { return link->sink != nullptr; });
+  }
+
+ private:
+  std::shared_ptr<internal::OutputState> state_;
+};
+
+/// An output port that passes on messages of any kind: of a router, a gateway, a filter.
+template <>
+class Output<AnyKind> {
+ public:
+  explicit Output(std::shared_ptr<internal::OutputState> state) : state_(std::move(state)) {}
+
+  /// Sends a message, header and elements as they are, to the links whose route takes its dst, but
+  /// not back to the peer from which the message being handled came. A link without a route takes
+  /// everything.
+  /// @returns  how many links took it.
+  std::size_t forward(const Message& message) { return internal::forward(*state_, message); }
+
+  /// What `--encoding` asked for; forward() does not see to it.
+  [[nodiscard]] std::optional<Encoding> encoding() const { return state_->encoding; }
+
+ private:
+  std::shared_ptr<internal::OutputState> state_;
+};
+
+}  // namespace hc

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the tests of running modules share: a module on a thread of its own, and what it is told and
+// reports. Internal.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <hc/module/management.h>
+#include <hc/module/module.h>
+#include <hc/mtp/rows.h>
+
+namespace hc {
+
+inline std::unique_ptr<Source> source_of(const std::string& uri) {
+  auto source = open_source(*parse_uri(uri));
+  EXPECT_TRUE(source) << uri;
+  return std::move(*source);
+}
+inline std::unique_ptr<Sink> sink_of(const std::string& uri) {
+  auto sink = open_sink(*parse_uri(uri));
+  EXPECT_TRUE(sink) << uri;
+  return std::move(*sink);
+}
+
+inline Message in_mode(Message message, std::int32_t mode) {
+  message.header.mode = mode;
+  return message;
+}
+inline Message to(Message message, std::int32_t dst) {
+  message.header.dst = dst;
+  return message;
+}
+
+/// A module that runs on a thread of its own, with links inside the process whose names begin with
+/// the test's.
+class RunningModule : public ::testing::Test {
+ protected:
+  std::string uri(const std::string& name) {
+    return std::string("inproc:") +
+           ::testing::UnitTest::GetInstance()->current_test_info()->name() + "-" + name;
+  }
+  void start(Module& module, std::vector<std::string> words) {
+    thread_ = std::thread([this, &module, words = std::move(words)]() mutable {
+      words.insert(words.begin(), "module");
+      std::vector<char*> arguments;
+      for (auto& word : words) arguments.push_back(word.data());
+      status_ = module.run(static_cast<int>(arguments.size()), arguments.data());
+    });
+  }
+  /// The same for one that reports and is told.
+  void start_managed(Module& module, std::vector<std::string> words = {}) {
+    control_ = sink_of(uri("control"));
+    reports_ = source_of(uri("reports"));
+    words.insert(words.end(), {"--manage=" + uri("reports"), "--control=" + uri("control")});
+    start(module, std::move(words));
+  }
+  int join() {
+    thread_.join();
+    return status_;
+  }
+
+  std::unique_ptr<Sink> control_;
+  std::unique_ptr<Source> reports_;
+  std::thread thread_;
+  int status_ = -1;
+};
+
+/// The next report of a kind.
+inline Message next(Source& reports, internal::Report kind) {
+  Message message;
+  do {
+    HC_CHECK(*receive(reports, message));
+  } while (message.header.src != static_cast<int>(kind));
+  return message;
+}
+
+inline Status tell(Sink& control, const std::string& line) {
+  return control.send(make_rows(std::vector<std::string>{line}));
+}
+
+using Doubles = MessageOf<Kind<MatrixType::Table, double>>;
+
+/// Numbers of counters; a row for each link.
+using CounterRows = std::vector<std::vector<std::int64_t>>;
+
+inline CounterRows counters_of(const Message& message) {
+  CounterRows rows;
+  auto view = *message.view<std::int64_t>();
+  for (std::size_t i = 0; i < view.height(); ++i)
+    rows.emplace_back(view.row(i).begin(), view.row(i).end());
+  return rows;
+}
+inline CounterRows next_counters(Source& reports) {
+  return counters_of(next(reports, internal::Report::Counters));
+}
+/// The last of a module that has ended.
+inline CounterRows last_counters(Source& reports) {
+  Message message, last;
+  while (*reports.take(message) == Got::Message)
+    if (message.header.src == static_cast<int>(internal::Report::Counters)) last = message;
+  return counters_of(last);
+}
+
+}  // namespace hc

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/mtp/element.h>
+
+#include <gtest/gtest.h>
+
+namespace hc {
+namespace {
+
+TEST(Info, IsReadByEye) {
+  EXPECT_EQ(Info().code(), 10390);
+  Info sound{MatrixType::Sound, 2, Scalar::I16, Encoding::Binary};
+  EXPECT_EQ(sound.code(), 100231);
+  EXPECT_EQ(text(sound), "sound 2 x i16, binary");
+  EXPECT_EQ(sound.element_bytes(), 4U);
+  EXPECT_EQ(*parse_info(100231), sound);
+}
+
+TEST(Info, EveryCodeIsAcceptedOrNamesItsRule) {
+  int accepted = 0;
+  for (std::int64_t code = 0; code < 140000; ++code) {
+    auto info = parse_info(code);
+    if (info) {
+      ++accepted;
+      EXPECT_EQ(info->code(), code);
+      EXPECT_FALSE(find_error(*info));
+    } else {
+      EXPECT_TRUE(info.error().detail.starts_with("R17") ||
+                  info.error().detail.starts_with("R18") ||
+                  info.error().detail.starts_with("R19") ||
+                  info.error().detail.starts_with("R20") || info.error().detail.starts_with("R21"))
+          << info.error().detail;
+    }
+  }
+  // By hand from the table: position and rotation 3·2, rgb 2·4, intensity 10, field 99·10, string
+  // 1, transformation 2, dense 990, sparse 980, sound, map, table 990 each; times text, binary,
+  // zstd; and two pictures in jpeg.
+  EXPECT_EQ(accepted, 3 * (6 + 6 + 8 + 10 + 990 + 1 + 2 + 990 + 980 + 3 * 990) + 2);
+}
+
+TEST(Names, GoBothWays) {
+  for (int i = 1; i <= 12; ++i) {
+    auto type = static_cast<MatrixType>(i);
+    EXPECT_EQ(matrix_type_of(name(type)), type);
+  }
+  for (int i = 0; i < 10; ++i) {
+    auto scalar = static_cast<Scalar>(i);
+    EXPECT_EQ(scalar_of(name(scalar)), scalar);
+    visit_scalar(scalar, [&](auto zero) {
+      EXPECT_EQ(scalar_for<decltype(zero)>(), scalar);
+      EXPECT_EQ(size_of(scalar), sizeof zero);
+    });
+  }
+  EXPECT_EQ(encoding_of("jpeg"), Encoding::Jpeg);
+  EXPECT_FALSE(encoding_of("png"));
+  EXPECT_FALSE(matrix_type_of("picture"));
+}
+
+}  // namespace
+}  // namespace hc

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The pieces between which a message's elements stand, for both readers. Internal. Pure.
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include <hc/base/result.h>
+#include <hc/mtp/header.h>
+#include <hc/mtp/header_memo.h>
+
+namespace hc::internal {
+
+/// The elements are rows of numbers in text, and there is at least one row.
+inline bool has_rows(const Header& header) {
+  return header.info.encoding == Encoding::Text && header.info.type != MatrixType::String &&
+         !header.empty();
+}
+
+inline bool is_compressed(const Header& header) {
+  return header.info.encoding == Encoding::Zstd || header.info.encoding == Encoding::Jpeg;
+}
+
+struct HeaderLine {
+  Header header;
+  std::size_t bytes = 0;  ///< of the line with its end; 0: not complete yet
+};
+
+/// Reads the header line at the start of `text` (R3 … R24).
+/// @param memo  of the stream's headers.
+Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits, std::uint64_t byte,
+                                    HeaderMemo& memo);
+
+struct LengthLine {
+  std::uint64_t length = 0;  ///< of the compressed part [byte]
+  std::size_t bytes = 0;     ///< of the line with its end; 0: not complete yet
+};
+
+/// Reads the line before a compressed part (R34, R35).
+Result<LengthLine> read_length_line(std::string_view text, const Limits& limits,
+                                    std::uint64_t byte);
+
+/// Reads the line end that closes elements which are not rows (R26); gives its bytes, 0 when it is
+/// not complete yet.
+Result<std::size_t> read_closing(const Header& header, std::string_view text, std::uint64_t byte);
+
+/// Reads rows that are not complete for their errors alone; gives 0, or the first error.
+Result<std::size_t> check_rows(const Header& header, std::string_view text, std::uint64_t byte);
+
+}  // namespace hc::internal

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/mtp/message.h>
+
+#include <gtest/gtest.h>
+
+namespace hc {
+namespace {
+
+constexpr Info kRgb{MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary};
+
+Message small_picture() {
+  Draft draft = Draft::make(kRgb, 2, 3);
+  auto pixels = draft.view<std::uint8_t>();
+  for (std::size_t i = 0; i < pixels.numbers().size(); ++i)
+    pixels.numbers()[i] = static_cast<std::uint8_t>(i);
+  return std::move(draft).finish();
+}
+
+TEST(Message, IsViewedWithoutACopy) {
+  Message picture = small_picture();
+  auto pixels = picture.view<std::uint8_t>();
+  ASSERT_TRUE(pixels);
+  EXPECT_EQ(pixels->width(), 2U);
+  EXPECT_EQ(pixels->height(), 3U);
+  EXPECT_EQ(pixels->components(), 3U);
+  EXPECT_FALSE(pixels->empty());
+  EXPECT_EQ(static_cast<const void*>(pixels->numbers().data()), picture.elements.data());
+  EXPECT_EQ(pixels->at(1, 1, 2), 11);
+  EXPECT_EQ(pixels->row(2)[0], 12);
+}
+
+TEST(Message, AnotherScalarIsRefused) {
+  EXPECT_EQ(small_picture().view<float>().error().code, Code::Unsupported);
+  Message packed = small_picture();
+  packed.header.info.encoding = Encoding::Jpeg;
+  EXPECT_FALSE(packed.view<std::uint8_t>());
+}
+
+TEST(MessageDeathTest, OutsideIsABug) {
+  Message picture = small_picture();
+  auto pixels = *picture.view<std::uint8_t>();
+  EXPECT_DEATH(static_cast<void>(pixels.at(3, 0)), "check failed");
+  EXPECT_DEATH(static_cast<void>(pixels.row(3)), "check failed");
+  EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, 1, 1).view<float>()), "check failed");
+  EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, -1, 1)), "check failed.*R15");
+}
+
+TEST(Message, KeepOwnsWhatWasBorrowed) {
+  Message picture = small_picture();
+  EXPECT_EQ(picture.keep().elements.data(), picture.elements.data());
+  Message borrowed{picture.header, picture.elements, nullptr, 0};
+  Message kept = borrowed.keep();
+  EXPECT_NE(kept.elements.data(), picture.elements.data());
+  EXPECT_EQ(kept.characters(), picture.characters());
+  EXPECT_NE(kept.owner, nullptr);
+}
+
+TEST(Message, MemoryIsAligned) {
+  for (std::size_t size : {0U, 1U, 100U, 100000U})
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(allocate_bytes(size).get()) % 64, 0U);
+}
+
+TEST(Message, LargeMemoryBeginsWhereNoHeaderLineInAPageEnds) {
+  for (std::size_t size : {65536U, 1440000U, 5000001U}) {
+    auto bytes = allocate_bytes(size);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(bytes.get()) % 4096, 512U);
+    std::memset(bytes.get(), 1, size);  // ASan tells if it were too short
+  }
+}
+
+}  // namespace
+}  // namespace hc

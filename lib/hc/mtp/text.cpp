@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/mtp/text.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include <hc/mtp/digits.h>
+#include <hc/mtp/refusal.h>
+
+namespace hc {
+namespace {
+
+using internal::in_quotes;
+using internal::refusal;
+
+constexpr std::size_t kMaxWritten = 32;  // bytes of a number in canonical form, and room behind it
+
+bool is_end(char c) {
+  return c == ' ' || c == '\n';
+}
+
+constexpr int kMaxShortDigits = 18;  // below 2⁶³
+
+constexpr std::array<std::uint64_t, kMaxShortDigits + 1> kPowersOfTen = [] {
+  std::array<std::uint64_t, kMaxShortDigits + 1> powers{1};
+  for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
+  return powers;
+}();
+
+__extension__ using Wide = unsigned __int128;
+
+/// 1 / 10^n is mantissa × 2^exponent and a little more; the mantissa has all 64 bits.
+struct Reciprocal {
+  std::uint64_t mantissa;
+  int exponent;
+};
+
+constexpr std::array<Reciprocal, kMaxShortDigits + 1> kReciprocals = [] {
+  std::array<Reciprocal, kMaxShortDigits + 1> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Wide whole = (static_cast<Wide>(1) << 127) / kPowersOfTen[i];
+    int exponent = -127;
+    for (; whole >> 64 != 0; ++exponent) whole >>= 1;
+    all[i] = {static_cast<std::uint64_t>(whole), exponent};
+  }
+  return all;
+}();
+
+/// How reading a number went; the rule's number when it did not.
+enum class Outcome { Good, NotANumber = 27, OutOfRange = 28 };
+
+/// Reads a number at the start of [first, last); `next` is the byte behind it. With NotANumber the
+/// whole token is at fault, wherever the spelling broke.
+template <typename T>
+Outcome read_integer(const char* first, const char* last, T& value, const char*& next) {
+  const char* at = first;
+  bool negative = at != last && *at == '-';
+  if (negative) ++at;
+  const char* digits = at;
+  std::uint64_t magnitude = 0;
+  while (at != last) {
+    auto digit = static_cast<unsigned char>(*at - '0');
+    if (digit > 9) break;
+    magnitude = magnitude * 10 + digit;
+    ++at;
+  }
+  next = at;
+  auto length = at - digits;
+  if (length == 0 || (*digits == '0' && (length > 1 || negative))) return Outcome::NotANumber;
+  if (length < 19) [[likely]] {  // fits into i64
+    auto exact = static_cast<std::int64_t>(magnitude);
+    if (negative) exact = -exact;
+    if (exact < 0 ? static_cast<std::int64_t>(std::numeric_limits<T>::min()) > exact
+                  : static_cast<std::uint64_t>(std::numeric_limits<T>::max()) <
+                        static_cast<std::uint64_t>(exact))
+      return Outcome::OutOfRange;
+    value = static_cast<T>(exact);
+    return Outcome::Good;
+  }
+  if (negative && std::is_unsigned_v<T>) return Outcome::OutOfRange;
+  auto status = std::from_chars(first, at, value).ec;
+  return status == std::errc() ? Outcome::Good : Outcome::OutOfRange;
+}
+
+/// Whether a well-spelled number that fits no float is too small for one, rather than too large:
+/// whether its first digit that is not 0 stands behind the decimal point once that is moved.
+bool is_tiny(std::string_view number) {
+  std::int64_t places = 0;  // digits before the point, or -zeros behind it
+  bool behind_point = false, significant = false;
+  std::size_t i = number.starts_with('-') ? 1 : 0;
+  for (; i < number.size() && (number[i] | 0x20) != 'e'; ++i) {
+    if (number[i] == '.') {
+      behind_point = true;
+      continue;
+    }
+    significant = significant || number[i] != '0';
+    if (significant && !behind_point) ++places;
+    if (!significant && behind_point) --places;
+  }
+  bool negative_exponent = i + 1 < number.size() && number[i + 1] == '-';
+  std::int64_t exponent = 0;
+  for (; i < number.size(); ++i)
+    if (number[i] >= '0' && number[i] <= '9' && exponent < 1'000'000)
+      exponent = exponent * 10 + (number[i] - '0');
+  return places + (negative_exponent ? -exponent : exponent) <= 0;
+}
+
+/// Reads digits and adds them to the end of `value`; what does not fit is lost.
+[[gnu::always_inline]] inline const char* read_digits(const char* at, const char* last,
+                                                      std::uint64_t& value) {
+  for (unsigned digit; at != last && (digit = static_cast<unsigned>(*at - '0')) <= 9; ++at)
+    value = value * 10 + digit;
+  return at;
+}
+
+/// The same for many digits: eight at a time.
+[[gnu::always_inline]] inline const char* read_many_digits(const char* at, const char* last,
+                                                           std::uint64_t& value) {
+  while (last - at >= 8) {
+    std::uint64_t word = internal::load8(at);
+    if (internal::non_digits(word) != 0) break;
+    value = value * kPowersOfTen[8] + internal::value_of_digits(word);
+    at += 8;
+  }
+  return read_digits(at, last, value);
+}
+
+/// The T nearest to ± digits / 10^places; nothing when 64 bits of the quotient do not tell which it
+/// is. Without branches, which would be foretold wrong as often as not.
+///
+/// @param digits  0 … 10¹⁸ - 1.
+/// @param places  0 … 18.
+///
+/// Source: the multiplication by a rounded reciprocal, and when it may be trusted, as in D. Lemire,
+/// Number Parsing at a Gigabyte per Second, Software: Practice and Experience 51 (2021).
+template <typename T>
+[[gnu::always_inline]] inline std::optional<T> divide(std::uint64_t digits, std::size_t places,
+                                                      bool negative) {
+  using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+  auto sign = static_cast<Bits>(negative) << (8 * sizeof(T) - 1);
+  if (digits == 0) return std::bit_cast<T>(sign);
+
+  // The quotient is mantissa × 2^exponent and a little more, less than 6 in the last place.
+  const Reciprocal& reciprocal = kReciprocals[places];
+  int shift = std::countl_zero(digits);
+  auto product = static_cast<Wide>(digits << shift) * reciprocal.mantissa;
+  auto mantissa = static_cast<std::uint64_t>(product >> 64);
+  int last_shift = 1 - static_cast<int>(mantissa >> 63);
+  mantissa <<= last_shift;
+  int exponent = reciprocal.exponent + 64 - shift - last_shift;
+
+  // Rounded to the digits of a T, unless that close to the middle of two.
+  constexpr int kSpare = 64 - std::numeric_limits<T>::digits;
+  constexpr std::uint64_t kMiddle = std::uint64_t{1} << (kSpare - 1);
+  std::uint64_t below = mantissa & (2 * kMiddle - 1);
+  if (below + 6 - kMiddle <= 6) return std::nullopt;
+  auto rounded = static_cast<Bits>((mantissa >> kSpare) + (below > kMiddle ? 1 : 0));
+
+  // The leading bit of `rounded`, which is not stored, is added to the exponent.
+  auto biased = static_cast<Bits>(exponent + 63 + std::numeric_limits<T>::max_exponent - 2);
+  return std::bit_cast<T>(sign | ((biased << (std::numeric_limits<T>::digits - 1)) + rounded));
+}
+
+/// Reads the commonest floats, [-]digits[.digits] of at most 18 digits; gives null for any other.
+template <typename T>
+[[gnu::always_inline]] inline const char* read_short_float(const char* first, const char* last,
+                                                           T& value) {
+  bool negative = *first == '-';
+  const char* begin = first + static_cast<std::ptrdiff_t>(negative);
+  std::uint64_t digits = 0;
+  const char* at = read_digits(begin, last, digits);
+  std::ptrdiff_t count = at - begin, places = 0;
+  if (at != last && *at == '.') {
+    const char* point = at;
+    at = read_many_digits(point + 1, last, digits);
+    places = at - point - 1;
+  }
+  if (count == 0 || count + places > kMaxShortDigits || at == last || !is_end(*at)) return nullptr;
+  auto quotient = divide<T>(digits, static_cast<std::size_t>(places), negative);
+  if (!quotient) return nullptr;
+  value = *quotient;
+  return at;
+}
+
+template <typename T>
+Outcome read_float(const char* first, const char* last, T& value, const char*& next) {
+  auto [stop, status] = std::from_chars(first, last, value);
+  next = stop;
+  if (status == std::errc::invalid_argument) return Outcome::NotANumber;
+  if (stop[-1] == ')') return Outcome::NotANumber;  // from_chars also knows nan(…)
+  if (status == std::errc::result_out_of_range) {
+    if (!is_tiny({first, static_cast<std::size_t>(stop - first)})) return Outcome::OutOfRange;
+    value = static_cast<T>(*first == '-' ? -0.0 : 0.0);
+  }
+  return Outcome::Good;
+}
+
+template <typename T>
+Outcome read_number(const char* first, const char* last, T& value, const char*& next) {
+  if constexpr (std::is_integral_v<T>)
+    return read_integer(first, last, value, next);
+  else
+    return read_float(first, last, value, next);
+}
+
+template <typename T>
+char* write_number(char* at, T value) {
+  if constexpr (std::is_unsigned_v<T>) {
+    return internal::write_digits(at, value);
+  } else if constexpr (std::is_integral_v<T>) {
+    return internal::write_integer(at, value);
+  } else {
+    if (std::isnan(value)) [[unlikely]] {
+      return std::copy_n("nan", 3, at);
+    }
+    return std::to_chars(at, at + kMaxWritten, value).ptr;
+  }
+}
+
+std::string describe(Outcome outcome, std::string_view token, Scalar scalar) {
+  std::string scalar_name{name(scalar)};
+  if (outcome == Outcome::OutOfRange)
+    return std::string(token) + " does not fit into " + scalar_name;
+  return in_quotes(token) + " is not a number of " + scalar_name;
+}
+
+}  // namespace
+
+TextRows::TextRows(const Header& header)
+    : scalar_(header.info.scalar),
+      row_numbers_(header.row_numbers()),
+      rows_left_(static_cast<std::uint64_t>(header.height)) {}
+
+template <typename T>
+Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte, T* numbers) {
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const char* at = begin;
+  auto where = [&](const char* here) { return byte + static_cast<std::uint64_t>(here - begin); };
+
+  // The numbers and line ends one after the other, up to one that is not whole.
+  while (rows_left_ > 0) {
+    if constexpr (std::is_floating_point_v<T>) {  // most of them, for speed
+      std::uint64_t column = column_;
+      T value;
+      for (const char* next; column < row_numbers_ && at != end &&
+                             (next = read_short_float(at, end, value)) != nullptr;
+           ++column) {
+        std::memcpy(numbers++, &value, sizeof value);
+        at = next + (*next == ' ' ? 1 : 0);
+      }
+      count_ += column - column_;
+      column_ = column;
+    }
+    while (at != end && *at == ' ') ++at;
+    if (at == end) break;
+
+    bool carriage_return = *at == '\r' && (end - at == 1 || at[1] == '\n');
+    if (carriage_return && end - at == 1) break;
+    if (*at == '\n' || carriage_return) {
+      if (column_ < row_numbers_)
+        return refusal(Code::Malformed, 29, "elements",
+                       "a row ends after " + std::to_string(column_) + " of " +
+                           std::to_string(row_numbers_) + " numbers",
+                       where(at));
+      at += carriage_return ? 2 : 1;
+      column_ = 0;
+      --rows_left_;
+      continue;
+    }
+
+    const char* next = at;
+    T value{};
+    Outcome outcome = Outcome::Good;
+    if (column_ < row_numbers_) [[likely]] {
+      outcome = read_number(at, end, value, next);
+      bool whole = next != end && (is_end(*next) || (*next == '\r' && end - next > 1));
+      if (outcome == Outcome::Good && whole && next - at <= std::ptrdiff_t{kMaxNumberBytes} &&
+          (*next != '\r' || next[1] == '\n')) [[likely]] {
+        std::memcpy(numbers++, &value, sizeof value);
+        ++column_;
+        ++count_;
+        at = next + (*next == ' ' ? 1 : 0);
+        continue;
+      }
+    }
+    // Something is wrong with the number, or it is not whole; of several faults the first rule in
+    // the order of R31 is named.
+    const char* token_end = at;
+    while (token_end != end && !is_end(*token_end)) ++token_end;
+    if (token_end != end && *token_end == '\n' && token_end[-1] == '\r') --token_end;
+    std::string_view token(at, static_cast<std::size_t>(token_end - at));
+    bool open = token_end == end;  // more of it may come, or the LF to a CR at its end
+    if (open && token.size() <= kMaxNumberBytes) break;
+    if (open && token.size() == kMaxNumberBytes + 1 && token.back() == '\r') break;
+    if (token.size() > kMaxNumberBytes)
+      return refusal(Code::Malformed, 31, "elements",
+                     "a number is at most 64 bytes long, not as " + in_quotes(token), where(at));
+    if (column_ == row_numbers_)
+      return refusal(
+          Code::Malformed, 30, "elements",
+          in_quotes(token) + " is one number too many for a row of " + std::to_string(row_numbers_),
+          where(at));
+    if (outcome != Outcome::OutOfRange || next != token_end) outcome = Outcome::NotANumber;
+    return refusal(Code::Malformed, static_cast<int>(outcome), "elements",
+                   describe(outcome, token, scalar_), where(at));
+  }
+  return static_cast<std::size_t>(at - begin);
+}
+
+Result<std::size_t> TextRows::read(std::string_view text, std::uint64_t byte, std::byte* numbers) {
+  return visit_scalar(scalar_, [&](auto zero) {
+    return read_as(text, byte, reinterpret_cast<decltype(zero)*>(numbers));
+  });
+}
+
+void append_text(const Header& header, std::span<const std::byte> elements, std::string& text) {
+  if (header.info.type == MatrixType::String) {
+    text.append(reinterpret_cast<const char*>(elements.data()), elements.size());
+    text += '\n';
+    return;
+  }
+  if (header.empty()) {
+    text += '\n';
+    return;
+  }
+  visit_scalar(header.info.scalar, [&](auto zero) {
+    using T = decltype(zero);
+    const T* number = reinterpret_cast<const T*>(elements.data());
+    std::uint64_t row_numbers = header.row_numbers();
+    // Numbers go through a piece of memory of our own, so that the string need not be filled with
+    // zeros first.
+    constexpr std::size_t kPiece = 4096;
+    char piece[kPiece];
+    char* at = piece;
+    for (std::int32_t row = 0; row < header.height; ++row) {
+      for (std::uint64_t column = 0; column < row_numbers; ++column) {
+        if (at > piece + kPiece - kMaxWritten - 1) {
+          text.append(piece, at);
+          at = piece;
+        }
+        at = write_number(at, *number++);
+        *at++ = ' ';
+      }
+      at[-1] = '\n';
+    }
+    text.append(piece, at);
+  });
+}
+
+template <ScalarType T>
+void append_number(T value, std::string& text) {
+  char written[kMaxWritten];
+  text.append(written, write_number(written, value));
+}
+
+template <ScalarType T>
+Result<T> parse_number(std::string_view token) {
+  const char* next = nullptr;
+  T value{};
+  const char* end = token.data() + token.size();
+  Outcome outcome =
+      token.empty() ? Outcome::NotANumber : read_number(token.data(), end, value, next);
+  if (outcome != Outcome::NotANumber && next != end) outcome = Outcome::NotANumber;
+  if (token.size() > kMaxNumberBytes)
+    return Error{Code::Malformed, "R31: a number is at most 64 bytes long"};
+  if (outcome == Outcome::Good) return value;
+  return Error{Code::Malformed, "R" + std::to_string(static_cast<int>(outcome)) + ": " +
+                                    describe(outcome, token, scalar_for<T>())};
+}
+
+#define HC_INSTANTIATE(T)                          \
+  template void append_number<T>(T, std::string&); \
+  template Result<T> parse_number<T>(std::string_view);
+HC_INSTANTIATE(std::uint8_t)
+HC_INSTANTIATE(std::int8_t)
+HC_INSTANTIATE(std::uint16_t)
+HC_INSTANTIATE(std::int16_t)
+HC_INSTANTIATE(std::uint32_t)
+HC_INSTANTIATE(std::int32_t)
+HC_INSTANTIATE(std::uint64_t)
+HC_INSTANTIATE(std::int64_t)
+HC_INSTANTIATE(float)
+HC_INSTANTIATE(double)
+#undef HC_INSTANTIATE
+
+}  // namespace hc

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Matrices as text: rows of numbers, read in pieces as they come and written in the shortest form
+// (spec/mtp-1.md, R27 … R31, R39). Pure.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <hc/base/result.h>
+#include <hc/mtp/header.h>
+
+namespace hc {
+
+inline constexpr std::size_t kMaxNumberBytes = 64;  ///< of a number in text; R31
+
+/// Reads the rows of one matrix, in as many pieces as they come in.
+class TextRows {
+ public:
+  TextRows() = default;
+  /// @param header  of a message in text encoding that is no string and not empty.
+  explicit TextRows(const Header& header);
+
+  /// Reads what is whole of `text` and appends its numbers in binary form.
+  ///
+  /// @param text  the stream from where the last call stopped. A number is whole when the byte
+  ///     after it is there.
+  /// @param byte  where `text` stands in the stream, for errors.
+  /// @param numbers  the first free byte of the result; has room for all numbers of the matrix or
+  ///     for text.size() / 2 + 1 of them.
+  /// @returns  bytes of text used, not more than up to the matrix' end.
+  ///
+  /// Errors: Malformed (R27 … R31).
+  Result<std::size_t> read(std::string_view text, std::uint64_t byte, std::byte* numbers);
+
+  /// The last row has ended.
+  [[nodiscard]] bool done() const { return rows_left_ == 0; }
+  /// Numbers read so far.
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+ private:
+  template <typename T>
+  Result<std::size_t> read_as(std::string_view text, std::uint64_t byte, T* numbers);
+
+  Scalar scalar_ = Scalar::U8;
+  std::uint64_t row_numbers_ = 0;  // in a row
+  std::uint64_t column_ = 0;       // numbers read of this row
+  std::uint64_t rows_left_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+/// Appends the rows of a matrix in canonical form, with the closing line feed.
+///
+/// @param elements  in binary form, aligned for the scalar, as the header says.
+void append_text(const Header& header, std::span<const std::byte> elements, std::string& text);
+
+/// Appends one number in canonical form: 0.1, 1e+05, -0, nan.
+template <ScalarType T>
+void append_number(T value, std::string& text);
+
+/// Reads one number that fills `token`, as a row of text spells it.
+///
+/// Errors: Malformed; the detail is "R28: 256 does not fit into u8".
+template <ScalarType T>
+Result<T> parse_number(std::string_view token);
+
+}  // namespace hc
