@@ -85,6 +85,8 @@ good(
     ),
 )
 good("dense_graph", message(H % (80180, 40, 2, 2), "0 0.5\n0.25 0", "[[0,0.5],[0.25,0]]"))
+good("dense_graph_directed", message(H % (80150, 40, 2, 2), "0 1\n0 0", "[[0,1],[0,0]]"))
+good("sparse_graph_node_alone", message(H % (90250, 40, 1, 2), "0 1\n2 2", "[[[0,1]],[[2,2]]]"))
 good("sparse_graph", message(H % (90350, 40, 1, 2), "0 1 7\n1 0 -7", "[[[0,1,7]],[[1,0,-7]]]"))
 good(
     "sound_stereo",
@@ -93,6 +95,13 @@ good(
     ),
 )
 good("sound_mono_text", message(H % (100130, 20, 3, 1), "-1 0 1", "[[-1,0,1]]"))
+good("sound_f32", message(H % (100180, 20, 3, 1), "-1 0 1", "[[-1,0,1]]"))
+good("map_frame", message(H % (110110, 100, 2, 1), "0 100", "[[0,100]]"))
+good(
+    "camera_table",
+    message(H % (120590, 9, 1, 1), "600 600 400 300 0.13", "[[[600,600,400,300,0.13]]]"),
+)
+good("set_none_found", message(H % (10390, 7, 0, 1), "", "[]"))
 good("map", message(H % (110110, 1, 3, 2), "0 -1 100\n0 0 -128", "[[0,-1,100],[0,0,-128]]"))
 good("table", message(H % (120170, 40, 2, 1), "12 -3", "[[12,-3]]"))
 
@@ -162,6 +171,8 @@ good(
     ),
 )
 good("string_rows", message(H % (60100, 30, 3, 2), "onetwo", '["one","two"]'))
+good("string_rows_padded", message(H % (60100, 30, 3, 2), "go at ", '["go ","at "]'))
+good("string_width_in_bytes", message(H % (60100, 30, 5, 1), "Grüß"[1:], '["rüß"]'))
 good(
     "string_like_header",
     message(
