@@ -3,6 +3,7 @@
 
 include(GNUInstallDirs)
 
+option(HC_HEAD "Build the robot head: images, speech, sound, graphics, devices" ON)
 option(HC_DEVELOPER_MODE "Build tests and benchmarks" OFF)
 option(HC_WERROR "A warning is an error" OFF)
 option(HC_COVERAGE "Count the lines that tests run" OFF)
@@ -24,33 +25,16 @@ if(HC_CCACHE)
 endif()
 
 find_package(Threads REQUIRED)
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
-pkg_check_modules(jpeg REQUIRED IMPORTED_TARGET libjpeg)
-pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
-pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp)
-pkg_check_modules(sdl2 REQUIRED IMPORTED_TARGET sdl2)
-pkg_check_modules(tesseract REQUIRED IMPORTED_TARGET tesseract)
-pkg_check_modules(espeak REQUIRED IMPORTED_TARGET espeak-ng)
-pkg_check_modules(aravis REQUIRED IMPORTED_TARGET aravis-0.8)
-pkg_check_modules(apriltag REQUIRED IMPORTED_TARGET apriltag)
-find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
-find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(fmt REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
-
-# Debian's single OpenCV packages have no CMake package, which is libopencv-dev's with everything.
-find_path(HC_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(module core imgproc imgcodecs videoio calib3d highgui aruco video)
-  find_library(HC_OPENCV_${module} opencv_${module} REQUIRED)
-  add_library(opencv_${module} UNKNOWN IMPORTED GLOBAL)
-  set_target_properties(opencv_${module} PROPERTIES
-    IMPORTED_LOCATION ${HC_OPENCV_${module}} INTERFACE_INCLUDE_DIRECTORIES ${HC_OPENCV_INCLUDE})
-  if(NOT module STREQUAL core)
-    target_link_libraries(opencv_${module} INTERFACE opencv_core)
-  endif()
-endforeach()
+find_path(HC_TOML toml++/toml.h REQUIRED)
+find_library(HC_zstd zstd)
+find_library(HC_jpeg jpeg)
+if(HC_HEAD)
+  include(head_packages)
+endif()
 
 # Flags that are ours, not our users'.
 add_library(hc_flags INTERFACE)
@@ -138,9 +122,14 @@ endfunction()
 
 # hc_module(depth LIBS hc::opencv hc::vision)
 # A module: main.cpp, with program.cpp, depth.h, depth.cpp and their test where they exist, and its
-# cases/. SOURCES and TESTS are what else it has.
+# cases/. SOURCES and TESTS are what else it has. Not built where one of LIBS is missing (HC_HEAD).
 function(hc_module name)
   cmake_parse_arguments(arg "" "" "SOURCES;TESTS;LIBS" ${ARGN})
+  foreach(lib ${arg_LIBS})
+    if(NOT TARGET ${lib} AND (lib MATCHES "::" OR lib MATCHES "^opencv_"))
+      return()
+    endif()
+  endforeach()
   if(arg_SOURCES)
     add_library(module_${name}_parts STATIC ${arg_SOURCES})
     target_link_libraries(module_${name}_parts PRIVATE hc_flags hc::module ${arg_LIBS})

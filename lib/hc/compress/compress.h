@@ -11,8 +11,8 @@ namespace hc {
 /// The message with its elements in binary form: itself when it is plain, else decompressed, with
 /// encoding binary.
 ///
-/// Errors: Malformed (R36, R37: the bytes are damaged, or hold less, more or another picture than
-/// the header says); the detail names rule and field.
+/// Errors: Malformed (R36, R37: the bytes are damaged, or hold less, more or another image than
+/// the header says); Unsupported (this build lacks the codec). The detail names rule and field.
 /// Cost: decompression; allocates what the header promises, and no more whatever the bytes hold.
 Result<Message> expand(const Message& message);
 
@@ -24,8 +24,9 @@ struct CompressOptions {
 
 /// The message in another encoding; the inverse of expand(), but for what JPEG loses.
 ///
-/// Errors: Unsupported (a type that the encoding cannot hold, R21); Malformed, as expand().
-/// Cost: compression and one allocation; nothing when the encoding is the message's own already.
+/// Errors: Unsupported (a type that the encoding cannot hold, R21; a codec that this build lacks);
+/// Malformed, as expand(). Cost: compression and one allocation; nothing when the encoding is the
+/// message's own already.
 Result<Message> compress(const Message& message, Encoding encoding,
                          const CompressOptions& options = {});
 

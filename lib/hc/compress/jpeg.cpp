@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/compress/jpeg.h>
+#include <hc/compress/codecs.h>
 
-// jpeglib.h wants these two before it.
+// jpeglib.h needs these two before it.
 #include <cstddef>
 #include <cstdio>
 
@@ -9,12 +9,19 @@
 
 #include <csetjmp>
 #include <cstdlib>
+#include <optional>
+#include <string>
+
+#include <hc/base/check.h>
 
 namespace hc::internal {
 namespace {
 
-constexpr int kMaxScans = 100;  // of a progressive picture; each costs the decoder a whole pass
+constexpr int kMaxScans = 100;  // of a progressive image; each costs the decoder a whole pass
 constexpr int kFullColourQuality = 90;
+/// Most bytes that one compressed byte can stand for: a component of a JPEG image has all pixels,
+/// in blocks of 64 that take a bit each at least (ITU-T T.81, A.1.1 and F.1.2).
+constexpr std::uint64_t kMaxRatio = std::uint64_t{64} * 8;
 
 /// libjpeg reports errors by a call that must not come back; these go back to where we began.
 /// No object with a destructor lives between setjmp and longjmp.
@@ -42,7 +49,7 @@ jpeg_error_mgr* install(ErrorHandler& handler) {
   return &handler.manager;
 }
 
-/// Refuses what would keep the decoder busy for longer than a picture is worth.
+/// Refuses what would keep the decoder busy for longer than an image is worth.
 void count_scans(j_common_ptr info) {
   auto* picture = reinterpret_cast<j_decompress_ptr>(info);
   if (picture->input_scan_number <= kMaxScans) return;
@@ -51,22 +58,22 @@ void count_scans(j_common_ptr info) {
   std::longjmp(handler->start, 1);
 }
 
-/// What is wrong with a picture whose header has been read; null when it is as promised.
+/// How an image differs from what the header promises; null when it does not.
 const char* find_mismatch(const jpeg_decompress_struct& picture, const Header& header) {
   if (picture.image_width != static_cast<JDIMENSION>(header.width) ||
       picture.image_height != static_cast<JDIMENSION>(header.height))
-    return "the JPEG picture has another width or height than the header says";
+    return "the JPEG image has another width or height than the header says";
   if (picture.num_components != header.info.components)
-    return "the JPEG picture has another number of components than the header says";
-  if (picture.data_precision != 8) return "the JPEG picture does not have 8 bits";
-  if (picture.arith_code != FALSE) return "the JPEG picture is arithmetic-coded";
+    return "the JPEG image has another number of components than the header says";
+  if (picture.data_precision != 8) return "the JPEG image does not have 8 bits";
+  if (picture.arith_code != FALSE) return "the JPEG image is arithmetic-coded";
   return nullptr;
 }
 
-}  // namespace
-
-std::optional<std::string> read_jpeg(std::span<const std::byte> bytes, const Header& header,
-                                     std::byte* pixels) {
+/// Reads an image of the header's width, height and components into `pixels`, (height, width,
+/// components) u8; gives what is wrong with the bytes, or nothing.
+std::optional<std::string> read(std::span<const std::byte> bytes, const Header& header,
+                                std::byte* pixels) {
   ErrorHandler handler;
   jpeg_decompress_struct picture;
   jpeg_progress_mgr progress{};
@@ -95,11 +102,23 @@ std::optional<std::string> read_jpeg(std::span<const std::byte> bytes, const Hea
   jpeg_finish_decompress(&picture);
   bool left_over = picture.src->bytes_in_buffer > 0;
   jpeg_destroy_decompress(&picture);
-  if (left_over) return "bytes follow the JPEG picture";
+  if (left_over) return "bytes follow the JPEG image";
   return std::nullopt;
 }
 
-Message write_jpeg(const Message& message, int quality) {
+}  // namespace
+
+Result<Message> expand_jpeg(const Message& message) {
+  const std::uint64_t promised = message.header.element_bytes();
+  if (promised / message.header.info.components / kMaxRatio > message.elements.size())
+    return too_few_bytes(37, message);
+  SharedBytes pixels = allocate_bytes(promised);
+  if (auto fault = read(message.elements, message.header, pixels.get()))
+    return damaged(37, *fault, message);
+  return plain_message(message, pixels);
+}
+
+Result<Message> compress_jpeg(const Message& message, int quality) {
   const Header& header = message.header;
   ErrorHandler handler;
   jpeg_compress_struct picture;
@@ -126,7 +145,7 @@ Message write_jpeg(const Message& message, int quality) {
   jpeg_finish_compress(&picture);
   jpeg_destroy_compress(&picture);
   std::shared_ptr<unsigned char> owner(buffer, std::free);
-  return {header, {reinterpret_cast<const std::byte*>(buffer), size}, owner, 0};
+  return Message{header, {reinterpret_cast<const std::byte*>(buffer), size}, owner, 0};
 }
 
 }  // namespace hc::internal

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/compress/codecs.h>
+
+namespace hc::internal {
+
+Result<Message> expand_jpeg(const Message&) {
+  return no_codec("jpeg", "libjpeg-dev");
+}
+Result<Message> compress_jpeg(const Message&, int) {
+  return no_codec("jpeg", "libjpeg-dev");
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <zstd.h>
+#include <zstd_errors.h>
+
+#include <string>
+
+#include <hc/base/check.h>
+#include <hc/compress/codecs.h>
+
+namespace hc::internal {
+namespace {
+
+/// Most bytes that one compressed byte can stand for, so that no memory is reserved for a promise
+/// that the bytes cannot keep. A block of zstd takes 4 bytes at least, 3 of them its header, and
+/// holds 128 KiB at most (RFC 8878, 3.1.1.2).
+constexpr std::uint64_t kMaxRatio = (std::uint64_t{128} << 10) / 4;
+
+}  // namespace
+
+Result<Message> expand_zstd(const Message& message) {
+  std::uint64_t promised = message.header.element_bytes();
+  if (message.elements.empty()) return damaged(36, "no zstd frame", message);
+  if (promised / kMaxRatio > message.elements.size()) return too_few_bytes(36, message);
+  // All in one call: it writes into our bytes alone, needs no window, and stops at their end.
+  SharedBytes bytes = allocate_bytes(promised);
+  std::size_t size =
+      ZSTD_decompress(bytes.get(), promised, message.elements.data(), message.elements.size());
+  if (ZSTD_getErrorCode(size) == ZSTD_error_dstSize_tooSmall)
+    return damaged(36,
+                   "the zstd frames hold more than the " + std::to_string(promised) +
+                       " bytes that the header promises",
+                   message);
+  if (ZSTD_isError(size) != 0)
+    return damaged(36, std::string("zstd: ") + ZSTD_getErrorName(size), message);
+  if (size != promised)
+    return damaged(36,
+                   "the zstd frames hold " + std::to_string(size) + " bytes, the header promises " +
+                       std::to_string(promised),
+                   message);
+  return plain_message(message, bytes);
+}
+
+Result<Message> compress_zstd(const Message& message, int level) {
+  std::size_t bound = ZSTD_compressBound(message.elements.size());
+  SharedBytes bytes = allocate_bytes(bound);
+  std::size_t size =
+      ZSTD_compress(bytes.get(), bound, message.elements.data(), message.elements.size(), level);
+  HC_CHECK(ZSTD_isError(size) == 0, ZSTD_getErrorName(size));
+  return Message{message.header, {bytes.get(), size}, bytes, 0};
+}
+
+}  // namespace hc::internal
