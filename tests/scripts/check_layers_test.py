@@ -38,6 +38,7 @@ class Layers(unittest.TestCase):
             "lib/frames/a.cpp": "#include <hc/mtp/codec.h>",
             "lib/hc/mtp/c.h": "#include <frames/tree.h>",
             "modules/a/main.cpp": '#include "../b/b.h"',
+            "drivers/a/a.cpp": "#include <hc/mtp/codec.h>",
             "modules/b/main.cpp": "#include <hc/graph/plan.h>",
             "modules/c/main.cpp": 'std::cout << "hello";',
             "lib/hc/module/b.cpp": 'printf("hello");',
