@@ -68,7 +68,7 @@ ReadingScore score_of(const std::vector<ReadText>& texts) {
     }
   }
   if (letters > 0) score.error_rate = static_cast<double>(wrong) / static_cast<double>(letters);
-  if (!times.empty()) score.max = *std::max_element(times.begin(), times.end());
+  if (!times.empty()) score.most = *std::max_element(times.begin(), times.end());
   score.median = median_of(times);
   score.work = median_of(work);
   return score;
