@@ -222,3 +222,19 @@ function(hc_install_package)
   install(FILES ${PROJECT_SOURCE_DIR}/spec/mtp-1.md
           DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn/spec)
 endfunction()
+
+# build/hypercolumn_VERSION_ARCH.deb, by ./dev package.
+function(hc_package_deb)
+  set(CPACK_GENERATOR DEB)
+  set(CPACK_PACKAGE_NAME hypercolumn)
+  set(CPACK_PACKAGE_CONTACT "Hypercolumn maintainers <maintainers@localhost>")
+  set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Modules and graphs for cognitive robots, over one message format")
+  set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+  set(CPACK_STRIP_FILES ON)
+  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  # What no library says that it needs: voices, a dictionary of letters, drawing without a GPU.
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "espeak-ng-data, tesseract-ocr-eng, libgl1-mesa-dri, fonts-dejavu-core")
+  include(CPack)
+endfunction()
