@@ -300,7 +300,7 @@ TEST(Module, DescribesItself) {
       R"("routes":false})"
       "\n");
   std::string help = internal::help(module);
-  for (const char* part : {"Invalid: hc blob", "picture (rgb_image 3 x u8, coordinate system 7)",
+  for (const char* part : {"Usage: hc blob", "picture (rgb_image 3 x u8, coordinate system 7)",
                            "Taken together, by their times: image, depth\n",
                            "colour [turn] (default 0.5)", "way: fast, good (default fast)"})
     EXPECT_NE(help.find(part), std::string::npos) << help;
