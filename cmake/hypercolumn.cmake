@@ -208,7 +208,7 @@ endfunction()
 function(hc_install_package)
   add_library(hc_all INTERFACE)
   set_target_properties(hc_all PROPERTIES EXPORT_NAME hc)
-  target_link_libraries(hc_all INTERFACE hc_base hc_mtp hc_compress hc_link hc_module)
+  target_link_libraries(hc_all INTERFACE hc_base hc_os hc_mtp hc_compress hc_link hc_module)
   install(TARGETS hc_all EXPORT hypercolumn)
   set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/hypercolumn)
   install(EXPORT hypercolumn NAMESPACE hypercolumn:: DESTINATION ${folder}

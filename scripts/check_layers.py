@@ -11,11 +11,12 @@ PACKAGES = {"frames", "vision", "graphics", "sound", "gaze"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
     "base": set(),
+    "os": {"base"},
     "mtp": {"base"},
     "compress": {"base", "mtp"},
-    "link": {"base", "mtp"},
-    "module": {"base", "mtp", "compress", "link"},
-    "graph": {"base", "mtp", "link"},
+    "link": {"base", "os", "mtp"},
+    "module": {"base", "os", "mtp", "compress", "link"},
+    "graph": {"base", "os", "mtp", "link"},
     "adapter": {"base", "mtp", "frames"},
     "frames": {"base"},
     "vision": {"base"},
@@ -23,10 +24,10 @@ ALLOWED = {
     "graphics": {"base"},
     "sound": {"base"},
     "drivers": {"base"},
-    "modules": {"base", "mtp", "compress", "module", "adapter", "drivers"} | PACKAGES,
-    "tools": {"base", "mtp", "compress", "link", "graph"},
+    "modules": {"base", "os", "mtp", "compress", "module", "adapter", "drivers"} | PACKAGES,
+    "tools": {"base", "os", "mtp", "compress", "link", "graph"},
 }
-CORE = {"base", "mtp", "compress", "link", "module", "graph"}
+CORE = {"base", "os", "mtp", "compress", "link", "module", "graph"}
 # The mtp layer is pure: no input or output, no threads, no clock.
 IMPURE = re.compile(
     r"<(sys/.*|unistd\.h|fcntl\.h|poll\.h|net.*|thread|mutex|atomic|condition_variable|future"

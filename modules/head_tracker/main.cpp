@@ -8,8 +8,8 @@
 #include <cstdio>
 
 #include <hc/base/clock.h>
-#include <hc/base/program.h>
 #include <hc/module/module.h>
+#include <hc/os/program.h>
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include <hc/base/clock.h>
-#include <hc/base/program.h>
 #include <hc/module/module.h>
+#include <hc/os/program.h>
 
 namespace {
 

@@ -2,8 +2,8 @@
 // Ears: sound from a microphone or a WAV file.
 #include <algorithm>
 
-#include <hc/base/program.h>
 #include <hc/module/module.h>
+#include <hc/os/program.h>
 
 #include "ears.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mouth: plays sound, and writes it down.
-#include <hc/base/program.h>
 #include <hc/module/module.h>
+#include <hc/os/program.h>
 
 #include "player.h"
 

@@ -10,8 +10,8 @@
 #include <set>
 
 #include <hc/adapter/opencv.h>
-#include <hc/base/program.h>
 #include <hc/module/module.h>
+#include <hc/os/program.h>
 #include <vision/picture.h>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>

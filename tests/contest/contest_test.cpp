@@ -13,10 +13,10 @@
 #include <thread>
 
 #include <actor/program.h>
-#include <hc/base/program.h>
 #include <hc/link/link.h>
 #include <hc/module/kind.h>
 #include <hc/mtp/rows.h>
+#include <hc/os/program.h>
 #include <workspace/program.h>
 #include <workspace/workspace_conformance.h>
 

@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include <hc/base/clock.h>
-#include <hc/link/descriptor.h>
 #include <hc/module/module.h>
+#include <hc/os/descriptor.h>
 
 namespace {
 

@@ -34,7 +34,11 @@ class Tool(Pipes):
             ("hc describe camra", 1, 'hc describe: NotFound: no module "camra", did you mean'),
             ("hc send", 2, "hc send: Invalid: nothing to send"),
             ("hc send --text a 1", 2, "hc send: Invalid: --text and numbers do not go together"),
-            ("hc send --text a --width 1", 2, "hc send: Invalid: --scalar, --components and --width"),
+            (
+                "hc send --text a --width 1",
+                2,
+                "hc send: Invalid: --scalar, --components and --width",
+            ),
             ("hc send --coord head 1", 2, 'hc send: --coord: "head" is not a whole number'),
             ("hc cat --count -1", 2, 'hc cat: --count: "-1" is not a whole number'),
             ("hc cat inproc:x", 2, "hc cat: Invalid: inproc:x: inproc links threads"),

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/link/descriptor.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::testing {
 

@@ -14,12 +14,12 @@
 #include <thread>
 #include <vector>
 
-#include <hc/link/descriptor.h>
 #include <hc/link/dialing.h>
 #include <hc/link/link.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
 #include <hc/link/unix.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::testing {
 

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include <hc/base/program.h>
+#include <hc/os/program.h>
 
 namespace tool {
 namespace {

@@ -10,9 +10,9 @@
 #include <fstream>
 #include <sstream>
 
-#include <hc/base/program.h>
 #include <hc/base/suggestion.h>
 #include <hc/mtp/rows.h>
+#include <hc/os/program.h>
 
 #include "common.h"
 

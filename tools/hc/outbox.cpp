@@ -8,7 +8,7 @@
 #include <mutex>
 #include <utility>
 
-#include <hc/base/program.h>
+#include <hc/os/program.h>
 
 namespace tool {
 

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <limits>
 
-#include <hc/base/program.h>
+#include <hc/os/program.h>
 
 #include "common.h"
 #include "verbs.h"

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include <hc/base/program.h>
+#include <hc/os/program.h>
 
 #include "common.h"
 #include "verbs.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <hc/base/program.h>
 #include <hc/graph/run.h>
+#include <hc/os/program.h>
 
 #include "common.h"
 #include "graph.h"

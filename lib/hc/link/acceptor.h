@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <hc/link/reactor.h>
-#include <hc/link/socket.h>
+#include <hc/os/reactor.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 

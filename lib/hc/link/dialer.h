@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include <hc/link/descriptor.h>
 #include <hc/link/policy.h>
-#include <hc/link/socket.h>
+#include <hc/os/descriptor.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <hc/link/epoll.h>
+#include <hc/os/epoll.h>
 
 namespace hc::internal {
 namespace {

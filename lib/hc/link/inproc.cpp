@@ -7,9 +7,9 @@
 #include <string>
 
 #include <hc/link/outbox.h>
-#include <hc/link/reactor.h>
 #include <hc/link/stream_link.h>
 #include <hc/link/transports.h>
+#include <hc/os/reactor.h>
 
 namespace hc::internal {
 namespace {

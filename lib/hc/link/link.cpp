@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <hc/base/suggestion.h>
-#include <hc/link/descriptor.h>
 #include <hc/link/policy.h>
 #include <hc/link/transports.h>
+#include <hc/os/descriptor.h>
 
 namespace hc {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <thread>
 
-#include <hc/link/descriptor.h>
 #include <hc/link/link.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::testing {
 

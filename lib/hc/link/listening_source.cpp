@@ -8,8 +8,8 @@
 #include <array>
 
 #include <hc/link/dialer.h>
-#include <hc/link/epoll.h>
 #include <hc/link/transports.h>
+#include <hc/os/epoll.h>
 
 namespace hc::internal {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include <hc/link/socket.h>
 #include <hc/link/stream_link.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 

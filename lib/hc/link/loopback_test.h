@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <string>
 
-#include <hc/link/descriptor.h>
-#include <hc/link/socket.h>
+#include <hc/os/descriptor.h>
+#include <hc/os/socket.h>
 
 namespace hc::testing {
 

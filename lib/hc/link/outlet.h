@@ -16,9 +16,9 @@
 #include <hc/link/outbox.h>
 #include <hc/link/parcel.h>
 #include <hc/link/policy.h>
-#include <hc/link/reactor.h>
 #include <hc/link/remarks.h>
 #include <hc/link/stream_writer.h>
+#include <hc/os/reactor.h>
 
 namespace hc::internal {
 

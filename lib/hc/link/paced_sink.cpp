@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include <hc/link/outbox.h>
-#include <hc/link/reactor.h>
 #include <hc/link/stream_link.h>
+#include <hc/os/reactor.h>
 
 namespace hc::internal {
 namespace {

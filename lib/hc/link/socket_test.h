@@ -12,12 +12,12 @@
 #include <thread>
 #include <vector>
 
-#include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
 #include <hc/link/listening_source.h>
 #include <hc/link/loopback_test.h>
 #include <hc/link/stream_link.h>
 #include <hc/mtp/codec.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::testing {
 

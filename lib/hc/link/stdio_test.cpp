@@ -7,9 +7,9 @@
 
 #include <cstdio>
 
-#include <hc/link/descriptor.h>
 #include <hc/link/link_conformance.h>
 #include <hc/mtp/codec.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::testing {
 namespace {

@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
 
 namespace hc::internal {
 namespace {
@@ -108,33 +107,6 @@ Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
 
 void widen_pipe(int descriptor) {
   ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
-}
-
-Status Pauses::next(int stop) {
-  constexpr std::chrono::milliseconds kLongest{200};
-  auto waited = wait_readable({}, stop, pause_);
-  if (!waited) return waited.error();
-  pause_ = std::min(2 * pause_, kLongest);
-  return {};
-}
-
-Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline) {
-  using std::chrono::nanoseconds;
-  std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};
-  auto ready = system_call("ppoll", "", [&] {
-    timespec left{};
-    if (deadline != Deadline::max()) {
-      auto time =
-          std::max<nanoseconds>(nanoseconds(0), deadline - std::chrono::steady_clock::now());
-      left = {time.count() / std::nano::den, time.count() % std::nano::den};
-    }
-    return ::ppoll(polled.data(), polled.size(), deadline == Deadline::max() ? nullptr : &left,
-                   nullptr);
-  });
-  if (!ready) return ready.error();
-  if (polled[0].revents == 0 && polled[1].revents != 0)
-    return Error{Code::Stopped, "asked to stop"};
-  return *ready > 0;
 }
 
 }  // namespace hc::internal

@@ -3,17 +3,14 @@
 // Messages out of any descriptor that carries a stream of bytes: pipe, file, terminal, socket, and
 // what stdio, file, tcp and unix share beside. Internal. stream_sink.h has the other end.
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 
-#include <hc/link/descriptor.h>
 #include <hc/link/link.h>
 #include <hc/mtp/stream_reader.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
-
-using Deadline = std::chrono::steady_clock::time_point;
 
 /// Takes messages from a descriptor whose reads do not wait; those of sockets never do.
 class StreamSource final : public Source {
@@ -52,21 +49,5 @@ void widen_pipe(int descriptor);
 /// A descriptor for what `number` is open on, whose reads and writes do not wait (but those of a
 /// socket are to be asked not to), without changing that for the other processes that share it.
 Result<Descriptor> reopen_without_waiting(int number, int access_mode);
-
-/// The pauses between tries at what comes about by itself: 1 ms, and each twice the last to 200 ms.
-class Pauses {
- public:
-  /// Errors: Stopped when `stop` is readable.
-  Status next(int stop);
-
- private:
-  std::chrono::milliseconds pause_{1};
-};
-
-/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first, which
-/// Deadline::max() never does.
-///
-/// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
-Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline = Deadline::max());
 
 }  // namespace hc::internal

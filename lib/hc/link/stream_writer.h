@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include <hc/link/descriptor.h>
 #include <hc/mtp/codec.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 

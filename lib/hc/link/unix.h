@@ -4,7 +4,7 @@
 
 #include <hc/base/uri.h>
 #include <hc/link/dialer.h>
-#include <hc/link/socket.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 

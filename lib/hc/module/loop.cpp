@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include <hc/base/program.h>
 #include <hc/compress/compress.h>
+#include <hc/os/program.h>
 
 namespace hc {
 namespace {

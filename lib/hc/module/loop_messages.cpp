@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include <hc/base/program.h>
 #include <hc/module/loop.h>
+#include <hc/os/program.h>
 
 namespace hc {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include <hc/base/program.h>
 #include <hc/compress/compress.h>
 #include <hc/module/loop.h>
+#include <hc/os/program.h>
 
 namespace hc {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <hc/graph/run/event_loop.h>
-#include <hc/link/socket.h>
 #include <hc/mtp/message.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/link/link.h>
 #include <hc/mtp/rows.h>
 
 namespace hc::internal {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <hc/link/epoll.h>
+#include <hc/os/epoll.h>
 
 namespace hc::internal {
 

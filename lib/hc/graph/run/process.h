@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/link/descriptor.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <hc/graph/run.h>
-#include <hc/link/descriptor.h>
+#include <hc/os/descriptor.h>
 
 namespace hc {
 

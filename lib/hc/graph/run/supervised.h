@@ -16,10 +16,10 @@
 #include <hc/graph/run/intake.h>
 #include <hc/graph/run/lines.h>
 #include <hc/graph/run/process.h>
-#include <hc/graph/run/process_look.h>
 #include <hc/graph/run/reports.h>
 #include <hc/graph/run/restarts.h>
 #include <hc/graph/state.h>
+#include <hc/os/procfs.h>
 
 namespace hc::internal {
 

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <hc/link/descriptor.h>
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/shm/memory.h>
+#include <hc/link/shm/layout.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 

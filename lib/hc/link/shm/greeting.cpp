@@ -11,8 +11,8 @@
 #include <optional>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/socket.h>
 #include <hc/link/stream_link.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 namespace {

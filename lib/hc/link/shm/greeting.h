@@ -18,7 +18,7 @@
 #include <string_view>
 
 #include <hc/base/uri.h>
-#include <hc/link/shm/memory.h>
+#include <hc/link/shm/layout.h>
 
 namespace hc::internal {
 

@@ -17,22 +17,17 @@
 //   hold:  withdraw a cell, look who holds its slot | hold a slot, look whether it is withdrawn
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
-namespace hc::internal {
+#include <hc/os/shared_memory.h>
 
-template <typename T>
-using SharedWord = std::atomic<T>;
-static_assert(SharedWord<std::uint64_t>::is_always_lock_free);
-static_assert(SharedWord<std::uint32_t>::is_always_lock_free);
+namespace hc::internal {
 
 constexpr std::size_t kLine = 64;  ///< what caches exchange [byte]; also the alignment of elements
 constexpr std::uint64_t kCells = 2048;
 constexpr std::size_t kCellBytes = 256;
-constexpr std::uint64_t kPageBytes = 4096;  ///< of a reader's page, and of the publisher's head
 /// Both sides fetch the start of a cell so many messages ahead: it comes from the other's cache,
 /// which takes longer than all else.
 constexpr std::uint64_t kFetchAhead = 8;

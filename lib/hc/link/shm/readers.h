@@ -9,11 +9,11 @@
 #include <mutex>
 #include <vector>
 
-#include <hc/link/reactor.h>
 #include <hc/link/remarks.h>
 #include <hc/link/shm/greeting.h>
-#include <hc/link/shm/memory.h>
-#include <hc/link/socket.h>
+#include <hc/link/shm/layout.h>
+#include <hc/os/reactor.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/socket.h>
+#include <hc/os/socket.h>
 
 #include <linux/sockios.h>
 #include <netinet/in.h>
@@ -11,8 +11,6 @@
 #include <array>
 #include <cstring>
 #include <optional>
-
-#include <hc/link/stream_link.h>
 
 namespace hc::internal {
 namespace {

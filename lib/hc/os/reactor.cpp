@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/reactor.h>
+#include <hc/os/reactor.h>
 
 #include <sys/eventfd.h>
 
@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include <hc/link/epoll.h>
+#include <hc/os/epoll.h>
 
 namespace hc::internal {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/graph/run/process_look.h>
+#include <hc/os/procfs.h>
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include <hc/link/descriptor.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/reactor.h>
+#include <hc/os/reactor.h>
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include <hc/link/descriptor.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 namespace {

@@ -3,15 +3,23 @@
 // Anonymous memory that processes share: it has no name, cannot change its size, and is gone with
 // the last process that maps it. Internal.
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 
-#include <hc/link/descriptor.h>
-#include <hc/link/shm/layout.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
+
+/// A word that several processes see; exactly one of them writes it.
+template <typename T>
+using SharedWord = std::atomic<T>;
+static_assert(SharedWord<std::uint64_t>::is_always_lock_free);
+static_assert(SharedWord<std::uint32_t>::is_always_lock_free);
+
+constexpr std::uint64_t kPageBytes = 4096;
 
 /// A mapping of shared memory.
 class SharedMemory {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/graph/run/process_look.h>
+#include <hc/os/procfs.h>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/base/program.h>
+#include <hc/os/program.h>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -59,5 +60,23 @@ Result<std::invoke_result_t<Call>> system_call(std::string_view name, std::strin
     if (errno != EINTR) return system_error(name, argument);
   }
 }
+
+using Deadline = std::chrono::steady_clock::time_point;
+
+/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first, which
+/// Deadline::max() never does.
+///
+/// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
+Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline = Deadline::max());
+
+/// The pauses between attempts: 1 ms, doubled each time up to 200 ms.
+class Pauses {
+ public:
+  /// Errors: Stopped when `stop` is readable.
+  Status next(int stop);
+
+ private:
+  std::chrono::milliseconds pause_{1};
+};
 
 }  // namespace hc::internal

@@ -8,7 +8,7 @@
 
 #include <chrono>
 
-#include <hc/link/descriptor.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include <hc/link/descriptor.h>
-#include <hc/link/link.h>
+#include <hc/base/log.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 
