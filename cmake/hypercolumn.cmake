@@ -46,6 +46,10 @@ endif()
 if(HC_WERROR)
   target_compile_options(hc_flags INTERFACE -Werror)
 endif()
+# For the few tests that want to know where they are; others compile to the same in every checkout.
+add_library(hc_paths INTERFACE)
+target_compile_definitions(hc_paths INTERFACE HC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                              HC_BINARY_DIR="${PROJECT_BINARY_DIR}")
 add_custom_target(programs) # hc and the modules, without tests
 if(HC_DEVELOPER_MODE)
   add_custom_target(fuzz_targets)
@@ -113,8 +117,6 @@ function(hc_test name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE hc_flags ${arg_LIBS} GTest::gtest_main)
   target_compile_options(${name} PRIVATE -O1)  # most of what a build takes is tests
-  target_compile_definitions(${name} PRIVATE HC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-                                             HC_BINARY_DIR="${PROJECT_BINARY_DIR}")
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
                        ENVIRONMENT ${HC_TSAN_OPTIONS}
                        DISCOVERY_TIMEOUT 60)
