@@ -42,7 +42,7 @@ class Together(Pipes):
         self.assertEqual(
             self.sets(str(TRIO) + options), [(100, 103, 99), (200, 207, 208), (400, 402, 404)]
         )
-        self.assertIn("trio: place: left out: 1 unmatched, 0 crowded out\n", self.err)
+        self.assertIn("trio: place: dropped 1 unmatched, 0 on queue overflow\n", self.err)
 
     def random_times(self, count):
         chance = random.Random(5)
@@ -109,7 +109,7 @@ class Together(Pipes):
         self.assertEqual(depth.returncode, 0, err)
         found = self.read_bytes("found")
         count = len(re.findall(rb"1 1 0 \d+ 8 1\d\d 40181 0 12 200 200\n", found))
-        said = re.search(rb"left: left out: (\d+) unmatched, (\d+) crowded out\n", err)
+        said = re.search(rb"left: dropped (\d+) unmatched, (\d+) on queue overflow\n", err)
         self.assertEqual(int(said[1]) + int(said[2]) + count, 199)
         self.assertGreaterEqual(count, 16)
 

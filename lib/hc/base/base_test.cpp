@@ -60,6 +60,14 @@ TEST(Clock, OnlyHandsMoveAManualOne) {
   EXPECT_EQ(clock.monotonic(), MonotonicTime(50));
 }
 
+TEST(Clock, SecondsAndBack) {
+  EXPECT_EQ(seconds(1'500'000'000), 1.5);
+  EXPECT_EQ(seconds(std::chrono::milliseconds(250)), 0.25);
+  EXPECT_EQ(duration(0.25), std::chrono::milliseconds(250));
+  EXPECT_EQ(duration(0.0 / 0.0).count(), 0);
+  EXPECT_GT(duration(1e300), std::chrono::hours(24 * 365 * 290));
+}
+
 TEST(Clock, TheSystemsMonotonicOneNeverGoesBack) {
   SystemClock clock;
   auto before = clock.monotonic();

@@ -3,6 +3,7 @@
 // The two clocks: a monotonic one for every timer, and the wall clock that stamps messages.
 // Tests turn a ManualClock by hand.
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -11,6 +12,22 @@ namespace hc {
 
 /// Time since some fixed moment; never goes back, whatever happens to the wall clock.
 using MonotonicTime = std::chrono::nanoseconds;
+
+/// A time or period in seconds.
+constexpr double seconds(std::int64_t nanoseconds) {
+  return static_cast<double>(nanoseconds) * 1e-9;
+}
+constexpr double seconds(std::chrono::nanoseconds period) {
+  return seconds(period.count());
+}
+
+/// The period of so many seconds; at most 292 years, and 0 where it is not a number.
+constexpr std::chrono::nanoseconds duration(double seconds) {
+  constexpr double kLongest = 9.2e18;  // [ns]
+  if (!(seconds == seconds)) return {};
+  return std::chrono::nanoseconds(
+      static_cast<std::int64_t>(std::clamp(seconds * 1e9, -kLongest, kLongest)));
+}
 
 /// Where the time comes from.
 class Clock {

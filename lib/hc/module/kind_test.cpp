@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace hc {
 namespace {
 
@@ -18,13 +20,56 @@ TEST(Kind, SmallThingsAreTextLargeOnesBinary) {
   EXPECT_EQ(table<double>().type.info.code(), 120190);
 }
 
-TEST(Kind, MessagesAreMadeInOneLine) {
-  auto point = position(1.0, 2.0, 3.0);
-  EXPECT_EQ(point.matrix().at(0, 0, 2), 3.0);
+TEST(Kind, HasAFixedShapeWhereOneIsGiven) {
+  const auto type = rotation<double>().of(1, 1).in(Coord::kGaze).finite().type;
+  EXPECT_EQ(type.width, 1);
+  EXPECT_EQ(type.height, 1);
+  EXPECT_EQ(type.coord, 13);
+  EXPECT_TRUE(type.finite);
+  Header header;
+  header.info = type.info;
+  header.width = 2;
+  header.height = 1;
+  EXPECT_FALSE(fits(header, type));
+  header.width = 1;
+  EXPECT_TRUE(fits(header, type));
+}
+
+TEST(Kind, MessagesOfEachAreMadeInOneLine) {
+  const std::uint8_t pixels[] = {1, 2, 3, 4, 5, 6};
+  const double numbers[] = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(position(1.0, 2.0, 3.0).matrix().at(0, 0, 2), 3.0);
+  EXPECT_EQ(rotation(1.0F, 2.0F, 3.0F).matrix().at(0, 0, 2), 3.0F);
+  EXPECT_EQ(rgb_image<std::uint8_t>(1, 2, pixels).matrix().at(1, 0, 2), 6);
+  EXPECT_EQ(intensity_image<std::uint8_t>(3, 2, pixels).matrix().at(1, 0), 4);
+  EXPECT_EQ(vector_field<double>(1, 3, 2, numbers).matrix().at(2, 0, 1), 6.0);
   EXPECT_EQ(string("hello").characters(), "hello");
-  auto scores = table({1, 2});
+  EXPECT_EQ(transformation<double>(3, 2, numbers).matrix().at(1, 2), 6.0);
+  EXPECT_EQ(dense_graph<double>(2, std::span(numbers).first(4)).matrix().at(1, 0), 3.0);
+  const auto edges = sparse_graph<double>(numbers);
+  EXPECT_EQ(edges.header.width, 1);
+  EXPECT_EQ(edges.matrix().at(1, 0, 2), 6.0);
+  EXPECT_EQ(sound<double>(2, numbers).matrix().at(0, 2, 1), 6.0);
+  EXPECT_EQ(map<double>(2, 3, numbers).matrix().at(2, 1), 6.0);
+  const auto scores = table({1, 2});
   EXPECT_EQ(scores.matrix().at(0, 1), 2);
   EXPECT_EQ(scores.header.width, 2);
+  EXPECT_EQ(table<double>(numbers).at(12).in(40).header.time, 12);
+  for (const auto& each : {Message(edges), Message(sound<double>(2, numbers))})
+    EXPECT_TRUE(check(each.header, {}));
+}
+
+TEST(Kind, AnotherCountOfNumbersThanTheShapesIsABug) {
+  const double numbers[] = {1, 2, 3};
+  EXPECT_DEATH(static_cast<void>(dense_graph<double>(2, numbers)), "check failed");
+}
+
+TEST(Finite, NeitherNaNNorInfinity) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(finite(position(1.0, 2.0, 3.0).numbers()));
+  EXPECT_FALSE(finite(position(1.0, kNan, 3.0).numbers()));
+  EXPECT_FALSE(finite(Message(position(1.0F, 2.0F, std::numeric_limits<float>::infinity()))));
+  EXPECT_TRUE(finite(Message(string("nan"))));
 }
 
 TEST(Fits, NamesTheRuleOfTheFieldThatDoesNot) {

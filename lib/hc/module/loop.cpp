@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/module/loop.h>
 
+#include <poll.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -127,13 +129,15 @@ void Module::Loop::run() {
   attend();
   if (module_.message_time_) begin_clock();
   for (auto& timer : module_.timers_) timer.last = time();
+  for (auto& timeout : module_.timeouts_)
+    if (timeout->due) *timeout->due += time();
   if (module_.start_) module_.start_();
   while (true) {
     if (stop_requested()) throw Stopped();
     now_ = module_.clock_.monotonic();
     attend();
     fire_timers();
-    for (auto& watch : module_.watches_) watch.handler();
+    read_watched();
     const bool any = module_.message_time_ ? take_earliest() : take_each();
     end_unneeded();
     if (join_renewed()) tell_links();
@@ -148,7 +152,7 @@ void Module::Loop::run() {
   }
   for (const auto& together : module_.together_)
     for (const auto& input : together->inputs) together->matcher.end(input->place);
-  module_.handled_time_ = 0;
+  module_.handled_ = {};
   if (module_.end_) module_.end_();
 }
 
@@ -170,11 +174,27 @@ void Module::Loop::fire_timers() {
     now_ = module_.clock_.monotonic();
     timer.last = std::max(due, time() - timer.period());
   }
+  for (std::size_t i = 0; i < module_.timeouts_.size(); ++i) {  // a handler may add some
+    const auto timeout = module_.timeouts_[i];
+    if (!timeout->due || *timeout->due > time()) continue;
+    timeout->due.reset();
+    timeout->handler();
+  }
+}
+
+/// Calls the handlers of the module's own descriptors that are readable.
+void Module::Loop::read_watched() {
+  for (auto& watch : module_.watches_) {
+    pollfd watched{watch.descriptor(), POLLIN, 0};
+    if (watched.fd >= 0 && ::poll(&watched, 1, 0) > 0) watch.handler();
+  }
 }
 
 MonotonicTime Module::Loop::next_timer() const {
   auto next = MonotonicTime::max();
   for (const auto& timer : module_.timers_) next = std::min(next, timer.due());
+  for (const auto& timeout : module_.timeouts_)
+    if (timeout->due) next = std::min(next, *timeout->due);
   return next;
 }
 
@@ -262,8 +282,8 @@ void Module::Loop::tell_left_out() {
     for (const auto& input : together->inputs) {
       const auto& left_out = together->matcher.left_out(input->place);
       if (left_out.total() == 0) continue;
-      module_.log(input->name + ": left out: " + std::to_string(left_out.unmatched) +
-                  " unmatched, " + std::to_string(left_out.crowded) + " crowded out");
+      module_.log(input->name + ": dropped " + std::to_string(left_out.unmatched) + " unmatched, " +
+                  std::to_string(left_out.crowded) + " on queue overflow");
     }
 }
 
@@ -283,15 +303,16 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
       ++link.left_out;
       return;
     }
-    module_.handled_time_ = message.header.time;
-    module_.handled_mode_ = message.header.mode;
-    module_.handled_peer_ = &link.route.peer;
     auto plain = input->is_raw ? Result<Message>(message) : expand(message);
     if (!plain) fail(input->name, plain.error());
+    if (input->wants_finite() && !finite(*plain)) {
+      ++link.left_out;
+      module_.log_once("not finite", input->name + ": dropped: NaN or infinity");
+      return;
+    }
+    module_.handled_ = internal::Handled(message.header, &link.route.peer);
     input->handler(*plain);
-    module_.handled_time_ = 0;
-    module_.handled_mode_ = 0;
-    module_.handled_peer_ = nullptr;
+    module_.handled_ = {};
     return;
   }
   const auto& only = *link.inputs.back();

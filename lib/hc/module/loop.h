@@ -102,6 +102,7 @@ struct Module::Loop {
   [[nodiscard]] bool may_handle(internal::InputState& input, const Message& message);
   [[nodiscard]] bool may_while_idle(std::optional<MonotonicTime>& last) const;
   void fire_timers();
+  void read_watched();
   [[nodiscard]] MonotonicTime next_timer() const;
   void wait(bool for_messages, MonotonicTime until);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/module/module.h>
 
+#include <sched.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@ namespace hc {
 namespace {
 
 constexpr int kDone = 0, kFailure = 1, kUsage = 2;
+constexpr int kBackgroundNice = 10;
 
 const SystemClock kSystemClock;
 
@@ -70,11 +73,13 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
         std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
           return a.header.time < b.header.time;
         })->header;
-    handled_time_ = latest.time;
-    handled_mode_ = latest.mode;
+    handled_ = internal::Handled(latest);
+    if (std::any_of(set.begin(), set.end(), [&](const auto& each) {
+          return each.header.coord != latest.coord || each.header.info.type != latest.info.type;
+        }))
+      handled_.coord = 0;
     handler(set);
-    handled_time_ = 0;
-    handled_mode_ = 0;
+    handled_ = {};
   };
   together_.push_back(std::make_unique<internal::TogetherState>(
       internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take)), 0, {}}));
@@ -86,22 +91,54 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
     input.place = i;
     input.handler = [this, &state, i](const Message& message) {
       state.matcher.push(i, message.keep());
-      tell_left_out(state);
+      log_unmatched(state);
     };
   }
 }
 
-void Module::tell_left_out(const internal::TogetherState& together) const {
+void Module::log_unmatched(const internal::TogetherState& together) {
   for (const auto& input : together.inputs)
-    if (!input->told && together.matcher.left_out(input->place).total() > 0) {
-      input->told = true;
-      log(input->name + ": a message has no partner and is left out, as others may be");
+    if (!input->is_unmatched && together.matcher.left_out(input->place).total() > 0) {
+      input->is_unmatched = true;
+      log(input->name + ": dropped: no matching message (further drops are counted)");
     }
 }
 
 void Module::log(std::string_view line) const {
-  // Who cannot be told anything is not told so either.
+  // There is no one to tell that it failed.
   static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + std::string(line) + "\n"));
+}
+
+void Module::log_once(const std::string& kind, std::string_view line) {
+  if (logged_[kind]++ == 0) log(std::string(line) + " (further ones are counted, not logged)");
+}
+
+void Module::log_counts() const {
+  std::string counts;
+  for (const auto& [kind, count] : logged_)
+    counts += (counts.empty() ? "" : ", ") + kind + " " + std::to_string(count) +
+              (count == 1 ? " time" : " times");
+  if (!counts.empty()) log("in all: " + counts);
+}
+
+Timeout Module::after(std::chrono::nanoseconds duration, std::function<void()> handler) {
+  // Those that can fire no more.
+  std::erase_if(timeouts_, [](const auto& each) { return each.use_count() == 1 && !each->due; });
+  timeouts_.push_back(
+      std::make_shared<Timeout::State>(Timeout::State{*this, duration, std::move(handler), {}}));
+  Timeout timeout(timeouts_.back());
+  timeout.restart();
+  return timeout;
+}
+
+void Timeout::restart() {
+  restart(state_->duration);
+}
+
+void Timeout::restart(std::chrono::nanoseconds duration) {
+  // Before the start there is no time: it is then counted from it.
+  const auto now = state_->module.loop_ != nullptr ? state_->module.monotonic() : MonotonicTime(0);
+  state_->due = now + std::clamp(duration, MonotonicTime(0), internal::kLongestPeriod);
 }
 
 void Module::keep_rate(double rate) {
@@ -136,9 +173,10 @@ void internal::send(OutputState& output, Message message) {
   header.src = output.address;
   header.seq = output.seq++;
   if (header.dst == 0) header.dst = output.to;
-  if (header.mode == 0) header.mode = module.attention_.mode_of(module.handled_mode_);
+  if (header.mode == 0) header.mode = module.attention_.mode_of(module.handled_.mode);
   if (header.coord == 0) header.coord = output.type().coord;
-  if (header.time == 0) header.time = module.handled_time_;
+  if (header.coord == 0) header.coord = module.handled_.coord_for(header.info.type);
+  if (header.time == 0) header.time = module.handled_.time;
   auto wanted = output.encoding.value_or(output.type().info.encoding);
   if (message.plain() && (wanted == Encoding::Text || wanted == Encoding::Binary))
     header.info.encoding = wanted;  // the same in memory
@@ -153,7 +191,7 @@ void internal::send(OutputState& output, Message message) {
 
 std::size_t internal::forward(OutputState& output, const Message& message) {
   Module& module = *output.module;
-  const std::string* from = module.handled_peer_;
+  const std::string* from = module.handled_.peer;
   std::size_t taken = 0;
   bool any_left = false;
   for (auto& link : output.links) {
@@ -193,16 +231,27 @@ int Module::run(int argc, char** argv) {
   if (!arguments->instance.empty()) instance_ = arguments->instance;
   message_time_.reset();
   if (arguments->by_messages) message_time_ = 0;
+  if (is_background_) {  // what is refused changes nothing but the speed
+    static_cast<void>(::setpriority(PRIO_PROCESS, 0, kBackgroundNice));
+    const sched_param none{};
+    static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
+  }
+  const int status = run_loop(*arguments);
+  log_counts();
+  return status;
+}
+
+int Module::run_loop(const internal::Arguments& arguments) {
   try {
-    Loop loop(*this, *arguments, stop_descriptor());
+    Loop loop(*this, arguments, stop_descriptor());
     try {
       loop.run();
     } catch (const internal::Stopped&) {
-      // Its readers have gone, or it was told to stop: a clean end.
+      // No reader is left, or it was stopped: a clean end.
     }
     loop.close();
   } catch (const internal::Stopped&) {
-    // Told to stop while its links opened or closed.
+    // Stopped while its links opened or closed.
   } catch (const ModuleError& error) {
     log(error.what());
     return error.is_usage ? kUsage : kFailure;

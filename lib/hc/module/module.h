@@ -3,16 +3,17 @@
 // A module: a program with input ports, output ports and parameters, declared once.
 //
 //     int main(int argc, char** argv) {
-//       hc::Module module{"brightness", "Measures how bright pictures are."};
-//       auto image = module.input("image", hc::intensity_image<std::uint8_t>(), "a picture");
+//       hc::Module module{"brightness", "Measures how bright images are."};
+//       auto image = module.input("image", hc::intensity_image<std::uint8_t>(), "any image");
 //       auto mean = module.output("mean", hc::table<double>(), "mean intensity, 0 … 255");
-//       module.on(image, [&](const auto& picture) { mean.send(hc::table({average(picture)})); });
+//       module.on(image, [&](const auto& pixels) { mean.send(hc::table({average(pixels)})); });
 //       return module.run(argc, argv);
 //     }
 //
 // Handlers run one after the other on the thread that called run().
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,8 +32,8 @@
 
 namespace hc {
 
-/// Thrown by a handler, or by what a module calls, to end the module with one line and status 1;
-/// with an error of Code::Invalid with status 2, which would be the same again.
+/// Thrown by a handler, or by what it calls, to end the module with one line and status 1; an error
+/// of Code::Invalid ends it with status 2, since a restart would fail again.
 struct ModuleError : std::runtime_error {
   using std::runtime_error::runtime_error;
   explicit ModuleError(const Error& error)
@@ -47,6 +48,32 @@ T value_or_end(Result<T> result) {
   if (!result) throw ModuleError(result.error());
   return std::move(*result);
 }
+
+namespace internal {
+struct Arguments;
+}
+class Module;
+
+/// A timer that fires once each time it is started: Module::after(). Copies are the same timer.
+class Timeout {
+ public:
+  /// Has it fire when its duration, or another one, has passed from now on.
+  void restart();
+  void restart(std::chrono::nanoseconds duration);
+  /// Has it not fire.
+  void stop() { state_->due.reset(); }
+
+ private:
+  friend class Module;
+  struct State {
+    Module& module;
+    std::chrono::nanoseconds duration;
+    std::function<void()> handler;
+    std::optional<MonotonicTime> due;
+  };
+  explicit Timeout(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  std::shared_ptr<State> state_;
+};
 
 class Module {
  public:
@@ -79,18 +106,17 @@ class Module {
       return Output<K>(add_output(name, {kind.type}, doc));
   }
 
-  /// Says that an input moves something: a graph in which several write to it needs somebody who
-  /// decides (`exclusive`, a router).
+  /// Declares that an input moves something: a graph with several writers to it needs an arbiter
+  /// (`exclusive`, a router).
   template <typename K>
   void actor(const Input<K>& input) {
     input.state->is_actor = true;
   }
-  /// Says that each of the module's links gets what its address leads to (`--route`), and not all.
+  /// Declares that the outputs route by address: a link gets the messages of its `--route` alone.
   void route_outputs() { routes_ = true; }
 
   /// Declares a parameter.
-  /// @param otherwise  its default: a bool, an integer, a number or a string, which is its type
-  /// too.
+  /// @param default_value  a bool, an integer, a number or a string, which is its type too.
   /// @param unit  "m", "rad", "px", "s"; "" for none.
   template <typename T>
   auto parameter(std::string name, const T& default_value, std::string unit, std::string doc,
@@ -103,7 +129,7 @@ class Module {
                                           std::move(unit), std::move(doc), std::move(options)));
   }
 
-  /// Says what is done with each message of an input. Compressed elements have been expanded.
+  /// Calls a handler with each message of an input. Compressed elements have been expanded.
   template <typename K, typename Handler>
   void on(const Input<K>& input, Handler handler) {
     input.state->handler = [handler = std::move(handler)](const Message& message) {
@@ -119,17 +145,17 @@ class Module {
     input.state->is_raw = true;
   }
 
-  /// Says what is done with messages that belong together, one of each input, by their times: equal
+  /// Calls a handler with messages that belong together, one of each input, by their times: equal
   /// ones, or those nearest to one another within a bound (Matcher has the rules).
   ///
   ///     module.on(hc::together(left, right), [&](const auto& l, const auto& r) { … });
   ///     module.on(hc::together(left, right, gaze).within(std::chrono::milliseconds(10)),
   ///               [&](const auto& l, const auto& r, const auto& g) { … });
   ///
-  /// What the handler sends has the latest of their times (R43). The log says when the first
-  /// message of an input is left out because its partners did not come, and at the end how many
-  /// were. When an input has ended and its last message is settled, the others are read no more.
-  /// An input that has a handler already is a bug.
+  /// What the handler sends has the latest of their times (R43), and their coord where it is the
+  /// same. Messages without a partner are dropped; the first of an input is logged, and at the end
+  /// how many there were. When an input has ended and its last message is settled, the others are
+  /// no longer read. An input with two handlers is a bug.
   template <typename... Kinds, typename Handler>
   void on(const Together<Kinds...>& inputs, Handler handler) {
     static_assert(std::is_invocable_v<Handler&, const MessageOf<Kinds>&...>,
@@ -151,9 +177,9 @@ class Module {
   /// until it gives false. The module ends then.
   void generate(std::function<bool()> handler) { generate_ = std::move(handler); }
 
-  /// Says what is done again and again, between messages: first a period after the start, and not
-  /// made up for where it was missed. Does not keep a module running whose inputs have ended.
-  /// @param rate  as it is now; 0 or less: never. [Hz]
+  /// Calls a handler periodically, between messages: first a period after the start. Periods that
+  /// were missed are skipped. Does not keep a module running whose inputs have ended.
+  /// @param rate  looked at each time; 0 or less: never. [Hz]
   void every(const Parameter<double>& rate, std::function<void()> handler) {
     add_timer([rate] { return internal::period_of(*rate); }, std::move(handler));
   }
@@ -161,11 +187,20 @@ class Module {
     add_timer([period] { return std::min(period, internal::kLongestPeriod); }, std::move(handler));
   }
 
-  /// Says what is done when a descriptor of the module's own can be read, such as a device's,
-  /// between messages. Does not keep a module running whose inputs have ended; a generator is not
-  /// woken by it.
+  /// Calls a handler once, between messages, when `duration` has passed since the start or, while
+  /// the module runs, since this call; again after Timeout::restart(), as a watchdog does:
+  ///
+  ///     auto silence = module.after(3s, [&] { module.log("no packets for 3 s"); });
+  ///     module.on(packet, [&](const auto&) { silence.restart(); });
+  ///
+  /// Does not keep a module running whose inputs have ended.
+  Timeout after(std::chrono::nanoseconds duration, std::function<void()> handler);
+
+  /// Calls a handler when a descriptor of the module's own is readable, such as a device's, or has
+  /// failed, between messages. Does not keep a module running whose inputs have ended; a generator
+  /// is not woken by it.
   /// @param descriptor  asked each time before the module waits; below 0: none now.
-  /// @param handler  takes what is there without waiting; called when nothing is, too.
+  /// @param handler  reads without waiting.
   void on_readable(std::function<int()> descriptor, std::function<void()> handler) {
     watches_.push_back({std::move(descriptor), std::move(handler)});
   }
@@ -175,13 +210,25 @@ class Module {
   /// stop ends here. @param rate [Hz]
   void keep_rate(double rate);
 
-  /// Says something to the person who runs the module: one line on standard error, with the
-  /// module's name before it.
+  /// Writes a line to standard error, with the module's name before it.
   void log(std::string_view line) const;
+
+  /// Logs the first problem of a kind and counts the others; the counts are logged at the end.
+  ///
+  ///     module.log_once("stale", "command dropped: 0.3 s old");
+  ///
+  /// @param kind  a literal, as the count names it: "stale 12 times".
+  void log_once(const std::string& kind, std::string_view line);
+
+  /// Has the whole process yield the processor to closed loops: nice 10, batch scheduling. To be
+  /// called before run(); for what takes a core and is in no hurry.
+  void background() { is_background_ = true; }
 
   /// Wall clock, for messages that begin here: the machine's, or with `--clock messages` that of
   /// the messages which come. [ns since the Unix epoch]
   [[nodiscard]] std::int64_t now() const { return message_time_ ? *message_time_ : clock_.wall(); }
+  /// Seconds from a time of a header to now(); negative where it is in the future.
+  [[nodiscard]] double seconds_since(std::int64_t time) const { return seconds(now() - time); }
   /// The same clock for periods and time-outs, which never goes back. What is done in the time of
   /// messages goes by this; what talks to a device at the machine's pace has a clock of its own.
   [[nodiscard]] MonotonicTime monotonic() const {
@@ -211,6 +258,7 @@ class Module {
  private:
   friend void internal::send(internal::OutputState&, Message);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
+  friend class Timeout;
   struct Loop;
   using Period = std::function<MonotonicTime()>;
   struct Timer {
@@ -240,8 +288,10 @@ class Module {
                                                 ParameterOptions options);
   void add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
                     const Matching& how, Matcher::Take handler);
-  /// Tells the log once for each input of which messages are left out.
-  void tell_left_out(const internal::TogetherState& together) const;
+  /// Logs the first unmatched message of each input.
+  void log_unmatched(const internal::TogetherState& together);
+  void log_counts() const;
+  int run_loop(const internal::Arguments& arguments);
 
   std::string name_, summary_;
   std::string instance_;  // its name in the graph
@@ -253,15 +303,15 @@ class Module {
   std::function<bool()> generate_;
   std::vector<Timer> timers_;
   std::vector<Watch> watches_;
-  bool routes_ = false;
+  std::vector<std::shared_ptr<Timeout::State>> timeouts_;
+  std::map<std::string, std::int64_t> logged_;  // problems of a kind
+  bool routes_ = false, is_background_ = false;
   const Clock& clock_;
   internal::Attention attention_;
   Loop* loop_ = nullptr;                      // while it runs
   std::optional<std::int64_t> message_time_;  // with --clock messages [ns]
-  std::int64_t handled_time_ = 0;             // of the message being handled; 0: none
-  std::int32_t handled_mode_ = 0;
-  const std::string* handled_peer_ = nullptr;  // who sent it; null: nobody knows
-  std::optional<MonotonicTime> last_period_;   // of keep_rate()
+  internal::Handled handled_;                 // the message being handled
+  std::optional<MonotonicTime> last_period_;  // of keep_rate()
 };
 
 }  // namespace hc

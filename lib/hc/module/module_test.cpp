@@ -2,7 +2,11 @@
 #include <hc/module/module.h>
 
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <limits>
 #include <thread>
 
 #include <hc/compress/compress.h>
@@ -130,10 +134,10 @@ TEST(Module, TakesTwoInputsTogetherByTime) {
       EXPECT_EQ(number, static_cast<double>(time));
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "pair: left: a message has no partner and is left out, as others may be\n"
-            "pair: right: a message has no partner and is left out, as others may be\n"
-            "pair: left: left out: 2 unmatched, 0 crowded out\n"
-            "pair: right: left out: 2 unmatched, 0 crowded out\n");
+            "pair: left: dropped: no matching message (further drops are counted)\n"
+            "pair: right: dropped: no matching message (further drops are counted)\n"
+            "pair: left: dropped 2 unmatched, 0 on queue overflow\n"
+            "pair: right: dropped 2 unmatched, 0 on queue overflow\n");
 }
 
 TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
@@ -198,6 +202,125 @@ TEST(Module, AGeneratorsEndSettlesWhatWaits) {
   ASSERT_TRUE(right_sink->send(stamped(table({1.0}), 12)));  // neither ends
   EXPECT_EQ(run(module, {"--in", "left=inproc:m8-left", "--in", "right=inproc:m8-right"}), 0);
   EXPECT_EQ(at_end, 1);
+}
+
+TEST(Module, AnImageMadeOfAnotherKeepsItsCoordinateSystem) {
+  Module module{"grey", "Makes images grey."};
+  auto in = module.input("in", rgb_image<std::uint8_t>(), "");
+  auto out = module.output("out", intensity_image<std::uint8_t>(), "");
+  module.on(in, [&](const auto& message) {
+    out.send(intensity_image<std::uint8_t>(1, 1, message.numbers().first(1)));
+  });
+  const std::uint8_t pixel[] = {1, 2, 3};
+  const auto image = rgb_image<std::uint8_t>(1, 1, pixel);
+  auto sent = run_on(module, {{"in", {image.in(Coord::kRightImage), image}}});
+  ASSERT_EQ(sent.size(), 2U);
+  EXPECT_EQ(sent[0].header.coord, Coord::kRightImage);
+  EXPECT_EQ(sent[1].header.coord, 0);
+}
+
+TEST(Module, AScoreOfAnImageIsNotInItsCoordinateSystem) {
+  Module module{"score", "Scores images."};
+  auto in = module.input("in", rgb_image<std::uint8_t>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.on(in, [&](const auto&) { out.send(table({1.0})); });
+  const std::uint8_t pixel[] = {1, 2, 3};
+  auto sent =
+      run_on(module, {{"in", {rgb_image<std::uint8_t>(1, 1, pixel).in(Coord::kRightImage)}}});
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].header.coord, 0);
+}
+
+TEST(Module, ASetOfOneCoordinateSystemKeepsIt) {
+  Module module{"mean", "Takes the mean."};
+  auto one = module.input("one", position<double>(), "");
+  auto two = module.input("two", position<double>(), "");
+  auto out = module.output("out", position<double>(), "");
+  module.on(together(one, two),
+            [&](const auto&, const auto&) { out.send(position(1.0, 2.0, 3.0)); });
+  const auto place = position(0.0, 0.0, 0.0);
+  auto sent = run_on(module, {{"one", {place.in(3).at(1), place.in(3).at(2)}},
+                              {"two", {place.in(3).at(1), place.in(2).at(2)}}});
+  ASSERT_EQ(sent.size(), 2U);
+  EXPECT_EQ(sent[0].header.coord, 3);
+  EXPECT_EQ(sent[1].header.coord, 0);
+}
+
+TEST(Module, AnInputOfFiniteNumbersDropsOthersAndCountsThem) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Module module{"sum", "Adds."};
+  auto in = module.input("in", rotation<double>().of(1, 1).finite(), "");
+  auto out = module.output("out", rotation<double>(), "");
+  module.on(in, [&](const auto& message) { out.send(message); });
+  testing::internal::CaptureStderr();
+  auto sent = run_on(module, {{"in",
+                               {rotation(0.0, kNan, 0.0), rotation(1.0, 2.0, 3.0),
+                                rotation(0.0, 0.0, std::numeric_limits<double>::infinity())}}});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "sum: in: dropped: NaN or infinity (further ones are counted, not logged)\n"
+            "sum: in all: not finite 2 times\n");
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].view<double>()->at(0, 0, 2), 3.0);
+}
+
+TEST(Module, ATimeoutFiresOnceEachTimeItIsStarted) {
+  ManualClock clock;
+  Module module{"watchdog", "Waits.", clock};
+  std::vector<std::string> log;
+  int turns = 0;
+  auto first = module.after(std::chrono::seconds(2), [&] { log.emplace_back("first"); });
+  auto never = module.after(std::chrono::seconds(1), [&] { log.emplace_back("never"); });
+  module.after(std::chrono::seconds(7), [&] { log.emplace_back("seventh"); });
+  module.on_start([&] { never.stop(); });
+  module.generate([&] {
+    clock.advance(std::chrono::seconds(1));
+    log.push_back(std::to_string(++turns));
+    if (turns == 3) first.restart();
+    if (turns == 4) first.restart(std::chrono::seconds(1));
+    return turns < 7;
+  });
+  EXPECT_EQ(run(module, {}), 0);
+  EXPECT_EQ(log, (std::vector<std::string>{"1", "2", "first", "3", "4", "5", "first", "6", "7"}));
+}
+
+TEST(Module, ADescriptorIsReadWhenItIsReadable) {
+  Module module{"device", "Reads a device."};
+  int pipe[2];
+  ASSERT_EQ(::pipe(pipe), 0);
+  std::vector<int> read_at;
+  int turns = 0;
+  module.on_readable([&] { return pipe[0]; },
+                     [&] {
+                       char byte = 0;
+                       EXPECT_EQ(::read(pipe[0], &byte, 1), 1);
+                       read_at.push_back(turns);
+                     });
+  module.on_readable([] { return -1; }, [] { FAIL(); });
+  module.generate([&] {
+    ++turns;
+    if (turns == 2) {
+      EXPECT_EQ(::write(pipe[1], "ab", 2), 2);
+    }
+    return turns < 6;
+  });
+  EXPECT_EQ(run(module, {}), 0);
+  EXPECT_EQ(read_at, (std::vector<int>{2, 3}));
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
+
+TEST(Module, OneInTheBackgroundYieldsTheProcessor) {
+  Module module{"thinker", "Thinks."};
+  module.background();
+  int nice = 0, policy = -1;
+  module.generate([&] {
+    nice = ::getpriority(PRIO_PROCESS, 0);
+    policy = ::sched_getscheduler(0);
+    return false;
+  });
+  std::thread([&] { EXPECT_EQ(run(module, {}), 0); }).join();  // this thread's alone
+  EXPECT_EQ(nice, 10);
+  EXPECT_EQ(policy, SCHED_BATCH);
 }
 
 TEST(Module, AMessageThatDoesNotFitIsOneCleanLine) {

@@ -36,11 +36,42 @@ struct InputState {
   std::function<void(const Message&)> handler;
   Matcher* matcher = nullptr;  ///< of the inputs that are taken together with this one
   std::size_t place = 0;       ///< of this one among them
-  bool told = false;           ///< that messages are left out
+  bool is_unmatched = false;   ///< a message was dropped for want of a partner, and it is logged
   bool is_raw = false;         ///< the handler gets messages as they came, compressed ones too
   bool is_actor = false;       ///< moves something: one writer at a time is to have it
   bool is_exclusive = false;   ///< takes messages of the mode in focus alone
   std::optional<MonotonicTime> handled_at;  ///< the last message, while idle
+
+  [[nodiscard]] bool wants_finite() const {
+    return std::any_of(types.begin(), types.end(), [](const auto& type) { return type.finite; });
+  }
+};
+
+/// What an output takes over from the message that is being handled.
+struct Handled {
+  std::int64_t time = 0;
+  std::int32_t mode = 0;
+  std::int32_t coord = 0;
+  MatrixType type{};  ///< of the message
+  /// Address of the graph from which it came, for a link between graphs; null: unknown.
+  const std::string* peer = nullptr;
+
+  Handled() = default;
+  explicit Handled(const Header& header, const std::string* from = nullptr)
+      : time(header.time),
+        mode(header.mode),
+        coord(header.coord),
+        type(header.info.type),
+        peer(from) {}
+
+  /// The coordinate system of a message of another type that is made out of it: its own, where both
+  /// are of one type, or images; 0 otherwise, since a score of an image is not in pixels.
+  [[nodiscard]] std::int32_t coord_for(MatrixType made) const {
+    auto is_image = [](MatrixType each) {
+      return each == MatrixType::RgbImage || each == MatrixType::IntensityImage;
+    };
+    return made == type || (is_image(made) && is_image(type)) ? coord : 0;
+  }
 };
 
 /// Inputs that are taken together.
@@ -107,13 +138,13 @@ class Output {
   explicit Output(std::shared_ptr<internal::OutputState> state) : state_(std::move(state)) {}
 
   /// Sends a message to every link of the port. The header's src, seq and encoding are filled in;
-  /// dst, mode, coord and time where they are 0: dst by what the command line says (`--to`), coord
-  /// by the port's, mode and time by those of the message which is being handled, since what is
-  /// derived from a message keeps its time.
+  /// dst, mode, coord and time where they are 0: dst by `--to`, mode and time by those of the
+  /// message being handled, since what is derived from a message keeps its time; and coord by the
+  /// port's, else by that of the message being handled where both are images or of one type.
   void send(const MessageOf<K>& message) { internal::send(*state_, message); }
   void send(DraftOf<K>&& draft) { internal::send(*state_, std::move(draft).finish()); }
 
-  /// A message to be filled in place and sent, which saves a copy of large elements.
+  /// A message to be written in place and sent, which saves a copy of large elements.
   [[nodiscard]] DraftOf<K> loan(std::int32_t width, std::int32_t height) const {
     Header header;
     header.info = state_->type().info;
@@ -124,7 +155,7 @@ class Output {
     return {Draft::make(header)};
   }
 
-  /// Whether anybody takes what is sent; a module may save itself the work otherwise.
+  /// Whether the output has a reader; a module may save itself the work otherwise.
   [[nodiscard]] bool linked() const {
     return std::any_of(state_->links.begin(), state_->links.end(),
                        [](const auto& link) { return link->sink != nullptr; });
