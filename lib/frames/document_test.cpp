@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <frames/messages.h>
 #include <frames/tree.h>
-#include <hc/adapter/pose.h>
 
 namespace hc {
 namespace {

@@ -19,7 +19,7 @@ struct Mover {
   std::int32_t coord = 0;     ///< 1000 · parent + child (R44); 0: one of them has no number
 };
 
-/// A graph's frames. `hc::feed()` (hc/adapter/pose.h) hands messages to them.
+/// A graph's frames. `hc::feed()` (frames/messages.h) hands messages to them.
 struct GraphFrames {
   Tree tree;
   std::vector<Mover> movers;  ///< in the order of the text

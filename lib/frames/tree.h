@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Where things are: coordinate systems joined to a tree, and the way from one to another at the
-// time of a picture. No messages, no clock; hc/adapter/pose.h makes transformations of messages.
+// time of a picture. No messages, no clock; frames/messages.h makes transformations of messages.
 // Not safe for several threads at once; const calls alone are.
 
 #include <cstddef>

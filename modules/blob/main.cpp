@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <optional>
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
 #include <vision/blob.h>
+#include <vision/messages.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"blob", "Finds the largest blob of a colour in pictures."};
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
       pointed = {numbers[0], numbers[1]};
   });
   module.on(image, [&](const auto& message) {
-    const cv::Mat picture = hc::value_or_end(hc::as_mat(message));
+    const cv::Mat picture = hc::as_mat(message);
     if (pointed) take(picture);
     if (taken && *hue != hue_then) taken.reset();
     const auto colour =

@@ -10,9 +10,9 @@
 #include <stop_token>
 #include <utility>
 
-#include <hc/adapter/opencv.h>
-#include <hc/adapter/pose.h>
+#include <frames/messages.h>
 #include <hc/module/module.h>
+#include <vision/messages.h>
 #include <opencv2/imgproc.hpp>
 
 namespace {
@@ -141,8 +141,8 @@ int main(int argc, char** argv) {
     if (!looks || one.header.time < rests_from + kRests) return;
     HeadView view;
     view.unit = last;
-    cv::cvtColor(hc::value_or_end(hc::as_mat(one)), view.first, cv::COLOR_RGB2GRAY);
-    cv::cvtColor(hc::value_or_end(hc::as_mat(other)), view.second, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(hc::as_mat(one), view.first, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(hc::as_mat(other), view.second, cv::COLOR_RGB2GRAY);
     if (view.first.size() != view.second.size() ||
         (!views.empty() && view.first.size() != views[0].first.size()))
       throw hc::ModuleError("the pictures have different sizes");

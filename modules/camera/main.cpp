@@ -3,8 +3,8 @@
 #include "camera.h"
 #include "devices.h"
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
+#include <vision/messages.h>
 #include <vision/picture.h>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
     auto draft = output.loan(fitted.cols, fitted.rows);
     draft.header.time = time;
     draft.header.coord = coord;
-    cv::Mat rgb = hc::value_or_end(hc::as_mat(draft));
+    cv::Mat rgb = hc::as_mat(draft);
     cv::cvtColor(fitted, rgb, cv::COLOR_BGR2RGB);
     output.send(std::move(draft));
   };

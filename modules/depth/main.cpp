@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
+#include <vision/messages.h>
 #include <vision/stereo.h>
 
 namespace {
@@ -67,12 +67,12 @@ int main(int argc, char** argv) {
                             std::to_string(size.height) + " are not wider than " +
                             std::to_string(*disparities) + " disparities");
     auto found = disparity.loan(size.width, size.height);
-    cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
+    cv::Mat found_mat = hc::as_mat(found);
     matcher->match(hc::value_or_end(hc::as_mat(left_picture)),
                    hc::value_or_end(hc::as_mat(right_picture)), found_mat);
     if (depth.linked()) {
       auto metres = depth.loan(size.width, size.height);
-      cv::Mat metres_mat = hc::value_or_end(hc::as_mat(metres));
+      cv::Mat metres_mat = hc::as_mat(metres);
       hc::vision::depth_of(found_mat,
                            {told.focal > 0 ? told.focal : *focal,
                             told.baseline > 0 ? told.baseline : *baseline, *offset},

@@ -2,8 +2,8 @@
 // How good a disparity map is, against ground truth.
 #include <cstdio>
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
+#include <vision/messages.h>
 #include <vision/stereo.h>
 #include <opencv2/imgproc.hpp>
 

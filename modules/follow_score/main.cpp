@@ -3,9 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <frames/messages.h>
 #include <gaze/follow_score.h>
-#include <hc/adapter/eigen.h>
-#include <hc/adapter/pose.h>
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include <frames/messages.h>
 #include <gaze/stick.h>
-#include <hc/adapter/pose.h>
 #include <hc/module/module.h>
 
 #include "parameters.h"

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
 #include <vision/marker.h>
 #include <vision/marker_finder.h>
+#include <vision/messages.h>
 #include <vision/picture.h>
 #include <Eigen/Geometry>
 

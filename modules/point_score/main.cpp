@@ -4,8 +4,7 @@
 #include <cstdio>
 #include <optional>
 
-#include <hc/adapter/eigen.h>
-#include <hc/adapter/pose.h>
+#include <frames/messages.h>
 #include <hc/module/module.h>
 
 #include "pusher.h"

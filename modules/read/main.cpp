@@ -2,9 +2,9 @@
 // Reads block letters in pictures, and says where they are.
 #include <optional>
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
 #include <vision/letters.h>
+#include <vision/messages.h>
 
 #include "announcer.h"
 #include "recogniser.h"

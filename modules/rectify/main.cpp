@@ -4,9 +4,9 @@
 #include <utility>
 
 #include <gaze/eyes.h>
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
+#include <vision/messages.h>
 #include <vision/rectifier.h>
 
 namespace {
@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
     if (std::exchange(is_new, false)) tell();
     if (!output.linked()) return;
     auto draft = output.loan(size.width, size.height);
-    cv::Mat rectified = hc::value_or_end(hc::as_mat(draft));
-    rectifier->rectify(hc::value_or_end(hc::as_mat(picture)), rectified);
+    cv::Mat rectified = hc::as_mat(draft);
+    rectifier->rectify(hc::as_mat(picture), rectified);
     output.send(std::move(draft));
   };
   module.on_start([&] {

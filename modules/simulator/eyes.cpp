@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eyes.h"
 
-#include <hc/adapter/opencv.h>
+#include <vision/messages.h>
 
 Eyes::Eyes(const Parameters& parameters, hc::graphics::Renderer& renderer, Output left,
            Output right)
@@ -23,7 +23,7 @@ void Eyes::take(Eye& eye, const Eigen::Isometry3d& T_head_eye, const View& view,
   if (!eye.output.linked() && depth == nullptr) return;
   auto draft = eye.output.loan(camera_.width, camera_.height);
   draft.header.time = view.time;
-  cv::Mat rgb = hc::value_or_end(hc::as_mat(draft));
+  cv::Mat rgb = hc::as_mat(draft);
   auto light = view.light;
   light.exposure = static_cast<float>(*parameters_.exposure);
   const Eigen::Isometry3d T_world_eye = view.T_world_head * T_head_eye;

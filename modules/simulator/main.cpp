@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include <hc/adapter/opencv.h>
-#include <hc/adapter/pose.h>
+#include <frames/messages.h>
 #include <hc/module/module.h>
+#include <vision/messages.h>
 
 #include "ball.h"
 #include "ears.h"
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
     if (!truth.depth.linked() || *parameters.swapped) return scene->eyes.take(view, nullptr);
     auto depth = truth.depth.loan(camera.width, camera.height);
     depth.header.time = time;
-    cv::Mat metres = hc::value_or_end(hc::as_mat(depth));
+    cv::Mat metres = hc::as_mat(depth);
     scene->eyes.take(view, &metres);
     truth.depth.send(std::move(depth));
   };

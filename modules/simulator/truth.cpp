@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <hc/adapter/eigen.h>
+#include <frames/messages.h>
 
 #include "screen.h"
 

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <vector>
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
+#include <vision/messages.h>
 
 namespace {
 

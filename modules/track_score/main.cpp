@@ -5,9 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include <frames/messages.h>
 #include <gaze/track_score.h>
-#include <hc/adapter/eigen.h>
-#include <hc/adapter/pose.h>
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {

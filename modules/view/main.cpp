@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <set>
 
-#include <hc/adapter/opencv.h>
 #include <hc/module/module.h>
 #include <hc/os/program.h>
+#include <vision/messages.h>
 #include <vision/picture.h>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>

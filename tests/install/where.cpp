@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <frames/messages.h>
 #include <frames/tree.h>
-#include <hc/adapter/pose.h>
 
 #include <iostream>
 

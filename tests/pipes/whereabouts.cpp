@@ -3,7 +3,7 @@
 // is known.
 #include <deque>
 
-#include <hc/adapter/pose.h>
+#include <frames/messages.h>
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {

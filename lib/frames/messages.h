@@ -1,17 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Rigid transformations out of messages. Header only; a target of its own, hc::pose. Pure.
+// Messages as Eigen matrices and poses, and back. Header only. Pure.
 
 #include <cstdint>
 #include <string>
 
 #include <frames/graph_frames.h>
 #include <frames/rigid.h>
-#include <hc/adapter/eigen.h>
+#include <hc/module/kind.h>
 
 namespace hc {
 
-/// A rigid transformation as a message tells it: a joint of frames::Tree takes all four.
+/// Rows and columns of scalars, row by row as the format has them.
+template <typename T>
+using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The elements as a matrix of `height` rows and `width × components` columns: a transformation as
+/// it is, a path of positions with a row for each when it has width 1. Views the message, which
+/// must live longer.
+///
+/// Errors: Unsupported (compressed; another scalar than T).
+template <ScalarType T>
+Result<Eigen::Map<const RowMajor<T>>> as_eigen(const Message& message) {
+  auto view = message.view<T>();
+  if (!view) return view.error();
+  return Eigen::Map<const RowMajor<T>>(
+      view->numbers().data(), static_cast<Eigen::Index>(view->height()),
+      static_cast<Eigen::Index>(view->width() * view->components()));
+}
+
+/// The elements of a draft, to be written in place. Another scalar than the draft's is a bug.
+template <ScalarType T>
+Eigen::Map<RowMajor<T>> as_eigen(const Draft& draft) {
+  auto view = draft.view<T>();
+  return Eigen::Map<RowMajor<T>>(view.numbers().data(), static_cast<Eigen::Index>(view.height()),
+                                 static_cast<Eigen::Index>(view.width() * view.components()));
+}
+
+/// A pose: (4, 4) f64, p_to = T_to_from · (x y z 1)ᵀ, lengths in metres.
+inline MessageOf<TransformationKind<double>> transformation(const Eigen::Isometry3d& T_to_from) {
+  const RowMajor<double> rows = T_to_from.matrix();
+  return transformation<double>(4, 4, {rows.data(), 16});
+}
+
+/// One position: x y z.
+inline MessageOf<PositionKind<double>> position(const Eigen::Vector3d& p) {
+  return position(p.x(), p.y(), p.z());
+}
+
+/// One rotation by roll, pitch, yaw [rad].
+inline MessageOf<RotationKind<double>> rotation(const Eigen::Vector3d& angles) {
+  return rotation(angles.x(), angles.y(), angles.z());
+}
+
+/// A rigid transformation out of a message: a joint of frames::Tree takes all four.
 struct TimedPose {
   std::int32_t to = 0;    ///< frame into which it takes points, the parent of a joint; 1 … 999
   std::int32_t from = 0;  ///< frame out of which it takes them, the child; 1 … 999

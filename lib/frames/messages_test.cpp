@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/adapter/pose.h>
+#include <frames/messages.h>
 
 #include <gtest/gtest.h>
 
@@ -114,6 +114,38 @@ TEST(Rotation, RefusesWhatIsNone) {
             "Unsupported: one rotation is asked for, not a rotation of 1 x 0");
   EXPECT_EQ(refused("1 7 0 0 8 1 20390 1 13 1 1\n0 inf 0\n"),
             "Malformed: a rotation's angle is not finite");
+}
+
+TEST(Eigen, SharesATransformation) {
+  Draft draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Text}, 4, 3);
+  auto made = as_eigen<double>(draft);
+  ASSERT_EQ(made.rows(), 3);
+  ASSERT_EQ(made.cols(), 4);
+  made.setZero();
+  made(2, 3) = 5;
+  Message message = std::move(draft).finish();
+  auto seen = as_eigen<double>(message);
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(static_cast<const void*>(seen->data()), message.elements.data());
+  EXPECT_EQ((*seen)(2, 3), 5);
+  EXPECT_EQ(message.view<double>()->at(2, 3), 5);
+  EXPECT_FALSE(as_eigen<float>(message));
+}
+
+TEST(Eigen, APathHasARowForEachPosition) {
+  Draft draft = Draft::make(Info(), 1, 5);
+  EXPECT_EQ(as_eigen<double>(draft).rows(), 5);
+  EXPECT_EQ(as_eigen<double>(draft).cols(), 3);
+}
+
+TEST(Eigen, PosesAreMadeInOneLine) {
+  Eigen::Isometry3d T_world_head(Eigen::Translation3d(1, 2, 3) * frames::rotation(0, 0, 1.5));
+  auto message = transformation(T_world_head).in(transform_coord(Coord::kWorld, Coord::kHead));
+  EXPECT_LT((pose_of(message)->T_to_from.matrix() - T_world_head.matrix()).norm(), 1e-15);
+  EXPECT_EQ(message.matrix().at(1, 3), 2);
+  EXPECT_EQ(position(Eigen::Vector3d(1, 2, 3)).matrix().at(0, 0, 2), 3);
+  const auto q = *rotation_of(rotation(Eigen::Vector3d(0, 0, 1.5)));
+  EXPECT_LT(q.angularDistance(frames::rotation(0, 0, 1.5)), 1e-12);
 }
 
 }  // namespace
