@@ -31,15 +31,12 @@ parameters = { log = "near.log" }
 [modules.far]
 program = "%(checker)s"
 parameters = { log = "far.log" }
-[[links]]
+[[modules.relay.inputs.in]]
 from = "camera.left"
-to = "relay.in"
-[[links]]
+[[modules.near.inputs.in]]
 from = "relay.out"
-to = "near.in"
-[[links]]
+[[modules.far.inputs.in]]
 from = "relay.out"
-to = "far.in"
 """ % dict(
     checker=CHECKER
 )
@@ -49,7 +46,9 @@ def ring(names):
     """A graph of relays through which nothing goes."""
     modules = ["[modules.%s]\nprogram = 'relay'\n" % name for name in names]
     pairs = zip(names, names[1:] + names[:1])
-    links = ["[[links]]\nfrom = '%s.out'\nto = '%s.in'\n" % pair for pair in pairs]
+    links = [
+        "[[modules.%s.inputs.in]]\nfrom = '%s.out'\n" % (reader, writer) for writer, reader in pairs
+    ]
     return "".join(modules + links) + "rate = 30\n"  # a loop has a rate somewhere (hc check)
 
 

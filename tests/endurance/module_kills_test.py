@@ -10,7 +10,7 @@ import unittest
 from endurance import Endurance, IMAGES, IS_FULL, quantile, tell
 
 KILLS = 100 if IS_FULL else 2  # of each module
-BETWEEN = 2.6  # of the same module: five starts within 10 s are not put off (G41) [s]
+BETWEEN = 2.6  # of the same module: five starts within 10 s are not put off (G40) [s]
 
 
 class ModuleKills(Endurance):

@@ -15,20 +15,17 @@ import unittest
 
 WATCHDOG = 300  # seconds after which a program hangs
 IN = "1 7 0 0 8 1763683200000000000 120190 0 0 2 1\n1 2.5\n"
-GRAPH = """
+GRAPH = """version = 1
 [modules.first]
 program = "./py_gauge/py_gauge"
 [modules.second]
 program = "./cc/cc_gauge/build/cc_gauge"
 parameters.factor = 10
-[[links]]
+[[modules.first.inputs.numbers]]
 from = "file:in.mtp"
-to = "first.numbers"
-[[links]]
+[[modules.second.inputs.numbers]]
 from = "first.product"
-to = "second.numbers"
-[[links]]
-from = "second.product"
+[[modules.second.outputs.product]]
 to = "file:out.mtp"
 """
 

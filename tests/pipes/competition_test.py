@@ -42,9 +42,11 @@ class Demonstrations(Pipes):
             self.assertIn(old.strip("_"), text)
             text = text.replace(old.strip("_"), str(new))
         for output in links:
-            text += '\n[[links]]\nfrom = "%s"\nto = "file:%s.mtp"\n' % (output, output)
-            if output.endswith(".out") and output.startswith("router"):
-                text += 'route = "all"\n'
+            module, port = output.split(".")
+            begin = r"(\[modules\.%s\].*\n)" % module
+            route = ', route = "all"' if port == "out" and module.startswith("router") else ""
+            link = r'\1outputs.%s = { to = "file:%s.mtp"%s }\n' % (port, output, route)
+            text = re.sub(begin, link, text)
         self.write(name, text)
 
     def recorded(self, output):
@@ -165,8 +167,10 @@ class Demonstrations(Pipes):
 
     def test_a_person_takes_the_focus_whatever_the_dwell_time_says(self):
         self.write_copy("contest.toml", "actor.done", "workspace.focus")
-        with open(self.path("contest.toml"), "a") as graph:
-            graph.write('\n[[links]]\nfrom = "unix-listen:person"\nto = "workspace.person"\n')
+        person = '[modules.workspace]\ninputs.person = "unix-listen:person"\n'
+        self.write(
+            "contest.toml", self.read("contest.toml").replace("[modules.workspace]\n", person)
+        )
         process = self.start(
             "exec hc run contest.toml --set workspace.dwell=3600 --set workspace.person_expiry=3600 "
             "--set looking.script=0:0.9 --set tracking.script=0:0 --set reading.script=0:0 2>errors"

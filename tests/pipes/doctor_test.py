@@ -9,13 +9,11 @@ import unittest
 
 from harness import DATA, Pipes, ROOT
 
-GRAPH = """
+GRAPH = """version = 1
 [modules.camera]
 parameters.source = "%s"
 [modules.brightness]
-[[links]]
-from = "camera.left"
-to = "brightness.image"
+inputs.image = "camera.left"
 """
 
 
@@ -53,7 +51,7 @@ class Doctor(Pipes):
         self.assertNotIn("missing", self.examine(GRAPH % "rtsp://robot/left", 0))
 
     def test_ports_in_use(self):
-        outside = '[[links]]\nfrom = "camera.left"\nto = "tcp-listen:%d"\n'
+        outside = '[[modules.camera.outputs.left]]\nto = "tcp-listen:%d"\n'
         with socket.create_server(("127.0.0.1", 0)) as server:
             text = GRAPH % "0" + outside % server.getsockname()[1]
             self.assertRegex(
@@ -62,14 +60,14 @@ class Doctor(Pipes):
         self.assertNotIn("missing", self.examine(text, 0))
 
     def test_a_window_wants_a_display(self):
-        text = GRAPH % "0" + '[modules.view]\n[[links]]\nfrom = "camera.left"\nto = "view.image"\n'
+        text = GRAPH % "0" + '[modules.view]\ninputs.image = "camera.left"\n'
         self.assertRegex(self.examine(text, 1)["missing"][0], "^view a display")
         self.assertNotIn("missing", self.examine(text, 0, " --set view.save=a.png"))
 
     def test_what_is_wrong_with_a_graph_is_said_as_check_does(self):
         said = self.examine(GRAPH.replace("source", "sorce").replace(".image", ".imag") % "0", 1)
         self.shell("hc check g.toml", 2)
-        told = [line.split("Invalid: ")[1] for line in self.err.splitlines()]
+        told = [line.split("error: ")[1] for line in self.err.splitlines()]
         self.assertEqual(said["wrong"], ["graph " + line for line in told])
         self.assertEqual(len(told), 2)
         self.assertEqual(self.shell("hc doctor none.toml", 1), "")

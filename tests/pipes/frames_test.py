@@ -10,7 +10,7 @@ from harness import BUILD, Pipes
 START = 1763683200_000000000  # [ns]
 STEP = 100_000_000  # [ns] between poses
 TURN = 0.25  # [rad] of the head to the left in each
-GRAPH = """
+GRAPH = """version = 1
 [modules.neck]
 program = "relay"
 addresses.out = 11
@@ -29,17 +29,13 @@ moved_by = "neck.out"
 [frames.left_eye]
 parent = "head"
 translation = [0.05, 0.03, 0.0]
-[[links]]
+[[modules.neck.inputs.in]]
 from = "file:poses"
-to = "neck.in"
-[[links]]
+[[modules.eyes.inputs.in]]
 from = "file:pictures"
-to = "eyes.in"
-[[links]]
+[[modules.whereabouts.inputs.when]]
 from = "eyes.out"
-to = "whereabouts.when"
-[[links]]
-from = "whereabouts.pose"
+[[modules.whereabouts.outputs.pose]]
 to = "file:found"
 keep = "all"
 """

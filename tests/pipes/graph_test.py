@@ -43,20 +43,19 @@ class Graph(Pipes):
         self.shell("hc run %s --set depth.disparitis=16" % graph, 2)
         self.assertIn('did you mean "disparities"?', self.err)
 
-    LIVE = """
+    LIVE = """version = 1
 [modules.camera]
 parameters = { source = "%s/aloeL.jpg", loop = true, rate = 200, width = 80, height = 60 }
 [modules.brightness]
 [modules.store]
 program = "./store"
-[[links]]
+[[modules.brightness.inputs.image]]
 from = "camera.left"
-to = "brightness.image"
 """
 
     def run_live(self, restart="failure"):
         text = re.sub(r"\[modules.store\]\n.*\n", "", self.LIVE % DATA)
-        self.write("live.toml", "restart = '%s'\n%s" % (restart, text))
+        self.write("live.toml", text.replace("\n", "\nrestart = '%s'\n" % restart, 1))
         process = self.start("exec hc run live.toml")
         lines = []
         while len(lines) < 2:
@@ -81,13 +80,12 @@ to = "brightness.image"
     def test_what_was_lost_is_told_with_its_reason(self):
         self.write(
             "slow.toml",
-            """
+            """version = 1
 [modules.camera]
 parameters = { source = "%s/aloeL.jpg", loop = true, count = 30, rate = 200, width = 80, height = 60 }
 [modules.brightness]
-[[links]]
+[[modules.brightness.inputs.image]]
 from = "camera.left"
-to = "brightness.image"
 keep = "latest"
 rate = 2
 """
@@ -136,12 +134,12 @@ rate = 2
         self.assertIn(b"brightness: killed by signal 9\n", err)
 
     def test_a_program_that_is_no_module_is_refused(self):
-        self.write("bad.toml", '[modules.store]\nprogram = "/bin/true"\n')
+        self.write("bad.toml", 'version = 1\n[modules.store]\nprogram = "/bin/true"\n')
         self.shell("hc run bad.toml", 2)
-        self.assertIn("bad.toml:1: module store: /bin/true --describe prints no", self.err)
-        self.write("bad.toml", "[modules.camra]\n")
+        self.assertIn("bad.toml:2: module store: /bin/true --describe does not print", self.err)
+        self.write("bad.toml", "version = 1\n[modules.camra]\n")
         self.shell("hc run bad.toml", 2)
-        self.assertIn('bad.toml:1: no program "camra", did you mean "camera"?', self.err)
+        self.assertIn('bad.toml:2: no program "camra", did you mean "camera"?', self.err)
 
     def test_a_reader_that_has_enough_ends_the_graph(self):
         self.write(
@@ -154,13 +152,12 @@ for word; do case $word in in=*) exec hc cat --count 1 "${word#in=}" >once.txt ;
         os.chmod(self.path("once"), 0o755)
         self.write(
             "once.toml",
-            """[modules.camera]
+            """version = 1
+[modules.camera]
 parameters = { source = "%s/aloeL.jpg", loop = true }
 [modules.once]
 program = "./once"
-[[links]]
-from = "camera.left"
-to = "once.in"
+inputs.in = "camera.left"
 """
             % DATA,
         )
@@ -168,9 +165,9 @@ to = "once.in"
         self.assertIn("rgb_image", self.read("once.txt"))
 
     def test_a_module_without_a_description_is_named(self):
-        self.write("false.toml", '[modules.store]\nprogram = "/bin/false"\n')
+        self.write("false.toml", 'version = 1\n[modules.store]\nprogram = "/bin/false"\n')
         self.shell("hc run false.toml", 2)
-        self.assertIn("false.toml:1: module store: /bin/false --describe failed with", self.err)
+        self.assertIn("false.toml:2: module store: /bin/false --describe failed with", self.err)
         self.environment["PATH"] = "%s:%s" % (self.folder.name, self.environment["PATH"])
         os.mkdir(self.path("gadget"))
         self.shell("hc gadget", 2)
@@ -225,7 +222,7 @@ sleep %s & setsid sleep %s & echo ready >&2; sleep %s; echo behind
             % (mark, mark, mark),
         )
         os.chmod(self.path("wrapper"), 0o755)
-        self.write("wrapper.toml", '[modules.wrapper]\nprogram = "./wrapper"\n')
+        self.write("wrapper.toml", 'version = 1\n[modules.wrapper]\nprogram = "./wrapper"\n')
 
         def sleepers():
             found = []

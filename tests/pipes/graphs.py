@@ -17,9 +17,8 @@ GRAPH = (
 [modules.camera]
 parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
 [modules.brightness]
-[[links]]
+[[modules.brightness.inputs.image]]
 from = "camera.left"
-to = "brightness.image"
 """
     % DATA
 )
@@ -49,7 +48,7 @@ class Messages:
 
 class Graphs(Pipes):
     def write_graph(self, text):
-        self.write("g.new", text)
+        self.write("g.new", "version = 1\n" + text)
         os.rename(self.path("g.new"), self.path("g.toml"))  # as editors do
 
     def run_graph(self, options="", last="brightness: started"):

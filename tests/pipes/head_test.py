@@ -36,17 +36,17 @@ class Whole(Head):
         self.write(
             "whole.toml",
             """
+            version = 1
             [graphs.robot]
             file = "%s/graphs/head.toml"
             [modules.track_score]
             ends_graph = true
-            [[links]]
+            [[modules.track_score.inputs.begin]]
             from = "robot_calibrate.result"
-            to = "track_score.begin"
             """
             % ROOT
             + "".join(
-                '[[links]]\nfrom = "robot_head_eyes.%s"\nto = "track_score.%s"\n' % (port, port)
+                '[[modules.track_score.inputs.%s]]\nfrom = "robot_head_eyes.%s"\n' % (port, port)
                 for port in ("left_pose", "ball", "ball_seen")
             ),
         )

@@ -23,7 +23,7 @@ ENOUGH = 5  # commands that the unit is told of a task before something changes
 GRAPH = """
 [graphs.head]
 file = "HEAD"
-parameters.eyes = { rate = 0.1, width = 80, height = 60 }
+modules.eyes.parameters = { rate = 0.1, width = 80, height = 60 }
 
 [modes]
 left = 1
@@ -51,48 +51,38 @@ program = "gaze"
 mode = "point"
 parameters = { salience = 1, patience = 0.3, acceleration = 0, tilt_min = 0, tilt_max = 0 }
 
-[[links]]
+[[modules.left.inputs.wish]]
 from = "unix-listen:left"
-to = "left.wish"
 
-[[links]]
+[[modules.right.inputs.wish]]
 from = "unix-listen:right"
-to = "right.wish"
 
-[[links]]
+[[modules.point.inputs.stick]]
 from = "unix-listen:stick"
-to = "point.stick"
 
-[[links]]
+[[modules.point.inputs.gaze]]
 from = "head_neck.gaze"
-to = "point.gaze"
 keep = "latest"
 
-[[links]]
+[[modules.workspace.inputs.bids]]
 from = "left.bid"
-to = "workspace.bids"
 
-[[links]]
+[[modules.workspace.inputs.bids]]
 from = "right.bid"
-to = "workspace.bids"
 
-[[links]]
+[[modules.workspace.inputs.person]]
 from = "point.bid"
-to = "workspace.person"
 
-[[links]]
-from = "workspace.focus"
+[[modules.workspace.outputs.focus]]
 to = "file:focus"
 
-[[links]]
-from = "head_unit.received"
+[[graphs.head.modules.unit.outputs.received]]
 to = "file:received"
 """
 
 COMMAND_LINK = """
-[[links]]
+[[COMMANDS]]
 from = "%s.command"
-to = "COMMANDS"
 keep = "latest"
 rate = 500
 """
@@ -177,14 +167,15 @@ def told_in(stints, commands):
 
 class OneNeck(Graphs):
     def start_tasks(self, is_exclusive=True):
-        head, commands, more = ROOT / "graphs/simulated_head.toml", "head_neck.command", ""
+        head, more = ROOT / "graphs/simulated_head.toml", ""
+        commands = "graphs.head.modules.neck.inputs.command"
         if not is_exclusive:
             text = head.read_text()
             self.assertEqual(text.count('exclusive = ["command"]\n'), 1)
             self.write("head.toml", text.replace('exclusive = ["command"]\n', ""))
             # A neck that takes all has one sender, or the graph would be refused.
-            head, commands = "head.toml", "relay.in"
-            more = '[modules.relay]\n[[links]]\nfrom = "relay.out"\nto = "head_neck.command"\n'
+            head, commands = "head.toml", "modules.relay.inputs.in"
+            more = '[modules.relay]\n[graphs.head.modules.neck]\ninputs.command = "relay.out"\n'
         links = "".join(COMMAND_LINK % task for task in ("left", "right", "point"))
         self.write_graph(
             (GRAPH + links).replace("HEAD", str(head)).replace("COMMANDS", commands) + more

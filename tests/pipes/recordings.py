@@ -63,6 +63,13 @@ def share_within(some, others, seconds, difference):
     return agreed / len(some)
 
 
+def writers(end):
+    """The outputs that an input reads."""
+    if isinstance(end, dict):
+        end = end["from"]
+    return [end] if isinstance(end, str) else [each for one in end for each in writers(one)]
+
+
 class Task:
     """The graph score_TASK.toml with parameters MODULE.NAME=VALUE, as far as it says how modules are
     started."""
@@ -74,14 +81,19 @@ class Task:
         included = graph["graphs"]["head"]
         head = tomllib.loads((self.file.parent / included["file"]).read_text())
         self.modes = graph["modes"]
-        self.modules = {"head_" + name: module for name, module in head["modules"].items()}
-        self.modules.update(graph["modules"])
+        self.modules = dict(graph["modules"])
+        for name, module in head["modules"].items():
+            for port, end in module.get("inputs", {}).items():
+                module["inputs"][port] = ["head_" + each for each in writers(end)]
+            for key, given in included.get("modules", {}).get(name, {}).items():
+                module.setdefault(key, {}).update(given)
+            self.modules["head_" + name] = module
         self.links = [
-            tuple("head_" + link[end] for end in ("from", "to")) for link in head["links"]
+            (writer, "%s.%s" % (name, port))
+            for name, module in self.modules.items()
+            for port, end in module.get("inputs", {}).items()
+            for writer in writers(end)
         ]
-        self.links += [(link["from"], link["to"]) for link in graph["links"]]
-        for name, given in included.get("parameters", {}).items():
-            self.modules["head_" + name].setdefault("parameters", {}).update(given)
         for setting in settings:
             target, value = setting.split("=")
             name, parameter = target.split(".")

@@ -29,15 +29,16 @@ class Running(Graphs):
         self.write_graph(GRAPH)
         process = self.run_graph()
         self.write_graph(GRAPH.replace("brightness]", "brihtness]"))
-        lines = self.await_lines(process, "graph: goes on as it was")
+        lines = self.await_lines(process, "graph: keeping the running version")
         self.assertIn('no program "brihtness", did you mean "brightness"?', "\n".join(lines))
-        more = "[modules.more]\nprogram = 'brightness'\n[[links]]\nfrom = 'camera.left'\nto = 'more.image'\n"
+        more = "[modules.more]\nprogram = 'brightness'\ninputs.image = 'camera.left'\n"
         self.write_graph(GRAPH + more)
         self.await_lines(process, "more: started")
         self.write_graph(GRAPH)
         self.await_lines(process, "more: ended")
         # One that comes first in the file has a number of its own, and the others keep theirs.
-        self.write_graph(more.partition("[[")[0] + GRAPH)
+        first = more.partition("inputs")[0]
+        self.write_graph(GRAPH.replace("[modules.camera]", first + "[modules.camera]"))
         self.await_lines(process, "graph: changed")
         _, err = self.stop(process)
         self.assertNotIn("brightness: started", err)
@@ -78,10 +79,10 @@ class Running(Graphs):
         process = self.run_graph()
         observed = self.observe(process)
         self.write_graph("[modules.camera\n")
-        self.await_lines(process, "graph: goes on as it was")
+        self.await_lines(process, "graph: keeping the running version")
         self.assertEqual(self.ask(process, "set camera.rate=20"), ["ok"])
         self.write_graph(GRAPH)
-        self.await_lines(process, "graph: as it was")
+        self.await_lines(process, "graph: unchanged")
         os.mkdir(self.path("elsewhere"))
         os.link(self.path("g.toml"), self.path("elsewhere/same.toml"))
         with open(self.path("elsewhere/same.toml"), "a") as same:  # where nobody looks
@@ -169,7 +170,7 @@ class Running(Graphs):
             after = self.module(state, name)
             self.assertEqual(after["restarts"], before["restarts"] + 1)
         _, err = self.stop(process)
-        self.assertEqual(err.count("camera: killed by signal 9; starting it again"), 3)
+        self.assertEqual(err.count("camera: killed by signal 9; restarting"), 3)
 
     def test_a_stopped_module_is_shown_as_stalled(self):
         self.write_graph(GRAPH)

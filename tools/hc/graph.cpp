@@ -60,14 +60,14 @@ std::string why_no_program(const std::string& program, const std::string& path) 
 /// stands.
 void resolve_programs(hc::Graph& graph, hc::Problems& problems) {
   for (auto& module : graph.modules) {
-    std::string name = module.program;
-    if (name.empty()) continue;  // what is wrong has been told
+    auto& [given, place] = module.program;
+    if (given.empty()) continue;  // what is wrong has been reported
+    std::string name = given;
     if (name.find('/') != std::string::npos && !name.starts_with('/'))
-      name =
-          (std::filesystem::path(problems.file(module.place.file)).parent_path() / name).string();
+      name = (std::filesystem::path(problems.file(place.file)).parent_path() / name).string();
     std::string program = find_program(name);
-    if (program.empty()) problems.add(module.place, why_no_program(module.program, name));
-    module.program = program;
+    if (program.empty()) problems.add(place, why_no_program(given, name));
+    given = program;
   }
 }
 
@@ -143,8 +143,7 @@ hc::Replanned make_plan(std::string_view verb, const GraphOptions& options,
   auto planned = plan_graph(options, token, texts);
   if (!planned) throw Failure(planned.error());
   if (planned->plan) return std::move(*planned);
-  for (const auto& line : planned->problems)
-    say(fmt::format("hc {}: {}", verb, hc::Error{hc::Code::Invalid, line}.text()));
+  for (const auto& line : planned->problems) say(fmt::format("hc {}: error: {}", verb, line));
   throw Failure(2);
 }
 

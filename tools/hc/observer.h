@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Graphs that run on this host, seen from outside: which there are, what they say of themselves,
-// and what one asks them to do. spec/graph.md (G44 … G46) has their words.
+// and what one asks them to do. spec/graph.md (G45 … G47) has their words.
 
 #include <chrono>
 #include <memory>

@@ -65,11 +65,11 @@ void add_no_module(const Graph& graph, const std::string& name, Problems& proble
 void add_module(Graph& graph, const Command& command, Problems& problems) {
   GraphModule module;
   module.name = command.words[0];
-  module.program = command.words[1];
+  module.program.value = command.words[1];
   if (!internal::is_name(module.name))
-    return problems.add({}, "a module's name is snake_case, not \"" + module.name + "\"");
+    return problems.add({}, "module name \"" + module.name + "\" is not snake_case");
   if (graph.find(module.name) != nullptr)
-    return problems.add({}, "there is a module \"" + module.name + "\" already");
+    return problems.add({}, "module \"" + module.name + "\" already exists");
   for (std::size_t i = 2; i < command.words.size(); ++i)
     if (auto pair = pair_of(command.words[i], problems))
       module.parameters[pair->first] = {pair->second, {}};
@@ -84,27 +84,15 @@ void remove_module(Graph& graph, const std::string& name, Problems& problems) {
   });
 }
 
-/// An end of a link: MODULE.PORT, or a URI of the world outside.
-std::optional<GraphPort> end_of(const std::string& text, Problems& problems) {
-  if (text.find(':') != std::string::npos) {
-    if (auto uri = parse_uri(text)) return GraphPort{{}, {}, text};
-  } else if (auto dot = text.find('.'); dot != std::string::npos) {
-    GraphPort port{text.substr(0, dot), text.substr(dot + 1), {}};
-    if (internal::is_name(port.module) && internal::is_name(port.port)) return port;
-  }
-  problems.add({}, "\"" + text + "\" is not MODULE.PORT");
-  return std::nullopt;
-}
-
 void add_policy(GraphLink& link, const Command& command, Problems& problems) {
-  static const std::vector<std::string> kKeys = {"keep",      "rate",       "burst",
-                                                 "byte_rate", "byte_burst", "memory"};
+  static const std::vector<std::string> kKeys = {"keep", "rate", "burst", "memory"};
   Uri policy;
   for (std::size_t i = 2; i < command.words.size(); ++i) {
     auto pair = pair_of(command.words[i], problems);
     if (!pair) continue;
     if (std::find(kKeys.begin(), kKeys.end(), pair->first) == kKeys.end())
-      problems.add({}, "no key \"" + pair->first + "\" in a link" + suggestion(pair->first, kKeys));
+      problems.add(
+          {}, "unknown key \"" + pair->first + "\" in a link" + suggestion(pair->first, kKeys));
     policy.options.push_back(*pair);
     link.policy[pair->first] = {pair->second, {}};
   }
@@ -112,10 +100,13 @@ void add_policy(GraphLink& link, const Command& command, Problems& problems) {
 }
 
 void add_link(Graph& graph, const Command& command, Problems& problems) {
-  auto from = end_of(command.words[0], problems), to = end_of(command.words[1], problems);
+  auto from = internal::parse_port(command.words[0], true);
+  auto to = internal::parse_port(command.words[1], true);
+  for (const auto* end : {&from, &to})
+    if (!*end) problems.add({}, end->error().detail);
   if (!from || !to) return;
   if (!from->uri.empty() && !to->uri.empty())
-    return problems.add({}, "a link has a module at one of its ends");
+    return problems.add({}, "a link needs a module at one of its ends");
   GraphLink link;
   link.from = *from;
   link.to = *to;

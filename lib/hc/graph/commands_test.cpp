@@ -47,7 +47,7 @@ class CommandsTest : public ::testing::Test {
 TEST_F(CommandsTest, ModulesComeAndGoWithTheirLinks) {
   EXPECT_EQ(apply("add blob blob_finder hue=0.3 name=a=b"), "");
   ASSERT_NE(graph_.find("blob"), nullptr);
-  EXPECT_EQ(graph_.find("blob")->program, "blob_finder");
+  EXPECT_EQ(graph_.find("blob")->program.value, "blob_finder");
   EXPECT_EQ(graph_.find("blob")->parameters.at("name").value, "a=b");
   EXPECT_EQ(apply("link camera.left blob.image keep=latest rate=5"), "");
   ASSERT_EQ(graph_.links.size(), 2U);
@@ -81,15 +81,15 @@ TEST_F(CommandsTest, WhatIsWrongIsNamed) {
            {"ad x y", "no command \"ad\", did you mean \"add\"?"},
            {"add x", "the command is: add MODULE PROGRAM [PARAMETER=VALUE ...]"},
            {"stop now", "the command is: stop"},
-           {"add X y", "a module's name is snake_case, not \"X\""},
-           {"add view y", "there is a module \"view\" already"},
+           {"add X y", "module name \"X\" is not snake_case"},
+           {"add view y", "module \"view\" already exists"},
            {"add x y z", "\"z\" is not KEY=VALUE"},
            {"remove viw", "no module \"viw\", did you mean \"view\"?"},
            {"link camera view.image", "\"camera\" is not MODULE.PORT"},
            {"link camera.left view.image kep=3",
-            "no key \"kep\" in a link, did you mean \"keep\"?"},
+            "unknown key \"kep\" in a link, did you mean \"keep\"?"},
            {"link camera.left view.image rate=fast", "option rate is"},
-           {"link tcp:1 tcp:2", "a link has a module at one of its ends"},
+           {"link tcp:1 tcp:2", "a link needs a module at one of its ends"},
            {"unlink camera.left view.x", "no link from camera.left to view.x"},
            {"set camra.rate=3", "did you mean \"camera\"?"}}) {
     EXPECT_NE(apply(line).find(words), std::string::npos) << line << ": " << apply(line);
@@ -137,7 +137,7 @@ TEST(AddCommand, AModuleThatGoesTakesAllAlongThatWasSaidOfIt) {
 std::string text_of(const Graph& graph) {
   std::string text;
   for (const auto& module : graph.modules) {
-    text += module.name + " " + module.program;
+    text += module.name + " " + module.program.value;
     for (const auto& [key, value] : module.parameters) text += " " + key + "=" + value.value;
     text += "\n";
   }

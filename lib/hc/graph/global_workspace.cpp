@@ -31,8 +31,8 @@ std::vector<Edge> edges_in(const Plan& plan, std::string_view focus) {
     auto from = modules.find(std::string_view(link.from).substr(0, from_dot));
     auto to = modules.find(std::string_view(link.to).substr(0, to_dot));
     if (from == modules.end() || to == modules.end()) continue;  // the world outside
-    const bool tells_focus =
-        from->first == plan.workspace && link.to == std::string(to->first) + ".focus";
+    const bool tells_focus = plan.workspaces.contains(from->second->name) &&
+                             link.to == std::string(to->first) + ".focus";
     if (tells_focus || !works_in(*from->second, focus) || !works_in(*to->second, focus)) continue;
     edges.push_back({i, from->second->name, to->second->name,
                      to->second->exclusive.contains(link.to.substr(to_dot + 1))});

@@ -27,7 +27,7 @@ Plan robot() {
   add("view");
   add("workspace");
   plan.modules[5].exclusive = {"command"};
-  plan.workspace = "workspace";
+  plan.workspaces = {"workspace"};
   auto link = [&](const std::string& from, const std::string& to) {
     PlannedLink& planned = plan.links.emplace_back();
     planned.from = from;

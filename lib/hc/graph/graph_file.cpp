@@ -22,57 +22,108 @@ std::vector<std::string> names_of(const Graph& graph) {
   return names;
 }
 
-/// Reads a file and those that it includes, and goes on behind what is wrong.
+/// Reads a file and those that it includes, and goes on after what is wrong.
 class GraphReader {
  public:
   GraphReader(const Environment& environment, Problems& problems, const ReadFile& read_file)
-      : fields_(environment, problems), problems_(problems), read_file_(read_file) {}
+      : fields_(problems), environment_(environment), problems_(problems), read_file_(read_file) {}
 
   Graph read(std::string_view text, int file) {
     Graph graph;
     graph.file = problems_.file(file);
-    auto root = internal::read_document(text, file, problems_);
-    if (!root) return graph;
-    fields_.check_keys(
-        *root, {"modules", "links", "restart", "groups", "modes", "workspace", "frames", "graphs"},
-        "at the top of a graph");
-    Restart restart = internal::read_restart(fields_, *root, Restart::Failure);
-    internal::read_modules(fields_, *root, restart, graph);
-    internal::read_links(fields_, *root, graph);
-    internal::read_groups(fields_, *root, graph);
-    internal::read_modes(fields_, *root, graph);
-    internal::read_workspace(fields_, *root, graph);
-    internal::read_frames(fields_, *root, graph);
-    within_.push_back(std::filesystem::path(graph.file).lexically_normal().string());
-    fields_.each(*root, "graphs",
-                 [&](const std::string& name, const Node& node) { include(graph, name, node); });
-    within_.pop_back();
-    if (within_.empty() && graph.modules.size() > kMaxModules)
-      problems_.add(graph.modules[kMaxModules].place,
-                    "a graph has at most " + std::to_string(kMaxModules) + " modules");
-    const std::size_t most = within_.empty() ? kMaxModules : kMaxModules + 1;
-    if (graph.modules.size() > most) graph.modules.resize(most);
+    auto root = internal::read_document(text, file, environment_, problems_);
+    if (!root || !check_version(*root)) return graph;
+    including_.push_back(std::filesystem::path(graph.file).lexically_normal().string());
+    Restart restart = Restart::Failure;
+    auto module = [&](const Node& node) { add_module(graph, node); };
+    auto included = [&](const Node& node) { include(graph, node); };
+    const std::size_t before = problems_.size();
+    fields_.read(*root, "at the top of the file",
+                 {{"version", [](const Node&) {}},
+                  {"restart", internal::read_restart(fields_, restart)},
+                  {"modules", fields_.each(module)},
+                  {"modes", internal::read_modes(fields_, graph)},
+                  {"workspace", internal::read_workspace(fields_, graph)},
+                  {"frames", internal::read_frames(fields_, graph)},
+                  {"graphs", [](const Node&) {}}});
+    const bool has_modules = root->find("modules") != nullptr || root->find("graphs") != nullptr;
+    if (!has_modules && problems_.size() == before)
+      fields_.add(*root, "a graph needs a table [modules.NAME] for each of its modules");
+    for (auto& each : graph.modules)  // of those that do not say it themselves
+      if (const Node* table = root->find("modules")->find(each.name); !table->find("restart"))
+        each.restart = restart;
+    if (const Node* graphs = root->find("graphs")) fields_.each(included)(*graphs);
+    including_.pop_back();
+    if (root->find("workspace") != nullptr)
+      for (auto& each : graph.modules)
+        if (each.workspace.empty()) each.workspace = graph.workspaces.front().value;
+    limit(graph);
     return graph;
   }
 
  private:
-  void include(Graph& graph, const std::string& name, const Node& node) {
-    if (!internal::is_name(name))
-      fields_.add(node, "a graph's name is snake_case, not " + quoted_name(name));
-    if (node.table() == nullptr)
-      return fields_.add(node, "a graph is a table [graphs." + name + "]");
-    fields_.check_keys(node, {"file", "parameters"}, "in graph " + name);
-    auto file = fields_.text(node, "file");
-    if (!file) return;
-    auto text = read_included(graph.file, *file);
+  bool check_version(const Node& root) {
+    const Node* version = root.find("version");
+    const auto* number = version == nullptr ? nullptr : version->as<std::int64_t>();
+    if (number != nullptr && *number == kGraphVersion) return true;
+    const std::string known = "version = " + std::to_string(kGraphVersion);
+    if (version == nullptr)
+      fields_.add(root, "a graph file begins with \"" + known + "\"");
+    else if (number != nullptr && *number > kGraphVersion)
+      fields_.add(*version, "this file has version " + std::to_string(*number) + ", and this hc " +
+                                "reads version " + std::to_string(kGraphVersion) + ": update hc");
+    else
+      fields_.add(*version, "a graph file has \"" + known + "\"");
+    return false;
+  }
+
+  void add_module(Graph& graph, const Node& node) {
+    GraphModule& module = graph.modules.emplace_back();
+    module.name = node.key;
+    module.place = node.place;
+    if (fields_.check_name(node, "module", node.key) && node.find("program") == nullptr)
+      module.program = {node.key, node.place};
+    internal::read_module(fields_, node, node.key, graph);
+  }
+
+  void limit(Graph& graph) {
+    if (including_.empty() && graph.modules.size() > kMaxModules)
+      problems_.add(graph.modules[kMaxModules].place,
+                    "a graph has at most " + std::to_string(kMaxModules) + " modules");
+    const std::size_t most = including_.empty() ? kMaxModules : kMaxModules + 1;
+    if (graph.modules.size() > most) graph.modules.resize(most);
+  }
+
+  void include(Graph& graph, const Node& node) {
+    const std::string& name = node.key;
+    Lined<std::string> file;
+    const Node* overrides = nullptr;
+    fields_.check_name(node, "graph", name);
+    fields_.read(node, "in graph " + name,
+                 {{"file", fields_.text(file), true},
+                  {"modules", [&](const Node& modules) { overrides = &modules; }}});
+    if (file.value.empty()) return;
+    auto text = read_included(graph.file, file);
     if (!text) return;
     Graph included = internal::with_prefix(
-        read(*text, problems_.add_file(path_of(graph.file, file->value))), name);
-    set_parameters(included, name, node);
+        read(*text, problems_.add_file(path_of(graph.file, file.value))), name);
+    if (overrides != nullptr)
+      fields_.each([&](const Node& module) { override_module(included, name, module); })(
+          *overrides);
     for (const auto& module : included.modules)
       if (internal::is_name(name) && !internal::is_name(module.name) && module.name.size() > 64)
         fields_.add(node, "the name " + module.name + " has more than 64 letters");
     internal::append(graph, std::move(included), problems_);
+  }
+
+  void override_module(Graph& included, const std::string& prefix, const Node& node) {
+    const std::string name = prefix + "_" + node.key;
+    if (included.find(name) != nullptr) return internal::read_module(fields_, node, name, included);
+    if (included.modules.empty() && !problems_.empty()) return;  // nothing was read
+    auto known = names_of(included);
+    for (auto& each : known) each.erase(0, prefix.size() + 1);
+    fields_.add(node, "graph " + prefix + " has no module " + quoted_name(node.key) +
+                          suggestion(node.key, known));
   }
 
   static std::string path_of(const std::string& from, const std::string& file) {
@@ -86,12 +137,12 @@ class GraphReader {
       problems_.add(file.place, what);
       return std::nullopt;
     };
-    if (std::find(within_.begin(), within_.end(), path) != within_.end())
+    if (std::find(including_.begin(), including_.end(), path) != including_.end())
       return refuse(path + " includes itself");
-    if (within_.size() > kMaxIncludedDepth)
-      return refuse("at most " + std::to_string(kMaxIncludedDepth) + " files stand in one another");
+    if (including_.size() > kMaxIncludedDepth)
+      return refuse("at most " + std::to_string(kMaxIncludedDepth) + " nested includes");
     if (++included_ > kMaxIncluded) {
-      if (included_ > kMaxIncluded + 1) return std::nullopt;  // it has been told
+      if (included_ > kMaxIncluded + 1) return std::nullopt;  // it has been reported
       return refuse("at most " + std::to_string(kMaxIncluded) + " files are included");
     }
     Result<std::string> text = Error{Code::NotFound, path + ": cannot be read"};
@@ -99,31 +150,16 @@ class GraphReader {
     if (!text) return refuse(text.error().detail);
     included_bytes_ += text->size();
     if (included_bytes_ > kMaxIncludedBytes)
-      return refuse("all that is included has at most " + std::to_string(kMaxIncludedBytes) +
-                    " bytes");
+      return refuse("all included files together have at most " +
+                    std::to_string(kMaxIncludedBytes) + " bytes");
     return std::move(*text);
   }
 
-  /// `parameters.MODULE.NAME` over what the included graph says.
-  void set_parameters(Graph& included, const std::string& prefix, const Node& node) {
-    fields_.each(node, "parameters", [&](const std::string& name, const Node& values) {
-      GraphModule* module = included.find(prefix + "_" + name);
-      if (module == nullptr) {
-        auto known = names_of(included);
-        for (auto& each : known) each.erase(0, prefix.size() + 1);
-        return fields_.add(values, "graph " + prefix + " has no module " + quoted_name(name) +
-                                       suggestion(name, known));
-      }
-      fields_.each(*node.find("parameters"), name, [&](const std::string& key, const Node& value) {
-        if (auto text = fields_.parameter(value)) module->parameters[key] = {*text, value.place};
-      });
-    });
-  }
-
   internal::Fields fields_;
+  const Environment& environment_;
   Problems& problems_;
   const ReadFile& read_file_;
-  std::vector<std::string> within_;  // the files that are being read, each in the one before
+  std::vector<std::string> including_;  // the files being read, each included by the one before
   int included_ = 0;
   std::size_t included_bytes_ = 0;
 };
@@ -146,8 +182,8 @@ void record_outputs(Graph& graph, const std::string& folder) {
   for (const auto& link : graph.links)
     if (link.from.uri.empty())
       outputs.emplace(std::pair(link.from.module, link.from.port), link.place);
-  if (graph.workspace && !graph.workspace->value.empty())
-    outputs.emplace(std::pair(graph.workspace->value, "focus"), graph.workspace->place);
+  for (const auto& workspace : graph.workspaces)
+    outputs.emplace(std::pair(workspace.value, "focus"), workspace.place);
   for (const auto& [output, place] : outputs) {
     GraphLink link;
     link.from = {output.first, output.second, ""};

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The graph file: which modules run, with which parameters, how their ports are linked, and what
-// they share (spec/graph.md). Pure, but for the environment's variables that strings name and the
-// files that are included.
+// they share (spec/graph.md). Pure, except for the environment's variables and included files.
 
 #include <array>
 #include <cstdint>
@@ -18,21 +17,21 @@
 
 namespace hc {
 
-/// A value of a graph file, and where it stands.
+/// A value of a graph file, and its place there.
 template <typename T>
 struct Lined {
   T value{};
   Place place;
 };
 
-/// When a module that has ended is started again.
+/// When a module that has ended is restarted.
 enum class Restart {
   Never,    ///< and one that has failed ends the graph
   Failure,  ///< when it ended with a status that is neither 0 nor 2
   Always,
 };
 
-/// Whom messages are for: a number, or the name of a group, of an input, or `all`.
+/// Whom messages are for: a number, or the name of an input, or `all`.
 struct Addressee {
   std::string name;         ///< empty: the number says it
   std::int64_t number = 0;  ///< an address
@@ -41,17 +40,17 @@ struct Addressee {
 /// A module of a graph.
 struct GraphModule {
   std::string name;                                      ///< snake_case
-  std::string program;                                   ///< a module's name, or a path
+  Lined<std::string> program;                            ///< a module's name, or a path
   std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
   std::map<std::string, Lined<std::int64_t>> addresses;  ///< of ports
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports
   std::map<std::string, Lined<Addressee>> to;            ///< of output ports
   Restart restart = Restart::Failure;
-  std::optional<Lined<std::string>> mode;       ///< a task's
-  std::vector<Lined<std::string>> modes;        ///< it works in; empty: all
-  std::optional<Lined<std::string>> idle_rate;  ///< [Hz] out of focus
-  std::vector<Lined<std::string>> exclusive;    ///< inputs that take the mode in focus alone
-  bool ends_graph = false;                      ///< when it has ended with status 0
+  std::optional<Lined<std::string>> mode;     ///< a task's
+  std::vector<Lined<std::string>> modes;      ///< it works in; empty: all
+  std::vector<Lined<std::string>> exclusive;  ///< inputs that take the mode in focus alone
+  std::string workspace;    ///< the module that publishes the focus for it; empty: none
+  bool ends_graph = false;  ///< when it has ended with status 0
   Place place;
 };
 
@@ -65,18 +64,11 @@ struct GraphPort {
 /// A link, from an output to an input.
 struct GraphLink {
   GraphPort from, to;
-  /// `keep`, `rate` and so on, as in a link's URI; empty: it is wrong, which has been told.
+  /// `keep`, `rate` and so on, as in a link's URI; an empty value is wrong, and has been reported.
   std::map<std::string, Lined<std::string>> policy;
-  /// Whom messages are for that go here; nothing: as computed.
+  /// Whom messages are for that pass this link; nothing: as computed.
   std::optional<Lined<std::vector<std::int64_t>>> route;
   bool routes_all = false;  ///< all of them do
-  Place place;
-};
-
-/// Inputs that have an address in common.
-struct GraphGroup {
-  std::string name;
-  std::vector<Lined<Addressee>> members;
   Place place;
 };
 
@@ -87,13 +79,13 @@ struct GraphMode {
   Place place;
 };
 
-/// A coordinate system, and where it is in its parent.
+/// A coordinate system, and its pose in its parent.
 struct GraphFrame {
   std::string name;
   Lined<std::string> parent;
   std::array<double, 3> translation{};            ///< [m]
   std::array<double, 4> rotation = {0, 0, 0, 1};  ///< unit quaternion (x, y, z, w)
-  std::optional<Lined<GraphPort>> moved_by;       ///< the output that tells where it is instead
+  std::optional<Lined<GraphPort>> moved_by;       ///< the output that sends its pose instead
   Lined<std::int64_t> coord;                      ///< its number in headers; 0: none
   Place place;
 };
@@ -102,11 +94,11 @@ struct Graph {
   std::string file;  ///< as it was given, for error lines
   std::vector<GraphModule> modules;
   std::vector<GraphLink> links;
-  std::vector<GraphGroup> groups;
   std::vector<GraphMode> modes;
   std::vector<GraphFrame> frames;
-  /// The module that says which mode is in focus; empty: it is wrong, which has been told.
-  std::optional<Lined<std::string>> workspace;
+  /// Modules that publish which mode is in focus, the graph's own first, each for the modules of
+  /// its file and of what that includes; empty: it is wrong, and has been reported.
+  std::vector<Lined<std::string>> workspaces;
 
   /// The module of that name; null where there is none.
   [[nodiscard]] GraphModule* find(std::string_view name);
@@ -131,15 +123,17 @@ inline constexpr std::size_t kMaxModules = 1000;
 /// Most files that a graph includes, each as often as it does.
 inline constexpr int kMaxIncluded = 256;
 
-/// Reads a graph file's text. `${NAME:-otherwise}` in a parameter stands for a variable of the
-/// environment. Where there are problems, the graph has what can be made out of the rest.
+/// Version of the graph file format.
+inline constexpr std::int64_t kGraphVersion = 1;
+
+/// Reads a graph file's text. `${NAME:-default}` in a string stands for a variable of the
+/// environment. Where there are problems, the graph holds what can be made of the rest.
 ///
 /// @param read_file  reads what it includes; none: nothing can be included.
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
                   const ReadFile& read_file = {});
 
-/// Has every output that a link begins at, and the workspace's focus, kept in a file of its own
-/// too: FOLDER/MODULE.PORT.mtp.
+/// Records every linked output, and the focus, in a file each: FOLDER/MODULE.PORT.mtp.
 void record_outputs(Graph& graph, const std::string& folder);
 
 /// Sets a parameter, from "MODULE.PARAMETER=VALUE".

@@ -12,10 +12,10 @@ const char* environment(const char* name) {
   return std::strcmp(name, "HOME") == 0 ? "/home/eve" : nullptr;
 }
 
-/// A graph, or else all that is wrong, a line each.
+/// A graph behind the line of its version, or else all that is wrong, a line each.
 Result<Graph> parse(std::string_view text) {
   Problems problems("g.toml");
-  Graph graph = parse_graph(text, environment, problems);
+  Graph graph = parse_graph("version = 1\n" + std::string(text), environment, problems);
   if (problems.empty()) return graph;
   std::string all;
   for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;
@@ -31,16 +31,13 @@ addresses = { left = 11 }
 encodings = { left = "jpeg" }
 
 [modules.depth]
-
-[[links]]
-from = "eyes.left"
-to = "depth.left"
+inputs.left = "eyes.left"
 )");
   ASSERT_TRUE(graph) << graph.error().detail;
   ASSERT_EQ(graph->modules.size(), 2U);
   const auto& eyes = graph->modules[0];
   EXPECT_EQ(eyes.name, "eyes");
-  EXPECT_EQ(eyes.program, "camera");
+  EXPECT_EQ(eyes.program.value, "camera");
   EXPECT_EQ(eyes.parameters.at("source").value, "/home/eve/a.jpg");
   EXPECT_EQ(eyes.parameters.at("right_source").value, "b.jpg");
   EXPECT_EQ(eyes.parameters.at("rate").value, "2.5");
@@ -48,10 +45,41 @@ to = "depth.left"
   EXPECT_EQ(eyes.parameters.at("loop").value, "true");
   EXPECT_EQ(eyes.addresses.at("left").value, 11);
   EXPECT_EQ(eyes.encodings.at("left").value, Encoding::Jpeg);
-  EXPECT_EQ(graph->modules[1].program, "depth");
+  EXPECT_EQ(graph->modules[1].program.value, "depth");
   ASSERT_EQ(graph->links.size(), 1U);
   EXPECT_EQ(graph->links[0].from.text(), "eyes.left");
   EXPECT_EQ(graph->links[0].place.line, 10);
+}
+
+TEST(GraphFile, HasAVersion) {
+  auto wrong = [](const std::string& text) {
+    Problems problems("g.toml");
+    parse_graph(text, environment, problems);
+    return problems.empty() ? "" : problems.lines().front();
+  };
+  EXPECT_EQ(wrong("version = 1\n[modules.a]\n"), "");
+  EXPECT_EQ(wrong("\n[modules.a]\n"), "g.toml:1: a graph file begins with \"version = 1\"");
+  EXPECT_EQ(wrong("\nversion = \"1\"\n"), "g.toml:2: a graph file has \"version = 1\"");
+  EXPECT_EQ(wrong("version = 2\n[modles.a]\n"),
+            "g.toml:1: this file has version 2, and this hc reads version 1: update hc");
+}
+
+TEST(GraphFile, InputsNameTheirWritersAndOutputsTheOutside) {
+  auto graph = parse(R"([modules.a]
+inputs.in = ["b.out", { from = ["c.out", "${URI:-tcp:1}"], keep = "latest", rate = "${RATE:-3}" }]
+outputs.out = { to = ["file:x", "tcp:2"], route = [3, -1] }
+outputs.other = "tcp-listen:3"
+)");
+  ASSERT_TRUE(graph) << graph.error().detail;
+  std::string text;
+  for (const auto& link : graph->links) {
+    text += link.from.text() + " " + link.to.text();
+    for (const auto& [key, value] : link.policy) text += " " + key + "=" + value.value;
+    text += link.route ? " route\n" : "\n";
+  }
+  EXPECT_EQ(text,
+            "b.out a.in\nc.out a.in keep=latest rate=3\ntcp:1 a.in keep=latest rate=3\n"
+            "a.out file:x route\na.out tcp:2 route\na.other tcp-listen:3\n");
 }
 
 TEST(GraphFile, LettersOutsideAsciiAndTildesComeThrough) {
@@ -61,13 +89,16 @@ TEST(GraphFile, LettersOutsideAsciiAndTildesComeThrough) {
 }
 
 TEST(GraphFile, AByteOrderMarkIsOverlooked) {
-  EXPECT_TRUE(parse("\xef\xbb\xbf[modules.a]\n"));
+  Problems problems("g.toml");
+  auto graph = parse_graph("\xef\xbb\xbfversion = 1\n[modules.a]\n", environment, problems);
+  EXPECT_EQ(graph.modules.size(), 1U);
+  EXPECT_TRUE(problems.empty());
 }
 
 TEST(GraphFile, TildesAreNoEscapes) {
   auto refused = parse("[modules.a]\nparameters.p = \"\\u007e41\"\n");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().detail, "g.toml:2: write ~ itself, not its \\u escape");
+  EXPECT_EQ(refused.error().detail, "g.toml:3: write ~ itself, not its \\u escape");
   EXPECT_FALSE(parse("[modules.a]\nparameters.p = \"\\U0000007E41\"\n"));
   auto graph = parse("[modules.a]\nparameters.p = \"\\\\u007e41 \\u0041\"\n");
   ASSERT_TRUE(graph) << graph.error().detail;
@@ -76,31 +107,33 @@ TEST(GraphFile, TildesAreNoEscapes) {
 
 TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
   const std::pair<const char*, const char*> cases[] = {
-      {"", "g.toml:1: a graph has a table [modules.NAME] for each module"},
+      {"", "g.toml:1: a graph needs a table [modules.NAME] for each of its modules"},
       {"[modules.a]\nprogam = \"x\"",
-       "g.toml:2: no key \"progam\" in module a, did you mean \"program\"?"},
-      {"[modules.A]\n", "g.toml:1: a module's name is snake_case, not \"A\""},
-      {"[modules]\na = 1", "g.toml:2: a module is a table [modules.a]"},
-      {"[modules.a]\nprogram = 3", "g.toml:2: \"program\" is a string"},
-      {"[modules.a]\nparameters = 3", "g.toml:2: \"parameters\" is a table"},
+       "g.toml:3: unknown key \"progam\" in module a, did you mean \"program\"?"},
+      {"[modules.A]\n", "g.toml:2: module name \"A\" is not snake_case"},
+      {"[modules]\na = 1", "g.toml:3: \"a\" must be a table"},
+      {"[modules.a]\nprogram = 3", "g.toml:3: \"program\" must be a string"},
+      {"[modules.a]\nparameters = 3", "g.toml:3: \"parameters\" must be a table"},
       {"[modules.a]\nparameters.p = [1]",
-       "g.toml:2: a parameter is a string, a number, true or false"},
+       "g.toml:3: parameter \"p\" must be a string, a number, true or false"},
       {"[modules.a]\nparameters.p = \"${NO}\"",
-       "g.toml:2: the environment has no variable NO; ${NO:-VALUE} gives a default"},
-      {"[modules.a]\nparameters.p = \"${NO\"", "g.toml:2: no } after ${"},
+       "g.toml:3: environment variable NO is not set; ${NO:-VALUE} gives a default"},
+      {"[modules.a]\nparameters.p = \"${NO\"", "g.toml:3: \"${\" without \"}\""},
       {"[modules.a]\naddresses.o = -1",
-       "g.toml:2: an address is a whole number from 0 to 2147483647"},
+       "g.toml:3: \"o\" must be a whole number from 0 to 2147483647"},
       {"[modules.a]\nencodings.o = 1",
-       "g.toml:2: an encoding is \"text\", \"binary\", \"zstd\" or \"jpeg\""},
-      {"links = 1\n[modules.a]", "g.toml:1: links are written as [[links]]"},
-      {"[modules.a]\n[[links]]\nfrom = \"a\"\nto = \"a.b\"", "g.toml:3: \"a\" is not MODULE.PORT"},
-      {"[modules.a]\n[[links]]\nfrom = \"a.b\"", "g.toml:2: \"to\" is missing"},
-      {"[modules.a]\n[[links]]\nfrom = \"a.b\"\nto = \"a.b\"\nvia = \"x\"",
-       "g.toml:5: no key \"via\" in a link"},
+       "g.toml:3: \"o\" must be \"text\", \"binary\", \"zstd\" or \"jpeg\""},
+      {"[modules.a]\ninputs = 3", "g.toml:3: \"inputs\" must be a table"},
+      {"[modules.a]\ninputs.b = 3", "g.toml:3: \"b\" must be a string"},
+      {"[modules.a]\ninputs.b = \"a\"", "g.toml:3: \"a\" is not MODULE.PORT"},
+      {"[modules.a]\ninputs.b = { keep = 3 }", "g.toml:3: \"from\" is missing in a link of a.b"},
+      {"[modules.a]\ninputs.b = { from = \"a.b\", via = 3 }",
+       "g.toml:3: unknown key \"via\" in a link of a.b"},
+      {"[modules.a]\noutputs.b = \"a.b\"", "g.toml:3: \"a.b\" is not a URI"},
       {"[module.a]\n",
-       "g.toml:1: no key \"module\" at the top of a graph, did you mean \"modules\"?"},
-      {"[modules.a\n", "g.toml:1: "},
-      {"\n\nx = \"ü", "g.toml:3: "},
+       "g.toml:2: unknown key \"module\" at the top of the file, did you mean \"modules\"?"},
+      {"[modules.a\n", "g.toml:2: "},
+      {"\n\nx = \"ü", "g.toml:4: "},
   };
   for (const auto& [text, wanted] : cases) {
     auto graph = parse(text);
@@ -139,7 +172,7 @@ TEST(GraphFile, DepthIsLimitedAndTheStackHoldsOut) {
     EXPECT_TRUE(graph.error().detail.starts_with("g.toml:")) << graph.error().detail;
   }
   EXPECT_EQ(parse("\n" + key).error().detail,
-            "g.toml:2: a key has at most 16 dots, and as many brackets may stand in one another");
+            "g.toml:3: at most 16 dots in a key, and as many nested brackets");
 }
 
 TEST(GraphFile, TheDeepestThatIsAllowedIsRead) {
@@ -148,12 +181,12 @@ TEST(GraphFile, TheDeepestThatIsAllowedIsRead) {
   text += repeated("{" + key + " = ", kMaxGraphDepth) + "1" + repeated("}", kMaxGraphDepth);
   auto graph = parse(text);
   ASSERT_FALSE(graph);
-  EXPECT_EQ(graph.error().detail, "g.toml:1: no key \"a\" in module a");
+  EXPECT_EQ(graph.error().detail, "g.toml:2: unknown key \"a\" in module a");
 }
 
 TEST(GraphFile, AnErrorIsOneLine) {
   EXPECT_EQ(parse("[modules.\"a\\nb\"]\n").error().detail,
-            "g.toml:1: a module's name is snake_case, not \"a\\x0ab\"");
+            "g.toml:2: module name \"a\\x0ab\" is not snake_case");
 }
 
 TEST(GraphFile, AGraphHasAThousandModules) {
@@ -164,7 +197,7 @@ TEST(GraphFile, AGraphHasAThousandModules) {
   };
   EXPECT_TRUE(parse(modules(kMaxModules)));
   EXPECT_EQ(parse(modules(kMaxModules + 2)).error().detail,
-            "g.toml:1001: a graph has at most 1000 modules");
+            "g.toml:1002: a graph has at most 1000 modules");
 }
 
 TEST(GraphFile, DotsAndBracketsInStringsAndCommentsAreFree) {
@@ -200,15 +233,12 @@ TEST(GraphFile, EveryLinkedOutputIsRecordedOnce) {
 [modules.w]
 [workspace]
 module = "w"
-[[links]]
+[[modules.b.inputs.in]]
 from = "a.out"
-to = "b.in"
-[[links]]
+[[modules.b.inputs.other]]
 from = "a.out"
-to = "b.other"
-[[links]]
+[[modules.b.inputs.in]]
 from = "tcp:7000"
-to = "b.in"
 )");
   ASSERT_TRUE(graph) << graph.error().detail;
   record_outputs(*graph, "kept");
@@ -226,23 +256,21 @@ program = 3
 parameters = { a = [], b = "${NO}" }
 addresses.left = -1
 encodings.left = "gif"
-[[links]]
+[[modules.Eye.inputs.in]]
 from = "eye"
 keep = "some"
 burst = 4
 )");
   ASSERT_FALSE(graph);
-  EXPECT_EQ(graph.error().detail, R"(g.toml:1: no key "speed" at the top of a graph
-g.toml:2: a module's name is snake_case, not "Eye"
-g.toml:3: "program" is a string
-g.toml:4: a parameter is a string, a number, true or false
-g.toml:4: the environment has no variable NO; ${NO:-VALUE} gives a default
-g.toml:5: an address is a whole number from 0 to 2147483647
-g.toml:6: an encoding is "text", "binary", "zstd" or "jpeg"
-g.toml:7: "to" is missing
-g.toml:8: "eye" is not MODULE.PORT
-g.toml:9: option keep is all, latest, or how many messages
-g.toml:10: )" + std::string("option burst wants rate beside it"));
+  EXPECT_EQ(graph.error().detail, R"(g.toml:2: unknown key "speed" at the top of the file
+g.toml:3: module name "Eye" is not snake_case
+g.toml:4: "program" must be a string
+g.toml:5: environment variable NO is not set; ${NO:-VALUE} gives a default
+g.toml:5: parameter "a" must be a string, a number, true or false
+g.toml:6: "left" must be a whole number from 0 to 2147483647
+g.toml:7: "left" must be "text", "binary", "zstd" or "jpeg"
+g.toml:9: "eye" is not MODULE.PORT
+g.toml:10: )" + std::string("option keep is all, latest, or how many messages"));
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ class ModulePlanner {
 
   void plan(const Description& description) {
     planned_.name = module_.name;
-    planned_.program = module_.program;
+    planned_.program = module_.program.value;
+    planned_.workspace = module_.workspace;
     planned_.options = {"--name", module_.name};
     planned_.restart = module_.restart;
     planned_.ends_graph = module_.ends_graph;
@@ -72,20 +73,19 @@ class ModulePlanner {
     }
   }
 
-  /// What a program that does not say "control" would pass over, to nobody's knowledge.
+  /// What a program that does not say "control" would ignore.
   void check_needs_no_control(const Description& description) {
     auto refuse = [&](const Place& place, const std::string& key) {
       problems_.add(place, "module " + module_.name + " cannot have \"" + key +
-                               "\": its program knows no --control");
+                               "\": its program does not support --control");
     };
     for (const auto& [port, to] : module_.to) refuse(to.place, "to");
     if (module_.mode) refuse(module_.mode->place, "mode");
     if (!module_.modes.empty()) refuse(module_.modes.front().place, "modes");
-    if (module_.idle_rate) refuse(module_.idle_rate->place, "idle_rate");
     if (!module_.exclusive.empty()) refuse(module_.exclusive.front().place, "exclusive");
     if (description.routes)
-      problems_.add(module_.place,
-                    "module " + module_.name + " routes, but its program knows no --control");
+      problems_.add(module_.place, "module " + module_.name +
+                                       " is a router, but its program does not support --control");
   }
 
   Planning& planning_;
@@ -96,16 +96,18 @@ class ModulePlanner {
 
 void plan_module(Planning& planning, const Describe& describe, const GraphModule& module) {
   planning.names.insert(module.name);
-  if (module.program.empty()) return;
-  auto text = describe(module.program);
+  const std::string& program = module.program.value;
+  if (program.empty()) return;
+  auto text = describe(program);
   if (!text)
     return planning.problems.add(module.place,
                                  "module " + module.name + ": " + text.error().detail);
   auto description = parse_description(*text);
   if (!description)
-    return planning.problems.add(module.place, "module " + module.name + ": " + module.program +
-                                                   " --describe prints no description of a module");
-  if (planning.index.contains(module.name)) return;  // it is there twice, which has been told
+    return planning.problems.add(module.place,
+                                 "module " + module.name + ": " + program +
+                                     " --describe does not print the description of a module");
+  if (planning.index.contains(module.name)) return;  // a duplicate, which has been reported
   ModulePlanner(planning, module).plan(*description);
   planning.described[module.name] = std::move(*description);
 }

@@ -36,6 +36,7 @@ struct PlannedModule {
   std::string mode;                 ///< of a task; empty: none
   std::vector<std::string> modes;   ///< it works in; empty: all
   std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
+  std::string workspace;            ///< the module that publishes its focus; empty: none
   bool ends_graph = false;          ///< when it has ended with status 0
 
   /// Program and arguments, as it is started.
@@ -56,10 +57,9 @@ struct Plan {
   std::vector<PlannedLink> links;
   std::string token;                              ///< as it was given
   std::map<std::string, std::int64_t> modes;      ///< their numbers
-  std::map<std::string, std::int64_t> groups;     ///< their addresses
   std::map<std::string, std::int64_t> sources;    ///< of outputs, "MODULE.PORT": their `src`
   std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
-  std::string workspace;                          ///< the module that says which mode is in focus
+  std::set<std::string> workspaces;               ///< modules that publish the focus
 };
 
 /// Gives what `program --describe` prints.
@@ -73,11 +73,11 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 ///
 /// Ports without an address get the least ones that are free, in the order of the file.
 ///
-/// @param before  a plan of this graph whose numbers of ports and groups stay, so that modules that
-/// have not changed are planned as they were; null: there was none.
+/// @param before  a plan of this graph whose port numbers stay, so that modules that have not
+/// changed are planned as they were; null: there was none.
 ///
-/// Problems: what spec/graph.md says under G5 … G38. Of a module without a program (empty), whose
-/// problem has been told, nothing more is said. The plan is of no use where there are problems.
+/// Problems: as spec/graph.md lists them. Nothing more is said of a module without a program
+/// (empty), whose problem has been reported. The plan is of no use where there are problems.
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
                const Plan* before = nullptr);
 

@@ -16,15 +16,12 @@ encodings = { left = "zstd" }
 [modules.a]
 program = "filter"
 [modules.sink]
-[[links]]
+[[modules.a.inputs.in]]
 from = "source.left"
-to = "a.in"
-[[links]]
+[[modules.sink.inputs.in]]
 from = "source.right"
-to = "sink.in"
-[[links]]
+[[modules.sink.inputs.in]]
 from = "a.out"
-to = "sink.in"
 )");
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(text_of(planned->modules[0].command()),
@@ -47,8 +44,7 @@ to = "sink.in"
 TEST(Plan, NamesOfLinksThatAreTooLongBecomeShort) {
   const std::string a = "a" + std::string(62, 'b');
   auto planned = plan("[modules." + a + "]\nprogram = \"source\"\n[modules." + a +
-                      "c]\nprogram = \"sink\"\n[[links]]\nfrom = \"" + a + ".right\"\nto = \"" + a +
-                      "c.in\"\n");
+                      "c]\nprogram = \"sink\"\ninputs.in = \"" + a + ".right\"\n");
   ASSERT_TRUE(planned) << planned.error().detail;
   const std::string& uri = planned->links[0].sender_uri;
   EXPECT_TRUE(uri.starts_with("unix-listen:@t.")) << uri;
@@ -58,7 +54,7 @@ TEST(Plan, NamesOfLinksThatAreTooLongBecomeShort) {
 
 TEST(Plan, LinksOfAnOutputShareItsMemory) {
   auto link = [](const std::string& to, const std::string& more = "") {
-    return "[[links]]\nfrom = \"eye.image\"\nto = \"" + to + "\"\n" + more + "\n";
+    return link_text("eye.image", to, more + "\n");
   };
   auto planned = plan(R"([modules.eye]
 [modules.a]
@@ -79,60 +75,58 @@ program = "seer"
                    "more=shm:t.eye.image.a.more?wait=60&keep=3"}));
   EXPECT_EQ(values_of(planned->modules[2], "--in"), (Words{"in=shm:t.eye.image?wait=60"}));
   EXPECT_EQ(values_of(planned->modules[3], "--in"), (Words{"in=unix:@t.eye.image.any.in?wait=60"}));
-  EXPECT_EQ(planned->links[0].sender_uri, planned->links[1].sender_uri);
-  EXPECT_EQ(planned->links[2].keep, "3");
-  EXPECT_EQ(planned->links[2].policy,
+  EXPECT_EQ(planned->links[0].sender_uri, planned->links[2].sender_uri);
+  EXPECT_EQ(planned->links[1].keep, "3");
+  EXPECT_EQ(planned->links[1].policy,
             (std::map<std::string, std::string>{{"memory", "8M"}, {"rate", "10"}}));
 }
 
 TEST(Plan, MemoryThatIsSharedIsEnough) {
   auto with_reader = [](const std::string& reader) {
-    return plan("[modules.eye]\n[modules." + reader +
-                "]\n[[links]]\nfrom = \"eye.image\"\nto = \"" + reader +
-                ".in\"\n\nmemory = \"1M\"\n");
+    return plan("[modules.eye]\n[modules." + reader + "]\n" +
+                link_text("eye.image", reader + ".in", "memory = \"1M\"\n"));
   };
   auto planned = with_reader("seer");
   ASSERT_FALSE(planned);
   EXPECT_EQ(planned.error().detail,
-            "g.toml:7: memory is at least 1576960 bytes where it is shared, not 1048576");
+            "g.toml:6: memory is at least 1576960 bytes where it is shared, not 1048576");
   EXPECT_TRUE(with_reader("any"));  // which is linked by a socket
 }
 
 TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
   auto link = [](const std::string& from, const std::string& to) {
-    return "[modules.source]\n[modules.sink]\n[modules.filter]\n[[links]]\nfrom = \"" + from +
-           "\"\nto = \"" + to + "\"\n";
+    return "[modules.source]\n[modules.sink]\n[modules.filter]\n" + link_text(from, to);
   };
   const std::pair<std::string, std::string> cases[] = {
-      {"[modules.x]\n", "g.toml:1: module x: no such program"},
+      {"[modules.x]\n", "g.toml:2: module x: no such program"},
       {"[modules.dumb]\n",
-       "g.toml:1: module dumb: dumb --describe prints no description of a module"},
+       "g.toml:2: module dumb: dumb --describe does not print the description of a module"},
       {"[modules.odd]\nparameters.rate=1",
-       "g.toml:1: module odd: odd --describe prints no description of a module"},
+       "g.toml:2: module odd: odd --describe does not print the description of a module"},
       {"[modules.source]\nparameters.rat = 3",
-       "g.toml:2: module source has no parameter \"rat\", did you mean \"rate\"?"},
+       "g.toml:3: module source has no parameter \"rat\", did you mean \"rate\"?"},
       {"[modules.source]\naddresses.lft = 3",
-       "g.toml:2: module source has no port \"lft\", did you mean \"left\"?"},
-      {"[modules.source]\nencodings.x = \"text\"", "g.toml:2: module source has no output \"x\""},
+       "g.toml:3: module source has no port \"lft\", did you mean \"left\"?"},
+      {"[modules.source]\nencodings.x = \"text\"", "g.toml:3: module source has no output \"x\""},
       {"[modules.source]\n\nencodings.left = \"jpeg\"",
-       "g.toml:3: module source: R21 left: jpeg is for images of 1 or 3 components of u8, not map "
+       "g.toml:4: module source: R21 left: jpeg is for images of 1 or 3 components of u8, not map "
        "1 x f32"},
       {"[modules.source]\naddresses = { left = 3, right = 3 }",
-       "g.toml:2: address 3 is given twice"},
+       "g.toml:3: address 3 is used twice"},
       {"[modules.source]\nparameters.rate = 10",
-       "g.toml:2: module source: parameter rate: \"10\" is not from 0 to 9"},
+       "g.toml:3: module source: parameter rate: \"10\" is not from 0 to 9"},
       {"[modules.source]\n\nparameters.mode = \"slow\"",
-       "g.toml:3: module source: parameter mode: \"slow\" is not one of fast good"},
-      {link("sorce.left", "filter.in"), "g.toml:4: no module \"sorce\", did you mean \"source\"?"},
-      {link("source.up", "filter.in"), "g.toml:4: module source has no output \"up\""},
-      {link("source.left", "filter.into"), "g.toml:4: module filter has no input \"into\""},
+       "g.toml:4: module source: parameter mode: \"slow\" is not one of fast good"},
+      {link("sorce.left", "filter.in"), "g.toml:5: no module \"sorce\", did you mean \"source\"?"},
+      {link("source.up", "filter.in"), "g.toml:5: module source has no output \"up\""},
+      {link("source.left", "filter.into"), "g.toml:5: module filter has no input \"into\""},
       {link("source.left", "sink.in"),
-       "g.toml:4: source.left gives map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 "
+       "g.toml:5: source.left sends map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 "
        "in "
        "coordinate system 8"},
-      {link("source.left", "sink.text"), "g.toml:4: source.left gives map"},
-      {link("source.left", "filter.in") + "[[links]]\nfrom = \"source.left\"\nto = \"filter.in\"\n",
-       "g.toml:7: the link from source.left to filter.in is there twice"},
+      {link("source.left", "sink.text"), "g.toml:5: source.left sends map"},
+      {link("source.left", "filter.in") + "[[modules.filter.inputs.in]]\nfrom = \"source.left\"\n",
+       "g.toml:7: duplicate link from source.left to filter.in"},
   };
   for (const auto& [text, wanted] : cases) {
     auto planned = plan(text);
@@ -142,8 +136,7 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
 }
 
 TEST(Plan, AnInputThatTakesAnythingFits) {
-  EXPECT_TRUE(
-      plan("[modules.source]\n[modules.any]\n[[links]]\nfrom=\"source.left\"\nto=\"any.in\"\n"));
+  EXPECT_TRUE(plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n"));
 }
 
 TEST(Plan, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {
@@ -152,25 +145,20 @@ parameters = { rat = 3, rate = 10 }
 addresses.lft = 1
 [modules.x]
 [modules.sink]
-[[links]]
-from = "x.out"
-to = "sink.inn"
-[[links]]
+inputs.inn = "x.out"
+inputs.in = "source.left"
+[[modules.snk.inputs.in]]
 from = "source.left"
-to = "sink.in"
-[[links]]
-from = "source.left"
-to = "snk.in"
 )");
   ASSERT_FALSE(planned);
   EXPECT_EQ(planned.error().detail,
-            R"(g.toml:2: module source has no parameter "rat", did you mean "rate"?
-g.toml:2: module source: parameter rate: "10" is not from 0 to 9
-g.toml:3: module source has no port "lft", did you mean "left"?
-g.toml:4: module x: no such program
-g.toml:6: module sink has no input "inn", did you mean "in"?
-g.toml:9: source.left gives map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 in )"
-            "coordinate system 8\ng.toml:12: no module \"snk\", did you mean \"sink\"?");
+            R"(g.toml:3: module source has no parameter "rat", did you mean "rate"?
+g.toml:3: module source: parameter rate: "10" is not from 0 to 9
+g.toml:4: module source has no port "lft", did you mean "left"?
+g.toml:5: module x: no such program
+g.toml:7: module sink has no input "inn", did you mean "in"?
+g.toml:8: source.left sends map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 in )"
+            "coordinate system 8\ng.toml:9: module snk: no such program");
 }
 
 TEST(Plan, ALoopHasARate) {
@@ -178,22 +166,21 @@ TEST(Plan, ALoopHasARate) {
     return plan(
         "[modules.source]\n[modules.a]\nprogram = \"filter\"\n[modules.b]\n"
         "program = \"filter\"\n"
-        "[[links]]\nfrom = \"source.left\"\nto = \"a.in\"\n"
-        "[[links]]\nfrom = \"a.out\"\nto = \"b.in\"\n"
-        "[[links]]\nfrom = \"b.out\"\nto = \"a.in\"\n" +
+        "[[modules.a.inputs.in]]\nfrom = \"source.left\"\n"
+        "[[modules.b.inputs.in]]\nfrom = \"a.out\"\n"
+        "[[modules.a.inputs.in]]\nfrom = \"b.out\"\n" +
         more);
   };
   auto planned = loop("");
   ASSERT_FALSE(planned);
   EXPECT_EQ(planned.error().detail,
-            "g.toml:12: a loop without a rate: a -> b -> a; give one of its links a rate, as rate "
-            "= 30");
+            "g.toml:11: loop without a rate: a -> b -> a; give one of its links a rate, for "
+            "example rate = 30");
   EXPECT_TRUE(loop("rate = 30\n"));
-  EXPECT_TRUE(loop("byte_rate = \"1M\"\n"));
-  auto to_itself = plan("[modules.filter]\n[[links]]\nfrom = \"filter.out\"\nto = \"filter.in\"\n");
+  auto to_itself = plan("[modules.filter]\ninputs.in = \"filter.out\"\n");
   ASSERT_FALSE(to_itself);
   EXPECT_TRUE(
-      to_itself.error().detail.starts_with("g.toml:2: a loop without a rate: filter -> filter;"));
+      to_itself.error().detail.starts_with("g.toml:3: loop without a rate: filter -> filter;"));
 }
 
 }  // namespace

@@ -78,7 +78,6 @@ std::string to_json(const GraphState& state) {
                {"modules", Json::array()},
                {"links", Json::array()},
                {"modes", Json(state.modes)},
-               {"groups", Json(state.groups)},
                {"addresses", Json(state.addresses)}};
   if (state.focus != 0) json["focus"] = {{"mode", state.focus_name()}, {"number", state.focus}};
   for (const auto& module : state.modules) json["modules"].push_back(json_of(module));

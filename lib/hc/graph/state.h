@@ -67,7 +67,6 @@ struct GraphState {
   std::vector<ModuleState> modules;
   std::vector<LinkState> links;
   std::map<std::string, std::int64_t> modes;      ///< their numbers
-  std::map<std::string, std::int64_t> groups;     ///< their addresses
   std::map<std::string, std::int64_t> addresses;  ///< of inputs, "MODULE.PORT"
 
   /// Name of the mode in focus, its number where it has none; empty: none.

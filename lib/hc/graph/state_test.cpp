@@ -43,7 +43,7 @@ TEST(State, IsOneLineOfJson) {
       R"("to":"view.image","transport":"shm","keep":"latest","rate":5.0,"messages":7,"bytes":0,)"
       R"("per_second":0.0,"bytes_per_second":0.0,"kept_back":0,"lost":{"superseded":3},)"
       R"("left_out":0,"age":[0.5,1.0,2.0],"gap":null,"in_workspace":false}],)"
-      R"("modes":{"read":2,"track":1},"groups":{},"addresses":{"eyes.command":21}})");
+      R"("modes":{"read":2,"track":1},"addresses":{"eyes.command":21}})");
 }
 
 TEST(State, AFocusWithoutANameIsItsNumber) {

@@ -109,7 +109,7 @@ std::string original(std::string_view text) {
   return result;
 }
 
-/// What stands for a letter outside ASCII is not what somebody has written.
+/// What replaces a letter outside ASCII is not what somebody wrote.
 std::string with_odd_character(std::string_view description) {
   constexpr std::string_view kOurs = "saw '~'";
   std::string text(description);
@@ -146,6 +146,63 @@ Node convert(const toml::node& from, int file) {
   return node;
 }
 
+/// Replaces `${NAME}` and `${NAME:-DEFAULT}` in a string.
+class Expansion {
+ public:
+  Expansion(const Environment& environment, Problems& problems)
+      : environment_(environment), problems_(problems) {}
+
+  void expand_all(Node& node) const {
+    if (const auto* text = node.as<std::string>()) {
+      if (auto expanded = expand(node.place, *text))
+        node.value = std::move(*expanded);
+      else
+        node.value = Node::Wrong();
+    }
+    for (Node& each : node.nodes) expand_all(each);
+    if (node.list() != nullptr)
+      std::erase_if(node.nodes, [](const Node& each) { return each.as<Node::Wrong>() != nullptr; });
+  }
+
+ private:
+  std::optional<std::string> expand(const Place& place, std::string_view text) const {
+    std::string result;
+    bool is_right = true;
+    while (true) {
+      auto begin = text.find("${");
+      result += text.substr(0, begin);
+      if (begin == std::string_view::npos) return is_right ? std::optional(result) : std::nullopt;
+      auto end = text.find('}', begin);
+      auto value = end == std::string_view::npos
+                       ? Result<std::string>(Error{Code::Invalid, "\"${\" without \"}\""})
+                       : value_of(std::string(text.substr(begin + 2, end - begin - 2)));
+      if (!value) problems_.add(place, value.error().detail);
+      is_right = is_right && value;
+      if (end == std::string_view::npos) return std::nullopt;
+      if (value) result += *value;
+      text.remove_prefix(end + 1);
+    }
+  }
+
+  /// @param variable  NAME or NAME:-DEFAULT.
+  [[nodiscard]] Result<std::string> value_of(std::string variable) const {
+    std::optional<std::string> default_value;
+    if (auto split = variable.find(":-"); split != std::string::npos) {
+      default_value = variable.substr(split + 2);
+      variable.resize(split);
+    }
+    if (variable.empty()) return Error{Code::Invalid, "no name of a variable in ${}"};
+    const char* value = environment_ ? environment_(variable.c_str()) : nullptr;
+    if (value == nullptr && !default_value)
+      return Error{Code::Invalid, "environment variable " + variable + " is not set; ${" +
+                                      variable + ":-VALUE} gives a default"};
+    return value != nullptr && *value != '\0' ? value : default_value.value_or("");
+  }
+
+  const Environment& environment_;
+  Problems& problems_;
+};
+
 }  // namespace
 
 const Node* Node::find(std::string_view name) const {
@@ -155,7 +212,8 @@ const Node* Node::find(std::string_view name) const {
   return found == nodes.end() ? nullptr : &*found;
 }
 
-std::optional<Node> read_document(std::string_view text, int file, Problems& problems) {
+std::optional<Node> read_document(std::string_view text, int file, const Environment& environment,
+                                  Problems& problems) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   auto refuse_at = [&](std::size_t at, const std::string& what) {
@@ -163,16 +221,19 @@ std::optional<Node> read_document(std::string_view text, int file, Problems& pro
     problems.add({static_cast<int>(lines) + 1, file}, what);
     return std::nullopt;
   };
-  if (text.size() > kMaxGraphBytes) return refuse_at(0, "a graph file has at most 1048576 bytes");
+  if (text.size() > kMaxGraphBytes)
+    return refuse_at(0, "a graph file has at most " + std::to_string(kMaxGraphBytes) + " bytes");
   if (auto odd = find_no_utf8(text); odd != std::string_view::npos)
-    return refuse_at(odd, "a graph file is UTF-8, which this line is not");
+    return refuse_at(odd, "this line is not UTF-8");
   if (auto escape = find_escaped_tilde(text); escape != std::string_view::npos)
     return refuse_at(escape, "write ~ itself, not its \\u escape");
   if (auto deep = find_too_deep(text); deep != std::string_view::npos)
-    return refuse_at(deep, "a key has at most " + std::to_string(kMaxGraphDepth) +
-                               " dots, and as many brackets may stand in one another");
+    return refuse_at(deep, "at most " + std::to_string(kMaxGraphDepth) +
+                               " dots in a key, and as many nested brackets");
   try {
-    return convert(toml::parse(ascii_only(text), problems.file(file)), file);
+    auto root = convert(toml::parse(ascii_only(text), problems.file(file)), file);
+    Expansion(environment, problems).expand_all(root);
+    return root;
   } catch (const toml::parse_error& error) {
     problems.add({std::max(static_cast<int>(error.source().begin.line), 1), file},
                  original(with_odd_character(error.description())));

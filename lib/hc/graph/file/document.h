@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A TOML text as a tree of values, each with its place. Any text is read or refused: what the
-// library for TOML cannot bear is kept from it. Pure. Internal to graph.
+// A TOML text as a tree of values, each with its place. Any text is read or refused: what the TOML
+// library cannot handle never reaches it. Pure. Internal to graph.
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include <hc/graph/problems.h>
+#include <hc/graph/graph_file.h>
 
 namespace hc::internal {
 
@@ -18,9 +18,10 @@ namespace hc::internal {
 struct Node {
   struct List {};   ///< its values are in `nodes`
   struct Table {};  ///< the same, each with its key, in the order of the text
+  struct Wrong {};  ///< its problem has been added
 
   /// Dates and times, which no graph has, are monostate.
-  std::variant<std::monostate, std::string, std::int64_t, double, bool, List, Table> value;
+  std::variant<std::monostate, std::string, std::int64_t, double, bool, List, Table, Wrong> value;
   std::vector<Node> nodes;
   std::string key;  ///< in its table
   Place place;
@@ -37,10 +38,11 @@ struct Node {
   [[nodiscard]] const Node* find(std::string_view name) const;
 };
 
-/// Reads a text.
+/// Reads a text, and replaces the variables of the environment in its strings.
 ///
 /// @param file  its number in `problems`.
-/// @returns  its table; nothing where it is no TOML, too long or too deep, which has been told.
-std::optional<Node> read_document(std::string_view text, int file, Problems& problems);
+/// @returns  its table; nothing where it is not TOML, too long or too deep.
+std::optional<Node> read_document(std::string_view text, int file, const Environment& environment,
+                                  Problems& problems);
 
 }  // namespace hc::internal

@@ -22,81 +22,140 @@ std::string quoted_name(std::string_view name) {
   return "\"" + std::string(name) + "\"";
 }
 
-void Fields::check_keys(const Node& table, const std::vector<std::string>& known,
-                        const std::string& where) const {
-  for (const Node& node : *table.table())
-    if (std::find(known.begin(), known.end(), node.key) == known.end())
-      add(node, "no key " + quoted_name(node.key) + " " + where + suggestion(node.key, known));
-}
-
-bool Fields::misspells(const Node& table, std::string_view key) {
-  return std::any_of(table.nodes.begin(), table.nodes.end(), [&](const Node& node) {
-    return !suggestion(node.key, {std::string(key)}).empty();
-  });
-}
-
-void Fields::each(const Node& parent, std::string_view key,
-                  const std::function<void(const std::string&, const Node&)>& take) const {
-  const Node* node = parent.find(key);
-  if (node == nullptr) return;
-  const auto* table = node->table();
-  if (table == nullptr) return add(*node, quoted_name(key) + " is a table");
-  for (const Node& value : *table) take(value.key, value);
-}
-
-std::optional<Lined<std::string>> Fields::text_if_there(const Node& parent,
-                                                        std::string_view key) const {
-  return parent.find(key) == nullptr ? std::nullopt : text(parent, key);
-}
-
-std::optional<Lined<std::string>> Fields::text(const Node& parent, std::string_view key) const {
-  const Node* node = parent.find(key);
-  if (node == nullptr) {
-    if (!misspells(parent, key)) add(parent, quoted_name(key) + " is missing");
-    return std::nullopt;
+Result<GraphPort> parse_port(const std::string& text, bool may_be_uri) {
+  if (may_be_uri && text.find(':') != std::string::npos) {
+    if (auto uri = parse_uri(text); !uri) return uri.error();
+    return GraphPort{{}, {}, text};
   }
-  if (const auto* text = node->as<std::string>()) return Lined<std::string>{*text, node->place};
-  add(*node, quoted_name(key) + " is a string");
-  return std::nullopt;
+  auto dot = text.find('.');
+  if (dot != std::string::npos && is_name(text.substr(0, dot)) && is_name(text.substr(dot + 1)))
+    return GraphPort{text.substr(0, dot), text.substr(dot + 1), {}};
+  return Error{Code::Invalid, quoted_name(text) + " is not MODULE.PORT"};
 }
 
-std::vector<Lined<std::string>> Fields::texts(const Node& parent, std::string_view key) const {
-  const Node* node = parent.find(key);
-  if (node == nullptr) return {};
-  std::vector<Lined<std::string>> all;
-  auto take = [&](const Node& each) {
-    if (const auto* text = each.as<std::string>())
-      all.push_back({*text, each.place});
-    else
-      add(each, quoted_name(key) + " is a list of strings");
+void Fields::read(const Node& table, const std::string& where, const std::vector<Key>& keys) const {
+  if (table.table() == nullptr) return add(table, quoted_name(table.key) + " must be a table");
+  std::vector<std::string> known;
+  for (const Key& key : keys) known.emplace_back(key.name);
+  std::string misspelled;
+  for (const Node& value : table.nodes) {
+    auto key = std::find(known.begin(), known.end(), value.key);
+    if (key == known.end()) {
+      const std::string hint = suggestion(value.key, known);
+      misspelled += hint;
+      add(value, "unknown key " + quoted_name(value.key) + " " + where + hint);
+    } else if (value.as<Node::Wrong>() == nullptr) {
+      keys[static_cast<std::size_t>(key - known.begin())].take(value);
+    }
+  }
+  for (const Key& key : keys)
+    if (key.is_required && table.find(key.name) == nullptr &&
+        misspelled.find(quoted_name(key.name)) == std::string::npos)
+      add(table, quoted_name(key.name) + " is missing " + where);
+}
+
+bool Fields::check_name(const Node& node, const std::string& what, std::string_view name) const {
+  if (is_name(name)) return true;
+  add(node, what + " name " + quoted_name(name) + " is not snake_case");
+  return false;
+}
+
+Fields::Take Fields::text(Lined<std::string>& to) const {
+  return [this, &to](const Node& value) {
+    const auto* text = value.as<std::string>();
+    if (text == nullptr) return add(value, quoted_name(value.key) + " must be a string");
+    if (text->empty()) add(value, quoted_name(value.key) + " is empty");
+    to = {*text, value.place};
   };
-  if (const auto* list = node->list())
-    std::for_each(list->begin(), list->end(), take);
-  else
-    take(*node);
-  return all;
 }
 
-std::optional<std::vector<double>> Fields::numbers(const Node& parent, std::string_view key,
-                                                   std::size_t count) const {
-  const Node* node = parent.find(key);
-  if (node == nullptr) return std::nullopt;
-  std::vector<double> all;
-  if (const auto* list = node->list()) {
-    for (const Node& each : *list) {
+Fields::Take Fields::text(std::optional<Lined<std::string>>& to) const {
+  return [this, &to](const Node& value) {
+    Lined<std::string> read;
+    text(read)(value);
+    if (read.place.line != 0) to = read;
+  };
+}
+
+Fields::Take Fields::texts(std::vector<Lined<std::string>>& to) const {
+  return [this, &to](const Node& value) {
+    to.clear();
+    one_or_more([&](const Node& each) {
+      if (const auto* text = each.as<std::string>())
+        to.push_back({*text, each.place});
+      else
+        add(each, quoted_name(value.key) + " must be a list of strings");
+    })(value);
+  };
+}
+
+Fields::Take Fields::integer(Lined<std::int64_t>& to, std::int64_t min, std::int64_t max) const {
+  return [this, &to, min, max](const Node& value) {
+    const auto* number = value.as<std::int64_t>();
+    if (number == nullptr || *number < min || *number > max)
+      return add(value, quoted_name(value.key) + " must be a whole number from " +
+                            std::to_string(min) + " to " + std::to_string(max));
+    to = {*number, value.place};
+  };
+}
+
+Fields::Take Fields::flag(bool& to) const {
+  return [this, &to](const Node& value) {
+    if (const auto* flag = value.as<bool>())
+      to = *flag;
+    else
+      add(value, quoted_name(value.key) + " must be true or false");
+  };
+}
+
+Fields::Take Fields::numbers(std::optional<std::vector<double>>& to, std::size_t count) const {
+  return [this, &to, count](const Node& value) {
+    std::vector<double> all;
+    for (const Node& each : value.nodes) {
       if (const auto* number = each.as<double>()) all.push_back(*number);
       if (const auto* number = each.as<std::int64_t>()) all.push_back(static_cast<double>(*number));
     }
-    bool is_right = all.size() == count && list->size() == count &&
+    bool is_right = value.list() != nullptr && all.size() == count && value.nodes.size() == count &&
                     std::all_of(all.begin(), all.end(), [](double x) { return std::isfinite(x); });
-    if (is_right) return all;
-  }
-  add(*node, quoted_name(key) + " is a list of " + std::to_string(count) + " numbers");
-  return std::nullopt;
+    if (is_right)
+      to = std::move(all);
+    else
+      add(value,
+          quoted_name(value.key) + " must be a list of " + std::to_string(count) + " numbers");
+  };
 }
 
-std::optional<std::string> Fields::parameter(const Node& node) const {
-  if (const auto* text = node.as<std::string>()) return expand(node, *text);
+Fields::Take Fields::choice(std::vector<std::string> words,
+                            std::function<void(const Node&, std::size_t)> take) const {
+  return [this, words = std::move(words), take = std::move(take)](const Node& value) {
+    const auto* text = value.as<std::string>();
+    auto found = std::find(words.begin(), words.end(), text == nullptr ? "" : *text);
+    if (found != words.end()) return take(value, static_cast<std::size_t>(found - words.begin()));
+    std::string all;
+    for (std::size_t i = 0; i < words.size(); ++i)
+      all += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + quoted_name(words[i]);
+    add(value, quoted_name(value.key) + " must be " + all +
+                   (text == nullptr ? "" : suggestion(*text, words)));
+  };
+}
+
+Fields::Take Fields::each(Take take) const {
+  return [this, take = std::move(take)](const Node& table) {
+    if (table.table() == nullptr) return add(table, quoted_name(table.key) + " must be a table");
+    for (const Node& value : table.nodes)
+      if (value.as<Node::Wrong>() == nullptr) take(value);
+  };
+}
+
+Fields::Take Fields::one_or_more(Take take) {
+  return [take = std::move(take)](const Node& value) {
+    if (value.list() == nullptr) return take(value);
+    for (const Node& each : value.nodes) take(each);
+  };
+}
+
+std::optional<std::string> Fields::scalar(const Node& node) {
+  if (const auto* text = node.as<std::string>()) return *text;
   if (const auto* flag = node.as<bool>()) return std::string(*flag ? "true" : "false");
   if (const auto* number = node.as<std::int64_t>()) return std::to_string(*number);
   if (const auto* number = node.as<double>()) {
@@ -105,70 +164,7 @@ std::optional<std::string> Fields::parameter(const Node& node) const {
     text << *number;
     return text.str();
   }
-  add(node, "a parameter is a string, a number, true or false");
   return std::nullopt;
-}
-
-std::optional<Addressee> Fields::addressee(const Node& node, std::string_view what) const {
-  constexpr std::int64_t kMost = 2147483647;
-  const auto* number = node.as<std::int64_t>();
-  if (number != nullptr && *number != 0 && *number >= -kMost && *number <= kMost)
-    return Addressee{{}, *number};
-  const auto* text = node.as<std::string>();
-  if (text != nullptr && !text->empty()) return Addressee{*text, 0};
-  add(node,
-      std::string(what) + " is an address from -2147483647 to 2147483647 without 0, or a name");
-  return std::nullopt;
-}
-
-std::optional<GraphPort> Fields::port(const Node& node, const std::string& text,
-                                      bool may_be_uri) const {
-  if (may_be_uri && text.find(':') != std::string::npos) {
-    if (auto uri = parse_uri(text); !uri) {
-      add(node, uri.error().detail);
-      return std::nullopt;
-    }
-    return GraphPort{{}, {}, text};
-  }
-  auto dot = text.find('.');
-  if (dot != std::string::npos && is_name(text.substr(0, dot)) && is_name(text.substr(dot + 1)))
-    return GraphPort{text.substr(0, dot), text.substr(dot + 1), {}};
-  add(node, quoted_name(text) + " is not MODULE.PORT");
-  return std::nullopt;
-}
-
-/// Puts variables of the environment in.
-std::optional<std::string> Fields::expand(const Node& node, std::string_view text) const {
-  std::string result;
-  bool is_right = true;
-  auto refuse = [&](std::string what) {
-    add(node, std::move(what));
-    is_right = false;
-  };
-  while (true) {
-    auto begin = text.find("${");
-    result += text.substr(0, begin);
-    if (begin == std::string_view::npos) return is_right ? std::optional(result) : std::nullopt;
-    auto end = text.find('}', begin);
-    if (end == std::string_view::npos) {
-      add(node, "no } after ${");
-      return std::nullopt;
-    }
-    std::string variable{text.substr(begin + 2, end - begin - 2)};
-    text.remove_prefix(end + 1);
-    std::optional<std::string> default_value;
-    if (auto split = variable.find(":-"); split != std::string::npos) {
-      default_value = variable.substr(split + 2);
-      variable.resize(split);
-    }
-    const char* value = environment_(variable.c_str());
-    if (variable.empty())
-      refuse("no name in ${}, which stands for a variable of the environment");
-    else if (value == nullptr && !default_value)
-      refuse("the environment has no variable " + variable + "; ${" + variable +
-             ":-VALUE} gives a default");
-    result += value != nullptr && *value != '\0' ? value : default_value.value_or("");
-  }
 }
 
 }  // namespace hc::internal

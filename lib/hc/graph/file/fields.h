@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Takes the values of a graph file out of a document, and tells what is wrong with each. Internal
-// to graph.
+// Reads the tables of a document: a table's reader is a list of its keys, each with what takes its
+// value. Internal to graph.
 
 #include <cstdint>
 #include <functional>
@@ -11,59 +11,60 @@
 #include <vector>
 
 #include <hc/graph/file/document.h>
-#include <hc/graph/graph_file.h>
 
 namespace hc::internal {
 
 /// Whether a text is snake_case: a small letter, then small letters, digits and _, 64 at most.
 bool is_name(std::string_view text);
 
-/// `"NAME"`, for what is told.
+/// `"NAME"`
 std::string quoted_name(std::string_view name);
 
-/// What the readers of all tables have in common.
+/// MODULE.PORT, or a URI where it may be one. Errors: Invalid.
+Result<GraphPort> parse_port(const std::string& text, bool may_be_uri);
+
 class Fields {
  public:
-  Fields(const Environment& environment, Problems& problems)
-      : environment_(environment), problems_(problems) {}
+  using Take = std::function<void(const Node& value)>;
+  struct Key {
+    std::string_view name;
+    Take take;
+    bool is_required = false;
+  };
+
+  explicit Fields(Problems& problems) : problems_(problems) {}
 
   void add(const Node& node, std::string what) const { problems_.add(node.place, std::move(what)); }
 
-  /// Refuses keys that are not among `known`. @param where  such as "in a link".
-  void check_keys(const Node& table, const std::vector<std::string>& known,
-                  const std::string& where) const;
+  /// Hands the values of a table to their keys. Problems: it is no table, has another key, or lacks
+  /// one that is required.
+  ///
+  /// @param where  for messages: "in module camera".
+  void read(const Node& table, const std::string& where, const std::vector<Key>& keys) const;
 
-  /// Whether a table has a key that nearly is that one, which check_keys() has told.
-  static bool misspells(const Node& table, std::string_view key);
+  /// Problems: a name that is not snake_case. @param what  "module".
+  bool check_name(const Node& node, const std::string& what, std::string_view name) const;
 
-  /// Calls `take` with each entry of the table of that key, which may be missing.
-  void each(const Node& parent, std::string_view key,
-            const std::function<void(const std::string& name, const Node& value)>& take) const;
+  // What takes a value of that type; of another type it is a problem.
+  [[nodiscard]] Take text(Lined<std::string>& to) const;
+  [[nodiscard]] Take text(std::optional<Lined<std::string>>& to) const;
+  [[nodiscard]] Take texts(std::vector<Lined<std::string>>& to) const;
+  [[nodiscard]] Take integer(Lined<std::int64_t>& to, std::int64_t min, std::int64_t max) const;
+  [[nodiscard]] Take flag(bool& to) const;
+  /// So many numbers.
+  [[nodiscard]] Take numbers(std::optional<std::vector<double>>& to, std::size_t count) const;
+  /// One of some words, by its place among them.
+  [[nodiscard]] Take choice(std::vector<std::string> words,
+                            std::function<void(const Node&, std::size_t)> take) const;
+  /// A table with names of one's own.
+  [[nodiscard]] Take each(Take take) const;
+  /// One value, or a list of them.
+  [[nodiscard]] static Take one_or_more(Take take);
 
-  /// A string; nothing where it is missing, or of another type, which is told.
-  std::optional<Lined<std::string>> text(const Node& parent, std::string_view key) const;
-  std::optional<Lined<std::string>> text_if_there(const Node& parent, std::string_view key) const;
-
-  /// A list of strings, or one; those of another type are told.
-  std::vector<Lined<std::string>> texts(const Node& parent, std::string_view key) const;
-
-  /// So many numbers; nothing where they are missing, or something else, which is told.
-  std::optional<std::vector<double>> numbers(const Node& parent, std::string_view key,
-                                             std::size_t count) const;
-
-  /// A parameter as text, with variables of the environment put in.
-  std::optional<std::string> parameter(const Node& node) const;
-
-  /// Whom messages are for. Errors are told with the key's name.
-  std::optional<Addressee> addressee(const Node& node, std::string_view what) const;
-
-  /// MODULE.PORT, or a URI where it may be one.
-  std::optional<GraphPort> port(const Node& node, const std::string& text, bool may_be_uri) const;
+  /// A string, number or boolean as text; nothing where it is something else.
+  static std::optional<std::string> scalar(const Node& node);
 
  private:
-  std::optional<std::string> expand(const Node& node, std::string_view text) const;
-
-  const Environment& environment_;
   Problems& problems_;
 };
 

@@ -14,11 +14,8 @@ parameters.rate = 1
 program = "task"
 mode = "track"
 to.command = "follow.image"
-to.bid = "eyes"
 [modes]
 track = 1
-[groups]
-eyes = ["follow.image"]
 [frames.lens]
 parent = "mount"
 [frames.chip]
@@ -30,7 +27,7 @@ TEST(Inclusion, NamesGetThatOfTheGraphBeforeThem) {
   auto planned = plan(R"([modules.sink]
 [graphs.left]
 file = "parts/eye.toml"
-parameters.camera.rate = 5
+modules.camera.parameters.rate = 5
 [graphs.right]
 file = "parts/eye.toml"
 )" + link_text("left_camera.right", "sink.in"),
@@ -46,34 +43,96 @@ file = "parts/eye.toml"
   ASSERT_EQ(planned->links.size(), 3U);
   EXPECT_EQ(planned->links[1].from, "left_camera.left");
   EXPECT_EQ(planned->links[2].to, "right_follow.image");
-  EXPECT_EQ(planned->groups,
-            (std::map<std::string, std::int64_t>{{"left_eyes", -2}, {"right_eyes", -3}}));
   EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"track", 1}}));
-  EXPECT_EQ(values_of(planned->modules[4], "--to").front(), "bid=-3");
+  EXPECT_EQ(values_of(planned->modules[4], "--to").front(), "command=10");
+}
+
+TEST(Inclusion, WhatIsIncludedIsOverridden) {
+  auto planned = plan(R"([modules.out]
+program = "filter"
+inputs.in = "tcp:1"
+[graphs.left]
+file = "${NO_SUCH_FILE:-parts/eye.toml}"
+modules.camera.program = "task"
+[graphs.left.modules.follow]
+inputs.image = [{ from = "out.out", keep = 5 }, "left_camera.bid"]
+outputs.bid = "tcp:2"
+)",
+                      {{"parts/eye.toml", R"([modules.camera]
+program = "source"
+[modules.follow]
+program = "task"
+inputs.image = "camera.left"
+)"}});
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->modules[1].program, "task");
+  std::string links;
+  for (const auto& link : planned->links)
+    links += link.from + " " + link.to + " " + link.keep + "\n";
+  EXPECT_EQ(links,
+            "tcp:1 out.in all\nout.out left_follow.image 5\n"
+            "left_camera.bid left_follow.image all\nleft_follow.bid tcp:2 all\n");
+}
+
+TEST(Inclusion, EachHasAWorkspaceOfItsOwn) {
+  const std::string head = R"([modules.judge]
+program = "workspace"
+[modules.neck]
+program = "actor"
+exclusive = ["command"]
+[modules.track]
+program = "task"
+mode = "track"
+modes = ["track"]
+[modes]
+track = 1
+[workspace]
+module = "judge"
+)";
+  auto planned = plan(R"([modules.neck]
+program = "actor"
+exclusive = ["command"]
+[modules.judge]
+program = "workspace"
+[workspace]
+module = "judge"
+[graphs.a]
+file = "head.toml"
+[graphs.b]
+file = "head.toml"
+)",
+                      {{"head.toml", head}});
+  ASSERT_TRUE(planned) << planned.error().detail;
+  std::string links;
+  for (const auto& link : planned->links) links += link.from + " " + link.to + "\n";
+  EXPECT_EQ(links,
+            "judge.focus neck.focus\na_judge.focus a_neck.focus\na_judge.focus a_track.focus\n"
+            "b_judge.focus b_neck.focus\nb_judge.focus b_track.focus\n");
+  EXPECT_EQ(planned->workspaces, (std::set<std::string>{"a_judge", "b_judge", "judge"}));
 }
 
 TEST(Inclusion, ErrorsNameTheFileAndTheLineInIt) {
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\n",
                   {{"b.toml", "[modules.source]\nparameters.rat = 3\nx = 1\n"}}),
-            "b.toml:2: module a_source has no parameter \"rat\", did you mean \"rate\"?\n"
-            "b.toml:3: no key \"x\" in module source");
+            "b.toml:3: module a_source has no parameter \"rat\", did you mean \"rate\"?\n"
+            "b.toml:4: unknown key \"x\" in module source");
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\n", {{"b.toml", "\nx = \n"}}).substr(0, 9),
-            "b.toml:2:");
-  EXPECT_EQ(wrong("[graphs.a]\nfile = \"none.toml\"\n"), "g.toml:2: none.toml: cannot be read");
-  EXPECT_EQ(wrong("[graphs.a]\n"), "g.toml:1: \"file\" is missing");
-  EXPECT_EQ(wrong("[graphs.a]\nfile = \"./x/../g.toml\"\n"), "g.toml:2: g.toml includes itself");
+            "b.toml:3:");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"none.toml\"\n"), "g.toml:3: none.toml: cannot be read");
+  EXPECT_EQ(wrong("[graphs.a]\n"), "g.toml:2: \"file\" is missing in graph a");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"./x/../g.toml\"\n"), "g.toml:3: g.toml includes itself");
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"b/b.toml\"\n",
                   {{"b/b.toml", "[modules.source]\n[graphs.c]\nfile = \"b.toml\"\n"}}),
-            "b/b.toml:3: b/b.toml includes itself");
-  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\nparameters.sourc.rate = 3\n",
+            "b/b.toml:4: b/b.toml includes itself");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\nmodules.sourc.parameters.rate = 3\n",
                   {{"b.toml", "[modules.source]\n"}}),
-            "g.toml:3: graph a has no module \"sourc\", did you mean \"source\"?");
-  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\nparameters.source.rat = 3\n",
+            "g.toml:4: graph a has no module \"sourc\", did you mean \"source\"?");
+  EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\nmodules.source.parameters.rat = 3\n",
                   {{"b.toml", "[modules.source]\n"}}),
-            "g.toml:3: module a_source has no parameter \"rat\", did you mean \"rate\"?");
+            "g.toml:4: module a_source has no parameter \"rat\", did you mean \"rate\"?");
   EXPECT_EQ(wrong("[modules.a_source]\nprogram = \"source\"\n[graphs.a]\nfile = \"b.toml\"\n",
                   {{"b.toml", "[modules.source]\n"}}),
-            "b.toml:1: module \"a_source\" is there twice");
+            "b.toml:2: duplicate module \"a_source\"");
 }
 
 TEST(Inclusion, IsBounded) {
@@ -82,7 +141,7 @@ TEST(Inclusion, IsBounded) {
   std::string more;
   for (int i = 0; i < 20; ++i) more += "[graphs.h" + std::to_string(i) + "]\nfile = \"c.toml\"\n";
   EXPECT_NE(wrong(many, {{"b.toml", more}, {"c.toml", "[modules.source]\n"}})
-                .find("b.toml:8: at most 256 files are included"),
+                .find("b.toml:9: at most 256 files are included"),
             std::string::npos);
 }
 
@@ -104,17 +163,16 @@ TEST(Outside, ErrorsNameTheLineAndWhatWouldBeRight) {
   auto with = [](const std::string& from, const std::string& to, const std::string& more = "") {
     return wrong("[modules.filter]\n" + link_text(from, to, more));
   };
-  EXPECT_EQ(with("tcp:1", "tcp:2"), "g.toml:2: a link has a module at one of its ends");
   EXPECT_EQ(with("tpc:1", "filter.in"),
-            "g.toml:2: module filter has no links of the kind \"tpc\", did you mean \"tcp\"?");
-  EXPECT_EQ(with("shm:x", "filter.in"), "g.toml:2: module filter has no links of the kind \"shm\"");
-  EXPECT_EQ(with("tcp:1?a", "filter.in").substr(0, 9), "g.toml:3:");
+            "g.toml:3: module filter does not support tpc: links, did you mean \"tcp\"?");
+  EXPECT_EQ(with("shm:x", "filter.in"), "g.toml:3: module filter does not support shm: links");
+  EXPECT_EQ(with("tcp:1?a", "filter.in").substr(0, 9), "g.toml:4:");
   EXPECT_EQ(with("tcp:1", "filter.in", "rate = 3\n"),
-            "g.toml:5: a link from outside has no rate: that is its sender's");
+            "g.toml:5: a link from outside cannot have rate: its sender sets it");
   EXPECT_EQ(with("filter.out", "tcp:1?rate=2", "rate = 3\n"),
-            "g.toml:5: tcp:1?rate=2 has rate too");
+            "g.toml:5: rate is also given in tcp:1?rate=2");
   EXPECT_EQ(with("tcp-listen:1", "filter.in", link_text("filter.out", "tcp-listen:1")),
-            "g.toml:5: tcp-listen:1 is there twice, and two cannot listen there");
+            "g.toml:5: another link listens at tcp-listen:1 too");
 }
 
 }  // namespace

@@ -1,45 +1,91 @@
 // SPDX-License-Identifier: Apache-2.0
-// What modules share: the tables [groups], [modes] and [workspace].
+// What modules share: the tables [modes], [workspace] and [frames.NAME].
+#include <cmath>
+#include <numbers>
+
 #include <hc/graph/file/tables.h>
 
 namespace hc::internal {
+namespace {
 
-void read_groups(const Fields& fields, const Node& root, Graph& graph) {
-  fields.each(root, "groups", [&](const std::string& name, const Node& node) {
-    GraphGroup group{name, {}, node.place};
-    if (!is_name(name) || name == "all")
-      fields.add(node, "a group's name is snake_case and not \"all\", not " + quoted_name(name));
-    const auto* list = node.list();
-    if (list == nullptr)
-      fields.add(node, "a group is a list of inputs, as \"MODULE.PORT\", and addresses");
+using Angles = std::vector<double>;
+
+/// A rotation by roll, pitch and yaw [deg] as a unit quaternion (x, y, z, w), about fixed axes,
+/// roll about x first, so that R = Rz(yaw) Ry(pitch) Rx(roll).
+std::array<double, 4> quaternion_of(const Angles& degrees) {
+  auto half = [&](std::size_t axis) { return degrees[axis] * std::numbers::pi / 360; };
+  const double cx = std::cos(half(0)), sx = std::sin(half(0));
+  const double cy = std::cos(half(1)), sy = std::sin(half(1));
+  const double cz = std::cos(half(2)), sz = std::sin(half(2));
+  return {cz * cy * sx - sz * sy * cx, cz * sy * cx + sz * cy * sx, sz * cy * cx - cz * sy * sx,
+          cz * cy * cx + sz * sy * sx};
+}
+
+void read_quaternion(const Fields& fields, const Node& node, const Angles& parts,
+                     GraphFrame& frame) {
+  constexpr double kTolerance = 1e-3;  // of its length
+  const double length = std::hypot(std::hypot(parts[0], parts[1]), std::hypot(parts[2], parts[3]));
+  if (std::abs(length - 1) > kTolerance)
+    return fields.add(node, "\"quaternion\" must have length 1");
+  for (std::size_t i = 0; i < 4; ++i) frame.rotation[i] = parts[i] / length;
+}
+
+void read_frame(const Fields& fields, const Node& node, Graph& graph) {
+  GraphFrame frame;
+  frame.name = node.key;
+  frame.place = node.place;
+  fields.check_name(node, "frame", node.key);
+  std::optional<Angles> translation, angles, quaternion;
+  std::optional<Lined<std::string>> mover;
+  fields.read(node, "in frame " + node.key,
+              {{"parent", fields.text(frame.parent), true},
+               {"translation", fields.numbers(translation, 3)},
+               {"rotation", fields.numbers(angles, 3)},
+               {"quaternion", fields.numbers(quaternion, 4)},
+               {"moved_by", fields.text(mover)},
+               {"coord", fields.integer(frame.coord, 1, 999)}});
+  if (node.table() == nullptr) return;
+  if (!frame.parent.value.empty())
+    fields.check_name(*node.find("parent"), "frame", frame.parent.value);
+  if (translation) std::copy(translation->begin(), translation->end(), frame.translation.begin());
+  if (angles) frame.rotation = quaternion_of(*angles);
+  if (angles && quaternion)
+    fields.add(*node.find("quaternion"), R"(a frame has "rotation" or "quaternion", not both)");
+  else if (quaternion)
+    read_quaternion(fields, *node.find("quaternion"), *quaternion, frame);
+  if (mover) {
+    if (auto port = parse_port(mover->value, false))
+      frame.moved_by = Lined<GraphPort>{*port, mover->place};
     else
-      for (const Node& member : *list)
-        if (auto addressee = fields.addressee(member, "a member of a group"))
-          group.members.push_back({*addressee, member.place});
-    graph.groups.push_back(std::move(group));
+      fields.add(*node.find("moved_by"), port.error().detail);
+    for (const char* key : {"translation", "rotation", "quaternion"})
+      if (const Node* also = node.find(key))
+        fields.add(*also, "a frame with \"moved_by\" has no " + quoted_name(key));
+  }
+  graph.frames.push_back(std::move(frame));
+}
+
+}  // namespace
+
+Fields::Take read_modes(const Fields& fields, Graph& graph) {
+  return fields.each([&](const Node& node) {
+    Lined<std::int64_t> number;
+    fields.check_name(node, "mode", node.key);
+    fields.integer(number, 1, 2147483647)(node);
+    if (number.value != 0) graph.modes.push_back({node.key, number.value, node.place});
   });
 }
 
-void read_modes(const Fields& fields, const Node& root, Graph& graph) {
-  fields.each(root, "modes", [&](const std::string& name, const Node& node) {
-    const auto* number = node.as<std::int64_t>();
-    if (!is_name(name)) fields.add(node, "a mode's name is snake_case, not " + quoted_name(name));
-    if (number == nullptr || *number < 1 || *number > 2147483647)
-      return fields.add(node, "a mode is a whole number from 1 to 2147483647");
-    graph.modes.push_back({name, *number, node.place});
-  });
+Fields::Take read_workspace(const Fields& fields, Graph& graph) {
+  return [&](const Node& node) {
+    auto& workspace = graph.workspaces.emplace_back();  // also one that is wrong
+    workspace.place = node.place;
+    fields.read(node, "in the workspace", {{"module", fields.text(workspace), true}});
+  };
 }
 
-void read_workspace(const Fields& fields, const Node& root, Graph& graph) {
-  const Node* node = root.find("workspace");
-  if (node == nullptr) return;
-  graph.workspace = Lined<std::string>{"", node->place};  // until it has a module
-  if (node->table() == nullptr) return fields.add(*node, "\"workspace\" is a table");
-  fields.check_keys(*node, {"module"}, "in the workspace");
-  auto module = fields.text(*node, "module");
-  if (!module) return;
-  if (module->value.empty()) fields.add(*node->find("module"), "\"module\" is empty");
-  graph.workspace = module;
+Fields::Take read_frames(const Fields& fields, Graph& graph) {
+  return fields.each([&](const Node& node) { read_frame(fields, node, graph); });
 }
 
 }  // namespace hc::internal

@@ -6,27 +6,23 @@
 
 namespace hc::internal {
 
-/// `restart` at the top or in a module; `otherwise` where it is not given.
-Restart read_restart(const Fields& fields, const Node& table, Restart default_value);
+/// `restart`, of a file or a module.
+Fields::Take read_restart(const Fields& fields, Restart& to);
 
-/// [modules.NAME] @param restart  of those that do not say it.
-void read_modules(const Fields& fields, const Node& root, Restart restart, Graph& graph);
+/// [modules.NAME]: what it says goes over what the module has.
+///
+/// @param name  of the module in the graph, which has it.
+void read_module(const Fields& fields, const Node& node, const std::string& name, Graph& graph);
 
-/// [[links]]
-void read_links(const Fields& fields, const Node& root, Graph& graph);
+/// [modes], [workspace] and [frames.NAME]
+Fields::Take read_modes(const Fields& fields, Graph& graph);
+Fields::Take read_workspace(const Fields& fields, Graph& graph);
+Fields::Take read_frames(const Fields& fields, Graph& graph);
 
-/// [groups], [modes] and [workspace]
-void read_groups(const Fields& fields, const Node& root, Graph& graph);
-void read_modes(const Fields& fields, const Node& root, Graph& graph);
-void read_workspace(const Fields& fields, const Node& root, Graph& graph);
-
-/// [frames.NAME]
-void read_frames(const Fields& fields, const Node& root, Graph& graph);
-
-/// A graph that is included, under the names that it has there.
+/// An included graph, under the names that it has in the graph around it.
 Graph with_prefix(Graph graph, const std::string& name);
 
-/// Puts what is included behind what is there.
+/// Appends an included graph.
 void append(Graph& graph, Graph included, Problems& problems);
 
 }  // namespace hc::internal

@@ -18,7 +18,6 @@ mode = "read"
 modes = ["read"]
 [modules.actor]
 exclusive = ["command"]
-idle_rate = 0.5
 [modules.workspace]
 [modes]
 track = 1
@@ -32,10 +31,9 @@ TEST(Attention, ModulesAreToldTheirModes) {
   auto planned = plan(kModes);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"read", 3}, {"track", 1}}));
-  EXPECT_EQ(planned->workspace, "workspace");
+  EXPECT_EQ(planned->workspaces, std::set<std::string>{"workspace"});
   EXPECT_EQ(values_of(planned->modules[0], "--mode"), (Words{"1"}));
   EXPECT_EQ(values_of(planned->modules[1], "--modes"), (Words{"3"}));
-  EXPECT_EQ(values_of(planned->modules[2], "--idle-rate"), (Words{"0.5"}));
   EXPECT_EQ(values_of(planned->modules[2], "--exclusive"), (Words{"command"}));
   EXPECT_EQ(planned->modules[0].mode, "track");
   EXPECT_EQ(planned->modules[1].modes, (Words{"read"}));
@@ -65,35 +63,34 @@ TEST(Attention, TheFocusIsLinkedToWhoFollowsIt) {
 TEST(Attention, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_EQ(wrong("[modules.task]\nmode = \"trak\"\n[modes]\ntrack = 1\n[modules.other]\n"
                   "program = \"task\"\nmode = \"track\"\n"),
-            "g.toml:2: no mode \"trak\", did you mean \"track\"?");
+            "g.toml:3: no mode \"trak\", did you mean \"track\"?");
   EXPECT_EQ(wrong("[modules.task]\nmodes = [\"x\", \"y\"]\n"),
-            "g.toml:2: no mode \"x\"\ng.toml:2: no mode \"y\"");
+            "g.toml:3: no mode \"x\"\ng.toml:3: no mode \"y\"");
   EXPECT_EQ(wrong("[modules.task]\nmode = \"a\"\n[modes]\na = 1\nb = 2\n"),
-            "g.toml:5: nobody can begin or leave mode b: no module has mode = \"b\"");
+            "g.toml:6: mode b has no task: no module has mode = \"b\"");
   EXPECT_EQ(wrong("[modules.task]\nmode = \"a\"\n[modules.b]\nprogram = \"task\"\nmode = \"b\"\n"
                   "[modes]\na = 1\nb = 1\n"),
-            "g.toml:8: the modes a and b have the same number");
+            "g.toml:9: modes a and b have the same number");
   EXPECT_EQ(wrong("[modules.actor]\nexclusive = [\"command\"]\n"),
-            "g.toml:2: an exclusive input wants a [workspace], which says what is in focus");
+            "g.toml:3: exclusive inputs require a [workspace] table");
   EXPECT_EQ(wrong("[modules.workspace]\n[modules.actor]\nexclusive = [\"comand\"]\n"
                   "[workspace]\nmodule = \"workspace\"\n"),
-            "g.toml:3: module actor has no input \"comand\", did you mean \"command\"?");
+            "g.toml:4: module actor has no input \"comand\", did you mean \"command\"?");
   EXPECT_EQ(wrong("[modules.workspace]\n[workspace]\nmodule = \"workspac\"\n"),
-            "g.toml:3: no module \"workspac\", did you mean \"workspace\"?");
+            "g.toml:4: no module \"workspac\", did you mean \"workspace\"?");
   EXPECT_EQ(wrong("[modules.task]\n[workspace]\nmodule = \"task\"\n"),
-            "g.toml:3: module task has no output \"focus\"");
+            "g.toml:4: module task has no output \"focus\"");
 }
 
 TEST(Attention, ProgramsThatKnowNoControlAreNotAsked) {
   auto refused = [](const std::string& line, const std::string& key) {
     EXPECT_TRUE(wrong("[modules.filter]\n" + line + "\n")
-                    .starts_with("g.toml:2: module filter cannot have \"" + key +
-                                 "\": its program knows no --control"))
+                    .starts_with("g.toml:3: module filter cannot have \"" + key +
+                                 "\": its program does not support --control"))
         << wrong("[modules.filter]\n" + line + "\n");
   };
   refused("mode = \"a\"", "mode");
   refused("modes = [\"a\"]", "modes");
-  refused("idle_rate = 3", "idle_rate");
   refused("exclusive = [\"in\"]", "exclusive");
 }
 
@@ -104,7 +101,7 @@ TEST(Attention, AnActorHasOneWriterUnlessItIsExclusiveOrRouted) {
   EXPECT_EQ(wrong(modules + link_text("a.command", "actor.command")), "");
   EXPECT_EQ(wrong(modules + link_text("a.command", "actor.command") +
                   link_text("b.command", "actor.command")),
-            "g.toml:12: actor.command is an actor's and gets commands from a.command and "
+            "g.toml:12: actor.command is an actor's input and gets commands from a.command and "
             "b.command; make it exclusive, or put a router before it");
   EXPECT_EQ(wrong(modules + link_text("router.out", "actor.command") +
                   link_text("other.out", "actor.command")),
@@ -121,8 +118,8 @@ TEST(Attention, ModulesAreStartedAgainAsTheFileSays) {
   EXPECT_EQ(planned->modules[2].restart, Restart::Failure);
   EXPECT_EQ(plan("[modules.source]\n")->modules[0].restart, Restart::Failure);
   EXPECT_EQ(wrong("restart = \"nevr\"\n[modules.source]\nrestart = 3\n"),
-            "g.toml:1: \"restart\" is \"never\", \"failure\" or \"always\", did you mean "
-            "\"never\"?\ng.toml:3: \"restart\" is \"never\", \"failure\" or \"always\"");
+            "g.toml:2: \"restart\" must be \"never\", \"failure\" or \"always\", did you mean "
+            "\"never\"?\ng.toml:4: \"restart\" must be \"never\", \"failure\" or \"always\"");
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ class Frames {
     return frame == by_name_.end() ? 0 : frame->second->coord.value;
   }
 
-  /// As G36 has it.
+  /// As G31 has it.
   [[nodiscard]] std::string text_of_all() const {
     std::ostringstream text;
     text.precision(17);

@@ -86,18 +86,18 @@ TEST(Frames, PosesMakeNoLoop) {
 TEST(Frames, WhatMovesThemTellsPoses) {
   EXPECT_EQ(wrong("[modules.source]\n[modules.seeker]\n[frames.head]\nparent = \"robot\"\n"
                   "moved_by = \"source.left\"\n"),
-            "g.toml:5: source.left gives map 1 x f32 in coordinate system 7, seeker.frames takes "
+            "g.toml:6: source.left sends map 1 x f32 in coordinate system 7, seeker.frames takes "
             "transformation 1 x f64");
   EXPECT_EQ(wrong("[modules.neck]\n[frames.a]\nparent = \"root\"\nmoved_by = \"neck.pose\"\n"
                   "[frames.b]\nparent = \"a\"\nmoved_by = \"neck.pose\"\n"),
-            "g.toml:7: neck.pose moves a and b, so they and their parents need a \"coord\"");
+            "g.toml:8: neck.pose moves a and b, so they and their parents need a \"coord\"");
 }
 
 TEST(Frames, AnglesAreRollPitchAndYawAboutAxesThatStandStill) {
   auto rotation = [](const std::string& angles) {
     Problems problems("g.toml");
-    auto graph =
-        parse_graph("[modules.a]\n[frames.a]\nparent = \"b\"\nrotation = " + angles, {}, problems);
+    auto graph = parse_graph(
+        "version = 1\n[modules.a]\n[frames.a]\nparent = \"b\"\nrotation = " + angles, {}, problems);
     EXPECT_TRUE(problems.empty());
     return graph.frames.at(0).rotation;
   };
@@ -120,23 +120,23 @@ TEST(Frames, ErrorsNameTheLineAndWhatWouldBeRight) {
     EXPECT_EQ(wrong("[modules.source]\n[frames.a]\n" + rest), "g.toml:" + wanted);
   };
   const std::string top = "parent = \"root\"\n";
-  expect("", "2: \"parent\" is missing");
-  expect("parent = \"a\"\n", "3: frames form a circle: a in a");
-  expect("parent = \"b\"\n[frames.b]\nparent = \"a\"\n", "3: frames form a circle: a in b in a");
+  expect("", "3: \"parent\" is missing in frame a");
+  expect("parent = \"a\"\n", "4: frames form a circle: a in a");
+  expect("parent = \"b\"\n[frames.b]\nparent = \"a\"\n", "4: frames form a circle: a in b in a");
   expect(top + "[frames.b]\nparent = \"aa\"\n",
-         "5: no frame \"aa\", did you mean \"a\"?; the root is root");
-  expect(top + "coord = 3\n", "4: coordinate system 3 is head");
-  expect(top + "[frames.head]\nparent = \"root\"\ncoord = 200\n", "6: frame head has the number 3");
+         "6: no frame \"aa\", did you mean \"a\"?; the root is root");
+  expect(top + "coord = 3\n", "5: coordinate system 3 is head");
+  expect(top + "[frames.head]\nparent = \"root\"\ncoord = 200\n", "7: frame head has the number 3");
   expect(top + "coord = 200\n[frames.b]\nparent = \"a\"\ncoord = 200\n",
-         "7: coordinate system 200 is a");
+         "8: coordinate system 200 is a");
   expect(top + "moved_by = \"source.lft\"\n",
-         "4: module source has no output \"lft\", did you mean \"left\"?");
-  expect(top + "moved_by = \"sourc.left\"\n", "4: no module \"sourc\", did you mean \"source\"?");
+         "5: module source has no output \"lft\", did you mean \"left\"?");
+  expect(top + "moved_by = \"sourc.left\"\n", "5: no module \"sourc\", did you mean \"source\"?");
   expect(top + "moved_by = \"source.left\"\ntranslation = [1, 2, 3]\n",
-         "5: a frame that is moved has no \"translation\"");
-  expect(top + "translation = [1, 2]\n", "4: \"translation\" is a list of 3 numbers");
-  expect(top + "rotation = [1, 2, nan]\n", "4: \"rotation\" is a list of 3 numbers");
-  expect(top + "quaternion = [1, 1, 0, 0]\n", "4: \"quaternion\" has the length 1");
+         "6: a frame with \"moved_by\" has no \"translation\"");
+  expect(top + "translation = [1, 2]\n", "5: \"translation\" must be a list of 3 numbers");
+  expect(top + "rotation = [1, 2, nan]\n", "5: \"rotation\" must be a list of 3 numbers");
+  expect(top + "quaternion = [1, 1, 0, 0]\n", "5: \"quaternion\" must have length 1");
 }
 
 }  // namespace

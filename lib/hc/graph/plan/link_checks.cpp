@@ -19,8 +19,8 @@ class LinkCheck {
   /// Whether more may be said of it.
   bool check(const GraphLink& link) {
     if (!linked_.insert(link.from.text() + " " + link.to.text()).second) {
-      problems_.add(link.place, "the link from " + link.from.text() + " to " + link.to.text() +
-                                    " is there twice");
+      problems_.add(link.place,
+                    "duplicate link from " + link.from.text() + " to " + link.to.text());
       return false;
     }
     const DescribedPort* from = end(link, link.from, false);
@@ -30,7 +30,7 @@ class LinkCheck {
     if (from == nullptr || to == nullptr) return true;
     const bool right = fits(*from, *to);
     if (!right)
-      problems_.add(link.place, link.from.text() + " gives " + in_words(from->types) + ", " +
+      problems_.add(link.place, link.from.text() + " sends " + in_words(from->types) + ", " +
                                     link.to.text() + " takes " + in_words(to->types));
     if (auto memory = link.policy.find("memory"); memory != link.policy.end() &&
                                                   !memory->second.value.empty() &&
@@ -66,10 +66,10 @@ class LinkCheck {
   void check_uri(const GraphLink& link, const GraphPort& outside, bool is_input) {
     const Uri uri = *parse_uri(outside.uri);
     if (uri.scheme.ends_with("-listen") && !listening_.insert(uri.scheme + ":" + uri.rest).second)
-      problems_.add(link.place, outside.uri + " is there twice, and two cannot listen there");
+      problems_.add(link.place, "another link listens at " + outside.uri + " too");
     for (const auto& [key, value] : link.policy)
       if (!uri.option(key, "").empty() && !value.value.empty())
-        problems_.add(value.place, outside.uri + " has " + key + " too");
+        problems_.add(value.place, key + " is also given in " + outside.uri);
     const std::string& module = is_input ? link.from.module : link.to.module;
     const Description* description = planning_.description_of(module);
     if (description == nullptr) return;
@@ -77,8 +77,8 @@ class LinkCheck {
     if (description->transports) known = *description->transports;
     std::erase_if(known, [](const auto& each) { return each == "-" || each == "inproc"; });
     if (std::find(known.begin(), known.end(), uri.scheme) == known.end())
-      problems_.add(link.place, "module " + module + " has no links of the kind \"" + uri.scheme +
-                                    "\"" + suggest(planning_, uri.scheme, known));
+      problems_.add(link.place, "module " + module + " does not support " + uri.scheme + ": links" +
+                                    suggest(planning_, uri.scheme, known));
     else if (auto checked = is_input ? check_sink(uri) : check_source(uri);
              !checked && is_ours(uri))
       problems_.add(link.place, outside.uri + ": " + checked.error().detail);
@@ -94,17 +94,19 @@ class LinkCheck {
   void check_outer_policy(const GraphLink& link) {
     for (const auto& [key, value] : link.policy)
       if (!value.value.empty() && (key != "keep" || !link.from.uri.starts_with("shm:")))
-        problems_.add(value.place, "a link from outside has no " + key + ": that is its sender's");
+        problems_.add(value.place,
+                      "a link from outside cannot have " + key + ": its sender sets it");
   }
 
   void check_route(const GraphLink& link) {
     const Description* sender = planning_.description_of(link.from.module);
     if (sender != nullptr && !sender->control)
       problems_.add(link.route->place, "module " + link.from.module +
-                                           " cannot have \"route\": its program knows no "
-                                           "--control");
+                                           " cannot have \"route\": its program does not "
+                                           "support --control");
     else if (!link.from.uri.empty())
-      problems_.add(link.route->place, "a link from outside has no route: that is its sender's");
+      problems_.add(link.route->place,
+                    "a link from outside cannot have a route: its sender sets it");
   }
 
   Planning& planning_;
@@ -169,8 +171,8 @@ void check_loops(Planning& planning) {
         steps.emplace_back(link->to.module, 0);
       } else if (visit->second == Visit::Begun) {
         planning.problems.add(link->place,
-                              "a loop without a rate: " + way_in_words(way, link->to.module) +
-                                  "; give one of its links a rate, as rate = 30");
+                              "loop without a rate: " + way_in_words(way, link->to.module) +
+                                  "; give one of its links a rate, for example rate = 30");
       }
     }
   }
@@ -188,7 +190,8 @@ void check_actors(Planning& planning) {
     if (input == nullptr || !input->actor || planned->exclusive.contains(link.to.port)) continue;
     auto [first, is_first] = writers.emplace(link.to.text(), link.from.text());
     if (!is_first)
-      planning.problems.add(link.place, link.to.text() + " is an actor's and gets commands from " +
+      planning.problems.add(link.place, link.to.text() +
+                                            " is an actor's input and gets commands from " +
                                             first->second + " and " + link.from.text() +
                                             "; make it exclusive, or put a router before it");
   }

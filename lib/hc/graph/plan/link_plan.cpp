@@ -80,14 +80,9 @@ class LinkPlanner {
       routed.to = number_of(link.to);
       if (link.route) routed.given = link.route->value;
       auto address = planning_.plan.addresses.find(link.to.text());
-      if (address != planning_.plan.addresses.end()) routed.reaches.push_back(address->second);
-      auto groups = planning_.groups_of.find(link.to.text());
-      if (groups != planning_.groups_of.end())
-        routed.reaches.insert(routed.reaches.end(), groups->second.begin(), groups->second.end());
+      if (address != planning_.plan.addresses.end()) routed.reaches = address->second;
     }
-    std::vector<std::int64_t> groups;
-    for (const auto& [name, number] : planning_.plan.groups) groups.push_back(number);
-    const auto passed = compute_routes(links, is_router, groups);
+    const auto passed = compute_routes(links, is_router);
     for (std::size_t i = 0; i < graph_.links.size(); ++i)
       routes_.push_back(words_of(graph_.links[i], passed[i]));
   }

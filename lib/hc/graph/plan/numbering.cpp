@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses of ports, numbers of groups, and whom the messages of an output are for.
+// Addresses of ports, and whom the messages of an output are for.
 #include <algorithm>
 
 #include <hc/graph/plan/planning.h>
@@ -8,7 +8,6 @@ namespace hc::internal {
 namespace {
 
 constexpr std::int64_t kAll = -1;
-constexpr std::int64_t kFirstGroup = -2;  // and on downwards
 
 class Numbering {
  public:
@@ -18,11 +17,8 @@ class Numbering {
     for (const auto& module : graph_.modules) take_given(module);
     if (planning_.before != nullptr) keep_numbers(*planning_.before);
     for (const auto& module : graph_.modules) number_outputs(module);
-    number_groups();
     for (const auto& link : graph_.links)
       if (link.to.uri.empty() && planning_.routes(link.from)) address_of(link.to);
-    for (const auto& group : graph_.groups)
-      for (const auto& member : group.members) add_member(group, member);
     for (const auto& module : graph_.modules)
       for (const auto& [port, to] : module.to) send_to(module, port, to);
     planning_.plan.addresses = inputs_;
@@ -35,7 +31,7 @@ class Numbering {
     for (const auto& [port, address] : module.addresses) {
       if (address.value != 0 && !taken_.insert(address.value).second)
         planning_.problems.add(address.place,
-                               "address " + std::to_string(address.value) + " is given twice");
+                               "address " + std::to_string(address.value) + " is used twice");
       if (description == nullptr) continue;
       if (find_output(*description, port) != nullptr) continue;
       if (find_named(description->inputs, port) != nullptr) {
@@ -58,22 +54,6 @@ class Numbering {
     };
     keep(before.sources, kept_outputs_);
     keep(before.addresses, kept_inputs_);
-  }
-
-  void number_groups() {
-    std::set<std::int64_t> taken;
-    auto& numbers = planning_.plan.groups;
-    if (planning_.before != nullptr)
-      for (const auto& group : graph_.groups)
-        if (auto old = planning_.before->groups.find(group.name);
-            old != planning_.before->groups.end())
-          taken.insert(numbers[group.name] = old->second);
-    std::int64_t next = kFirstGroup;
-    for (const auto& group : graph_.groups) {
-      if (numbers.contains(group.name)) continue;
-      while (!taken.insert(next).second) --next;
-      numbers[group.name] = next;
-    }
   }
 
   void number_outputs(const GraphModule& module) {
@@ -124,22 +104,6 @@ class Numbering {
     return names;
   }
 
-  void add_member(const GraphGroup& group, const Lined<Addressee>& member) {
-    const std::int64_t number = planning_.plan.groups[group.name];
-    if (member.value.name.empty() && member.value.number > 0) {
-      for (const auto& [input, address] : inputs_)
-        if (address == member.value.number) planning_.groups_of[input].push_back(number);
-    } else if (auto input = input_named(member.value.name)) {
-      address_of(*input);
-      planning_.groups_of[input->text()].push_back(number);
-    } else {
-      const std::string name =
-          member.value.name.empty() ? std::to_string(member.value.number) : member.value.name;
-      planning_.problems.add(member.place, "group " + group.name + ": no input \"" + name + "\"" +
-                                               suggest(planning_, name, names_of_inputs()));
-    }
-  }
-
   void send_to(const GraphModule& module, const std::string& port, const Lined<Addressee>& to) {
     const Description* description = planning_.description_of(module.name);
     if (description == nullptr) return;
@@ -150,15 +114,12 @@ class Numbering {
     const std::string& name = to.value.name;
     if (name.empty()) address = to.value.number;
     if (name == "all") address = kAll;
-    if (auto group = planning_.plan.groups.find(name); group != planning_.plan.groups.end())
-      address = group->second;
     if (auto input = input_named(name)) address = address_of(*input);
     if (!address) {
       auto known = names_of_inputs();
-      for (const auto& group : graph_.groups) known.push_back(group.name);
       known.emplace_back("all");
-      return planning_.problems.add(
-          to.place, "no group or input \"" + name + "\"" + suggest(planning_, name, known));
+      return planning_.problems.add(to.place,
+                                    "no input \"" + name + "\"" + suggest(planning_, name, known));
     }
     PlannedModule* planned = planning_.planned(module.name);
     planned->options.insert(planned->options.end(),

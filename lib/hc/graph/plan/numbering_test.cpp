@@ -10,15 +10,12 @@ namespace {
 using Words = std::vector<std::string>;
 
 const std::string kRouted = R"([modules.task]
-to = { command = "actor.command", bid = "arms" }
+to = { command = "actor.command", bid = "all" }
 [modules.router]
 [modules.actor]
 [modules.other]
 program = "actor"
 addresses.command = 22
-[groups]
-arms = ["actor.command", 22]
-legs = []
 )" + link_text("task.command", "router.in") +
                             link_text("router.out", "actor.command") +
                             link_text("router.out", "other.command");
@@ -26,17 +23,15 @@ legs = []
 TEST(Numbering, InputsGroupsAndRoutesReachTheModules) {
   auto planned = plan(kRouted);
   ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->groups, (std::map<std::string, std::int64_t>{{"arms", -2}, {"legs", -3}}));
   // Outputs come first: task has 1 and 2, router 3 and 4, actor 5, other 6.
   EXPECT_EQ(planned->addresses,
             (std::map<std::string, std::int64_t>{{"actor.command", 7}, {"other.command", 22}}));
-  EXPECT_EQ(values_of(planned->modules[0], "--to"), (Words{"bid=-2", "command=7"}));
+  EXPECT_EQ(values_of(planned->modules[0], "--to"), (Words{"bid=-1", "command=7"}));
   EXPECT_EQ(
       values_of(planned->modules[1], "--route"),
-      (Words{
-          "in=unix:@t.task.command.router.in?reconnect=86400 peer=task",
-          "out=unix-listen:@t.router.out.actor.command?readers=1&stay=1 to=-2,-1,7 peer=actor",
-          "out=unix-listen:@t.router.out.other.command?readers=1&stay=1 to=-2,-1,22 peer=other"}));
+      (Words{"in=unix:@t.task.command.router.in?reconnect=86400 peer=task",
+             "out=unix-listen:@t.router.out.actor.command?readers=1&stay=1 to=-1,7 peer=actor",
+             "out=unix-listen:@t.router.out.other.command?readers=1&stay=1 to=-1,22 peer=other"}));
   EXPECT_TRUE(values_of(planned->modules[2], "--route").empty());
 }
 
@@ -50,24 +45,19 @@ TEST(Numbering, AddresseesAreNumbersGroupsInputsOrAll) {
   EXPECT_EQ(to("-5"), "command=-5");
   EXPECT_EQ(to("\"all\""), "command=-1");
   EXPECT_EQ(to("\"task.image\""), "command=3");
-  EXPECT_EQ(to("\"al\""), "g.toml:2: no group or input \"al\", did you mean \"all\"?");
-  EXPECT_EQ(to("\"task.imag\""),
-            "g.toml:2: no group or input \"task.imag\", did you mean \"task.image\"?");
+  EXPECT_EQ(to("\"al\""), "g.toml:3: no input \"al\", did you mean \"all\"?");
+  EXPECT_EQ(to("\"task.imag\""), "g.toml:3: no input \"task.imag\", did you mean \"task.image\"?");
 }
 
 TEST(Numbering, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_EQ(wrong("[modules.actor]\naddresses = { command = 7, pose = 7 }\n"),
-            "g.toml:2: address 7 is given twice");
+            "g.toml:3: address 7 is used twice");
   EXPECT_EQ(wrong("[modules.actor]\naddresses.comand = 7\n"),
-            "g.toml:2: module actor has no port \"comand\", did you mean \"command\"?");
-  EXPECT_EQ(wrong("[modules.actor]\n[groups]\narms = [\"actor.comand\"]\n"),
-            "g.toml:3: group arms: no input \"actor.comand\", did you mean \"actor.command\"?");
-  EXPECT_EQ(wrong("[modules.actor]\n[groups]\narms = [-2]\n"),
-            "g.toml:3: group arms: no input \"-2\"");
+            "g.toml:3: module actor has no port \"comand\", did you mean \"command\"?");
   EXPECT_EQ(wrong("[modules.task]\nto.comand = 3\n"),
-            "g.toml:2: module task has no output \"comand\", did you mean \"command\"?");
+            "g.toml:3: module task has no output \"comand\", did you mean \"command\"?");
   EXPECT_EQ(wrong("[modules.filter]\nto.out = 3\n"),
-            "g.toml:2: module filter cannot have \"to\": its program knows no --control");
+            "g.toml:3: module filter cannot have \"to\": its program does not support --control");
 }
 
 TEST(Numbering, TheFileMaySayTheRoute) {
@@ -78,20 +68,19 @@ TEST(Numbering, TheFileMaySayTheRoute) {
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(values_of(planned->modules[0], "--route"),
             (Words{"out=tcp:7000 to=*", "out=tcp:7001 to=21,0,-5", "out=tcp:7002 to=-1"}));
-  EXPECT_EQ(wrong("[modules.filter]\n" + link_text("filter.out", "tcp:1", "route = [1]\n")),
-            "g.toml:5: module filter cannot have \"route\": its program knows no --control");
+  EXPECT_EQ(
+      wrong("[modules.filter]\n" + link_text("filter.out", "tcp:1", "route = [1]\n")),
+      "g.toml:5: module filter cannot have \"route\": its program does not support --control");
 }
 
 TEST(Numbering, NumbersStayWhenAGraphIsPlannedAnew) {
   auto before = plan(kRouted);
   ASSERT_TRUE(before);
   std::string text = "[modules.first]\nprogram = \"task\"\n" + kRouted;
-  text.insert(text.find("arms = ["), "none = []\n");
   auto planned = plan(text, {}, &*before);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modules[1].options, before->modules[0].options);
   EXPECT_EQ(planned->addresses.at("actor.command"), before->addresses.at("actor.command"));
-  EXPECT_EQ(planned->groups.at("arms"), before->groups.at("arms"));
   for (const auto& [port, source] : before->sources) EXPECT_EQ(planned->sources.at(port), source);
 }
 

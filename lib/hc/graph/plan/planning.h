@@ -18,10 +18,9 @@ struct Planning {
   Problems& problems;
   const Plan* before;  ///< of this graph, whose numbers stay; null: there was none
   Plan plan{};
-  std::map<std::string, Description> described{};                ///< by module
-  std::map<std::string, std::size_t> index{};                    ///< of a module in Plan::modules
-  std::map<std::string, std::vector<std::int64_t>> groups_of{};  ///< by input
-  std::set<std::string> names{};                                 ///< of modules
+  std::map<std::string, Description> described{};  ///< by module
+  std::map<std::string, std::size_t> index{};      ///< of a module in Plan::modules
+  std::set<std::string> names{};                   ///< of modules
 
   /// What a module says of itself; null where nobody knows.
   [[nodiscard]] const Description* description_of(const std::string& module) const {
@@ -54,7 +53,7 @@ void add_no_module(Planning& planning, const Place& place, const std::string& mo
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
                  const std::string& kind, const std::vector<DescribedPort>& ports);
 
-/// Gives ports their addresses, groups their numbers, and messages of outputs whom they are for.
+/// Gives ports their addresses, and messages of outputs their destinations.
 void number_ports(Planning& planning);
 
 /// Modes, focus and exclusive inputs: checks them, tells modules, and links the focus to them.

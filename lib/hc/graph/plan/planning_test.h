@@ -10,6 +10,8 @@
 
 namespace hc {
 
+inline const std::string kVersion = "version = 1\n";
+
 /// What some programs say of themselves.
 inline Result<std::string> describe(const std::string& program) {
   auto port = [](const std::string& name, const std::string& type, int coord) {
@@ -73,18 +75,18 @@ inline Result<std::string> describe(const std::string& program) {
 
 /// A plan, or else all that is wrong, a line each.
 ///
-/// @param files  by name, what may be included.
+/// @param text  behind `version = 1`, which is its first line, as in `files`, which it may include.
 inline Result<Plan> plan(const std::string& text,
                          const std::map<std::string, std::string>& files = {},
                          const Plan* before = nullptr) {
   Problems problems("g.toml");
   auto read_file = [&](const std::string& name) -> Result<std::string> {
     auto found = files.find(name);
-    if (found != files.end()) return found->second;
+    if (found != files.end()) return kVersion + found->second;
     return Error{Code::NotFound, name + ": cannot be read"};
   };
   auto graph = parse_graph(
-      text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
+      kVersion + text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
   Plan plan = make_plan(graph, describe, "t", problems, before);
   if (problems.empty()) return plan;
   std::string all;
@@ -117,7 +119,13 @@ inline std::string wrong(const std::string& text,
 /// A link of a graph file.
 inline std::string link_text(const std::string& from, const std::string& to,
                              const std::string& more = "") {
-  return "[[links]]\nfrom = \"" + from + "\"\nto = \"" + to + "\"\n" + more;
+  auto end = [](const std::string& port, const std::string& kind) {
+    const auto dot = port.find('.');
+    return "[[modules." + port.substr(0, dot) + "." + kind + "." + port.substr(dot + 1) + "]]\n";
+  };
+  if (to.find(':') == std::string::npos)
+    return end(to, "inputs") + "from = \"" + from + "\"\n" + more;
+  return end(from, "outputs") + "to = \"" + to + "\"\n" + more;
 }
 
 }  // namespace hc

@@ -32,7 +32,7 @@ class Routes {
       for (std::size_t i : leaving_[next.front()]) {
         const RoutedLink& link = links_[i];
         std::size_t begin = next.front() == router ? i : begun_by.at(next.front());
-        for (std::int64_t address : link.given ? *link.given : link.reaches)
+        for (std::int64_t address : link.given ? *link.given : std::vector{link.reaches})
           if (address > 0) first.emplace(address, begin);
         if (is_router_at(link.to) && link.to != router && begun_by.emplace(link.to, begin).second)
           next.push_back(link.to);
@@ -49,8 +49,7 @@ class Routes {
 }  // namespace
 
 std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLink>& links,
-                                                      const std::vector<bool>& is_router,
-                                                      const std::vector<std::int64_t>& groups) {
+                                                      const std::vector<bool>& is_router) {
   const Routes routes(links, is_router);
   std::vector<std::set<std::int64_t>> passed(links.size());
   for (std::size_t router = 0; router < is_router.size(); ++router)
@@ -67,9 +66,6 @@ std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLi
       all.push_back(*link.given);
       continue;
     }
-    for (std::int64_t address : link.reaches)
-      if (address < 0) passed[i].insert(address);
-    if (routes.is_router_at(link.to)) passed[i].insert(groups.begin(), groups.end());
     passed[i].insert(kAll);
     all.emplace_back(passed[i].begin(), passed[i].end());
   }

@@ -13,8 +13,7 @@ namespace hc::internal {
 /// A link between two modules, which are numbers.
 struct RoutedLink {
   std::size_t from = 0, to = 0;
-  /// The address of its input, and those of the groups that the input is in.
-  std::vector<std::int64_t> reaches;
+  std::int64_t reaches = 0;  ///< the address of its input; 0: none
   /// What the graph file says that it passes; then nothing is computed.
   std::optional<std::vector<std::int64_t>> given;
 };
@@ -26,14 +25,12 @@ inline constexpr std::size_t kOutside = static_cast<std::size_t>(-1);
 /// are no routers.
 ///
 /// An address is passed by one link of a router: the one that begins the way of the fewest hops to
-/// it, of several the first. Groups are passed where a member is, and they and -1 (all) to every
-/// router, as who follows such a message takes care that it goes round once.
+/// it, of several the first. -1 (all) passes everywhere: routers see to it that such a message goes
+/// round once.
 ///
 /// @param is_router  by number of module.
-/// @param groups  all of them.
 /// Cost: the number of routers times that of links and addresses.
 std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLink>& links,
-                                                      const std::vector<bool>& is_router,
-                                                      const std::vector<std::int64_t>& groups);
+                                                      const std::vector<bool>& is_router);
 
 }  // namespace hc::internal

@@ -13,26 +13,25 @@ using Routes = std::vector<std::vector<std::int64_t>>;
 /// Modules that are no routers have these numbers in the tests below.
 constexpr std::size_t kRouters = 10;
 
-Routes compute(const std::vector<RoutedLink>& links, std::size_t routers,
-               const std::vector<std::int64_t>& groups = {}) {
+Routes compute(const std::vector<RoutedLink>& links, std::size_t routers) {
   std::vector<bool> is_router(2 * kRouters);
   for (std::size_t i = 0; i < routers; ++i) is_router[i] = true;
-  return compute_routes(links, is_router, groups);
+  return compute_routes(links, is_router);
 }
 
 TEST(Routes, OneRouterPassesToEachItsOwn) {
-  auto routes = compute({{10, 0, {}, {}}, {0, 11, {21}, {}}, {0, 12, {22, -2}, {}}}, 1, {-2});
-  EXPECT_EQ(routes, (Routes{{}, {-1, 21}, {-2, -1, 22}}));
+  auto routes = compute({{10, 0, 0, {}}, {0, 11, 21, {}}, {0, 12, 22, {}}}, 1);
+  EXPECT_EQ(routes, (Routes{{}, {-1, 21}, {-1, 22}}));
 }
 
 TEST(Routes, ATreeLeadsDownAndUp) {
   // 0 above 1 and 2, each with a leaf.
-  auto routes = compute({{0, 1, {}, {}},
-                         {0, 2, {}, {}},
-                         {1, 0, {}, {}},
-                         {2, 0, {}, {}},
-                         {1, 11, {21}, {}},
-                         {2, 12, {22}, {}}},
+  auto routes = compute({{0, 1, 0, {}},
+                         {0, 2, 0, {}},
+                         {1, 0, 0, {}},
+                         {2, 0, 0, {}},
+                         {1, 11, 21, {}},
+                         {2, 12, 22, {}}},
                         3);
   EXPECT_EQ(routes, (Routes{{-1, 21}, {-1, 22}, {-1, 22}, {-1, 21}, {-1, 21}, {-1, 22}}));
 }
@@ -41,9 +40,9 @@ TEST(Routes, ARingGoesTheShorterWayAndOfTwoTheFirst) {
   // 0 - 1 - 2 - 3 - 0, both ways; a leaf at each.
   std::vector<RoutedLink> links;
   for (std::size_t i = 0; i < 4; ++i) {
-    links.push_back({i, (i + 1) % 4, {}, {}});
-    links.push_back({i, (i + 3) % 4, {}, {}});
-    links.push_back({i, kRouters + i, {static_cast<std::int64_t>(20 + i)}, {}});
+    links.push_back({i, (i + 1) % 4, 0, {}});
+    links.push_back({i, (i + 3) % 4, 0, {}});
+    links.push_back({i, kRouters + i, static_cast<std::int64_t>(20 + i), {}});
   }
   auto routes = compute(links, 4);
   EXPECT_EQ(routes[0], (std::vector<std::int64_t>{-1, 21, 22}));  // two hops either way: this one
@@ -60,23 +59,17 @@ TEST(Routes, ARingGoesTheShorterWayAndOfTwoTheFirst) {
 }
 
 TEST(Routes, AOneWayRingLeadsRound) {
-  auto routes =
-      compute({{0, 1, {}, {}}, {1, 2, {}, {}}, {2, 0, {}, {}}, {0, 10, {20}, {}}}, 3, {-2});
-  EXPECT_EQ(routes, (Routes{{-2, -1}, {-2, -1, 20}, {-2, -1, 20}, {-1, 20}}));
-}
-
-TEST(Routes, GroupsGoToEveryRouterAndToMembersAlone) {
-  auto routes = compute({{0, 1, {}, {}}, {0, 10, {20}, {}}, {0, 11, {21, -3}, {}}}, 2, {-2, -3});
-  EXPECT_EQ(routes, (Routes{{-3, -2, -1}, {-1, 20}, {-3, -1, 21}}));
+  auto routes = compute({{0, 1, 0, {}}, {1, 2, 0, {}}, {2, 0, 0, {}}, {0, 10, 20, {}}}, 3);
+  EXPECT_EQ(routes, (Routes{{-1}, {-1, 20}, {-1, 20}, {-1, 20}}));
 }
 
 TEST(Routes, WhatTheFileSaysIsPassedAndLedTo) {
-  auto routes = compute({{0, 1, {}, {}}, {1, kOutside, {}, std::vector<std::int64_t>{70, -5}}}, 2);
+  auto routes = compute({{0, 1, 0, {}}, {1, kOutside, 0, std::vector<std::int64_t>{70, -5}}}, 2);
   EXPECT_EQ(routes, (Routes{{-1, 70}, {70, -5}}));
 }
 
 TEST(Routes, AnInputThatTwoRoutersReachIsReachedByTheNearer) {
-  auto routes = compute({{0, 1, {}, {}}, {1, 10, {20}, {}}, {0, 10, {20}, {}}}, 2);
+  auto routes = compute({{0, 1, 0, {}}, {1, 10, 20, {}}, {0, 10, 20, {}}}, 2);
   EXPECT_EQ(routes, (Routes{{-1}, {-1, 20}, {-1, 20}}));
 }
 

@@ -27,12 +27,12 @@ TEST_F(LiveFile, AnEditedFileIsReadAnew) {
   add("a");
   heard_ = [&](std::string_view line) {
     if (line == "a: started") write();
-    if (line == "graph: goes on as it was") {
+    if (line == "graph: keeping the running version") {
       EXPECT_EQ(reading(), Reading::Anew);
       plan_next(plan_);
       write();
     }
-    if (line == "graph: as it was") {
+    if (line == "graph: unchanged") {
       Plan other = plan_;
       other.modules.push_back(plan_.modules[0]);
       other.modules[1].name = "b";
@@ -60,16 +60,16 @@ TEST_F(LiveFile, AnotherEditTakesThePlaceOfTheOneThatIsRead) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") write();
   };
-  stop_at_ = "graph: as it was";
+  stop_at_ = "graph: unchanged";
   ASSERT_TRUE(run());
   EXPECT_EQ(plans, 2);
-  EXPECT_FALSE(said("graph: goes on as it was"));
+  EXPECT_FALSE(said("graph: keeping the running version"));
 }
 
 TEST_F(LiveFile, AFileThatIsTakenAwayIsToldOnce) {
   add("a");
   plan_next(plan_);
-  const std::string is_gone = "graph: " + file_ + " is gone; it runs on as it was";
+  const std::string is_gone = "graph: " + file_ + " has been removed; keeping the running version";
   heard_ = [&](std::string_view line) {
     if (line == "a: started") remove();
     if (line != is_gone) return;
@@ -81,10 +81,10 @@ TEST_F(LiveFile, AFileThatIsTakenAwayIsToldOnce) {
     // By the second it has been noticed that the file was there, and is gone again.
     if (said(is_gone) && ++states == 3) write();
   };
-  stop_at_ = "graph: as it was";
+  stop_at_ = "graph: unchanged";
   ASSERT_TRUE(run());
   EXPECT_EQ(lines_,
-            (Lines{"a: started", is_gone, "graph: as it was", "graph: stopping", "a: ended"}));
+            (Lines{"a: started", is_gone, "graph: unchanged", "graph: stopping", "a: ended"}));
 }
 
 }  // namespace

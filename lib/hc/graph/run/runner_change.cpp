@@ -20,7 +20,8 @@ void Runner::read_anew() {
   const auto& file = options_.files.front();
   std::error_code failed;
   const bool is_gone = fs::status(file, failed).type() == fs::file_type::not_found;
-  if (is_gone && !is_file_gone_) say("graph: " + file + " is gone; it runs on as it was");
+  if (is_gone && !is_file_gone_)
+    say("graph: " + file + " has been removed; keeping the running version");
   is_file_gone_ = is_gone;
   if (is_gone) return;
   auto is_edit = [](const Change& change) { return change.commands.empty(); };
@@ -118,7 +119,7 @@ void Runner::take_edit(Planned& planned) {
   files_->set_files(changed.files.empty() ? options_.files : changed.files);
   if (changed.plan) return change_to(std::move(*changed.plan));
   for (const auto& line : changed.problems) say("graph: " + line);
-  say("graph: goes on as it was");
+  say("graph: keeping the running version");
 }
 
 /// Answers who has asked for changes that will not be made.
@@ -169,7 +170,7 @@ void Runner::change_to(Plan plan) {
     if (there == nullptr) add(module);
   }
   for (auto& [name, module] : modules_) module->end_change();
-  say(has_changed ? "graph: changed" : "graph: as it was");
+  say(has_changed ? "graph: changed" : "graph: unchanged");
 }
 
 void Runner::add(const PlannedModule& module) {

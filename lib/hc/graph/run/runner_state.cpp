@@ -18,7 +18,6 @@ GraphState Runner::state() const {
   state.uptime = std::chrono::duration<double>(SystemClock().monotonic() - begun_).count();
   state.is_stopping = is_stopping_;
   state.modes = plan_.modes;
-  state.groups = plan_.groups;
   state.addresses = plan_.addresses;
   for (const auto& planned : plan_.modules) {
     const auto* module = find(planned.name);

@@ -221,7 +221,7 @@ bool Supervised::is_heard() const {
 /// to begin anew.
 void Supervised::tell(const std::string& command) {
   if (!is_heard() || control_->say(command_message(command)) || is_to_restart_) return;
-  hear_.event("takes no commands; starting it again");
+  hear_.event("does not accept commands; restarting");
   restart();
 }
 
@@ -250,7 +250,7 @@ void Supervised::take_report(const Message& message) {
   const bool has_changed = reports_.take(message, heard_);
   if (message.header.src == Reports::kRefusal && message.header.info.type == MatrixType::String)
     for (const auto& line : rows_of(message)) hear_.event(line);
-  if (status_ == ModuleStatus::Stalled) hear_.event("goes on");
+  if (status_ == ModuleStatus::Stalled) hear_.event("resumed");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
       status_ == ModuleStatus::Running)
     change(ModuleStatus::Running);
@@ -263,12 +263,12 @@ void Supervised::look(MonotonicTime time) {
   if (heard_ == MonotonicTime(0) || time - heard_ < limits_.stall) return;
   const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
   if (awaits && !is_stopped) {
-    if (is_stalled) hear_.event("goes on");
+    if (is_stalled) hear_.event("resumed");
     return change(ModuleStatus::Running, "waits for a reader");
   }
   if (is_stalled) return;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
-  hear_.event("stalled: " + detail_);
+  hear_.event("unresponsive: " + detail_);
 }
 
 void Supervised::measure(MonotonicTime time, bool with_memory) {
@@ -329,18 +329,19 @@ void Supervised::go_on(int status) {
   auto decision = restarts_.ended(status, now());
   using Next = Restarts::Next;
   if (decision.next == Next::Again && decision.delay.count() == 0) {
-    hear_.event(words + "; starting it again");
+    hear_.event(words + "; restarting");
     return start_again();
   }
   if (decision.next == Next::Again) {
-    hear_.event(words + "; starting it again in " + seconds_in_words(decision.delay));
+    hear_.event(words + "; restarting in " + seconds_in_words(decision.delay));
     change(ModuleStatus::Waiting, words);
     timer_ = loop_.call_at(MonotonicClock::now() + decision.delay, [this] { start_again(); });
     return;
   }
   bool is_given_up = decision.next == Next::GiveUp;
   hear_.event(is_given_up && plan_.restart != Restart::Never
-                  ? words + "; given up after start " + std::to_string(starts_)
+                  ? words + "; failed permanently" +
+                        (starts_ > 1 ? " after " + std::to_string(starts_) + " starts" : "")
                   : words);
   change(is_given_up ? ModuleStatus::GivenUp : ModuleStatus::Ended, is_given_up ? words : "");
   hear_.ended();

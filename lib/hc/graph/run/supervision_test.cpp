@@ -41,7 +41,7 @@ TEST_F(Supervision, OneThatIsKilledComesBackAndTheOthersGoOn) {
   };
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_EQ(count("a: killed by signal 9; starting it again"), 2);
+  EXPECT_EQ(count("a: killed by signal 9; restarting"), 2);
   EXPECT_EQ(count("b: started"), 1);
   EXPECT_EQ(module(*report, "a").restarts, 2);
   EXPECT_EQ(module(*report, "b").restarts, 0);
@@ -52,8 +52,8 @@ TEST_F(Supervision, OneThatEndsAtOnceIsPutOffAndGivenUp) {
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
   EXPECT_EQ(count("a: started"), 13);
-  EXPECT_EQ(count("a: failed with status 3; starting it again"), 4);
-  EXPECT_EQ(lines_.back(), "a: failed with status 3; given up after start 13");
+  EXPECT_EQ(count("a: failed with status 3; restarting"), 4);
+  EXPECT_EQ(lines_.back(), "a: failed with status 3; failed permanently after 13 starts");
   EXPECT_EQ(module(*report, "a").status, ModuleStatus::GivenUp);
   EXPECT_EQ(module(*report, "a").exit, 3);
 }
@@ -63,7 +63,7 @@ TEST_F(Supervision, BadArgumentsWouldBeBadAgain) {
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
   EXPECT_EQ(lines_, (std::vector<std::string>{"a: started",
-                                              "a: failed with status 2; given up after start 1"}));
+                                              "a: failed with status 2; failed permanently"}));
 }
 
 TEST_F(Supervision, AlwaysIsAfterAGoodEndToo) {
@@ -73,7 +73,7 @@ TEST_F(Supervision, AlwaysIsAfterAGoodEndToo) {
   };
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_EQ(count("a: ended; starting it again"), 4);
+  EXPECT_EQ(count("a: ended; restarting"), 4);
 }
 
 TEST_F(Supervision, AStoppingGraphStartsNothingAgain) {
@@ -81,7 +81,7 @@ TEST_F(Supervision, AStoppingGraphStartsNothingAgain) {
   add("a", "exit 3");
   add("b", "exec sleep 1000");
   heard_ = [this](std::string_view line) {
-    if (line.find("starting it again in") != std::string_view::npos) stop();
+    if (line.find("restarting in") != std::string_view::npos) stop();
   };
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
@@ -145,12 +145,13 @@ TEST_F(Supervision, OneThatIsStoppedIsShownAsStalledAndGoesOn) {
       reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
       reporter->count(1);
     }
-    if (line == "a: stalled: stopped by a signal" || line == "a: stalled: busy") reporter->count(2);
-    if (line == "a: goes on") stop();
+    if (line == "a: unresponsive: stopped by a signal" || line == "a: unresponsive: busy")
+      reporter->count(2);
+    if (line == "a: resumed") stop();
   };
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_TRUE(said("a: goes on"));
+  EXPECT_TRUE(said("a: resumed"));
 }
 
 TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
@@ -165,7 +166,7 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
     }
     if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9')
       process = std::stoi(std::string(line.substr(3)));
-    if (line == "a: stalled: busy") stop();
+    if (line == "a: unresponsive: busy") stop();
   };
   std::vector<std::string> seen;
   options_.state = [&](const GraphState& state) {
@@ -233,7 +234,7 @@ TEST_F(Supervision, AReportThatIsTooLargeIsNotTaken) {
         static_cast<void>((*open_sink(*parse_uri(peer_of(uri))))->send(large));
         Reporter(uri).count(1);
       });
-    if (line == "a: stalled: busy") stop();
+    if (line == "a: unresponsive: busy") stop();
   };
   auto report = run();
   reporting.join();
