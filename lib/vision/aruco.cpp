@@ -65,7 +65,8 @@ Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
   if (named == std::end(kDictionaries))
     return Error{Code::NotFound, "there is no ArUco dictionary \"" + dictionary + "\""};
   auto words = std::make_unique<Words>();
-  // A margin of one cell is closer to its marker than 0.05, the default; it would be taken instead.
+  // Of outlines closer than this, OpenCV keeps the outermost. With 0.05, the default, that is the
+  // edge of a white margin, which is no marker.
   words->parameters->minMarkerDistanceRate = 0.01;
   words->dictionary = pointer_to(aruco::getPredefinedDictionary(named->number));
   return ArucoFinder(std::move(words));
@@ -79,14 +80,19 @@ std::vector<Marker> ArucoFinder::find(const cv::Mat& grey) const {
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Marker marker{MarkerKind::Aruco, ids[i], {}};
     std::copy_n(corners[i].begin(), 4, marker.corners.begin());
-    refine_corners(grey, marker.corners);
-    // The inside and the outside of an edge may be two markers to OpenCV.
-    const bool is_known = std::any_of(markers.begin(), markers.end(), [&](const Marker& other) {
+    // The rim is read by its outer and by its inner edge where it is wide: the outer one counts.
+    const auto known = std::find_if(markers.begin(), markers.end(), [&](const Marker& other) {
       return other.id == marker.id &&
-             cv::norm(other.corners[0] - marker.corners[0]) < marker.mean_side() / 4;
+             cv::norm(other.middle() - marker.middle()) < marker.mean_side() / 4;
     });
-    if (!is_known) markers.push_back(marker);
+    if (known == markers.end())
+      markers.push_back(marker);
+    else if (marker.mean_side() > known->mean_side())
+      *known = marker;
   }
+  // Not as far as the inner edge of the rim, a cell of eight or so away.
+  for (auto& marker : markers)
+    refine_corners(grey, marker.corners, std::clamp(0.06 * marker.mean_side(), 1.5, 2.5));
   return markers;
 }
 

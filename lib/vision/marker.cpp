@@ -112,6 +112,10 @@ double Marker::mean_side() const {
   return sum / 4;
 }
 
+cv::Point2d Marker::middle() const {
+  return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+}
+
 bool refine_corners(const cv::Mat& grey, std::array<cv::Point2d, 4>& corners, double reach) {
   std::array<Line, 4> sides;
   for (std::size_t i = 0; i < 4; ++i) {

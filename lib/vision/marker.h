@@ -21,7 +21,8 @@ struct Marker {
   /// middle of the top left pixel.
   std::array<cv::Point2d, 4> corners;
 
-  [[nodiscard]] double mean_side() const;  ///< [px]
+  [[nodiscard]] double mean_side() const;    ///< [px]
+  [[nodiscard]] cv::Point2d middle() const;  ///< mean of the corners [px]
 };
 
 /// A camera as pictures come out of it.

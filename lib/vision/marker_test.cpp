@@ -218,6 +218,40 @@ TEST(ColourMarker, OtherThingsAreNone) {
   EXPECT_TRUE(find_colour_markers(cv::Mat::zeros(3, 3, CV_8UC3)).empty());
 }
 
+/// A face on a dark ground: its margin white, or with a printed frame in it.
+Face framed(int id, bool has_frame) {
+  Face face = face_of(MarkerKind::Aruco, id);
+  constexpr int kWide = 80;
+  cv::copyMakeBorder(face.rgb, face.rgb, kWide, kWide, kWide, kWide, cv::BORDER_CONSTANT,
+                     has_frame ? cv::Scalar::all(255) : cv::Scalar::all(110));
+  face.margin += kWide;
+  if (has_frame)
+    cv::rectangle(face.rgb, {50, 50, face.rgb.cols - 100, face.rgb.rows - 100}, {20, 20, 20}, 20);
+  return face;
+}
+
+TEST(Aruco, CornersAreRightAtEverySizeWithAndWithoutAFrame) {
+  for (const bool has_frame : {false, true})
+    for (const double side : {22.0, 34.0, 50.0, 80.0, 140.0, 220.0, 300.0}) {  // [px]
+      for (int i = 0; i < 3; ++i) {
+        const int id = 17 * i + 3;
+        const double z = kCamera.pinhole.fx * kSide / side;
+        const auto truth = truth_at(0.0007 * i, 0.0011 * i, z, 0.1, -0.2, 0.5 - 0.4 * i);
+        const Face face = framed(id, has_frame);
+        const auto found = find(MarkerKind::Aruco, view(face, truth, kCamera, 2));
+        ASSERT_EQ(found.size(), 1) << side << " px, frame " << has_frame << ", id " << id;
+        EXPECT_EQ(found[0].id, id);
+        for (std::size_t k = 0; k < 4; ++k) {
+          const double right = k == 1 || k == 2 ? 0.5 : -0.5, down = k >= 2 ? 0.5 : -0.5;
+          const cv::Vec3d at = truth.R * cv::Vec3d(kSide * right, kSide * down, 0) + truth.t;
+          const cv::Point2d corner(600 * at[0] / at[2] + 399.5, 600 * at[1] / at[2] + 299.5);
+          EXPECT_LT(cv::norm(found[0].corners[k] - corner), side < 30 ? 0.5 : 0.2)
+              << side << " px, frame " << has_frame << ", id " << id << ", corner " << k;
+        }
+      }
+    }
+}
+
 TEST(Finders, PicturesWithoutMarkersAndUnknownDictionaries) {
   cv::Mat noise(480, 640, CV_8U);
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);
