@@ -34,7 +34,8 @@ int main(int argc, char** argv) {
       module.output("sound", hc::sound<std::int16_t>(1).in(kSound22k), "a message for each text");
   auto words = module.output("words", hc::string().in(kText),
                              "a message for each text, with the sound's time, and in it a row for "
-                             "each word: START END WORD [s since the sound begins]");
+                             "each word: START END WORD [s since the sound begins]; words that "
+                             "eSpeak NG joins share their time by their letters");
   auto voice =
       module.parameter("voice", "en", "", "language or voice, as espeak-ng --voices has it");
   auto rate = module.parameter("rate", 175, "1/min", "words a minute", {.min = 80, .max = 450});

@@ -4,6 +4,7 @@
 #include <espeak-ng/speak_lib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include "words.h"
@@ -19,6 +20,7 @@ constexpr std::size_t kLongest = 600;  // [s]
 /// What comes while a text is synthesised.
 struct Gathered {
   Speech speech;
+  std::vector<std::size_t> begins;  // of the words, in the text
   std::u32string_view text;
   std::size_t most = 0;
   double last = 0;  // the last event [s]
@@ -38,6 +40,52 @@ void take(Gathered& gathered, const espeak_EVENT& event) {
   word.start = word.end = time;
   word.word = gathered.text.substr(begin, static_cast<std::size_t>(event.length));
   gathered.speech.words.push_back(std::move(word));
+  gathered.begins.push_back(begin);
+}
+
+bool is_punctuation(char32_t c) {
+  return c < 0x80 ? std::isalnum(static_cast<int>(c)) == 0 : c < 0xC0;
+}
+
+/// The words of a text between spaces, without the punctuation around them.
+std::vector<std::u32string_view> words_in(std::u32string_view text) {
+  std::vector<std::u32string_view> words;
+  while (!text.empty()) {
+    auto word = text.substr(0, text.find(U' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    while (!word.empty() && is_punctuation(word.front())) word.remove_prefix(1);
+    while (!word.empty() && is_punctuation(word.back())) word.remove_suffix(1);
+    if (!word.empty()) words.push_back(word);
+  }
+  return words;
+}
+
+/// eSpeak NG reports some neighbours as one word, the first ("There are", "on the"): each gets a
+/// share of the time of both, by its letters.
+std::vector<SpokenWord> split_joined(std::u32string_view text, const std::vector<SpokenWord>& words,
+                                     const std::vector<std::size_t>& begins) {
+  std::vector<SpokenWord> all;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto end = begins[i] + words[i].word.size();
+    const auto next = i + 1 < words.size() ? std::max(end, begins[i + 1]) : text.size();
+    const auto before = i == 0 ? words_in(text.substr(0, begins[0])) : words_in({});
+    // What follows without a space belongs to the same word.
+    const auto space = std::min(next, text.find(U' ', end));
+    const auto after = words_in(text.substr(space, next - space));
+    std::vector<std::u32string_view> group = before;
+    group.push_back(words[i].word);
+    group.insert(group.end(), after.begin(), after.end());
+    std::size_t letters = 0, done = 0;
+    for (const auto& word : group) letters += word.size();
+    const double span = (words[i].end - words[i].start) / static_cast<double>(letters);
+    for (const auto& word : group) {
+      const double start = words[i].start + span * static_cast<double>(done);
+      done += word.size();
+      all.push_back(
+          {start, words[i].start + span * static_cast<double>(done), std::u32string(word)});
+    }
+  }
+  return all;
 }
 
 extern "C" int gather(short* samples, int count, espeak_EVENT* events) {
@@ -89,5 +137,6 @@ Result<Speech> Synthesis::say(std::u32string_view text, const Voice& voice) {
   auto& words = gathered.speech.words;
   const double length = static_cast<double>(gathered.speech.samples.size()) / rate_;
   if (!words.empty() && words.back().end <= words.back().start) words.back().end = length;
+  words = split_joined(text, words, gathered.begins);
   return std::move(gathered.speech);
 }

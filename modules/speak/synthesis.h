@@ -17,7 +17,9 @@ struct Voice {
   int volume = 100;         ///< 0 … 200; above 100 the loud is cut off
 };
 
-/// A word, and when it is spoken. [s since the beginning of the sound]
+/// A word, and when it is spoken [s since the beginning of the sound]. Of words that eSpeak NG
+/// joins
+/// ("on the"), each gets a share of their time by its letters.
 struct SpokenWord {
   double start = 0, end = 0;
   std::u32string word;

@@ -50,6 +50,29 @@ TEST_F(SynthesisTest, words_have_their_times) {
   EXPECT_LE(last, seconds(speech));
 }
 
+TEST_F(SynthesisTest, joined_words_have_their_times) {
+  for (const std::string text :
+       {"There are two books on the table.", "Do not wait for the bus.", "It is one of the best.",
+        "I have been to the shop, and it was closed!", "He said: \"of the 12 apples\" - no.",
+        "of the", "Would you like some of this?", "That is what I will do in a moment."}) {
+    const auto speech = say(text);
+    std::string said, expected;
+    double last = 0;
+    for (const auto& word : speech.words) {
+      said += utf8(word.word) + " ";
+      EXPECT_GE(word.start, last - 1e-9) << text;
+      EXPECT_GT(word.end, word.start) << text << ": " << utf8(word.word);
+      last = word.end;
+    }
+    EXPECT_LE(last, seconds(speech) + 1e-9);
+    for (const char c : text)
+      if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == ' ') expected += c;
+    expected += ' ';
+    if (const auto at = expected.find("  "); at != expected.npos) expected.erase(at, 1);
+    EXPECT_EQ(said, expected);
+  }
+}
+
 TEST_F(SynthesisTest, the_voice_is_as_asked_for) {
   const auto plain = say("one two three four five");
   EXPECT_LT(seconds(say("one two three four five", {.rate = 300})), 0.8 * seconds(plain));
