@@ -42,7 +42,7 @@ void run(const Options& options) {
     }
     // In JSON the header stands as it came.
     bool is_read = options.raw    ? send(*raw, message, "-")
-                   : options.json ? print(to_json_as(expanded, message.header) + "\n")
+                   : options.json ? write_json(expanded, message.header, print)
                                   : print(to_readable(expanded));
     if (!is_read) break;
     skipper.whole_message();

@@ -22,8 +22,20 @@ void append_json_number(T value, std::string& json) {
   hc::append_number(value, json);
 }
 
+constexpr std::size_t kPiece = 64 << 10;  // [bytes]
+
+using Write = std::function<bool(std::string_view)>;
+
+/// Hands over what there is once it is long enough; false when no more is taken.
+bool flush(std::string& json, const Write& write) {
+  if (json.size() < kPiece) return true;
+  const bool is_taken = write(json);
+  json.clear();
+  return is_taken;
+}
+
 template <typename T>
-void append_matrix(const hc::MatrixView<const T>& matrix, std::string& json) {
+bool write_matrix(const hc::MatrixView<const T>& matrix, std::string& json, const Write& write) {
   json += '[';
   for (std::size_t y = 0; y < (matrix.empty() ? 0 : matrix.height()); ++y) {
     json += y == 0 ? "[" : ",[";
@@ -34,31 +46,41 @@ void append_matrix(const hc::MatrixView<const T>& matrix, std::string& json) {
       if (components > 1 && i % components == 0) json += '[';
       append_json_number(row[i], json);
       if (components > 1 && i % components == components - 1) json += ']';
+      if (!flush(json, write)) return false;
     }
     json += ']';
   }
   json += ']';
+  return true;
 }
 
-void append_rows_of_text(const hc::Message& message, std::string& json) {
+bool write_rows_of_text(const hc::Message& message, std::string& json, const Write& write) {
   json += '[';
   if (!message.header.empty()) {
     auto width = static_cast<std::size_t>(message.header.width);
     for (std::size_t at = 0; at < message.elements.size(); at += width) {
       if (at > 0) json += ',';
       hc::append_json_string(message.characters().substr(at, width), json);
+      if (!flush(json, write)) return false;
     }
   }
   json += ']';
+  return true;
 }
 
 }  // namespace
 
 std::string to_json(const hc::Message& message) {
-  return to_json_as(message, message.header);
+  std::string json;
+  write_json(message, message.header, [&](std::string_view piece) {
+    json += piece;
+    return true;
+  });
+  json.pop_back();
+  return json;
 }
 
-std::string to_json_as(const hc::Message& message, const hc::Header& header) {
+bool write_json(const hc::Message& message, const hc::Header& header, const Write& write) {
   std::string json = "{\"version\":1";
   auto add = [&](std::string_view key, std::int64_t value) {
     json.append(",\"").append(key).append("\":").append(std::to_string(value));
@@ -81,15 +103,16 @@ std::string to_json_as(const hc::Message& message, const hc::Header& header) {
   add_name("scalar", name(header.info.scalar));
   add_name("encoding", name(header.info.encoding));
   json += ",\"elements\":";
-  if (!message.plain()) {
+  bool is_taken = true;
+  if (!message.plain())
     json += "null";
-  } else if (header.info.type == hc::MatrixType::String) {
-    append_rows_of_text(message, json);
-  } else {
-    hc::visit_scalar(header.info.scalar,
-                     [&](auto zero) { append_matrix(*message.view<decltype(zero)>(), json); });
-  }
-  return json + "}";
+  else if (header.info.type == hc::MatrixType::String)
+    is_taken = write_rows_of_text(message, json, write);
+  else
+    hc::visit_scalar(header.info.scalar, [&](auto zero) {
+      is_taken = write_matrix(*message.view<decltype(zero)>(), json, write);
+    });
+  return is_taken && write(json + "}\n");
 }
 
 }  // namespace tool

@@ -2,7 +2,9 @@
 #pragma once
 // A message as one line of JSON (spec/mtp-1.md, section 8).
 
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include <hc/mtp/message.h>
 
@@ -11,7 +13,12 @@ namespace tool {
 /// The JSON form without a line end. Compressed elements become null: expand first.
 std::string to_json(const hc::Message& message);
 
-/// The same with another header than the message's: that with which compressed elements came.
-std::string to_json_as(const hc::Message& message, const hc::Header& header);
+/// Writes the JSON form and a line end piece by piece, of some 64 KiB.
+///
+/// @param header  written in place of the message's: that with which compressed elements came.
+/// @param write  takes a piece; false ends it.
+/// @returns  whether all was taken.
+bool write_json(const hc::Message& message, const hc::Header& header,
+                const std::function<bool(std::string_view piece)>& write);
 
 }  // namespace tool

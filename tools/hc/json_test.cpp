@@ -21,6 +21,24 @@ TEST(Json, IsOneLineOfNamedFields) {
       "\"scalar\":\"f64\",\"encoding\":\"text\",\"elements\":[[[0.5,-0,\"inf\"]]]}");
 }
 
+TEST(Json, IsWrittenInPieces) {
+  const auto message = std::move(hc::Draft::make(hc::Info{hc::MatrixType::IntensityImage, 1,
+                                                          hc::Scalar::U8, hc::Encoding::Binary},
+                                                 1000, 1000))
+                           .finish();
+  std::size_t largest = 0, all = 0;
+  EXPECT_TRUE(write_json(message, message.header, [&](std::string_view piece) {
+    largest = std::max(largest, piece.size());
+    all += piece.size();
+    return true;
+  }));
+  EXPECT_LT(largest, 100'000);
+  EXPECT_EQ(all, to_json(message).size() + 1);
+  int pieces = 0;
+  EXPECT_FALSE(write_json(message, message.header, [&](auto) { return ++pieces < 3; }));
+  EXPECT_EQ(pieces, 3);
+}
+
 TEST(Json, CompressedIsNull) {
   hc::Message message = std::move(hc::Draft::make(hc::Info(), 1, 1)).finish();
   message.header.info.encoding = hc::Encoding::Zstd;
