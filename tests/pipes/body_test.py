@@ -196,21 +196,24 @@ class SoundServer(Bodies):
         speaker = self.start_tone(free_port())
         ears = self.start("exec hc microphone --out mono=file:heard.mtp 2>ears", stdout=-3)
         heard = pathlib.Path(self.path("heard.mtp"))
-        ears_said = lambda: pathlib.Path(self.path("ears")).read_text().splitlines()
+        ears_said = lambda: re.findall(
+            r"the microphone gives (nothing|sound again)", self.read("ears")
+        )
         wait_until(lambda: heard.exists() and heard.stat().st_size > 0)
         for times in (1, 2):
             server.send_signal(signal.SIGSTOP)
             self.wait_for("the loudspeaker takes no sound; what comes is dropped until", times)
-            wait_until(lambda: len(ears_said()) == 2 * times - 1)
+            wait_until(lambda: ears_said().count("nothing") >= times)
             server.send_signal(signal.SIGCONT)
             self.wait_for("the loudspeaker takes sound again; ", times)
-            wait_until(lambda: len(ears_said()) == 2 * times)
+            wait_until(lambda: ears_said()[-1] == "sound again")
             size = heard.stat().st_size
             wait_until(lambda: heard.stat().st_size > size)
-        change = ["microphone: the microphone gives nothing; waits for it"]
-        change += ["microphone: the microphone gives sound again"]
-        self.assertEqual(ears_said(), 2 * change)
-        self.assertEqual(len(self.said().splitlines()), 4, self.said())
+        # Each change is logged once. There may be more of them, and other lines, on a busy machine.
+        pairs = ears_said()
+        self.assertEqual(pairs, ["nothing", "sound again"] * (len(pairs) // 2))
+        changes = re.findall(r"the loudspeaker takes (no sound|sound again)", self.said())
+        self.assertEqual(changes, ["no sound", "sound again"] * (len(changes) // 2))
         self.stop(speaker)
         self.stop(ears)
 
