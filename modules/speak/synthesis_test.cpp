@@ -53,7 +53,7 @@ TEST_F(SynthesisTest, words_have_their_times) {
 TEST_F(SynthesisTest, joined_words_have_their_times) {
   for (const std::string text :
        {"There are two books on the table.", "Do not wait for the bus.", "It is one of the best.",
-        "I have been to the shop, and it was closed!", "He said: \"of the 12 apples\" - no.",
+        "I have been to the shop, and it was closed!", "He said: \"of the 12 apples\", no.",
         "of the", "Would you like some of this?", "That is what I will do in a moment."}) {
     const auto speech = say(text);
     std::string said, expected;
