@@ -4,6 +4,7 @@
 
 import pathlib
 import re
+import resource
 import unittest
 
 from harness import DATA, Pipes, ROOT, free_port
@@ -23,7 +24,6 @@ class Documents(Pipes):
         pathlib.Path(self.path("graphs")).symlink_to(ROOT / "graphs")
         pathlib.Path(self.path("modules")).symlink_to(ROOT / "modules")
         pathlib.Path(self.path("data")).symlink_to(DATA)
-        said = ""
         for block in self.commands(name):
             with self.subTest(block):
                 expected = "".join(
@@ -33,11 +33,9 @@ class Documents(Pipes):
                     line + "\n" for line in block.splitlines() if not line.startswith("# ")
                 )
                 out = self.shell("set -e\n" + command)
-                said += out + self.err
                 for line in expected.splitlines():
                     pattern = re.escape(line).replace("…", ".*").replace(r"\.\.\.", ".*")
                     self.assertRegex(out + self.err, pattern)
-        return said
 
     def test_readme(self):
         self.run_document("README.md")
@@ -58,11 +56,26 @@ class Documents(Pipes):
         self.run_document("doc/head.md")
 
     def test_tasks(self):
-        said = self.run_document("doc/tasks.md")
-        errors = [float(error) for error in re.findall(r"RMS error ([\d.]+)°", said)]
-        self.assertEqual(len(errors), 2, said)
-        # 0.6° on an idle machine; a finder that is too slow for the ball has 20° and more.
-        self.assertLess(max(errors), 10, said)
+        self.run_document("doc/tasks.md")
+
+    def test_the_finder_of_the_tasks_finds_in_time_that_grows_with_the_image(self):
+        text = (ROOT / "doc/tasks.md").read_text()
+        self.write(
+            "finder.py", re.search(r"finder\.py <<'END'\n(.*?)END\n", text, re.S)[1].encode()
+        )
+
+        def seconds(width, height, count):
+            row = bytes((200, 20, 20)) * 40 + bytes((90, 90, 90)) * (width - 40)
+            image = b"1 7 0 0 8 5 30131 0 7 %d %d\n" % (width, height) + row * height + b"\n"
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            found = self.shell("python3 finder.py", data=image * count).splitlines()
+            u, v, _ = map(float, found[1].split())
+            self.assertEqual((len(found), u), (2 * count, 18))
+            self.assertAlmostEqual(v, height / 2, delta=2)
+            return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+        # As many pixels in all. A finder that copies the image at each pixel takes four times as long.
+        self.assertLess(seconds(800, 600, 6), 2.2 * seconds(400, 300, 24))
 
 
 if __name__ == "__main__":
