@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The robot head's ears and mouth: microphone, speaker, speech."""
 
+import array
+import json
+import math
 import os
 import pathlib
 import re
@@ -24,6 +27,23 @@ class Sound(Bodies):
                 "hc speaker --device none --save out.wav" % channels
             )
             self.assertEqual(self.read_wav("out.wav"), (16000, channels, samples))
+
+    def test_the_side_that_a_sound_comes_from(self):
+        mono = tone(16000, 0.3)
+        late = 6  # frames, of the 8 that lie between the ears
+        for first, sign in ((0, 1), (1, -1)):  # the left ear, the right one
+            stereo = array.array("h", bytes(4 * (len(mono) + late)))
+            stereo[first : first + 2 * len(mono) : 2] = mono
+            stereo[2 * late + 1 - first :: 2] = mono
+            self.write_wav("in.wav", stereo, 16000, 2)
+            out = self.shell(
+                "hc microphone in.wav --channels 2 --paced=false | "
+                "hc hearing --out direction=- | hc cat --json"
+            )
+            pans = [json.loads(line)["elements"][0][0][2] for line in out.splitlines()]
+            self.assertGreater(len(pans), 5)
+            for pan in pans[1:-1]:
+                self.assertAlmostEqual(sign * math.sin(pan), 0.71, delta=0.05)
 
     def test_pieces_follow_one_another_in_time(self):
         self.write_wav("in.wav", tone(22050, 0.1), 22050)

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// How loud it is, and from which side the sound comes.
+#include <hc/module/module.h>
+#include <sound/direction.h>
+#include <sound/format.h>
+
+int main(int argc, char** argv) {
+  hc::Module module{"hearing", "Measures the level and the direction of stereo sound."};
+  auto sound = module.input("sound", hc::sound<std::int16_t>(2), "left and right ear");
+  auto level = module.output("level", hc::table<double>(),
+                             "root of the mean square of each message, 1 is full scale");
+  auto direction = module.output("direction", hc::rotation<double>().in(hc::Coord::kHead),
+                                 "roll 0, tilt 0, pan [rad], > 0 to the left; nothing while it is "
+                                 "too quiet or comes from several sides");
+  auto base =
+      module.parameter("base", 0.18, "m", "distance between the ears", {.min = 0.01, .max = 1});
+  auto min_level = module.parameter("min_level", 0.005, "", "lowest level that has a direction",
+                                    {.min = 0, .max = 1});
+
+  module.on(sound, [&](const auto& message) {
+    const auto rate = hc::audio::rate_of(message.header.coord);
+    if (!rate) return;
+    const auto heard = hc::audio::hear(message.numbers(), *rate, *base);
+    level.send(hc::table({heard.level}));
+    if (heard.pan && heard.level >= *min_level)
+      direction.send(hc::rotation(0.0, 0.0, *heard.pan).in(hc::Coord::kHead));
+  });
+  return module.run(argc, argv);
+}
