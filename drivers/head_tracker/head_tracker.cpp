@@ -3,7 +3,6 @@
 
 #include <netdb.h>
 #include <netinet/in.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -17,7 +16,7 @@
 namespace hc {
 namespace {
 
-constexpr int kMostAtOnce = 10000;  // so that a flood does not keep the module from all else
+constexpr int kMostAtOnce = 10000;  // so that a flood does not starve the module
 
 Error failed(const std::string& what) {
   return {Code::System, what + ": " + std::generic_category().message(errno)};
@@ -76,11 +75,8 @@ HeadTracker::~HeadTracker() {
   if (socket_ >= 0) ::close(socket_);
 }
 
-Result<std::optional<TimedHeadPose>> HeadTracker::receive(std::chrono::milliseconds timeout,
-                                                          int stop) {
+Result<std::optional<TimedHeadPose>> HeadTracker::receive() {
   std::optional<TimedHeadPose> newest;
-  std::array<pollfd, 2> waiting = {pollfd{socket_, POLLIN, 0}, pollfd{stop, POLLIN, 0}};
-  if (::poll(waiting.data(), waiting.size(), static_cast<int>(timeout.count())) <= 0) return newest;
   for (int i = 0; i < kMostAtOnce; ++i) {
     std::array<std::byte, kHeadPacketBytes + 1> bytes{};
     alignas(cmsghdr) std::array<char, 256> control{};
@@ -109,16 +105,6 @@ Result<std::optional<TimedHeadPose>> HeadTracker::receive(std::chrono::milliseco
     }
   }
   return newest;
-}
-
-Presence::Change Presence::look(MonotonicTime now, bool heard, std::chrono::nanoseconds silence) {
-  if (heard) {
-    last_ = now;
-    return std::exchange(state_, State::There) == State::There ? Change::None : Change::Came;
-  }
-  if (state_ == State::Gone || now - last_ < silence) return Change::None;
-  state_ = State::Gone;
-  return Change::Silent;
 }
 
 }  // namespace hc

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A head tracker that speaks opentrack's UDP, heard at a port; and whether it is there.
+// A head tracker that sends opentrack's UDP packets to a port.
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include <drivers/head_tracker/pose.h>
-#include <hc/base/clock.h>
 #include <hc/base/result.h>
 
 namespace hc {
@@ -20,7 +18,7 @@ struct TimedHeadPose {
   std::int64_t time = 0;  ///< of the packet's arrival [ns since the Unix epoch]
 };
 
-/// Hears packets. For one thread.
+/// Receives packets. For one thread.
 class HeadTracker {
  public:
   /// @param host  an address of this machine: "127.0.0.1", "0.0.0.0" for all, "::1".
@@ -32,14 +30,16 @@ class HeadTracker {
   HeadTracker& operator=(HeadTracker&&) = delete;
   ~HeadTracker();
 
-  /// Waits for packets, and gives the newest of those that came: old ones are of no use to who
-  /// follows a head. Nothing when `timeout` has passed, `stop` is readable, or nothing was right.
+  /// The newest pose that has come; older ones are of no use for following a head. Nothing when no
+  /// valid packet has come. Never waits.
   ///
   /// Errors: System.
-  Result<std::optional<TimedHeadPose>> receive(std::chrono::milliseconds timeout, int stop = -1);
+  Result<std::optional<TimedHeadPose>> receive();
 
+  /// For poll().
+  [[nodiscard]] int descriptor() const { return socket_; }
   [[nodiscard]] int port() const { return port_; }
-  /// Packets that were no pose, and why the last was none.
+  /// Invalid packets so far, and why the last one was.
   [[nodiscard]] std::uint64_t ignored() const { return ignored_; }
   [[nodiscard]] const std::string& why_ignored() const { return why_ignored_; }
 
@@ -50,22 +50,6 @@ class HeadTracker {
   int port_ = 0;
   std::uint64_t ignored_ = 0;
   std::string why_ignored_;
-};
-
-/// Whether something is heard from again and again; tells the changes once each. Pure.
-class Presence {
- public:
-  enum class Change { None, Came, Silent };
-  /// @param now  when it begins to be waited for.
-  explicit Presence(MonotonicTime now) : last_(now) {}
-
-  /// @param heard  whether it was heard since the last look.
-  /// @param silence  how long nothing may be heard.
-  Change look(MonotonicTime now, bool heard, std::chrono::nanoseconds silence);
-
- private:
-  MonotonicTime last_;
-  enum class State { Waiting, There, Gone } state_ = State::Waiting;
 };
 
 }  // namespace hc

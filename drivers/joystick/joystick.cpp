@@ -3,7 +3,6 @@
 
 #include <SDL2/SDL.h>
 #include <fcntl.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,7 +30,7 @@ bool put(std::vector<T>& all, int at, T value) {
 
 }  // namespace
 
-/// The joystick that is held: SDL's, and its device file as what wakes us.
+/// The open joystick: SDL's, and its device file to be woken by.
 struct Joystick::Device {
   SDL_GameController* controller = nullptr;  // null for a joystick without a mapping
   SDL_Joystick* joystick = nullptr;
@@ -45,7 +44,7 @@ struct Joystick::Device {
     else if (joystick != nullptr)
       SDL_JoystickClose(joystick);
   }
-  /// Each who opens a device file gets all events, so SDL misses none that are taken here.
+  /// Every descriptor of a device file gets all events, so SDL misses none that are read here.
   void open_file() {
     const char* path = SDL_JoystickPath(joystick);
     if (path != nullptr && std::string_view(path).starts_with("/dev/"))
@@ -65,7 +64,7 @@ struct Joystick::Device {
 Joystick::Joystick() = default;
 
 Result<std::unique_ptr<Joystick>> Joystick::open() {
-  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // there is no window to be in front
+  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // there is no window
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0)
     return Error{Code::System, std::string("SDL: ") + SDL_GetError()};
@@ -84,23 +83,12 @@ milliseconds Joystick::pace() const {
   return device_->file >= 0 ? kWatched : kUnwatched;
 }
 
-bool Joystick::wait(milliseconds timeout, int stop) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + timeout;
-  while (true) {
-    if (take_events()) return true;
-    const auto left = std::chrono::ceil<milliseconds>(end - Clock::now());
-    if (left.count() <= 0) return false;
-    const int file = device_ == nullptr ? -1 : device_->file;
-    std::array<pollfd, 2> waiting = {pollfd{stop, POLLIN, 0}, pollfd{file, POLLIN, 0}};
-    ::poll(waiting.data(), waiting.size(), static_cast<int>(std::min(left, pace()).count()));
-    if (waiting[0].revents != 0) return false;
-    if (waiting[1].revents != 0) device_->drain_file();
-  }
+int Joystick::descriptor() const {
+  return device_ == nullptr ? -1 : device_->file;
 }
 
-/// Takes events up to one that is to be told by itself; whether the state has changed.
-bool Joystick::take_events() {
+bool Joystick::update() {
+  if (device_ != nullptr) device_->drain_file();
   bool changed = false;
   SDL_Event event;
   while (SDL_PollEvent(&event) != 0) {
@@ -186,7 +174,7 @@ bool Joystick::attach_any() {
   return false;
 }
 
-/// Lets go of what has gone, and of what it held.
+/// Closes an unplugged joystick and releases its buttons.
 void Joystick::detach() {
   device_.reset();
   state_.name.clear();

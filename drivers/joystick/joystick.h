@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The game controller that is plugged in, by SDL2; another joystick where it has no mapping. None
-// is no error: it may come, go and come back. One in the process, for one thread.
+// is no error: it may be plugged in later, and again. One in the process, for one thread.
 
 #include <chrono>
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace hc {
 
-/// What is held how. A controller's axes are, in this order, left stick x, y, right stick x, y
-/// (right and down > 0), left and right trigger (0 … 1); its buttons those of
+/// State of axes and buttons. A controller's axes are, in this order, left stick x, y, right stick
+/// x, y (right and down > 0), left and right trigger (0 … 1); its buttons those of
 /// SDL_GameControllerButton: A, B, X, Y, back, guide, start, left and right stick, left and right
 /// shoulder, up, down, left, right, … Another joystick's are in its own order.
 struct JoystickState {
@@ -32,23 +32,24 @@ class Joystick {
   Joystick& operator=(const Joystick&) = delete;
   ~Joystick();
 
-  /// Waits until the state has changed; false when `timeout` has passed or `stop` is readable. Each
-  /// press and release of a button is a change of its own, however close they are.
-  ///
-  /// SDL gives no descriptor. Where the joystick is a device file, this waits for that file, and
-  /// looks every 20 ms besides; else it looks every millisecond, and for new ones every 100 ms.
-  bool wait(std::chrono::milliseconds timeout, int stop = -1);
+  /// Takes events up to the next change of the state; false when there is none. Each press and
+  /// release of a button is a change of its own, however close they are. Never waits.
+  bool update();
 
-  /// All axes and buttons are 0 once it has gone.
+  /// The joystick's device file, readable when there may be events; -1 where there is none.
+  [[nodiscard]] int descriptor() const;
+  /// How long update() may be put off besides: SDL gives no descriptor. 20 ms with a device file,
+  /// 1 ms without one, 100 ms to find a new joystick.
+  [[nodiscard]] std::chrono::milliseconds pace() const;
+
+  /// All axes and buttons are 0 once it is unplugged.
   [[nodiscard]] const JoystickState& state() const { return state_; }
 
  private:
   struct Device;
   Joystick();
-  bool take_events();
   bool attach_any();
   void detach();
-  [[nodiscard]] std::chrono::milliseconds pace() const;
 
   std::unique_ptr<Device> device_;  ///< null: none
   JoystickState state_;

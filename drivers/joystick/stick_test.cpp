@@ -10,8 +10,6 @@ namespace {
 
 using hc::Stick;
 using hc::stick_of;
-using hc::StickTeller;
-using std::chrono::milliseconds;
 
 Stick stick(double x, double y, double dead_zone = 0.1) {
   return stick_of(std::array{x, y}, dead_zone);
@@ -36,21 +34,6 @@ TEST(Stick, too_few_axes_and_rubbish_are_the_middle) {
   EXPECT_EQ(stick_of({}, 0.1), Stick{});
   EXPECT_EQ(stick_of(std::array{1.0}, 0.1), Stick{});
   EXPECT_EQ(stick(std::nan(""), 0), Stick{});
-}
-
-TEST(StickTeller, tells_changes_at_once_and_repeats_while_it_is_out) {
-  constexpr milliseconds kPeriod{20};
-  StickTeller teller;
-  EXPECT_FALSE(teller.is_due(milliseconds(0), {}, kPeriod));
-  EXPECT_FALSE(teller.rest(milliseconds(0), kPeriod));
-  EXPECT_TRUE(teller.is_due(milliseconds(100), {0.5, 0}, kPeriod));
-  EXPECT_TRUE(teller.is_due(milliseconds(101), {0.6, 0}, kPeriod));
-  EXPECT_EQ(*teller.rest(milliseconds(102), kPeriod), milliseconds(19));
-  EXPECT_FALSE(teller.is_due(milliseconds(120), {0.6, 0}, kPeriod));
-  EXPECT_TRUE(teller.is_due(milliseconds(121), {0.6, 0}, kPeriod));
-  EXPECT_TRUE(teller.is_due(milliseconds(122), {}, kPeriod));
-  EXPECT_FALSE(teller.is_due(milliseconds(500), {}, kPeriod));
-  EXPECT_FALSE(teller.rest(milliseconds(500), kPeriod));
 }
 
 }  // namespace

@@ -3,34 +3,39 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace hc::pan_tilt {
 namespace {
 
-constexpr std::size_t kMostRemarks = 10;  // since all was well: garbage may look like many
+constexpr std::size_t kMostRemarks = 10;  // logged since all was well: garbage may look like many
 
 }  // namespace
 
 using Phase = Conversation::Phase;
 
-void Neck::set_device(MonotonicTime now, const std::string& device, int baud, bool stays) {
-  if (device == device_ && baud == baud_) return;
-  if (serial_) close(now, {Code::Stopped, device.empty() ? "has been taken away" : "is left"});
+void Neck::set_device(MonotonicTime now, const std::string& device, bool stays) {
+  if (device == device_) return;
+  if (serial_) close(now, {Code::Stopped, device.empty() ? "removed" : "closed"});
   device_ = device;
-  baud_ = baud;
   stays_ = stays;
-  pause_ = kFirstPause;
+  backoff_.reset();
   if (!device_.empty()) open(now);
+}
+
+void Neck::set_baud(MonotonicTime now, int baud) {
+  if (std::exchange(baud_, baud) == baud || device_.empty()) return;
+  if (serial_) close(now, {Code::Stopped, "reopening"});
+  backoff_.reset();
+  open(now);
 }
 
 void Neck::open(MonotonicTime now) {
   auto opened = Serial::open(device_, baud_);
   if (!opened) {
-    tell_fault(opened.error());
+    log_fault(opened.error());
     if (!stays_) device_.clear();
-    try_at_ = now + pause_;
-    pause_ = std::min<std::chrono::nanoseconds>(2 * pause_, kLongestPause);
-    return;
+    return backoff_.fail(now);
   }
   serial_ = std::move(*opened);
   conversation_.begin(now);
@@ -38,19 +43,18 @@ void Neck::open(MonotonicTime now) {
 }
 
 void Neck::close(MonotonicTime now, const Error& why) {
-  tell_fault(why);
+  log_fault(why);
   serial_.reset();
   conversation_.end();
   if (why.code == Code::Closed && !stays_) device_.clear();
-  try_at_ = now + pause_;
-  pause_ = std::min<std::chrono::nanoseconds>(2 * pause_, kLongestPause);
+  backoff_.fail(now);
 }
 
-void Neck::tell_fault(const Error& error) {
+void Neck::log_fault(const Error& error) {
   well_since_ = MonotonicTime::max();
   const bool is_garbage = error.code == Code::Malformed || error.code == Code::TooLarge;
-  if (told_.insert(is_garbage ? "garbage" : error.detail).second)
-    tell_(device_ + ": " + error.detail);
+  if (faults_.insert(is_garbage ? "garbage" : error.detail).second)
+    log_(device_ + ": " + error.detail);
 }
 
 void Neck::read(MonotonicTime now) {
@@ -66,11 +70,11 @@ void Neck::read(MonotonicTime now) {
 
 /// Does what the conversation asks for.
 void Neck::work(MonotonicTime now) {
-  if (auto fault = conversation_.fault()) tell_fault(*fault);
+  if (auto fault = conversation_.fault()) log_fault(*fault);
   if (auto remark = conversation_.remark();
       !remark.empty() && remarks_.size() < kMostRemarks && remarks_.insert(remark).second)
-    tell_(device_ + ": " + remark);
-  if (conversation_.phase() == Phase::Lost) return close(now, {Code::Stopped, "is opened anew"});
+    log_(device_ + ": " + remark);
+  if (conversation_.phase() == Phase::Lost) return close(now, {Code::Stopped, "reopening"});
   if (conversation_.phase() == Phase::Ready && well_since_ == MonotonicTime::max())
     well_since_ = now;
   if (const auto bytes = conversation_.bytes(); !bytes.empty() && serial_)
@@ -78,16 +82,16 @@ void Neck::work(MonotonicTime now) {
 }
 
 void Neck::pass(MonotonicTime now) {
-  if (!serial_ && !device_.empty() && now >= try_at_) open(now);
-  read(now);  // what has come is not overdue, however long nobody has looked
+  if (!serial_ && !device_.empty() && backoff_.is_due(now)) open(now);
+  read(now);  // an answer that has come is not overdue, however late it is read
   conversation_.pass(now);
   work(now);
   if (conversation_.phase() != Phase::Ready) return;
-  if (!was_ready_ || now - well_since_ >= kSettled) pause_ = kFirstPause;
-  if (was_ready_ && (told_.empty() || now - well_since_ < kSettled)) return;
-  tell_(device_ + ": " + (was_ready_ ? "answers again" : conversation_.character()));
+  if (!was_ready_ || now - well_since_ >= kSettled) backoff_.reset();
+  if (was_ready_ && (faults_.empty() || now - well_since_ < kSettled)) return;
+  log_(device_ + ": " + (was_ready_ ? "reconnected" : conversation_.character()));
   was_ready_ = true;
-  told_.clear();
+  faults_.clear();
   remarks_.clear();
 }
 

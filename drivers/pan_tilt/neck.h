@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A pan-tilt unit at its serial line: opens it, keeps the conversation going, opens it again when
-// it was lost, and tells of that in a line each. Never waits.
+// A pan-tilt unit on its serial line: opens it, keeps the conversation going, reconnects, and logs
+// a line for each change. Never waits.
 
 #include <functional>
 #include <optional>
@@ -10,26 +10,28 @@
 
 #include <drivers/pan_tilt/conversation.h>
 #include <drivers/pan_tilt/serial.h>
+#include <hc/base/backoff.h>
 
 namespace hc::pan_tilt {
 
 class Neck {
  public:
-  static constexpr std::chrono::milliseconds kFirstPause{100}, kLongestPause{2000};
-  static constexpr std::chrono::seconds kSettled{1};  ///< without a fault, before it is called well
+  static constexpr std::chrono::seconds kSettled{1};  ///< without a fault, before it counts as well
 
-  /// @param tell  hears a line when the unit is there, gone, or refuses something.
-  explicit Neck(std::function<void(std::string_view)> tell) : tell_(std::move(tell)) {}
+  /// @param log  gets a line when the unit is connected, disconnected, or refuses something.
+  explicit Neck(std::function<void(std::string_view)> log) : log_(std::move(log)) {}
 
-  /// What to open; "" for none. The same again changes nothing.
+  /// The device to open; "" for none. The same again changes nothing.
   ///
-  /// @param stays  the name stays valid when the device has gone, as of a serial port's; the number
-  /// of a pseudo-terminal may be another's by then, so its name has to be told again.
-  void set_device(MonotonicTime now, const std::string& device, int baud, bool stays);
+  /// @param stays  the name stays valid while the device is unplugged, as a serial port's; the
+  /// number of a pseudo-terminal may be another's by then, so it has to be set again.
+  void set_device(MonotonicTime now, const std::string& device, bool stays);
+  /// Its baud rate; 9600 at first. The same again changes nothing.
+  void set_baud(MonotonicTime now, int baud);
 
   /// For poll(); -1 while no line is open.
   [[nodiscard]] int descriptor() const { return serial_ ? serial_->descriptor() : -1; }
-  /// Takes what has come.
+  /// Reads what has come.
   void read(MonotonicTime now);
   /// Time passes; to be called every few ms.
   void pass(MonotonicTime now);
@@ -44,20 +46,19 @@ class Neck {
 
  private:
   void open(MonotonicTime now);
-  /// @param why  of Code::Closed where the device itself has gone.
+  /// @param why  of Code::Closed where the device is disconnected.
   void close(MonotonicTime now, const Error& why);
   void work(MonotonicTime now);
-  void tell_fault(const Error& error);
+  void log_fault(const Error& error);
 
-  std::function<void(std::string_view)> tell_;
+  std::function<void(std::string_view)> log_;
   Conversation conversation_;
   std::optional<Serial> serial_;
   std::string device_;
   int baud_ = 9600;
   bool stays_ = true;
-  MonotonicTime try_at_{0};
-  std::chrono::nanoseconds pause_ = kFirstPause;
-  std::set<std::string> told_;  // since all was well
+  Backoff backoff_;
+  std::set<std::string> faults_;  // logged since all was well
   std::set<std::string> remarks_;
   bool was_ready_ = false;
   MonotonicTime well_since_{0};

@@ -29,7 +29,7 @@ class NeckTest : public ::testing::Test {
     }
   }
   void plug() { terminal_.emplace(); }
-  void open(bool stays = true) { neck_.set_device(now_, terminal_->path(), 9600, stays); }
+  void open(bool stays = true) { neck_.set_device(now_, terminal_->path(), stays); }
   [[nodiscard]] std::string path() const { return terminal_->path(); }
 
   MonotonicTime now_{milliseconds(1000)};
@@ -53,13 +53,13 @@ TEST_F(NeckTest, finds_the_unit_and_commands_it) {
                        ": pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees"});
 }
 
-TEST_F(NeckTest, tells_once_that_there_is_no_device_and_tries_on) {
-  neck_.set_device(now_, "/no/such/device", 9600, true);
+TEST_F(NeckTest, logs_once_that_there_is_no_device_and_retries) {
+  neck_.set_device(now_, "/no/such/device", true);
   run(milliseconds(10'000));
   EXPECT_EQ(told_, std::vector<std::string>{"/no/such/device: open: No such file or directory"});
 }
 
-TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_told_again) {
+TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
   plug();
   open(false);
   run(milliseconds(100));
@@ -73,11 +73,11 @@ TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_told_again) {
   open(false);
   run(milliseconds(1500));
   ASSERT_EQ(told_.size(), 3U);
-  EXPECT_EQ(told_[1], old + ": the device has gone");
-  EXPECT_EQ(told_[2], path() + ": answers again");
+  EXPECT_EQ(told_[1], old + ": disconnected");
+  EXPECT_EQ(told_[2], path() + ": reconnected");
 }
 
-TEST_F(NeckTest, a_silent_unit_is_told_once_and_so_is_its_return) {
+TEST_F(NeckTest, a_silent_unit_is_logged_once_and_so_is_its_return) {
   plug();
   open();
   run(milliseconds(100));
@@ -85,14 +85,14 @@ TEST_F(NeckTest, a_silent_unit_is_told_once_and_so_is_its_return) {
   is_silent_ = true;
   run(milliseconds(20'000));
   EXPECT_EQ(told_, (std::vector<std::string>{path() + ": the unit does not answer",
-                                             path() + ": is opened anew"}));
+                                             path() + ": reopening"}));
   told_.clear();
   is_silent_ = false;
   run(milliseconds(5000));
-  EXPECT_EQ(told_, std::vector<std::string>{path() + ": answers again"});
+  EXPECT_EQ(told_, std::vector<std::string>{path() + ": reconnected"});
 }
 
-TEST_F(NeckTest, an_answer_that_came_while_nobody_looked_is_no_silence) {
+TEST_F(NeckTest, an_answer_that_came_while_nothing_was_read_is_no_silence) {
   plug();
   open();
   run(milliseconds(1500));
@@ -109,9 +109,9 @@ TEST_F(NeckTest, a_new_rate_opens_the_line_anew) {
   plug();
   open();
   run(milliseconds(100));
-  neck_.set_device(now_, path(), 38400, true);
+  neck_.set_baud(now_, 38400);
   run(milliseconds(1500));
-  EXPECT_EQ(told_.back(), path() + ": answers again");
+  EXPECT_EQ(told_.back(), path() + ": reconnected");
 }
 
 TEST_F(NeckTest, halts_what_it_has_begun_when_it_leaves) {

@@ -44,13 +44,13 @@ Error failure(std::string_view call) {
                     : number == EIO || number == ENXIO || number == ENODEV ? Code::Closed
                     : number == ENOTTY                                     ? Code::Unsupported
                                                                            : Code::System;
-  if (code == Code::Closed) return {code, "the device has gone"};
-  if (code == Code::Unsupported) return {code, "is no serial line"};
+  if (code == Code::Closed) return {code, "disconnected"};
+  if (code == Code::Unsupported) return {code, "not a serial line"};
   return {code, std::string(call) + ": " + std::strerror(number)};
 }
 
-/// Has the kernel hand over bytes as they come; some adapters gather them for 16 ms otherwise. What
-/// cannot do so is none the worse.
+/// Has the kernel deliver bytes as they come; some adapters gather them for 16 ms otherwise. Where
+/// that is not supported nothing changes.
 void hurry(int number) {
   serial_struct settings = {};
   if (ioctl(number, TIOCGSERIAL, &settings) != 0) return;
@@ -64,8 +64,7 @@ Result<Serial> Serial::open(const std::string& device, int baud) {
   speed_t code = B0;
   for (const Rate& rate : kRates)
     if (rate.baud == baud) code = rate.code;
-  if (code == B0)
-    return Error{Code::Unsupported, "there is no rate of " + std::to_string(baud) + " baud"};
+  if (code == B0) return Error{Code::Unsupported, "no such baud rate: " + std::to_string(baud)};
   int number = -1;
   do {
     number = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -74,13 +73,13 @@ Result<Serial> Serial::open(const std::string& device, int baud) {
   Serial serial(number);
   termios settings = {};
   if (tcgetattr(number, &settings) != 0) return failure("tcgetattr");
-  // Two who command one unit would take each other's answers. It ends with the process.
+  // Two programs on one unit would read each other's answers. The lock ends with the process.
   if (flock(number, LOCK_EX | LOCK_NB) != 0)
-    return Error{Code::System, "is in use by another program"};
+    return Error{Code::System, "in use by another program"};
   cfmakeraw(&settings);
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cc[VMIN] = 1;  // so that none is EAGAIN, and 0 that the device has gone
+  settings.c_cc[VMIN] = 1;  // so that no byte is EAGAIN, and 0 a disconnected device
   settings.c_cc[VTIME] = 0;
   if (cfsetspeed(&settings, code) != 0 || tcsetattr(number, TCSANOW, &settings) != 0)
     return failure("tcsetattr");
@@ -101,7 +100,7 @@ Serial::~Serial() {
 Result<std::string_view> Serial::read(std::span<char> room) {
   const ssize_t got = ::read(number_, room.data(), room.size());
   if (got > 0) return std::string_view(room.data(), static_cast<std::size_t>(got));
-  if (got == 0) return Error{Code::Closed, "the device has gone"};
+  if (got == 0) return Error{Code::Closed, "disconnected"};
   if (errno == EAGAIN || errno == EINTR) return std::string_view();
   return failure("read");
 }
@@ -115,7 +114,7 @@ Status Serial::write(std::string_view bytes) {
     }
     if (put < 0 && errno == EINTR) continue;
     if (put < 0 && errno != EAGAIN) return failure("write");
-    return Error{Code::System, "takes no more bytes"};
+    return Error{Code::System, "output buffer is full"};
   }
   return {};
 }

@@ -99,6 +99,10 @@ std::optional<Heard> Capture::take(std::chrono::milliseconds timeout, int stop) 
   return queue_->take();
 }
 
+int Capture::descriptor() const {
+  return queue_->event;
+}
+
 bool Capture::is_there() const {
   return SDL_GetAudioDeviceStatus(device_) != SDL_AUDIO_STOPPED;
 }

@@ -34,11 +34,13 @@ class Capture {
   Capture& operator=(const Capture&) = delete;
   ~Capture();
 
-  /// Waits for the next piece; nothing when `timeout` has passed or `stop` is readable. Pieces that
-  /// nobody takes wait for 2 s; the oldest are lost then.
+  /// Waits for the next piece; nothing when `timeout` has passed or `stop` is readable. The pieces
+  /// of 2 s wait to be taken; then the oldest are dropped.
   std::optional<Heard> take(std::chrono::milliseconds timeout, int stop = -1);
 
-  /// False once the device has gone.
+  /// For poll(): readable while there are pieces.
+  [[nodiscard]] int descriptor() const;
+  /// False once the device is disconnected.
   [[nodiscard]] bool is_there() const;
   /// Pieces that were lost so far.
   [[nodiscard]] std::int64_t lost() const;

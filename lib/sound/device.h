@@ -30,20 +30,6 @@ class AudioSystem {
   bool is_held_ = true;
 };
 
-/// When to try again what failed: after 0.1 s, then twice as long each time, up to 2 s. Pure.
-class Retry {
- public:
-  [[nodiscard]] bool is_due(MonotonicTime now) const { return now >= due_; }
-  void failed(MonotonicTime now) {
-    due_ = now + pause_;
-    pause_ = std::min<MonotonicTime>(2 * pause_, std::chrono::seconds(2));
-  }
-  void succeeded() { *this = {}; }
-
- private:
-  MonotonicTime due_{0}, pause_ = std::chrono::milliseconds(100);
-};
-
 /// Gives sound that comes in pieces the time of its first frame: counts frames, and begins anew
 /// where the count and the clock differ by more than 50 ms. Pure.
 class FrameClock {

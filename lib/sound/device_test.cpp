@@ -20,7 +20,6 @@ namespace {
 using hc::audio::Capture;
 using hc::audio::FrameClock;
 using hc::audio::Playback;
-using hc::audio::Retry;
 using std::chrono::milliseconds;
 
 class Device : public testing::Test {
@@ -106,19 +105,6 @@ TEST_F(Device, one_that_is_missing_is_told_by_its_error_alone) {
   EXPECT_FALSE(Playback::open("no such device", {16000, 1}));
   EXPECT_FALSE(Capture::open("no such device", {16000, 1}, 320));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-}
-
-TEST(Retry, waits_longer_each_time_up_to_2_s) {
-  Retry retry;
-  milliseconds now{5000};
-  for (int pause : {100, 200, 400, 800, 1600, 2000, 2000}) {
-    ASSERT_TRUE(retry.is_due(now));
-    retry.failed(now);
-    EXPECT_FALSE(retry.is_due(now + milliseconds(pause - 1)));
-    now += milliseconds(pause);
-  }
-  retry.succeeded();
-  EXPECT_TRUE(retry.is_due(milliseconds(0)));
 }
 
 TEST(FrameClock, counts_frames_and_begins_anew_after_a_gap) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smallest useful module: a picture comes in, a number goes out. brightness.awk beside it does
+// The smallest useful module: an image comes in, a number goes out. brightness.awk beside it does
 // the same on text.
 #include <numeric>
 
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {
-  hc::Module module{"brightness", "Measures how bright pictures are."};
+  hc::Module module{"brightness", "Measures how bright images are."};
   auto image = module.input(
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "camera picture");
+      "camera image");
   auto mean = module.output("mean", hc::table<double>(), "mean of all its numbers, 0 … 255");
 
   module.on(image, [&](const hc::Message& picture) {

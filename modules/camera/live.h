@@ -71,7 +71,7 @@ class LiveCameras {
   /// Waits for a picture or pair; the newest where several have come. Nothing when none has.
   /// Errors: without `reopen`, those of a camera.
   hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
-  /// Has the cameras work otherwise from now on.
+  /// Sets what the cameras are to do from now on. The same again changes nothing.
   void adjust(const Adjustment& adjustment);
   /// What there is to tell about the cameras, in lines: once for each change.
   std::vector<std::string> remarks();

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between two graphs: what may pass gets the numbers and the encoding of the other side. One
-// gateway is one way. How fast messages pass is its links' `rate`.
+// Between two graphs: what may pass gets the numbers and the encoding of the other side. A gateway
+// is one way. Its links' `rate` limits how fast.
 #include "gateway.h"
 
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"gateway", "Passes messages from one graph to another, renumbered."};
-  auto in = module.input("in", hc::anything(), "messages of this side");
-  auto out = module.output(
-      "out", hc::anything(),
-      "those that pass; encoded as asked for where they can be (pictures of u8 as jpeg)");
-  auto told = module.output("counts", hc::table<std::int64_t>(),
-                            "1 x 5 each second: messages passed; dropped for ttl, as not listed, "
+  auto in = module.input("in", hc::anything(), "messages of this graph");
+  auto out = module.output("out", hc::anything(),
+                           "those that pass, encoded as asked where possible (u8 images as jpeg)");
+  auto sent = module.output("counts", hc::table<std::int64_t>(),
+                            "5 x 1 each second: messages passed; dropped for ttl, as not listed, "
                             "without a route, as damaged");
   auto numbers = module.parameter("numbers", "", "",
-                                  "what src and dst become, as \"12=112 -2=-5\"; others stay",
+                                  "what src and dst become, e.g. \"12=112 -2=-5\"; others stay",
                                   {.fixed = true});
-  auto only = module.parameter("only", "", "", "dst that pass, as \"12 13 -1\"; none: all",
+  auto only = module.parameter("only", "", "", "dst that pass, e.g. \"12 13 -1\"; none: all",
                                {.fixed = true});
   auto only_from =
       module.parameter("only_from", "", "", "src that pass; none: all", {.fixed = true});
@@ -33,24 +32,20 @@ int main(int argc, char** argv) {
   module.on_raw(in, [&](const hc::Message& message) {
     hc::Message copy = message;
     if (!admit(copy.header, rules, counts)) return;
-    if (out.encoding()) {
-      auto encoded = in_encoding(copy, *out.encoding());
-      if (!encoded) {
-        ++counts.damaged;
-        return;
-      }
-      copy = std::move(*encoded);
+    auto encoded = out.encoding() ? in_encoding(copy, *out.encoding()) : hc::Result(copy);
+    if (!encoded) {
+      ++counts.damaged;
+      return;
     }
-    ++(out.forward(copy) > 0 ? counts.passed : counts.no_route);
+    ++(out.forward(*encoded) > 0 ? counts.passed : counts.no_route);
   });
   module.every(std::chrono::seconds(1), [&] {
-    auto table =
-        hc::table({counts.passed, counts.ttl, counts.unlisted, counts.no_route, counts.damaged});
-    table.header.time = module.now();
-    told.send(table);
+    sent.send(
+        hc::table({counts.passed, counts.ttl, counts.unlisted, counts.no_route, counts.damaged})
+            .at(module.now()));
   });
 
-  int status = module.run(argc, argv);
+  const int status = module.run(argc, argv);
   if (counts.total() > 0) module.log(counts.text());
   return status;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ears.h"
 
-#include <poll.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -41,50 +39,40 @@ Result<std::vector<std::int16_t>> FileEar::next(std::size_t frames) {
   return piece;
 }
 
-std::optional<Piece> DeviceEar::next(std::chrono::milliseconds timeout, int stop) {
-  const hc::SystemClock clock;
-  look(clock.monotonic());
-  if (capture_ == nullptr) {
-    pollfd waiting{stop, POLLIN, 0};
-    ::poll(&waiting, 1, static_cast<int>(timeout.count()));
-    return std::nullopt;
-  }
-  auto heard = capture_->take(timeout, stop);
-  const auto now = clock.monotonic();
-  if (!heard) {
-    if (now - heard_at_ > kPatience && !std::exchange(told_silent_, true))
-      tell_("the microphone gives nothing; waits for it");
-    return std::nullopt;
-  }
-  heard_at_ = now;
-  if (std::exchange(told_silent_, false)) tell_("the microphone gives sound again");
-  if (!told_lost_ && capture_->lost() > 0) {
-    told_lost_ = true;
-    tell_("sound is lost, since nobody takes it in time");
-  }
+std::optional<Piece> DeviceEar::next() {
+  if (capture_ == nullptr) return std::nullopt;
+  auto heard = capture_->take(std::chrono::milliseconds(0));
+  if (!heard) return std::nullopt;
+  heard_at_ = hc::SystemClock().monotonic();
+  if (std::exchange(is_silent_, false)) log_("microphone resumed");
+  if (capture_->lost() > 0 && !std::exchange(has_lost_, true))
+    log_("sound dropped: not read in time (further drops are not logged)");
   const auto frames = static_cast<std::int64_t>(heard->samples.size()) / format_.channels;
   return Piece{std::move(heard->samples), times_.stamp(frames, heard->time)};
 }
 
-void DeviceEar::look(hc::MonotonicTime now) {
+void DeviceEar::look() {
+  const auto now = hc::SystemClock().monotonic();
   if (capture_ != nullptr && !capture_->is_there()) {
     capture_.reset();
-    told_silent_ = false;
-    tell_("the microphone has gone; looks for it");
-    told_missing_ = true;
+    is_silent_ = false;
+    is_missing_ = true;
+    log_("microphone disconnected; retrying");
   }
-  if (capture_ != nullptr || !retry_.is_due(now)) return;
+  if (capture_ != nullptr) {
+    if (now - heard_at_ > kPatience && !std::exchange(is_silent_, true))
+      log_("microphone unresponsive; waiting");
+    return;
+  }
+  if (!backoff_.is_due(now)) return;
   auto opened = hc::audio::Capture::open(device_, format_, frames_);
   if (!opened) {
-    retry_.failed(now);
-    if (!told_missing_) tell_(opened.error().detail + "; looks for it");
-    told_missing_ = true;
+    backoff_.fail(now);
+    if (!std::exchange(is_missing_, true)) log_(opened.error().detail + "; retrying");
     return;
   }
   capture_ = std::move(*opened);
   heard_at_ = now;
-  retry_.succeeded();
-  if (was_there_ || told_missing_) tell_("the microphone is there");
-  was_there_ = true;
-  told_missing_ = false;
+  backoff_.reset();
+  if (std::exchange(is_missing_, false)) log_("microphone connected");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a microphone or a WAV file gives: pieces of sound with the time of their first frame.
+// Sound of a microphone or a WAV file, in pieces with the time of their first frame.
 
 #include <chrono>
 #include <cstdint>
@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include <hc/base/clock.h>
+#include <hc/base/backoff.h>
 #include <hc/base/result.h>
 #include <sound/capture.h>
 #include <sound/converter.h>
@@ -43,32 +43,34 @@ class FileEar {
   bool is_finished_ = false;
 };
 
-/// A microphone that may not be there, go, give nothing for kPatience, and come back. What happens
-/// to it is told once each.
+/// A microphone, which may be disconnected at any time, or give nothing for kPatience. Each change
+/// is logged once.
 class DeviceEar {
  public:
   static constexpr std::chrono::seconds kPatience{3};  ///< some servers begin late
-  using Tell = std::function<void(std::string_view line)>;
-  DeviceEar(std::string device, const hc::audio::Format& format, int frames, Tell tell)
+  using Log = std::function<void(std::string_view line)>;
+  DeviceEar(std::string device, const hc::audio::Format& format, int frames, Log log)
       : device_(std::move(device)),
         format_(format),
         frames_(frames),
-        tell_(std::move(tell)),
+        log_(std::move(log)),
         times_(format.rate) {}
 
-  /// Waits for the next piece, for so long at most, or until `stop` is readable.
-  std::optional<Piece> next(std::chrono::milliseconds timeout, int stop);
+  /// Checks whether the device is connected, and opens it again. To be called every 0.1 s.
+  void look();
+  /// For poll(): readable while there are pieces; -1 without a device.
+  [[nodiscard]] int descriptor() const { return capture_ ? capture_->descriptor() : -1; }
+  /// The next piece, if there is one. Never waits.
+  std::optional<Piece> next();
 
  private:
-  void look(hc::MonotonicTime now);
-
   std::string device_;
   hc::audio::Format format_;
   int frames_;
-  Tell tell_;
+  Log log_;
   hc::audio::FrameClock times_;
-  hc::audio::Retry retry_;
+  hc::Backoff backoff_;
   std::unique_ptr<hc::audio::Capture> capture_;
   hc::MonotonicTime heard_at_{0};  // or opened
-  bool was_there_ = false, told_missing_ = false, told_silent_ = false, told_lost_ = false;
+  bool is_missing_ = false, is_silent_ = false, has_lost_ = false;
 };

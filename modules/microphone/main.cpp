@@ -1,36 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ears: sound from a microphone or a WAV file.
-#include <algorithm>
-
 #include <hc/module/module.h>
-#include <hc/os/program.h>
 
 #include "ears.h"
 
 namespace {
 
 constexpr int kPiecesPerSecond = 50;             // of 20 ms
-constexpr std::chrono::milliseconds kLook{100};  // how long commands may go unnoticed
+constexpr std::chrono::milliseconds kLook{100};  // how often the device is checked
 constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
-
-template <typename Output>
-void send(Output& output, const Piece& piece, std::int32_t channels, std::int32_t coord) {
-  auto draft = output.loan(static_cast<std::int32_t>(piece.samples.size()) / channels, 1);
-  draft.header.time = piece.time;
-  draft.header.coord = coord;
-  std::copy(piece.samples.begin(), piece.samples.end(), draft.matrix().numbers().begin());
-  output.send(std::move(draft));
-}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  hc::Module module{"microphone", "Gives the sound of a microphone or a WAV file."};
+  hc::Module module{"microphone", "Sends the sound of a microphone or a WAV file."};
   auto mono = module.output("mono", hc::sound<std::int16_t>(1),
                             "pieces of 20 ms, where channels is 1; coord 20 … 24 by the rate");
   auto stereo = module.output("stereo", hc::sound<std::int16_t>(2),
                               "the same, left and right, where channels is 2");
-  auto file = module.parameter("file", "", "", "a WAV file instead of a microphone",
+  auto file = module.parameter("file", "", "", "WAV file instead of a microphone",
                                {.positional = true, .fixed = true});
   auto device = module.parameter(
       "device", "", "", "SDL's name of the microphone, \"\": the default", {.fixed = true});
@@ -44,8 +32,26 @@ int main(int argc, char** argv) {
   std::optional<FileEar> from_file;
   std::optional<DeviceEar> from_device;
   std::int32_t coord = 0;
-  std::int64_t start = 0, given = 0;
+  std::int64_t start = 0, sent = 0;
 
+  auto send = [&](const Piece& piece) {
+    const auto channel_count = static_cast<int>(*channels);
+    const auto message =
+        hc::sound<std::int16_t>(channel_count, piece.samples).at(piece.time).in(coord);
+    (channel_count == 1 ? mono : stereo).send(message);
+  };
+  auto send_from_file = [&] {
+    // At the end of a piece it has been heard, as by a microphone.
+    if (*paced) module.keep_rate(kPiecesPerSecond);
+    Piece piece;
+    piece.samples =
+        hc::value_or_end(from_file->next(static_cast<std::size_t>(*rate / kPiecesPerSecond)));
+    if (piece.samples.empty()) return false;
+    piece.time = start + sent / *rate * kSecond + sent % *rate * kSecond / *rate;
+    sent += static_cast<std::int64_t>(piece.samples.size()) / *channels;
+    send(piece);
+    return true;
+  };
   module.on_start([&] {
     const hc::audio::Format format{static_cast<int>(*rate), static_cast<int>(*channels)};
     auto known = hc::audio::coord_of(format.rate);
@@ -55,33 +61,20 @@ int main(int argc, char** argv) {
                                            " is not 8000, 16000, 22050, 44100 or 48000"});
     coord = *known;
     start = module.now();
-    if (!file->empty())
+    if (!file->empty()) {
       from_file.emplace(hc::value_or_end(FileEar::open(*file, format)));
-    else
-      from_device.emplace(*device, format, format.rate / kPiecesPerSecond,
-                          [&](std::string_view line) { module.log(line); });
-  });
-  auto send_piece = [&](const Piece& piece) {
-    if (*channels == 1)
-      send(mono, piece, 1, coord);
-    else
-      send(stereo, piece, 2, coord);
-  };
-  module.generate([&] {
-    if (from_device) {
-      if (auto piece = from_device->next(kLook, hc::stop_descriptor())) send_piece(*piece);
-      return true;
+      return module.generate(send_from_file);
     }
-    // At the end of a piece it has been heard, as by a microphone.
-    if (*paced) module.keep_rate(kPiecesPerSecond);
-    Piece piece;
-    piece.samples =
-        hc::value_or_end(from_file->next(static_cast<std::size_t>(*rate / kPiecesPerSecond)));
-    if (piece.samples.empty()) return false;
-    piece.time = start + given / *rate * kSecond + given % *rate * kSecond / *rate;
-    given += static_cast<std::int64_t>(piece.samples.size()) / *channels;
-    send_piece(piece);
-    return true;
+    from_device.emplace(*device, format, format.rate / kPiecesPerSecond,
+                        [&](std::string_view line) { module.log(line); });
+    from_device->look();
+  });
+  module.on_readable([&] { return from_device ? from_device->descriptor() : -1; },
+                     [&] {
+                       while (auto piece = from_device->next()) send(*piece);
+                     });
+  module.every(kLook, [&] {
+    if (from_device) from_device->look();
   });
   return module.run(argc, argv);
 }

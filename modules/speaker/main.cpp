@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mouth: plays sound, and writes it down.
+// A mouth: plays sound and writes it to a file.
 #include <hc/module/module.h>
 #include <hc/os/program.h>
 
@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};  // how often the device is looked after
+constexpr std::chrono::milliseconds kLook{100};  // how often the device is checked
 
 /// Sound of i16 and f32 in up to as many channels as can be played.
 hc::AnyKind any_sound() {
@@ -22,17 +22,17 @@ hc::AnyKind any_sound() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  hc::Module module{"speaker", "Plays sound, and writes it to a WAV file."};
+  hc::Module module{"speaker", "Plays sound and writes it to a WAV file."};
   auto sound = module.input("sound", any_sound(), "of a rate, coord 20 … 24; f32 from -1 to 1");
   auto device = module.parameter("device", "", "",
                                  "SDL's name of the loudspeaker, \"\": the default, \"none\": none",
                                  {.fixed = true});
   auto save = module.parameter(
       "save", "", "",
-      "WAV file to write too, whole at every moment; one of the same format is gone on with",
+      "WAV file to write, always a valid file; one of the same format is appended to",
       {.fixed = true});
   auto rate =
-      module.parameter("rate", 0, "Hz", "to play and write with, 0: that of the first sound",
+      module.parameter("rate", 0, "Hz", "of the device and the file, 0: that of the first sound",
                        {.min = 0, .max = 192000, .fixed = true});
   auto channels =
       module.parameter("channels", 0, "", "the same", {.min = 0, .max = 8, .fixed = true});
@@ -41,30 +41,21 @@ int main(int argc, char** argv) {
                        {.min = 0, .max = 60, .fixed = true});
 
   std::optional<Player> player;
-  bool told_rate = false;
   auto or_end = [](const hc::Status& status) {
     if (!status) throw hc::ModuleError(status.error());
   };
   module.on_start([&] {
-    PlayerOptions options;
-    options.is_heard = *device != "none";
-    options.device = *device;
-    options.file = *save;
-    options.rate = static_cast<int>(*rate);
-    options.channels = static_cast<int>(*channels);
-    options.buffer = *buffer;
     player.emplace(
-        options, [&](std::string_view line) { module.log(line); }, hc::stop_descriptor());
+        PlayerOptions{*device != "none", *device, *save, static_cast<int>(*rate),
+                      static_cast<int>(*channels), *buffer},
+        [&](std::string_view line) { module.log(line); }, hc::stop_descriptor());
   });
   module.on(sound, [&](const hc::Message& message) {
     const auto known = hc::audio::rate_of(message.header.coord);
-    if (!known) {
-      if (!told_rate)
-        module.log("leaves out sound of coordinate system " + std::to_string(message.header.coord) +
-                   ", which has no rate");
-      told_rate = true;
-      return;
-    }
+    if (!known)
+      return module.log_once("no rate", "sound dropped: coordinate system " +
+                                            hc::coord_text(message.header.coord) +
+                                            " has no sample rate");
     const hc::audio::Format format{*known, message.header.info.components};
     if (message.header.info.scalar == hc::Scalar::F32)
       or_end(player->play(hc::value_or_end(message.view<float>()).numbers(), format));
@@ -75,6 +66,6 @@ int main(int argc, char** argv) {
   module.on_end([&] { or_end(player->finish()); });
   const int status = module.run(argc, argv);
   if (player && player->dropped() > 0)
-    module.log(std::to_string(player->dropped()) + " messages were not heard");
+    module.log(std::to_string(player->dropped()) + " messages were dropped without a loudspeaker");
   return status;
 }

@@ -13,7 +13,7 @@ using hc::audio::Format;
 
 namespace {
 
-constexpr int kLook = 5;  // how often one looks whether there is room [ms]
+constexpr int kLook = 5;  // how often free room is looked for [ms]
 
 }  // namespace
 
@@ -55,7 +55,7 @@ Status Player::give_out() {
   if (samples.empty()) return {};
   if (writer_)
     if (auto written = writer_->write(samples); !written) return written;
-  if (!options_.is_heard) return {};
+  if (!options_.plays) return {};
   look();
   wait_until_at_most(options_.buffer);
   look();
@@ -78,7 +78,7 @@ void Player::wait_until_at_most(double seconds) {
     last = waiting;
     if (clock.monotonic() - since > kPatience) {
       stuck_at_ = waiting;
-      return tell_("the loudspeaker takes no sound; what comes is dropped until it does");
+      return log_("loudspeaker unresponsive; dropping sound");
     }
     pollfd stop{stop_, POLLIN, 0};
     if (::poll(&stop, 1, kLook) != 0) return;
@@ -88,36 +88,35 @@ void Player::wait_until_at_most(double seconds) {
 void Player::look_whether_stuck() {
   if (!stuck_at_ || playback_->waiting() >= *stuck_at_) return;
   stuck_at_.reset();
-  tell_("the loudspeaker takes sound again; " + std::to_string(dropped_ - dropped_told_) +
-        " messages were dropped");
-  dropped_told_ = dropped_;
+  log_("loudspeaker resumed; dropped " + std::to_string(dropped_ - dropped_logged_) + " messages");
+  dropped_logged_ = dropped_;
 }
 
 void Player::look() {
-  if (!options_.is_heard || !format_) return;
+  if (!options_.plays || !format_) return;
   const auto now = hc::SystemClock().monotonic();
   if (playback_ != nullptr && !playback_->is_there()) {
     playback_.reset();
     stuck_at_.reset();
-    told_missing_ = true;
-    tell_("the loudspeaker has gone; what comes is dropped until it is back");
+    is_missing_ = true;
+    log_("loudspeaker disconnected; dropping sound");
   }
   if (playback_ != nullptr) return look_whether_stuck();
-  if (!retry_.is_due(now)) return;
+  if (!backoff_.is_due(now)) return;
   auto opened = hc::audio::Playback::open(options_.device, *format_);
   if (!opened) {
-    retry_.failed(now);
-    if (!told_missing_) tell_(opened.error().detail + "; what comes is dropped until it is there");
-    told_missing_ = true;
+    backoff_.fail(now);
+    if (!is_missing_) log_(opened.error().detail + "; dropping sound");
+    is_missing_ = true;
     return;
   }
   playback_ = std::move(*opened);
-  retry_.succeeded();
-  if (told_missing_)
-    tell_("the loudspeaker is there; " + std::to_string(dropped_ - dropped_told_) +
-          " messages were dropped");
-  dropped_told_ = dropped_;
-  told_missing_ = false;
+  backoff_.reset();
+  if (is_missing_)
+    log_("loudspeaker connected; dropped " + std::to_string(dropped_ - dropped_logged_) +
+         " messages");
+  dropped_logged_ = dropped_;
+  is_missing_ = false;
 }
 
 Status Player::finish() {

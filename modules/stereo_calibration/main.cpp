@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The geometry of two cameras, from pictures of a chessboard that is shown to them.
+// The geometry of two cameras, from images of a chessboard.
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
+#include <fmt/core.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
 #include <vision/messages.h>
 
 namespace {
 
-constexpr std::int32_t kLeftImage = 7, kRightImage = 8;
-
-hc::AnyKind picture(std::int32_t coord) {
+hc::AnyKind image(std::int32_t coord) {
   return hc::any_of(hc::rgb_image<std::uint8_t>().in(coord),
                     hc::intensity_image<std::uint8_t>().in(coord));
 }
@@ -22,8 +20,9 @@ hc::AnyKind picture(std::int32_t coord) {
 int main(int argc, char** argv) {
   hc::Module module{"stereo_calibration",
                     "Finds the geometry of two cameras from views of a chessboard."};
-  auto left = module.input("left", picture(kLeftImage), "picture of the left eye");
-  auto right = module.input("right", picture(kRightImage), "the right eye's of the same time");
+  auto left = module.input("left", image(hc::Coord::kLeftImage), "image of the left eye");
+  auto right =
+      module.input("right", image(hc::Coord::kRightImage), "the right eye's of the same time");
   auto found = module.output("view", hc::table<double>(),
                              "views so far, views wanted, with each that is taken");
   auto result = module.output("score", hc::table<double>(),
@@ -39,9 +38,9 @@ int main(int argc, char** argv) {
                                {.min = 3, .max = 50, .fixed = true});
   auto square = module.parameter("square", 0.025, "m", "side of a square",
                                  {.min = 1e-4, .max = 10, .fixed = true});
-  auto least = module.parameter(
+  auto min_difference = module.parameter(
       "difference", 0.02, "",
-      "of the pictures' width: how far the corners of a view are at least from any other view's",
+      "of the images' width: minimum distance of the corners from those of any other view's",
       {.min = 0, .max = 1});
 
   hc::vision::Board board;
@@ -55,18 +54,15 @@ int main(int argc, char** argv) {
     const auto& calibration = calibrated.calibration;
     if (auto written = hc::vision::write_calibration(*file, calibration); !written)
       throw hc::ModuleError(written.error());
-    auto score =
+    result.send(
         hc::table({calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,
-                   calibration.baseline(), static_cast<double>(calibrated.views)});
-    score.header.time = time;
-    result.send(score);
-    char line[200];
-    std::snprintf(line, sizeof line,
-                  "rms %.3f px (left %.3f, right %.3f), rows differ by %.3f px, baseline %.4f m, "
-                  "%zu of %zu views: ",
-                  calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,
-                  calibration.baseline(), calibrated.views, views.size());
-    module.log(line + *file);
+                   calibration.baseline(), static_cast<double>(calibrated.views)})
+            .at(time));
+    module.log(fmt::format(
+        "rms {:.3f} px (left {:.3f}, right {:.3f}), rows differ by {:.3f} px, baseline {:.4f} m, "
+        "{} of {} views: {}",
+        calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,
+        calibration.baseline(), calibrated.views, views.size(), *file));
   };
   module.on_start([&] {
     if (*columns == *rows)
@@ -78,11 +74,11 @@ int main(int argc, char** argv) {
     const cv::Mat left_mat = hc::value_or_end(hc::as_mat(l));
     const cv::Mat right_mat = hc::value_or_end(hc::as_mat(r));
     if (left_mat.size() != right_mat.size() || (size.area() > 0 && left_mat.size() != size))
-      throw hc::ModuleError("the pictures have different sizes");
+      throw hc::ModuleError("the images have different sizes");
     size = left_mat.size();
     auto view = hc::vision::find_board(left_mat, right_mat, board);
     if (!view) return;
-    const double far = *least * size.width;
+    const double far = *min_difference * size.width;
     if (std::any_of(views.begin(), views.end(),
                     [&](const auto& other) { return hc::vision::difference(*view, other) < far; }))
       return;

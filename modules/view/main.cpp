@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows pictures in a window and keeps them as PNG files.
+// Shows images in a window and saves them as PNG files.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -41,7 +41,7 @@ bool has_display() {
   return child > 0 && ::waitpid(child, &status, 0) == child && status == 0;
 }
 
-/// Writes a picture so that whoever looks finds a whole one, the last or this.
+/// Replaces a file at once: a reader finds the previous image or this one, whole.
 void write_whole(const fs::path& path, const cv::Mat& bgr) {
   if (path.has_parent_path()) fs::create_directories(path.parent_path());
   fs::path unfinished = path;
@@ -54,19 +54,19 @@ void write_whole(const fs::path& path, const cv::Mat& bgr) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  hc::Module module{"view", "Shows pictures in a window and keeps them as PNG files."};
+  hc::Module module{"view", "Shows images in a window and saves them as PNG files."};
   auto image =
       module.input("image",
                    hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>(),
                               hc::intensity_image<std::uint16_t>(), hc::intensity_image<float>()),
-                   "picture; anything but u8 is shown in colours, blue for small");
+                   "anything but u8 is shown in colours, blue for small");
   auto save = module.parameter("save", "", "",
-                               "PNG file for the latest picture, or folder/ for all as SRC_SEQ.png",
+                               "PNG file for the latest image, or folder/ for all as SRC_SEQ.png",
                                {.positional = true});
   auto window =
       module.parameter("window", "auto", "", "show a window", {.choices = {"auto", "yes", "no"}});
   auto stay = module.parameter("stay", true, "",
-                               "keep windows after the last picture, until a key is pressed");
+                               "keep windows after the last image, until a key is pressed");
   auto min = module.parameter("min", 0.0, "", "value that is bluest; both 0: from the picture");
   auto max = module.parameter("max", 0.0, "", "value that is reddest; both 0: from the picture");
 
@@ -81,10 +81,10 @@ int main(int argc, char** argv) {
       throw hc::ModuleError("no display for a window and no file to save to: give --save");
   });
 
-  module.on(image, [&](const hc::Message& picture) {
-    const hc::Header& header = picture.header;
+  module.on(image, [&](const hc::Message& message) {
+    const hc::Header& header = message.header;
     if (header.empty()) return;
-    cv::Mat mat = hc::value_or_end(hc::as_mat(picture)), bgr;
+    cv::Mat mat = hc::value_or_end(hc::as_mat(message)), bgr;
     if (mat.depth() != CV_8U)
       cv::cvtColor(hc::vision::colour_coded(mat, *min, *max), bgr, cv::COLOR_RGB2BGR);
     else if (mat.channels() == 3)

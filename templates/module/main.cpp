@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this module is for, in a line or two. Hypercolumn's doc/modules.md tells how one is written.
+// What this module is for, in a line or two. Hypercolumn's doc/modules.md explains the API.
+#include <algorithm>
+
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {
   hc::Module module{"@NAME@", "Multiplies numbers by a factor."};
   auto numbers = module.input("numbers", hc::table<double>(), "any numbers");
-  auto product = module.output("product", hc::table<double>(), "the numbers times the factor");
-  auto factor = module.parameter("factor", 2.0, "", "what each number is multiplied by");
+  auto product = module.output("product", hc::table<double>(), "the numbers, multiplied");
+  auto factor = module.parameter("factor", 2.0, "", "factor of each number");
 
   module.on(numbers, [&](const auto& message) {
     auto draft = product.loan(message.header.width, message.header.height);
-    auto from = message.matrix().numbers();
-    auto to = draft.matrix().numbers();
-    for (std::size_t i = 0; i < from.size(); ++i) to[i] = *factor * from[i];
+    std::ranges::transform(message.numbers(), draft.numbers().begin(),
+                           [&](double number) { return *factor * number; });
     product.send(std::move(draft));
   });
   return module.run(argc, argv);

@@ -39,12 +39,17 @@ class Module(unittest.TestCase):
         status, _, err = self.run_module(IN, "--factor", "many")
         self.assertEqual((status, len(err.splitlines())), (2, 1), err)
 
+    def test_it_writes_the_canonical_form(self):
+        words = "0.1 100 1e+05 12345 1.5e-07 -0 nan -inf 5e-324 123456789012345683968"
+        data = b"1 1 0 0 8 5 120190 0 0 10 1\n%s\n" % words.encode()
+        self.assertEqual(self.run_module(data, "--factor=1")[1], data)
+
     def test_binary_comes_back(self):
         status, out, _ = self.run_module(IN, "--encoding", "product=binary", "--factor", "1")
         self.assertEqual(status, 0)
         self.assertEqual(self.run_module(out)[1], OUT)
 
-    def test_what_is_no_message_is_refused_in_one_line(self):
+    def test_an_invalid_message_is_refused_in_one_line(self):
         for data in (b"rubbish\n", b"1 2\n", IN[:-3], IN.replace(b"3 1\n", b"4 1\n"),
                      IN.replace(b"120190", b"30301"), IN.replace(b"2.5", b"x")):  # fmt: skip
             status, _, err = self.run_module(data)

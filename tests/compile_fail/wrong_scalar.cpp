@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// f64 does not go out of a port of f32.
+// An output of f32 does not take f64.
 #include <hc/module/module.h>
 
 void send(hc::Output<hc::PositionKind<float>>& output) {

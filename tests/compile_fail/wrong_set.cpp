@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The handler of two inputs that are taken together takes two messages.
+// A handler of two inputs takes two messages.
 #include <hc/module/module.h>
 
 void take(hc::Module& module, const hc::Input<hc::PositionKind<double>>& left,

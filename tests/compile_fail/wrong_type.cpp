@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text does not go out of a port of positions, and positions have no integers.
+// An output of positions does not take text.
 #include <hc/module/module.h>
 
 void send(hc::Output<hc::PositionKind<double>>& output) {

@@ -37,7 +37,7 @@ def read_messages(path):
 class Demonstrations(Pipes):
     def write_copy(self, name, *links, **changes):
         """A copy of a demonstration that records outputs, as `"herald.command"`, into files."""
-        text = (ROOT / "graphs" / name).read_text()
+        text = (ROOT / "tests/graphs" / name).read_text()
         for old, new in changes.items():
             self.assertIn(old.strip("_"), text)
             text = text.replace(old.strip("_"), str(new))

@@ -48,7 +48,9 @@ class Pipes(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
         self.environment = dict(os.environ, HC_DATA=DATA)
-        self.environment["PATH"] = "%s/bin:%s" % (BUILD, os.environ["PATH"])
+        self.environment["PATH"] = "{0}/bin:{0}/tests/programs:{1}".format(
+            BUILD, os.environ["PATH"]
+        )
         self.environment.pop("DISPLAY", None)
 
     def start(self, command, **options):

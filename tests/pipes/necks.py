@@ -164,5 +164,5 @@ class Necks(Pipes):
         return self.motion.angles()[-1][1]
 
     def answers_again(self, begin):
-        self.neck.wait_line("answers again", begin)
+        self.neck.wait_line("reconnected", begin)
         self.gaze.wait(3)

@@ -65,11 +65,9 @@ class PanTilt(Necks):
         self.command(0.3, 0.0)
         self.wait_motion(0.3)
         self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), 0)
-        self.assertEqual(self.neck.count("left out, as others"), 3)
+        self.assertEqual(self.neck.count("further ones are counted"), 3)
         self.neck.process.terminate()
-        self.neck.wait_line(
-            "left out: 2 of another time, 1 without a time, 0 while there was no unit, 1 without"
-        )
+        self.neck.wait_line("in all: not finite 1 time, stale 2 times, without a time 1 time")
         self.assertEqual(self.neck.process.wait(), 0)
 
     def stop_for(self, nanoseconds, program, meanwhile):
@@ -96,10 +94,10 @@ class PanTilt(Necks):
         self.assertEqual(pans, {str(round(0.3 / STEP))})
         self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), -STEP)
         # And there is no talk of a fault: the answers have waited too.
-        self.assertEqual(self.neck.count("left out, as others"), 2)
+        self.assertEqual(self.neck.count("further ones are counted"), 2)
         self.assertEqual(len(self.neck.lines), 3, self.neck.lines)
         self.neck.process.terminate()
-        self.neck.wait_line("left out: 40 of another time, 20 without a time")
+        self.neck.wait_line("in all: stale 40 times, without a time 20 times")
 
     def test_the_unit_stops_when_the_driver_is_killed_and_started_again(self):
         self.start_both()
@@ -127,7 +125,7 @@ class PanTilt(Necks):
         self.start_neck("--hold 0", device=link)
         self.neck.wait_line("neck: open: No such file")
         self.command(1.0, 0.0)
-        self.neck.wait_line("there is no unit yet")
+        self.neck.wait_line("pan-tilt unit not connected")
         self.start_fake(device=self.path("told"))
 
         def told():
@@ -144,7 +142,7 @@ class PanTilt(Necks):
         for pan in 0.2, -0.2:
             begin = len(self.neck.lines)
             self.fake.set("unplugged=true")
-            self.neck.wait_line("the device has gone", begin)
+            self.neck.wait_line("disconnected", begin)
             before = len(told())
             self.fake.set("unplugged=false")
             plug(before)
@@ -174,7 +172,7 @@ class PanTilt(Necks):
             begin = len(self.neck.lines)
             self.fake.set("unplugged=true")
             wait_until(lambda: len(self.neck.lines) > begin)
-            self.assertRegex(self.neck.lines[begin], "the device has gone|has been taken away")
+            self.assertRegex(self.neck.lines[begin], "disconnected|removed")
             self.command(1.0, 0.0)
             self.fake.set("unplugged=false")
             self.answers_again(begin)
@@ -189,7 +187,7 @@ class PanTilt(Necks):
         begin = len(self.neck.lines)
         self.fake.set("silent=true")
         self.neck.wait_line("does not answer", begin)
-        self.neck.wait_line("opened anew", begin)
+        self.neck.wait_line("reopening", begin)
         self.command(1.0, 0.0)
         self.fake.set("silent=false")
         self.answers_again(begin)
@@ -225,7 +223,7 @@ class PanTilt(Necks):
 
     def test_no_device(self):
         process = self.start("exec %span_tilt --device /dev/null --in - --out gaze.mtp" % PROGRAMS)
-        self.assertIn(b"/dev/null: is no serial line", process.stderr.readline())
+        self.assertIn(b"/dev/null: not a serial line", process.stderr.readline())
         process.terminate()
         self.assertEqual(process.wait(), 0)
 
@@ -241,7 +239,7 @@ class PanTilt(Necks):
         begin = len(self.neck.lines)
         self.fake.process.send_signal(signal.SIGKILL)
         self.fake.process.wait()
-        self.neck.wait_line("has gone", begin)
+        self.neck.wait_line("disconnected", begin)
         self.start_fake("--pan -0.4")
         self.answers_again(begin)
         self.assertAlmostEqual(self.gaze.angles()[-1][1], -0.4, delta=STEP)

@@ -19,7 +19,7 @@ class Tool(Pipes):
             ("hc cat --nonsense", 2, "hc cat: The following argument was not expected: --nonsense"),
             ("hc play", 2, "hc play: file is required"),
             ("hc run missing.toml", 1, "hc run: NotFound: missing.toml: cannot be read"),
-            ("hc camera nothing.jpg", 1, "camera: nothing.jpg: cannot be opened"),
+            ("hc camera nothing.jpg", 1, "camera: NotFound: nothing.jpg: no such file"),
             (
                 "echo rubbish | hc cat",
                 1,

@@ -152,7 +152,7 @@ class Watching(Graphs):
         self.stop_named(name, process)
 
     def test_the_global_workspace_is_bold(self):
-        text = (ROOT / "graphs/contest.toml").read_text()
+        text = (ROOT / "tests/graphs/contest.toml").read_text()
         text = (
             text.replace("version = 1\n", "").replace("2:0.9 4:0 ", "").replace("5:end", "600:end")
         )  # tracking wins for good

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <limits>
 
+#include <hc/mtp/coords.h>
 #include <hc/mtp/text.h>
 
 namespace tool {
@@ -64,30 +65,6 @@ std::string harmless(std::string_view text) {
 
 }  // namespace
 
-std::string coord_name(std::int32_t coord) {
-  struct Name {
-    std::int32_t coord;
-    const char* name;
-  };
-  // The registry of spec/mtp-1.md, R44.
-  constexpr Name kNames[] = {{1, "world"},          {2, "robot"},
-                             {3, "head"},           {4, "left_eye"},
-                             {5, "right_eye"},      {6, "cyclopean_eye"},
-                             {7, "left_image"},     {8, "right_image"},
-                             {9, "left_rectified"}, {10, "right_rectified"},
-                             {11, "depth"},         {12, "disparity"},
-                             {13, "gaze"},          {14, "supervisor"},
-                             {20, "sound_8k"},      {21, "sound_16k"},
-                             {22, "sound_22k"},     {23, "sound_44k"},
-                             {24, "sound_48k"},     {30, "text"},
-                             {40, "order"}};
-  if (coord >= 1000 && coord < 1'000'000)
-    return coord_name(coord / 1000) + " from " + coord_name(coord % 1000);
-  for (const Name& each : kNames)
-    if (each.coord == coord) return each.name;
-  return std::to_string(coord);
-}
-
 std::string time_in_words(std::int64_t time) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   std::time_t seconds = time / kSecond;
@@ -105,7 +82,7 @@ std::string to_readable(const hc::Message& message) {
                                  name(header.info.scalar), header.src, header.seq);
   if (header.dst != 0) text += fmt::format(" dst {}", header.dst);
   if (header.mode != 0) text += fmt::format(" mode {}", header.mode);
-  if (header.coord != 0) text += " in " + coord_name(header.coord);
+  if (header.coord != 0) text += " in " + hc::coord_text(header.coord);
   if (header.time != 0) text += " at " + time_in_words(header.time);
   text += "\n";
   if (!message.plain())

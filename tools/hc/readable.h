@@ -13,9 +13,6 @@ namespace tool {
 /// and the range of a large one.
 std::string to_readable(const hc::Message& message);
 
-/// "left_rectified" for 9, "head from left_eye" for 3004, the number where it has no name.
-std::string coord_name(std::int32_t coord);
-
 /// "2025-11-21 04:20:00.123456789", in UTC.
 std::string time_in_words(std::int64_t time);
 

@@ -159,6 +159,7 @@ void Module::Loop::run() {
 /// Whether nothing can come any more. A module that can be told to link an input anew waits for
 /// that where it has none; one without inputs has its timers.
 bool Module::Loop::all_ended() const {
+  if (module_.keeps_running_ && !module_.message_time_) return false;
   if (sources_.empty() &&
       (management_.commands() != nullptr || (module_.inputs_.empty() && !module_.timers_.empty())))
     return false;

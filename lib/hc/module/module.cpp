@@ -109,8 +109,10 @@ void Module::log(std::string_view line) const {
   static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + std::string(line) + "\n"));
 }
 
-void Module::log_once(const std::string& kind, std::string_view line) {
-  if (logged_[kind]++ == 0) log(std::string(line) + " (further ones are counted, not logged)");
+void Module::log_once(const std::string& kind, std::string_view line, std::int64_t count) {
+  std::int64_t& logged = logged_[kind];
+  if (std::exchange(logged, logged + count) == 0)
+    log(std::string(line) + " (further ones are counted, not logged)");
 }
 
 void Module::log_counts() const {

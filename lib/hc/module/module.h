@@ -196,6 +196,10 @@ class Module {
   /// Does not keep a module running whose inputs have ended.
   Timeout after(std::chrono::nanoseconds duration, std::function<void()> handler);
 
+  /// Has the module run until it is stopped, or has no reader left, though its inputs have ended:
+  /// for a device that sends by itself. Not with `--clock messages`.
+  void keep_running() { keeps_running_ = true; }
+
   /// Calls a handler when a descriptor of the module's own is readable, such as a device's, or has
   /// failed, between messages. Does not keep a module running whose inputs have ended; a generator
   /// is not woken by it.
@@ -218,7 +222,8 @@ class Module {
   ///     module.log_once("stale", "command dropped: 0.3 s old");
   ///
   /// @param kind  a literal, as the count names it: "stale 12 times".
-  void log_once(const std::string& kind, std::string_view line);
+  /// @param count  how many there were.
+  void log_once(const std::string& kind, std::string_view line, std::int64_t count = 1);
 
   /// Has the whole process yield the processor to closed loops: nice 10, batch scheduling. To be
   /// called before run(); for what takes a core and is in no hurry.
@@ -305,7 +310,7 @@ class Module {
   std::vector<Watch> watches_;
   std::vector<std::shared_ptr<Timeout::State>> timeouts_;
   std::map<std::string, std::int64_t> logged_;  // problems of a kind
-  bool routes_ = false, is_background_ = false;
+  bool routes_ = false, is_background_ = false, keeps_running_ = false;
   const Clock& clock_;
   internal::Attention attention_;
   Loop* loop_ = nullptr;                      // while it runs

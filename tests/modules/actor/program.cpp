@@ -4,11 +4,10 @@
 #include <hc/module/module.h>
 
 int run_actor(int argc, char** argv) {
-  hc::Module module{"actor", "Takes commands, and tells which ones."};
+  hc::Module module{"actor", "Takes commands and reports which."};
   auto command = module.input("command", hc::table<double>(), "any numbers");
-  auto done =
-      module.output("done", hc::table<std::int32_t>(),
-                    "1 x 2 for each command: its mode, and the mode in focus as it was taken");
+  auto done = module.output("done", hc::table<std::int32_t>(),
+                            "2 x 1 for each command: its mode, and the mode in focus at that time");
   module.actor(command);
   module.on(command, [&](const auto& message) {
     done.send(hc::table({message.header.mode, module.focus()}));

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include <hc/module/module.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageFiles final : public ImageSequence {
+ public:
+  explicit ImageFiles(std::vector<std::string> paths) : paths_(std::move(paths)) {}
+  cv::Mat next() override {
+    if (at_ == paths_.size()) return {};
+    cv::Mat image = cv::imread(paths_[at_]);
+    if (image.empty()) throw hc::ModuleError(paths_[at_] + ": not an image that can be read");
+    ++at_;
+    return image;
+  }
+  void rewind() override { at_ = 0; }
+
+ private:
+  std::vector<std::string> paths_;
+  std::size_t at_ = 0;
+};
+
+class Capture final : public ImageSequence {
+ public:
+  explicit Capture(std::string name) : name_(std::move(name)) { rewind(); }
+  cv::Mat next() override {
+    cv::Mat image;
+    if (!capture_.read(image) && !any_) throw hc::ModuleError(name_ + ": no image in it");
+    any_ = true;
+    return image;
+  }
+  void rewind() override {
+    const bool is_pipeline = name_.find('!') != std::string::npos;
+    any_ = false;
+    if (!capture_.open(name_, is_pipeline ? cv::CAP_GSTREAMER : cv::CAP_ANY))
+      throw hc::ModuleError(name_ + ": not a video, folder or image that can be opened");
+  }
+
+ private:
+  std::string name_;
+  cv::VideoCapture capture_;
+  bool any_ = false;  // an image has come
+};
+
+std::vector<std::string> images_in(const std::string& folder) {
+  std::vector<std::string> paths;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && cv::haveImageReader(entry.path().string()))
+      paths.push_back(entry.path().string());
+  if (paths.empty()) throw hc::ModuleError(folder + ": no images in this folder");
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+}  // namespace
+
+std::unique_ptr<ImageSequence> open_sequence(const std::string& name) {
+  std::error_code unreadable;
+  // Not a pipeline, an address, or a pattern like frame_%04d.png.
+  const bool is_path =
+      name.find_first_of("!%") == std::string::npos && name.find("://") == std::string::npos;
+  if (is_path && !fs::exists(name, unreadable))
+    throw hc::ModuleError(hc::Error{hc::Code::NotFound, name + ": no such file, folder or camera"});
+  if (fs::is_directory(name, unreadable)) return std::make_unique<ImageFiles>(images_in(name));
+  if (fs::is_regular_file(name, unreadable) && cv::haveImageReader(name))
+    return std::make_unique<ImageFiles>(std::vector<std::string>{name});
+  return std::make_unique<Capture>(name);
+}
