@@ -83,5 +83,6 @@ int main(int argc, char** argv) {
       disparity.send(std::move(found));
     }
   });
+  module.background();
   return module.run(argc, argv);
 }

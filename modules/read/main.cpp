@@ -81,5 +81,6 @@ int main(int argc, char** argv) {
                        module.has_focus()))
       text.send(hc::string(reading.text));
   });
+  module.background();
   return module.run(argc, argv);
 }
