@@ -41,7 +41,7 @@ class Failure {
   }
   explicit operator bool() const { return error_ != nullptr; }
   [[nodiscard]] Error error(Code code = Code::System) const {
-    return {code, error_ != nullptr ? error_->message : "Aravis gives no reason"};
+    return {code, error_ != nullptr ? error_->message : "unknown error of Aravis"};
   }
 
  private:
@@ -177,7 +177,7 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
 
 Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
   auto& all = *handles_;
-  if (*all.is_lost) return Error{Code::Closed, "it has gone"};
+  if (*all.is_lost) return Error{Code::Closed, "connection lost"};
   ArvBuffer* buffer = arv_stream_timeout_pop_buffer(
       all.stream, static_cast<guint64>(std::chrono::microseconds(timeout).count()));
   const auto now = std::chrono::steady_clock::now();
@@ -186,10 +186,10 @@ Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
   if (!is_whole) {
     if (buffer != nullptr) arv_stream_push_buffer(all.stream, buffer);
     const auto exposure = std::chrono::milliseconds(std::llround(all.exposure * 1e3));
-    if (*all.is_lost) return Error{Code::Closed, "it has gone"};
+    if (*all.is_lost) return Error{Code::Closed, "connection lost"};
     if (now - all.heard - exposure > all.patience) {
       *all.is_lost = true;
-      return Error{Code::Closed, "it is silent"};
+      return Error{Code::Closed, "no image received"};
     }
     return std::optional<Picture>();
   }
@@ -215,12 +215,12 @@ Status Camera::set_exposure(double exposure) {
   if (arv_camera_is_exposure_auto_available(camera, failure.out()))
     arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, failure.out());
   if (!arv_camera_is_exposure_time_available(camera, failure.out()))
-    return Error{Code::Unsupported, "has no exposure to set"};
+    return Error{Code::Unsupported, "the exposure cannot be set"};
   double least = 0, most = 0;
   arv_camera_get_exposure_time_bounds(camera, &least, &most, failure.out());
   if (failure) return failure.error();
   if (exposure * 1e6 < least || exposure * 1e6 > most)
-    return Error{Code::Unsupported, "its exposure is from " + std::to_string(least * 1e-6) +
+    return Error{Code::Unsupported, "exposure must be from " + std::to_string(least * 1e-6) +
                                         " to " + std::to_string(most * 1e-6) + " s"};
   arv_camera_set_exposure_time(camera, exposure * 1e6, failure.out());
   if (failure) return failure.error();
@@ -234,13 +234,13 @@ Status Camera::set_gain(double gain) {
   if (arv_camera_is_gain_auto_available(camera, failure.out()))
     arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, failure.out());
   if (!arv_camera_is_gain_available(camera, failure.out()))
-    return Error{Code::Unsupported, "has no gain to set"};
+    return Error{Code::Unsupported, "the gain cannot be set"};
   double least = 0, most = 0;
   arv_camera_get_gain_bounds(camera, &least, &most, failure.out());
   if (failure) return failure.error();
   if (gain < least || gain > most)
     return Error{Code::Unsupported,
-                 "its gain is from " + std::to_string(least) + " to " + std::to_string(most)};
+                 "gain must be from " + std::to_string(least) + " to " + std::to_string(most)};
   arv_camera_set_gain(camera, gain, failure.out());
   if (failure) return failure.error();
   return {};

@@ -50,7 +50,7 @@ class CaptureDevice final : public Device {
         remark_(std::move(remark)) {}
   hc::Result<std::optional<Frame>> next(std::chrono::milliseconds) override {
     Frame frame;
-    if (!capture_.read(frame.picture)) return hc::Error{hc::Code::Closed, "gives no picture"};
+    if (!capture_.read(frame.picture)) return hc::Error{hc::Code::Closed, "no image received"};
     frame.time = time_of_picture();
     return std::optional<Frame>(std::move(frame));
   }
@@ -94,7 +94,7 @@ hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name, const 
     const auto settings = settings_to_open(mode);
     if (!settings) return settings.error();
     for (const auto& setting : *settings) capture.set(setting.property, setting.value);
-    if (!capture.isOpened()) return hc::Error{hc::Code::Closed, "does not bear to be set"};
+    if (!capture.isOpened()) return hc::Error{hc::Code::Closed, "cannot be configured"};
     remark = difference(mode, cvRound(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
                         cvRound(capture.get(cv::CAP_PROP_FRAME_HEIGHT)),
                         capture.get(cv::CAP_PROP_FOURCC));

@@ -6,9 +6,8 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{100};  // of a thread that is to notice its end
-constexpr std::chrono::milliseconds kFirstPause{100}, kLongestPause{2000};
-constexpr std::chrono::seconds kSettled{1};  // one that is lost sooner is waited for longer
+constexpr std::chrono::milliseconds kPatience{100};  // until a thread notices that it is to end
+constexpr std::chrono::seconds kSettled{1};  // a camera that is lost sooner is retried later
 
 }  // namespace
 
@@ -26,9 +25,9 @@ struct LiveCameras::Camera {
   std::size_t side = 0;
   LiveCamera how;
   std::optional<Frame> newest;  // of one that is alone
-  bool told = false;            // that it is not there
-  std::string remark;           // as it was told
-  std::chrono::milliseconds wait = kFirstPause;
+  bool is_missing = false;      // and it is logged
+  std::string remark;           // as it was logged
+  hc::Backoff backoff;
   std::thread thread;
 };
 
@@ -57,8 +56,8 @@ void LiveCameras::tell(std::string line) {
   remarks_.push_back(std::move(line));
 }
 
-/// Waits, if nobody wants it to end; whether to go on.
-bool LiveCameras::pause(std::chrono::milliseconds time) {
+/// Waits; false when it is to end.
+bool LiveCameras::pause(std::chrono::nanoseconds time) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, time, [&] { return stopping_; });
   return !stopping_;
@@ -76,10 +75,10 @@ void LiveCameras::run(Camera& camera) {
       const std::lock_guard lock(mutex_);
       if (!reopen_) {
         failure_ = hc::Error{device.error().code, camera.how.name + ": " + device.error().detail};
-      } else if (!camera.told) {
-        camera.told = true;
-        remarks_.push_back(camera.how.name + ": not there: " + device.error().detail +
-                           "; trying again");
+      } else if (!camera.is_missing) {
+        camera.is_missing = true;
+        remarks_.push_back(camera.how.name + ": cannot connect: " + device.error().detail +
+                           "; retrying");
       }
     }
     {
@@ -89,8 +88,9 @@ void LiveCameras::run(Camera& camera) {
       if (failure_) stopping_ = true;
     }
     changed_.notify_all();
-    if (!pause(camera.wait)) return;
-    camera.wait = std::min(2 * camera.wait, kLongestPause);
+    const auto now = hc::SystemClock().monotonic();
+    camera.backoff.fail(now);
+    if (!pause(camera.backoff.due() - now)) return;
   } while (true);
 }
 
@@ -116,20 +116,22 @@ void LiveCameras::serve(Camera& camera, Device& device) {
     if (!frame) {
       if (!reopen_)
         failure_ = hc::Error{frame.error().code, camera.how.name + ": " + frame.error().detail};
-      else if (!camera.told)
-        remarks_.push_back(camera.how.name + ": lost: " + frame.error().detail + "; trying again");
-      camera.told = true;
+      else if (!camera.is_missing)
+        remarks_.push_back(camera.how.name + ": disconnected: " + frame.error().detail +
+                           "; reconnecting");
+      camera.is_missing = true;
       return;
     }
     const auto now = std::chrono::steady_clock::now();
-    if (first && now - *first > kSettled) camera.wait = kFirstPause;
+    if (first && now - *first > kSettled) camera.backoff.reset();
     if (!first) {
-      // It is there when it gives a picture, and not when it can merely be opened.
+      // It is connected when it gives an image, and not when it can merely be opened.
       first = now;
-      if (std::exchange(camera.told, false)) remarks_.push_back(camera.how.name + ": is back");
+      if (std::exchange(camera.is_missing, false))
+        remarks_.push_back(camera.how.name + ": reconnected");
     }
     const bool is_alone = std::none_of(cameras_.begin(), cameras_.end(), [&](const auto& other) {
-      return other->side != camera.side && !other->told;
+      return other->side != camera.side && !other->is_missing;
     });
     if (is_alone)
       camera.newest = std::move(**frame);
@@ -145,7 +147,7 @@ hc::Result<std::optional<LiveCameras::Taken>> LiveCameras::next(std::chrono::mil
     while (auto pair = pairing_.take()) taken = Taken{std::move((*pair)[0]), std::move((*pair)[1])};
     for (auto& camera : cameras_) {
       if (!camera->newest) continue;
-      // What came before its partner did is no news any more beside a pair.
+      // An image from before its partner came is stale beside a pair.
       auto frame = std::move(*std::exchange(camera->newest, {}));
       if (taken) continue;
       taken.emplace();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Cameras that give pictures by themselves, and may go and come back. Each is opened, waited for
-// and, when it is lost, opened again on a thread of its own, so that it holds up nothing else.
+// Cameras that send images by themselves, and may be disconnected. Each is opened, waited for and
+// reopened on a thread of its own, so that it holds up nothing else.
 
 #include <array>
 #include <chrono>
@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include <hc/base/backoff.h>
 #include <hc/base/result.h>
 
 #include "pairing.h"
@@ -81,7 +82,7 @@ class LiveCameras {
   void run(Camera& camera);
   void serve(Camera& camera, Device& device);
   void tell(std::string line);
-  bool pause(std::chrono::milliseconds time);
+  bool pause(std::chrono::nanoseconds time);
 
   const bool reopen_;
   std::mutex mutex_;  // of all below

@@ -87,8 +87,8 @@ TEST(LiveCameras, one_that_is_lost_is_told_once_and_once_when_it_is_back) {
     EXPECT_TRUE(cameras.next(milliseconds(20)));
     for (auto& line : cameras.remarks()) said.push_back(line);
   }
-  EXPECT_EQ(said,
-            (std::vector<std::string>{"eye: lost: pulled out; trying again", "eye: is back"}));
+  EXPECT_EQ(said, (std::vector<std::string>{"eye: disconnected: pulled out; reconnecting",
+                                            "eye: reconnected"}));
   take_until(cameras, any);
 }
 
@@ -98,10 +98,10 @@ TEST(LiveCameras, the_other_one_goes_on_alone) {
   take_until(cameras, pair());
   left.is_in = false;
   auto said = take_until(cameras, [](const auto& taken) { return !taken.left && taken.right; });
-  EXPECT_EQ(said, std::vector<std::string>{"left: lost: pulled out; trying again"});
+  EXPECT_EQ(said, std::vector<std::string>{"left: disconnected: pulled out; reconnecting"});
   left.is_in = true;
   said = take_until(cameras, pair());
-  EXPECT_EQ(said, std::vector<std::string>{"left: is back"});
+  EXPECT_EQ(said, std::vector<std::string>{"left: reconnected"});
 }
 
 TEST(LiveCameras, one_that_is_not_there_is_waited_for) {
@@ -110,7 +110,7 @@ TEST(LiveCameras, one_that_is_not_there_is_waited_for) {
   LiveCameras cameras({camera("eye", plug)}, true, {});
   while (plug.opened < 2) std::this_thread::yield();
   EXPECT_EQ(cameras.remarks(),
-            std::vector<std::string>{"eye: not there: no such camera; trying again"});
+            std::vector<std::string>{"eye: cannot connect: no such camera; retrying"});
 }
 
 TEST(LiveCameras, one_that_comes_and_goes_is_looked_for_less_and_less_often) {

@@ -29,7 +29,7 @@ hc::Result<std::vector<Setting>> settings_to_open(const CaptureMode& mode) {
   if (!mode.pixel_format.empty()) {
     if (mode.pixel_format.size() != 4)
       return hc::Error{hc::Code::Unsupported,
-                       "pixel format " + mode.pixel_format + " is no FourCC, as MJPG is"};
+                       "pixel format " + mode.pixel_format + " is not a FourCC, e.g. MJPG"};
     settings.push_back(
         {cv::CAP_PROP_FOURCC, static_cast<double>(fourcc_of(mode.pixel_format)), ""});
   }
@@ -46,15 +46,15 @@ std::vector<Setting> settings_of(const Adjustment& adjustment, const Found& foun
   std::vector<Setting> settings;
   if (adjustment.exposure > 0) {
     settings.push_back({cv::CAP_PROP_AUTO_EXPOSURE, kManual, ""});  // some have no other
-    settings.push_back({cv::CAP_PROP_EXPOSURE, adjustment.exposure / kExposureUnit,
-                        "does not take this exposure"});
+    settings.push_back(
+        {cv::CAP_PROP_EXPOSURE, adjustment.exposure / kExposureUnit, "exposure not supported"});
   } else {
     if (found.exposure > 0) settings.push_back({cv::CAP_PROP_EXPOSURE, found.exposure, ""});
     settings.push_back({cv::CAP_PROP_AUTO_EXPOSURE, kAuto, ""});
     settings.push_back({cv::CAP_PROP_AUTO_EXPOSURE, kAutoTime, ""});
   }
   if (adjustment.gain >= 0)
-    settings.push_back({cv::CAP_PROP_GAIN, adjustment.gain, "does not take this gain"});
+    settings.push_back({cv::CAP_PROP_GAIN, adjustment.gain, "gain not supported"});
   else if (found.gain >= 0)
     settings.push_back({cv::CAP_PROP_GAIN, found.gain, ""});
   return settings;
@@ -63,11 +63,11 @@ std::vector<Setting> settings_of(const Adjustment& adjustment, const Found& foun
 std::string difference(const CaptureMode& asked, int width, int height, double fourcc) {
   std::string text;
   if (asked.width > 0 && asked.height > 0 && (width != asked.width || height != asked.height))
-    text = "gives " + size_text(width, height) + " pixels, and not " +
+    text = "gives " + size_text(width, height) + " pixels instead of " +
            size_text(asked.width, asked.height);
   if (asked.pixel_format.size() == 4 && static_cast<int>(fourcc) != fourcc_of(asked.pixel_format))
-    text +=
-        std::string(text.empty() ? "gives" : ";") + " another format than " + asked.pixel_format;
+    text += std::string(text.empty() ? "gives" : ";") + " another pixel format than " +
+            asked.pixel_format;
   return text;
 }
 

@@ -45,8 +45,8 @@ TEST(V4l2, an_exposure_and_a_gain_are_set_and_refusals_told) {
                                     {cv::CAP_PROP_EXPOSURE, 200},
                                     {cv::CAP_PROP_GAIN, 5}}));
   EXPECT_EQ(settings[0].refusal, "");
-  EXPECT_EQ(settings[1].refusal, "does not take this exposure");
-  EXPECT_EQ(settings[2].refusal, "does not take this gain");
+  EXPECT_EQ(settings[1].refusal, "exposure not supported");
+  EXPECT_EQ(settings[2].refusal, "gain not supported");
 }
 
 TEST(V4l2, its_own_choice_is_automatic_or_what_it_was) {
@@ -64,10 +64,10 @@ TEST(V4l2, what_it_gives_otherwise_is_told) {
   const CaptureMode mode{800, 600, 30, "MJPG"};
   const double mjpg = cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
   EXPECT_EQ(difference(mode, 800, 600, mjpg), "");
-  EXPECT_EQ(difference(mode, 640, 480, mjpg), "gives 640 x 480 pixels, and not 800 x 600");
+  EXPECT_EQ(difference(mode, 640, 480, mjpg), "gives 640 x 480 pixels instead of 800 x 600");
   EXPECT_EQ(difference(mode, 640, 480, 0),
-            "gives 640 x 480 pixels, and not 800 x 600; another format than MJPG");
-  EXPECT_EQ(difference(mode, 800, 600, 0), "gives another format than MJPG");
+            "gives 640 x 480 pixels instead of 800 x 600; another pixel format than MJPG");
+  EXPECT_EQ(difference(mode, 800, 600, 0), "gives another pixel format than MJPG");
   EXPECT_EQ(difference({}, 640, 480, mjpg), "");
 }
 
