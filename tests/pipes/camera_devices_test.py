@@ -122,7 +122,9 @@ class CameraDevices(Pipes):
         self.assertEqual(self.said(), [])
         self.kill(fake)
         wait_until(self.said)
-        self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: disconnected: .*; reconnecting$")
+        self.assertRegex(
+            self.said()[0], "^camera: aravis:127.0.0.1: disconnected: .*; reconnecting$"
+        )
         self.assertIsNone(camera.poll())
         self.fake(1)
         wait_until(lambda: len(self.said()) == 2)
