@@ -181,7 +181,7 @@ class CameraDevices(Pipes):
         self.camera("aravis:127.0.0.1 aravis:127.0.0.2")
         wait_until(lambda: os.path.exists(self.path("seen")) and self.seen("src 2"))
         self.kill(second)
-        wait_until(lambda: [line for line in self.said() if "lost" in line])
+        wait_until(lambda: [line for line in self.said() if "disconnected" in line])
         self.assertRegex(self.said()[-1], "^camera: aravis:127.0.0.2: disconnected: ")
         rights, lefts = self.seen("src 2"), self.seen("src 1")
         wait_until(lambda: self.seen("src 1") > lefts + 5)
