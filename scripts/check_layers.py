@@ -6,7 +6,7 @@ import pathlib
 import re
 import sys
 
-# Library packages: over other libraries, without messages but in their messages.h.
+# Library packages: over other libraries, without messages but in their messages.h and module_frames.h.
 PACKAGES = {"frames", "vision", "graphics", "sound", "gaze"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
@@ -63,7 +63,7 @@ def problems(root):
             continue
         layer = layer_of(local)
         is_test = path.stem.endswith(("_test", "_conformance"))
-        is_messages = layer in PACKAGES and path.name == "messages.h"
+        is_messages = layer in PACKAGES and path.stem in ("messages", "module_frames")
         allowed = ALLOWED.get(layer, set()) | ({"mtp", "module"} if is_messages else set())
         for number, line in enumerate(path.read_text().splitlines(), 1):
             where = "%s:%d: " % (local, number)

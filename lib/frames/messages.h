@@ -70,7 +70,11 @@ Result<Eigen::Isometry3d> rigid_of(const Message& message) {
   return frames::rigid(matrix->template cast<double>());
 }
 
-/// The transformation of 4 x 4 that a message carries, whatever its coord.
+}  // namespace internal
+
+/// The transformation of 4 x 4 that a message carries, f32 or f64, whatever its coord.
+///
+/// Errors: Unsupported (another matrix type or shape; compressed); Malformed (frames::rigid()).
 inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
   const Header& header = message.header;
   if (header.info.type != MatrixType::Transformation || header.width != 4 || header.height != 4)
@@ -78,10 +82,9 @@ inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
                                         std::string(name(header.info.type)) + " of " +
                                         std::to_string(header.width) + " x " +
                                         std::to_string(header.height)};
-  return header.info.scalar == Scalar::F32 ? rigid_of<float>(message) : rigid_of<double>(message);
+  return header.info.scalar == Scalar::F32 ? internal::rigid_of<float>(message)
+                                           : internal::rigid_of<double>(message);
 }
-
-}  // namespace internal
 
 /// The pose that a `transformation` carries: 4 rows of 4 numbers of f32 or f64, for column vectors,
 /// p_to = T_to_from · (x y z 1)ᵀ, lengths in metres, frames in `coord` = 1000 · to + from
@@ -92,7 +95,7 @@ inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
 /// name two frames; what frames::rigid() refuses).
 /// Cost: no allocation unless it fails.
 inline Result<TimedPose> pose_of(const Message& message) {
-  auto T_to_from = internal::rigid_of(message);
+  auto T_to_from = rigid_of(message);
   if (!T_to_from) return T_to_from.error();
   const Header& header = message.header;
   if (header.coord / 1000 < 1 || header.coord / 1000 > 999 || header.coord % 1000 == 0)
@@ -108,7 +111,7 @@ inline Result<TimedPose> pose_of(const Message& message) {
 inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& message) {
   auto mover = frames.mover_of(message.header.src, message.header.coord);
   if (!mover) return mover.error();
-  auto pose = internal::rigid_of(message);
+  auto pose = rigid_of(message);
   if (!pose) return pose.error();
   return frames.tree.feed(std::string_view((*mover)->parent), std::string_view((*mover)->child),
                           message.header.time, *pose);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <frames/rigid.h>
 
+#include <cmath>
 #include <string>
 
 namespace hc::frames {
@@ -41,6 +42,13 @@ Eigen::Quaterniond rotation(double roll, double pitch, double yaw) {
   using Eigen::AngleAxisd, Eigen::Vector3d;
   return AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
          AngleAxisd(roll, Vector3d::UnitX());
+}
+
+Eigen::Vector3d angles_of(const Eigen::Matrix3d& R) {
+  constexpr double kUpright = 1e-9;  // nearer to ±π/2 only yaw − roll or yaw + roll is known
+  const double flat = std::hypot(R(0, 0), R(1, 0)), pitch = std::atan2(-R(2, 0), flat);
+  if (flat < kUpright) return {std::atan2(-R(1, 2), R(1, 1)), pitch, 0};
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
 }
 
 Pose between(const Pose& a, const Pose& b, double share) {

@@ -41,6 +41,10 @@ Result<Eigen::Isometry3d> rigid(const Eigen::Vector3d& p, const Eigen::Quaternio
 /// Source: REP 103, fixed axis roll, pitch, yaw.
 Eigen::Quaterniond rotation(double roll, double pitch, double yaw);
 
+/// Roll, pitch, yaw of a rotation, as rotation() takes them: pitch within ±π/2, where yaw is 0 at
+/// ±π/2. [rad]
+Eigen::Vector3d angles_of(const Eigen::Matrix3d& R);
+
 /// A rigid transformation as what can be interpolated.
 struct Pose {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();            ///< [m]

@@ -138,5 +138,19 @@ TEST(Between, TakesTheShorterWayAcrossHalfATurn) {
   EXPECT_NEAR(between(a, b, 0.5).q.angularDistance(a.q), kPi / 2, 1e-7);
 }
 
+TEST(Angles, AreThoseOfTheRotation) {
+  RandomMotion random(8);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Matrix3d R = random.transformation().linear();
+    const auto angles = angles_of(R);
+    EXPECT_TRUE(rotation(angles.x(), angles.y(), angles.z()).matrix().isApprox(R, 1e-12));
+  }
+  for (double pitch : {M_PI / 2, -M_PI / 2}) {
+    const Eigen::Matrix3d R = rotation(0.3, pitch, 0.5).matrix();
+    const auto angles = angles_of(R);
+    EXPECT_TRUE(rotation(angles.x(), angles.y(), angles.z()).matrix().isApprox(R, 1e-7));
+  }
+}
+
 }  // namespace
 }  // namespace hc::frames

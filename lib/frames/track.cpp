@@ -76,10 +76,4 @@ Pose Track::nearest(std::int64_t time) const {
   return at(gap ? gap->first : time);
 }
 
-bool Track::awaits(std::int64_t time, std::int64_t now, std::chrono::nanoseconds silence) const {
-  if (samples_.empty()) return false;
-  const std::int64_t last = samples_.back().time;
-  return last < time && now - last < silence.count();
-}
-
 }  // namespace hc::frames

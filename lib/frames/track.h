@@ -74,14 +74,6 @@ class Track {
   /// Cost: as at().
   [[nodiscard]] Pose nearest(std::int64_t time) const;
 
-  /// Whether a pose is still to come that tells more of a time: as long as poses come.
-  ///
-  /// @param now  on the clock of the poses [ns].
-  /// @param silence  after so long without a pose none is awaited.
-  [[nodiscard]] bool awaits(
-      std::int64_t time, std::int64_t now,
-      std::chrono::nanoseconds silence = std::chrono::milliseconds(100)) const;
-
   void clear() { samples_.clear(); }
 
  private:

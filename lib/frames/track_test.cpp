@@ -157,16 +157,6 @@ TEST(Track, TheNearestPoseIsThatOfWhatStandsStill) {
   EXPECT_EQ(x(60 * kSecond), 5);
 }
 
-TEST(Track, AwaitsAPoseAsLongAsTheyCome) {
-  constexpr std::int64_t kMillisecond = 1'000'000;
-  Track track{Memory{}};
-  EXPECT_FALSE(track.awaits(5, 5));
-  track.add(20 * kMillisecond, at_x(0));
-  EXPECT_FALSE(track.awaits(20 * kMillisecond, 20 * kMillisecond));
-  EXPECT_TRUE(track.awaits(20 * kMillisecond + 1, 119 * kMillisecond));
-  EXPECT_FALSE(track.awaits(20 * kMillisecond + 1, 120 * kMillisecond));
-}
-
 TEST(TrackDeathTest, OutsideIsABug) {
   Track track({});
   track.add(10, at_x(0));

@@ -91,9 +91,11 @@ Result<std::size_t> Tree::find(const Frame& frame) const {
   if (found != by_name_.end()) return found->second;
   std::string what = "there is no frame ";
   append_json_string(name, what);
-  std::vector<std::string> known;
-  for (const auto& [each, node] : by_name_) known.push_back(each);
-  return error(Code::NotFound, what + suggestion(name, known));
+  const auto known = names();
+  const std::string meant = suggestion(name, known);
+  if (meant.empty())
+    for (std::size_t i = 0; i < known.size(); ++i) what += (i == 0 ? "; known: " : ", ") + known[i];
+  return error(Code::NotFound, what + meant);
 }
 
 std::size_t Tree::depth(std::size_t node) const {
@@ -184,47 +186,90 @@ Result<const Track*> Tree::track_of(std::size_t child) const {
   return track;
 }
 
-/// T_to_from of a frame and one above it.
-Result<Eigen::Isometry3d> Tree::climb(std::size_t from, std::size_t to, std::int64_t time) const {
-  Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();
-  for (; from != to; from = nodes_[from].parent) {
-    const auto& joint = nodes_[from].joint;
-    if (const auto* fixed = std::get_if<Eigen::Isometry3d>(&joint)) {
-      T_to_from = *fixed * T_to_from;
-      continue;
-    }
-    auto track = track_of(from);
-    if (!track) return track.error();
-    const TimeSpan span = (*track)->known();
-    if (time < span.first || time > span.last)
-      return error(Code::NotFound, joint_name(from) + " is known from " +
-                                       std::to_string(span.first) + " to " +
-                                       std::to_string(span.last) + " ns" + outside(time, span));
-    if (auto gap = (*track)->gap_at(time))
-      return error(Code::NotFound, joint_name(from) + " is not known between " +
-                                       std::to_string(gap->first) + " and " +
-                                       std::to_string(gap->last) + " ns, asked for " +
-                                       std::to_string(time) + " ns: a gap of " +
-                                       duration(static_cast<std::uint64_t>(gap->last) -
-                                                static_cast<std::uint64_t>(gap->first)));
-    T_to_from = (*track)->at(time).transformation() * T_to_from;
-  }
-  return T_to_from;
+Result<Eigen::Isometry3d> Tree::joint_at(std::size_t child, std::int64_t time) const {
+  auto track = track_of(child);
+  if (!track) return track.error();
+  if (*track == nullptr) return std::get<Eigen::Isometry3d>(nodes_[child].joint);
+  const TimeSpan span = (*track)->known();
+  if (time < span.first || time > span.last)
+    return error(Code::NotFound, joint_name(child) + " is known from " +
+                                     std::to_string(span.first) + " to " +
+                                     std::to_string(span.last) + " ns" + outside(time, span));
+  if (auto gap = (*track)->gap_at(time))
+    return error(Code::NotFound, joint_name(child) + " is not known between " +
+                                     std::to_string(gap->first) + " and " +
+                                     std::to_string(gap->last) + " ns, asked for " +
+                                     std::to_string(time) + " ns: a gap of " +
+                                     duration(static_cast<std::uint64_t>(gap->last) -
+                                              static_cast<std::uint64_t>(gap->first)));
+  return (*track)->at(time).transformation();
 }
 
-Result<Eigen::Isometry3d> Tree::lookup(const Frame& target, const Frame& source,
-                                       std::int64_t time) const {
+Eigen::Isometry3d Tree::joint_nearest(std::size_t child, std::int64_t time) const {
+  if (const auto* fixed = std::get_if<Eigen::Isometry3d>(&nodes_[child].joint)) return *fixed;
+  const auto& track = std::get<Track>(nodes_[child].joint);
+  return track.empty() ? Eigen::Isometry3d::Identity() : track.nearest(time).transformation();
+}
+
+template <typename JointOf>
+Result<Eigen::Isometry3d> Tree::product(const Frame& target, const Frame& source,
+                                        const JointOf& joint_of) const {
   auto t = find(target), s = find(source);
   if (!t) return t.error();
   if (!s) return s.error();
   auto common = find_common(*t, *s);
   if (!common) return common.error();
-  auto T_common_source = climb(*s, *common, time);
-  if (!T_common_source) return T_common_source.error();
-  auto T_common_target = climb(*t, *common, time);
-  if (!T_common_target) return T_common_target.error();
-  Eigen::Isometry3d T_target_source = T_common_target->inverse() * *T_common_source;
+  Eigen::Isometry3d T_common[2];  // of the target and the source
+  for (int i = 0; i < 2; ++i) {
+    T_common[i].setIdentity();
+    for (std::size_t at = i == 0 ? *t : *s; at != *common; at = nodes_[at].parent) {
+      Result<Eigen::Isometry3d> joint = joint_of(at);
+      if (!joint) return joint.error();
+      T_common[i] = *joint * T_common[i];
+    }
+  }
+  Eigen::Isometry3d T_target_source = T_common[0].inverse() * T_common[1];
   return T_target_source;
+}
+
+Result<Eigen::Isometry3d> Tree::lookup(const Frame& target, const Frame& source,
+                                       std::int64_t time) const {
+  return product(target, source, [&](std::size_t child) { return joint_at(child, time); });
+}
+
+Result<Eigen::Isometry3d> Tree::nearest(const Frame& target, const Frame& source,
+                                        std::int64_t time) const {
+  return product(target, source, [&](std::size_t child) { return joint_nearest(child, time); });
+}
+
+bool Tree::is_ahead(const Frame& target, const Frame& source, std::int64_t time) const {
+  bool is_ahead = false;
+  auto look = [&](std::size_t child) -> Result<Eigen::Isometry3d> {
+    const auto* track = std::get_if<Track>(&nodes_[child].joint);
+    is_ahead |= track != nullptr && (track->empty() || track->known().last < time);
+    return Eigen::Isometry3d::Identity();
+  };
+  return product(target, source, look).has_value() && is_ahead;
+}
+
+std::vector<std::string> Tree::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, node] : by_name_) names.push_back(name);
+  return names;
+}
+
+Result<std::vector<std::string>> Tree::chain(const Frame& target, const Frame& source) const {
+  auto t = find(target), s = find(source);
+  if (!t) return t.error();
+  if (!s) return s.error();
+  auto common = find_common(*t, *s);
+  if (!common) return common.error();
+  std::vector<std::string> names, down;
+  for (std::size_t at = *s; at != *common; at = nodes_[at].parent) names.push_back(nodes_[at].name);
+  for (std::size_t at = *t; at != *common; at = nodes_[at].parent) down.push_back(nodes_[at].name);
+  names.push_back(nodes_[*common].name);
+  names.insert(names.end(), down.rbegin(), down.rend());
+  return names;
 }
 
 Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {

@@ -106,6 +106,14 @@ class Tree {
   [[nodiscard]] Result<Eigen::Isometry3d> lookup(const Frame& target, const Frame& source,
                                                  std::int64_t time) const;
 
+  /// The same of what stands still unless a pose says otherwise, such as a head whose unit is
+  /// silent: a joint that is not known at `time` is where it was at the last time before that is
+  /// known (or at the first after it), and one that was never fed is where its parent is.
+  ///
+  /// Errors: NotFound (no such frame; frames that are not joined). Cost: as lookup().
+  [[nodiscard]] Result<Eigen::Isometry3d> nearest(const Frame& target, const Frame& source,
+                                                  std::int64_t time) const;
+
   /// When lookup() of these two succeeds: the latest span without a gap in it, whose `last` is
   /// their latest common time. A default TimeSpan, hence always, where all that lies between is
   /// fixed.
@@ -113,6 +121,17 @@ class Tree {
   /// Cost: linear in the poses of that span.
   /// Errors: NotFound (no such frame; not joined; a joint that was not fed; no time in common).
   [[nodiscard]] Result<TimeSpan> known(const Frame& target, const Frame& source) const;
+
+  /// Whether a pose may still come that tells of a time: a joint between the two has none at or
+  /// after it. False where there are no such frames, or all that lies between is fixed.
+  [[nodiscard]] bool is_ahead(const Frame& target, const Frame& source, std::int64_t time) const;
+
+  /// The names of all frames, sorted.
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// The frames from `source` to `target`, both included.
+  /// Errors: NotFound (no such frame; frames that are not joined).
+  [[nodiscard]] Result<std::vector<std::string>> chain(const Frame& target,
+                                                       const Frame& source) const;
 
   /// Forgets every pose that was fed: for a simulation or a recording that begins anew.
   void forget();
@@ -133,8 +152,13 @@ class Tree {
   [[nodiscard]] std::string joint_name(std::size_t child) const;
   /// The track of a joint that moves, fed once at least; null: it is fixed.
   [[nodiscard]] Result<const Track*> track_of(std::size_t child) const;
-  [[nodiscard]] Result<Eigen::Isometry3d> climb(std::size_t from, std::size_t to,
-                                                std::int64_t time) const;
+  /// T_parent_child at a time, or where it was last.
+  [[nodiscard]] Result<Eigen::Isometry3d> joint_at(std::size_t child, std::int64_t time) const;
+  [[nodiscard]] Eigen::Isometry3d joint_nearest(std::size_t child, std::int64_t time) const;
+  /// T_target_source out of T_parent_child of every joint between, by one of the two.
+  template <typename JointOf>
+  Result<Eigen::Isometry3d> product(const Frame& target, const Frame& source,
+                                    const JointOf& joint_of) const;
   Status attach(const Frame& parent, const Frame& child,
                 std::variant<Eigen::Isometry3d, Track> joint);
 

@@ -152,7 +152,9 @@ TEST(Tree, TellsOfFramesThatThereAreNot) {
   Tree tree = head_tree();
   EXPECT_EQ(refusal(tree.lookup("world", "left_eey", kTime)),
             "NotFound: frames: there is no frame \"left_eey\", did you mean \"left_eye\"?");
-  EXPECT_EQ(refusal(tree.known("a\nb", "world")), "NotFound: frames: there is no frame \"a\\nb\"");
+  EXPECT_EQ(refusal(tree.known("a\nb", "world")),
+            "NotFound: frames: there is no frame \"a\\nb\"; known: cyclopean_eye, head, left_eye, "
+            "right_eye, robot, supervisor, world");
   EXPECT_EQ(refusal(tree.lookup(77, "world", kTime)), "NotFound: frames: there is no frame 77");
   EXPECT_EQ(refusal(tree.fix("world", "hed", shift(0))),
             "NotFound: frames: there is no frame \"hed\", did you mean \"head\"?");
@@ -161,6 +163,29 @@ TEST(Tree, TellsOfFramesThatThereAreNot) {
   EXPECT_EQ(refusal(tree.lookup("left_eye", "supervisor", kTime)),
             "NotFound: frames: left_eye and supervisor are not joined: above them are world and "
             "supervisor");
+}
+
+TEST(Tree, AChainIsTheFramesBetween) {
+  Tree tree = head_tree();
+  EXPECT_EQ(*tree.chain("right_eye", "world"),
+            (std::vector<std::string>{"world", "robot", "head", "right_eye"}));
+  EXPECT_EQ(*tree.chain("left_eye", "right_eye"),
+            (std::vector<std::string>{"right_eye", "head", "left_eye"}));
+  EXPECT_FALSE(tree.chain("world", "supervisor"));
+}
+
+TEST(Tree, WhatIsNotFedIsWhereItsParentIsAndWhatIsSilentWhereItWas) {
+  Tree tree;
+  ASSERT_TRUE(tree.add("base"));
+  ASSERT_TRUE(tree.add("arm"));
+  ASSERT_TRUE(tree.join("base", "arm"));
+  EXPECT_TRUE(tree.nearest("base", "arm", kTime)->isApprox(shift(0)));
+  EXPECT_TRUE(tree.is_ahead("base", "arm", kTime));
+  ASSERT_TRUE(tree.feed("base", "arm", kTime, shift(2)));
+  EXPECT_TRUE(tree.nearest("base", "arm", kTime + 1)->isApprox(shift(2)));
+  EXPECT_FALSE(tree.is_ahead("base", "arm", kTime));
+  EXPECT_TRUE(tree.is_ahead("arm", "base", kTime + 1));
+  EXPECT_FALSE(tree.nearest("base", "leg", kTime));
 }
 
 TEST(Tree, StaysATree) {

@@ -21,8 +21,8 @@ double between(const Angles& a, const Angles& b);
 
 /// An eye in the head: what it looks along.
 struct Sight {
-  Eigen::Vector3d place = {0.06, 0, 0.05};               ///< [m]
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of length 1
+  Eigen::Vector3d place;      ///< [m]
+  Eigen::Vector3d direction;  ///< of length 1
 };
 
 /// How the head has to stand for an eye in it to look at a place.

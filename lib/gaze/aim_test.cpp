@@ -21,7 +21,7 @@ TEST(Aim, pan_turns_left_and_tilt_down) {
 }
 
 TEST(Aim, the_eye_looks_at_the_place) {
-  const Sight built{{0.06, 0.01, 0.05}};
+  const Sight built{{0.06, 0.01, 0.05}, Eigen::Vector3d::UnitX()};
   const Sight squints{{0.05, -0.02, 0.04}, Eigen::Vector3d(1, 0.1, -0.06).normalized()};
   for (const Sight& eye : {built, squints})
     for (const Eigen::Vector3d& p : {Eigen::Vector3d(2, 0.5, -0.5), Eigen::Vector3d(0.4, -0.6, 0.2),
@@ -36,8 +36,9 @@ TEST(Aim, the_eye_looks_at_the_place) {
 
 TEST(Aim, what_cannot_be_looked_at_gives_numbers_all_the_same) {
   for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 0.05)}) {
-    EXPECT_TRUE(std::isfinite(aim(p, {}).pan));
-    EXPECT_TRUE(std::isfinite(aim(p, {}).tilt));
+    const Sight eye{{0.06, 0, 0.05}, Eigen::Vector3d::UnitX()};
+    EXPECT_TRUE(std::isfinite(aim(p, eye).pan));
+    EXPECT_TRUE(std::isfinite(aim(p, eye).tilt));
   }
 }
 

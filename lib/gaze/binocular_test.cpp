@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <gaze/mounted_eyes_test.h>
+
 namespace hc::gaze {
 namespace {
 
@@ -15,7 +17,7 @@ Eigen::Vector2d pixel_of(const Eyes& eyes, Side side, const Eigen::Vector3d& p_h
 }
 
 TEST(Binocular, both_eyes_give_the_place_and_its_range_holds_for_one) {
-  const Eyes eyes;
+  const Eyes eyes = mounted_eyes();
   const Eigen::Vector3d p(1.5, 0.2, -0.1);
   const auto left = pixel_of(eyes, Side::Left, p), right = pixel_of(eyes, Side::Right, p);
   Binocular sight;
@@ -42,7 +44,7 @@ TEST(Binocular, both_eyes_give_the_place_and_its_range_holds_for_one) {
 }
 
 TEST(Binocular, what_cannot_be_the_same_is_no_target) {
-  const Eyes eyes;
+  const Eyes eyes = mounted_eyes();
   Binocular sight;
   sight.see(eyes, Side::Left, 1000, {300, 100}, 2.5);
   EXPECT_FALSE(sight.see(eyes, Side::Right, 1000, {310, 500}, 2.5));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace hc::gaze {
 
@@ -14,6 +15,10 @@ Vector3d rotation_vector(const Eigen::Matrix3d& R) {
   return turn.angle() * turn.axis();
 }
 
+Eigen::Matrix3d optical() {
+  return (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
+}
+
 Eigen::Matrix3d HeadCalibration::R_left_right() const {
   const double angle = offset.norm();
   if (angle == 0) return Eigen::Matrix3d::Identity();
@@ -21,36 +26,59 @@ Eigen::Matrix3d HeadCalibration::R_left_right() const {
 }
 
 std::array<double, 7> HeadCalibration::numbers() const {
-  return {swapped ? 1.0 : 0.0, zero.pan, zero.tilt, offset.z(), offset.x(), offset.y(), rms};
+  const double pitch = offset.x(), yaw = offset.y(), roll = offset.z();
+  return {swapped ? 1.0 : 0.0, zero.pan, zero.tilt, roll, pitch, yaw, rms};
 }
 
 Result<HeadCalibration> HeadCalibration::of(std::span<const double> numbers) {
-  constexpr double kMost = 0.8;  // [rad]
-  if (numbers.size() != 7) return Error{Code::Malformed, "a head's calibration has 7 numbers"};
-  for (const double angle : numbers.subspan(1, 5))
-    if (!(std::abs(angle) <= kMost))
-      return Error{Code::Malformed, "a head's calibration: an angle of more than 0.8 rad"};
-  if ((numbers[0] != 0 && numbers[0] != 1) || !std::isfinite(numbers[6]))
-    return Error{Code::Malformed, "a head's calibration: what is no number of one"};
-  return HeadCalibration{
-      numbers[0] == 1, {numbers[1], numbers[2]}, {numbers[4], numbers[5], numbers[3]}, numbers[6]};
+  constexpr double kMaxAngle = 0.8;  // [rad]
+  const auto refused = [](const char* why) {
+    return Error{Code::Malformed, std::string("a head's calibration ") + why};
+  };
+  if (numbers.size() != 7) return refused("has 7 numbers");
+  const double swapped = numbers[0], pan = numbers[1], tilt = numbers[2];
+  const double roll = numbers[3], pitch = numbers[4], yaw = numbers[5], rms = numbers[6];
+  if (swapped != 0 && swapped != 1) return refused("begins with 0 or 1: whether eyes are swapped");
+  for (const double angle : {pan, tilt, roll, pitch, yaw})
+    if (!(std::abs(angle) <= kMaxAngle)) return refused("has no angle over 0.8 rad");
+  if (!std::isfinite(rms)) return refused("has a finite RMS");
+  return HeadCalibration{swapped == 1, {pan, tilt}, {pitch, yaw, roll}, rms};
 }
 
-Vector3d Eyes::place(Side side) const {
-  const double left = side == Side::Left ? baseline / 2 : -baseline / 2;
-  return rotation(calibration.zero) * (middle + Vector3d(0, left, 0));
+double Eyes::baseline() const {
+  return (place(Side::Left) - place(Side::Right)).norm();
+}
+
+void Eyes::set_baseline(double baseline) {
+  const Vector3d middle = (mounted_[0].translation() + mounted_[1].translation()) / 2;
+  const Vector3d half =
+      baseline / 2 * (mounted_[0].translation() - mounted_[1].translation()).normalized();
+  mounted_[0].translation() = middle + half;
+  mounted_[1].translation() = middle - half;
+  T_head_eye_ = mounted_;
+}
+
+void Eyes::set_offset(const Eigen::Matrix3d& R_left_right) {
+  T_head_eye_[1].linear() = T_head_eye_[0].linear() * R_left_right;
+}
+
+void Eyes::calibrate(const HeadCalibration& calibration) {
+  const Eigen::Quaterniond mounted(mounted_[0].linear());
+  const auto looks_to = angles_of(mounted * Eigen::Quaterniond(optical().transpose()));
+  const Eigen::Quaterniond bar = rotation(calibration.zero) * rotation(looks_to).conjugate();
+  for (std::size_t i = 0; i < 2; ++i) T_head_eye_[i] = bar * mounted_[i];
+  set_offset(calibration.R_left_right());
+  swapped_ = calibration.swapped;
 }
 
 Sight Eyes::cyclopean() const {
-  const auto R_head_bar = rotation(calibration.zero);
-  return {R_head_bar * middle, R_head_bar * Vector3d::UnitX()};
+  return {(place(Side::Left) + place(Side::Right)) / 2,
+          T_head_eye(Side::Left).linear() * Vector3d::UnitZ()};
 }
 
 Vector3d Eyes::direction(Side side, const Vector2d& pixel) const {
-  Vector3d seen((pixel.x() - cx) / focal, (pixel.y() - cy) / focal, 1);
-  if (side == Side::Right) seen = calibration.R_left_right() * seen;
-  // From the optical frame (x right, y down, z forward).
-  return rotation(calibration.zero) * Vector3d(seen.z(), -seen.x(), -seen.y()).normalized();
+  const Vector3d seen((pixel.x() - cx) / focal, (pixel.y() - cy) / focal, 1);
+  return T_head_eye(side).linear() * seen.normalized();
 }
 
 std::optional<Vector3d> Eyes::place_of(const Vector2d& left, const Vector2d& right,

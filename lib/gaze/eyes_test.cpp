@@ -7,26 +7,22 @@
 #include <limits>
 #include <vector>
 
+#include <gaze/mounted_eyes_test.h>
+
 namespace hc::gaze {
 namespace {
 
-/// The pixel at which an eye sees a place in the head, by the eye's pose in the head alone.
+/// The pixel at which an eye sees a place in the head.
 Eigen::Vector2d pixel_of(const Eyes& eyes, Side side, const Eigen::Vector3d& p_head) {
-  Eigen::Matrix3d optical;
-  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  const auto& calibration = eyes.calibration;
-  Eigen::Matrix3d R_head_eye = rotation(calibration.zero) * optical;
-  if (side == Side::Right && !calibration.offset.isZero())
-    R_head_eye *= Eigen::AngleAxisd(calibration.offset.norm(), calibration.offset.normalized())
-                      .toRotationMatrix();
-  const Eigen::Vector3d p = R_head_eye.transpose() * (p_head - eyes.place(side));
+  const Eigen::Vector3d p = eyes.T_head_eye(side).inverse() * p_head;
   return {eyes.cx + eyes.focal * p.x() / p.z(), eyes.cy + eyes.focal * p.y() / p.z()};
 }
 
 TEST(Eyes, two_pixels_give_the_place) {
-  Eyes built, crooked;
-  crooked.calibration = {false, {0.05, -0.03}, {0.01, -0.02, 0.03}, 0.3};
-  for (const Eyes& eyes : {built, crooked})
+  Eyes crooked = mounted_eyes();
+  crooked.calibrate({false, {0.05, -0.03}, {0.01, -0.02, 0.03}, 0.3});
+  const Eyes elsewhere(looking_ahead_from({0.02, 0.12, 0.3}), looking_ahead_from({0, -0.1, 0.28}));
+  for (const Eyes& eyes : {mounted_eyes(), crooked, elsewhere})
     for (const Eigen::Vector3d& p : {Eigen::Vector3d(2, 0.5, -0.5), Eigen::Vector3d(1, 0, 0.05)}) {
       const auto left = pixel_of(eyes, Side::Left, p), right = pixel_of(eyes, Side::Right, p);
       const auto found = eyes.place_of(left, right);
@@ -38,11 +34,28 @@ TEST(Eyes, two_pixels_give_the_place) {
 }
 
 TEST(Eyes, sit_on_a_bar_that_turns_about_the_axes) {
-  Eyes eyes;
-  eyes.calibration.zero = {M_PI / 2, 0};  // to the left
+  Eyes eyes = mounted_eyes();
+  eyes.calibrate({false, {M_PI / 2, 0}});  // to the left
   EXPECT_NEAR((eyes.cyclopean().place - Eigen::Vector3d(0, 0.06, 0.05)).norm(), 0, 1e-12);
   EXPECT_NEAR((eyes.cyclopean().direction - Eigen::Vector3d(0, 1, 0)).norm(), 0, 1e-12);
   EXPECT_NEAR((eyes.place(Side::Left) - Eigen::Vector3d(-0.05, 0.06, 0.05)).norm(), 0, 1e-12);
+}
+
+TEST(Eyes, that_are_mounted_aside_stay_so_where_they_look_as_mounted) {
+  const Eigen::Isometry3d left =
+      Eigen::Translation3d(0.06, 0.05, 0.05) * Eigen::Isometry3d(rotation({0.2, -0.1}).matrix()) *
+      Eigen::Isometry3d(optical() * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
+  Eyes eyes(left, Eigen::Translation3d(0, -0.1, 0) * left);
+  eyes.calibrate({false, {0.2, -0.1}});
+  EXPECT_TRUE(eyes.T_head_eye(Side::Left).isApprox(left, 1e-12));
+  EXPECT_NEAR(eyes.baseline(), 0.1, 1e-12);
+}
+
+TEST(Eyes, are_as_far_apart_as_was_measured) {
+  Eyes eyes = mounted_eyes();
+  eyes.set_baseline(0.13);
+  EXPECT_NEAR((eyes.place(Side::Right) - Eigen::Vector3d(0.06, -0.065, 0.05)).norm(), 0, 1e-12);
+  EXPECT_NEAR(eyes.baseline(), 0.13, 1e-12);
 }
 
 TEST(HeadCalibration, is_its_numbers) {

@@ -11,14 +11,20 @@ TrackScore score_track(const std::vector<TrackSample>& samples, double within) {
   TrackScore score;
   double since = 0, sum = 0;
   bool is_first = true;
+  double now = 0;
   auto settle = [&](double took) {
     if (is_first && took >= 0) score.acquired = took;
     if (!is_first) score.again.push_back(took);
     is_first = false;
   };
+  /// The ball has gone, or time has: a failure if there was time to acquire it.
+  auto give_up = [&] {
+    if (ball == Ball::Sought && !is_first && now - since > kGrace) settle(-1);
+  };
   for (const auto& sample : samples) {
+    now = sample.time;
     if (sample.share <= kHidden) {
-      if (ball == Ball::Sought && !is_first) settle(-1);
+      give_up();
       ball = Ball::Hidden;
     } else if (ball == Ball::Hidden && sample.share >= kSeen) {
       ball = Ball::Sought;
@@ -34,7 +40,7 @@ TrackScore score_track(const std::vector<TrackSample>& samples, double within) {
       ++score.samples;
     }
   }
-  if (ball == Ball::Sought && !is_first) settle(-1);
+  give_up();
   if (score.samples > 0) score.rms = std::sqrt(sum / static_cast<double>(score.samples));
   return score;
 }

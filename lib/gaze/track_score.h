@@ -26,7 +26,8 @@ struct TrackScore {
 /// @param within  an error up to this has acquired the ball [rad].
 ///
 /// A ball is seen from a share of a half on, and hidden from a tenth down. After it has come back,
-/// errors count again when it is acquired again, or after 1 s.
+/// errors count again when it is acquired again, or after 1 s. If it goes, or the samples end,
+/// within that second, there was no time to acquire it: that return does not count.
 TrackScore score_track(const std::vector<TrackSample>& samples, double within);
 
 }  // namespace hc::gaze

@@ -44,5 +44,12 @@ TEST(TrackScore, one_that_does_not_come_into_the_middle_again_is_told) {
   EXPECT_LT(score.again[0], 0);
 }
 
+TEST(TrackScore, one_that_comes_back_when_no_time_is_left_is_no_failure) {
+  std::vector<TrackSample> samples{{0, 0.01, 1}, {1, 0.01, 0}, {2, 0.3, 1}, {2.5, 0.3, 1}};
+  EXPECT_TRUE(score_track(samples, 0.05).again.empty());
+  samples.push_back({2.6, 0.3, 0});
+  EXPECT_TRUE(score_track(samples, 0.05).again.empty());
+}
+
 }  // namespace
 }  // namespace hc::gaze

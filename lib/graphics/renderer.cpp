@@ -216,9 +216,10 @@ Status Renderer::draw(std::span<const Item> items, const PinholeCamera& camera,
   glUniform3fv(state_->to_light, 1, to_light.data());
   glUniform1f(state_->ambient, light.ambient * light.exposure);
   glUniform1f(state_->diffuse, light.diffuse * light.exposure);
-  for (const auto& item : items) {
-    const Surface& surface = state_->surfaces.at(item.surface);
-    const Eigen::Matrix4f T_camera_object = (T_camera_world * item.T_world_object).matrix();
+  // The last first: what is small and before the walls hides them, and they are not shaded there.
+  for (auto item = items.rbegin(); item != items.rend(); ++item) {
+    const Surface& surface = state_->surfaces.at(item->surface);
+    const Eigen::Matrix4f T_camera_object = (T_camera_world * item->T_world_object).matrix();
     glUniformMatrix4fv(state_->T_camera_object, 1, GL_FALSE, T_camera_object.data());
     glBindTexture(GL_TEXTURE_2D, surface.texture);
     glBindVertexArray(surface.vertices);

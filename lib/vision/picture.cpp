@@ -57,6 +57,8 @@ cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
     least = percentile(known, 0.02);
     most = percentile(known, 0.98);
   }
+  // The scale's own end is nearly as black as what is unknown; from here on it is a clear blue.
+  constexpr long kLowest = 28;
   double span = most > least ? most - least : 1;
   cv::Mat levels(numbers.size(), CV_8U), unknown(numbers.size(), CV_8U);
   for (int y = 0; y < numbers.rows; ++y) {
@@ -65,7 +67,8 @@ cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
       bool is_known = std::isfinite(value) && value != 0;
       unknown.at<std::uint8_t>(y, x) = is_known ? 0 : 255;
       double level = is_known ? std::clamp((value - least) / span, 0.0, 1.0) : 0;
-      levels.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(std::lround(level * 255));
+      levels.at<std::uint8_t>(y, x) =
+          static_cast<std::uint8_t>(kLowest + std::lround(level * (255 - kLowest)));
     }
   }
   cv::Mat coloured;

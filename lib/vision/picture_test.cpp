@@ -33,6 +33,7 @@ TEST(ColourCoded, GoesFromBlueToRedAndUnknownIsBlack) {
   cv::Mat colours = colour_coded(values, 1, 2);
   auto least = colours.at<cv::Vec3b>(0, 0), most = colours.at<cv::Vec3b>(0, 1);
   EXPECT_GT(least[2], least[0]);  // blue over red
+  EXPECT_GT(least[2], 150) << "far from the black of what is unknown";
   EXPECT_GT(most[0], most[2]);
   EXPECT_EQ(colours.at<cv::Vec3b>(0, 2), cv::Vec3b(0, 0, 0));
   EXPECT_EQ(colours.at<cv::Vec3b>(0, 3), cv::Vec3b(0, 0, 0));

@@ -18,13 +18,6 @@ using Eigen::Vector3d;
 using hc::gaze::HeadCalibration;
 using hc::vision::StereoCalibration;
 
-/// Turns vectors of an eye that sits as it should (x right, y down, z forward) into the head.
-Matrix3d optical() {
-  Matrix3d M;
-  M << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return M;
-}
-
 hc::Error too_little(const std::string& where) {
   return {hc::Code::NotFound, "too little is seen in both pictures " + where};
 }
@@ -44,14 +37,14 @@ double spread(const std::vector<Turn>& turns) {
 /// One eye.
 struct Eye {
   cv::Mat HeadView::*picture;
-  Vector3d built;          // where it is in the head if nothing is wrong [m]
-  Matrix3d M = optical();  // how it sits in the head, as far as it is known
-  Vector3d place = built;
-  std::vector<hc::vision::Matches> matches = {};  // of the first stand with each other one
+  Eigen::Isometry3d T_head_mounted;
+  Matrix3d M = T_head_mounted.linear();           // how it sits in the head, as far as it is known
+  Vector3d place = T_head_mounted.translation();  // [m]
+  std::vector<hc::vision::Matches> matches = {};  // of the first pose with each other one
   std::vector<Turn> turns = {};
 
-  /// The turns from the first stand to others, as this eye sees them: a stand at which it sees too
-  /// little is left out, as long as turns about both axes stay.
+  /// The turns from the first pose to others, as this eye sees them: a pose in which it sees too
+  /// little is skipped, as long as turns about both axes stay.
   hc::Status see(const std::vector<HeadView>& views, const hc::vision::Intrinsics& camera,
                  const std::stop_token& stop) {
     turns.clear();
@@ -121,13 +114,14 @@ hc::Result<bool> tell_apart(const HeadView& view, const hc::vision::Intrinsics& 
 
 /// The calibration by views of two equal cameras without distortion.
 hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_swapped,
-                                  const hc::vision::Intrinsics& camera, const Vector3d& middle,
-                                  double baseline, const std::stop_token& stop) {
+                                  const hc::vision::Intrinsics& camera,
+                                  const hc::gaze::Eyes& mounted, const std::stop_token& stop) {
   HeadCalibration found;
   found.swapped = is_swapped;
   const auto matches = matches_of_eyes(views[0], camera);
-  const Vector3d aside(0, baseline / 2, 0);
-  Eye left{&HeadView::first, middle + aside}, right{&HeadView::second, middle - aside};
+  using hc::gaze::Side;
+  Eye left{&HeadView::first, mounted.T_head_eye(Side::Left)};
+  Eye right{&HeadView::second, mounted.T_head_eye(Side::Right)};
   if (found.swapped) std::swap(left.picture, right.picture);
   // Where an eye moves as the head turns is known once it is known how it sits.
   constexpr int kRounds = 3;
@@ -148,8 +142,9 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
     for (const auto& turn : right.turns) turns.push_back({turn.w, R_left_right * turn.u});
     left.M = align(turns);
     right.M = left.M * R_left_right;
-    // The eyes sit on one bar, which looks where the left one does.
-    for (Eye* eye : {&left, &right}) eye->place = left.M * optical().transpose() * eye->built;
+    // The eyes sit on one bar, which is turned as the left one is.
+    const Matrix3d bar = left.M * left.T_head_mounted.linear().transpose();
+    for (Eye* eye : {&left, &right}) eye->place = bar * eye->T_head_mounted.translation();
   }
   const Vector3d forward = left.M.col(2);
   found.zero = {std::atan2(forward.y(), forward.x()), -std::asin(forward.z())};
@@ -159,8 +154,8 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
 }  // namespace
 
 hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
-                                      const StereoCalibration& cameras, const Vector3d& middle,
-                                      std::stop_token stop) {
+                                      const StereoCalibration& cameras,
+                                      const hc::gaze::Eyes& mounted, std::stop_token stop) {
   const cv::Size size = views[0].first.size();
   if (cameras.size.area() > 0 && cameras.size != size)
     return hc::Error{hc::Code::Unsupported, "the cameras' calibration is for pictures of " +
@@ -175,7 +170,7 @@ hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
   if (!is_swapped) return is_swapped.error();
   const auto straight = straightened(views, cameras, *is_swapped, ideal);
   if (!straight) return straight.error();
-  auto found = solve(*straight, *is_swapped, ideal, middle, cameras.baseline(), stop);
+  auto found = solve(*straight, *is_swapped, ideal, mounted, stop);
   constexpr double kAgrees = 0.005;  // [rad]
   const Matrix3d measured = cameras.R_left_right();
   if (found && cameras.rms > 0 &&

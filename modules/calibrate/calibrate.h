@@ -10,7 +10,7 @@
 #include <vision/calibration.h>
 #include <opencv2/core.hpp>
 
-/// What both eyes see from one stand of the head.
+/// What both eyes see in one pose of the head.
 struct HeadView {
   hc::gaze::Angles unit;  ///< as the unit reports it
   cv::Mat first, second;  ///< (H, W) u8, of the cameras as they are plugged in
@@ -19,7 +19,7 @@ struct HeadView {
 /// @param views  the first straight ahead; others a pan or a tilt away, so that pictures overlap by
 ///     half; at least one of each.
 /// @param cameras  of the left and the right eye, as far as they are known.
-/// @param middle  of the eyes in the head, about [m].
+/// @param mounted  the eyes as they are mounted on the head, about.
 ///
 /// The unit's axes are seen as those that the pictures turn about: of each turn of the unit, by the
 /// vector w in the head's frame, an eye sees the turn u = Mᵀ w, and M, which is how the eye sits in
@@ -27,11 +27,11 @@ struct HeadView {
 /// against it, the offset is theirs: a chessboard tells it better.
 ///
 /// Source: Kabsch, A solution for the best rotation to relate two sets of vectors, 1976.
-/// A stand from which an eye sees too little of what it saw from the first is left out.
+/// A pose in which an eye sees too little of what it saw from the first is left out.
 /// Errors: NotFound (too little is seen by both eyes, or of turns about one axis); Unsupported
 /// (pictures of another size than the cameras'); Stopped (`stop` was asked for).
 /// Cost: 2 to 4 s of nine views at 800×600.
 hc::Result<hc::gaze::HeadCalibration> calibrate(const std::vector<HeadView>& views,
                                                 const hc::vision::StereoCalibration& cameras,
-                                                const Eigen::Vector3d& middle,
+                                                const hc::gaze::Eyes& mounted,
                                                 std::stop_token stop = {});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include <gaze/mounted_eyes_test.h>
 #include <vision/motion.h>
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
@@ -59,7 +60,7 @@ class Discs {
 
 /// A head that is not as it was built, and what it sees.
 struct Crooked {
-  Vector3d middle{0.06, 0, 0.05};
+  hc::gaze::Eyes mounted = hc::gaze::mounted_eyes();
   hc::gaze::Angles zero{2 * kDegree, -1.5 * kDegree};
   Vector3d offset = 0.8 * kDegree * Vector3d(1, 0.5, -0.7).normalized();
   Eigen::Matrix3d R_left_right = AngleAxisd(offset.norm(), offset.normalized()).matrix();
@@ -67,8 +68,6 @@ struct Crooked {
 
   [[nodiscard]] std::vector<HeadView> views(bool swapped) const {
     const Discs discs;
-    Eigen::Matrix3d optical;
-    optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     std::vector<HeadView> views;
     for (const hc::gaze::Angles& unit : {hc::gaze::Angles{0, 0},
                                          {0.25, 0},
@@ -77,13 +76,13 @@ struct Crooked {
                                          {0, -0.125},
                                          {0.12, 0.12},
                                          {-0.12, -0.12}}) {
-      auto eye = [&](double left, const Eigen::Matrix3d& turned) {
+      auto eye = [&](hc::gaze::Side side, const Eigen::Matrix3d& turned) {
         return discs.seen_from(hc::gaze::rotation(unit) *
                                (Eigen::Isometry3d(hc::gaze::rotation(zero)) *
-                                Eigen::Translation3d(middle + Vector3d(0, left, 0)) *
-                                Eigen::Isometry3d(optical * turned)));
+                                mounted.T_head_eye(side) * Eigen::Isometry3d(turned)));
       };
-      const cv::Mat one = eye(0.05, Eigen::Matrix3d::Identity()), other = eye(-0.05, R_left_right);
+      const cv::Mat one = eye(hc::gaze::Side::Left, Eigen::Matrix3d::Identity());
+      const cv::Mat other = eye(hc::gaze::Side::Right, R_left_right);
       views.push_back({unit, swapped ? other : one, swapped ? one : other});
     }
     return views;
@@ -100,7 +99,7 @@ struct Crooked {
 TEST(Calibrate, finds_how_the_eyes_sit_and_which_is_the_left) {
   const Crooked head;
   for (bool swapped : {false, true}) {
-    const auto found = calibrate(head.views(swapped), head.pair, head.middle);
+    const auto found = calibrate(head.views(swapped), head.pair, head.mounted);
     head.expect_found(found);
     EXPECT_EQ(found->swapped, swapped);
   }
@@ -110,11 +109,11 @@ TEST(Calibrate, a_stand_that_shows_little_is_left_out) {
   const Crooked head;
   auto views = head.views(false);
   views[4].second.setTo(0);
-  head.expect_found(calibrate(views, head.pair, head.middle));
+  head.expect_found(calibrate(views, head.pair, head.mounted));
   // But not all that tilt.
   views.resize(4);
   views[3].second.setTo(0);
-  const auto found = calibrate(views, head.pair, head.middle);
+  const auto found = calibrate(views, head.pair, head.mounted);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().detail, "too little is seen in both pictures as the head turns");
 }
@@ -129,12 +128,12 @@ TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
                            AngleAxisd(yaw, Vector3d::UnitY()).toRotationMatrix());
   };
   hc::vision::turn(measured, turned(0.15 * kDegree));
-  const auto found = calibrate(views, measured, head.middle);
+  const auto found = calibrate(views, measured, head.mounted);
   ASSERT_TRUE(found);
   EXPECT_NEAR((found->R_left_right() - turned(0.15 * kDegree)).norm(), 0, 1e-9);
   // One that was moved since is.
   hc::vision::turn(measured, turned(2 * kDegree));
-  head.expect_found(calibrate(views, measured, head.middle));
+  head.expect_found(calibrate(views, measured, head.mounted));
 }
 
 TEST(Calibrate, ends_when_it_is_asked_to) {
@@ -143,9 +142,9 @@ TEST(Calibrate, ends_when_it_is_asked_to) {
   cv::GaussianBlur(picture, picture, {}, 2);
   std::stop_source stop;
   stop.request_stop();
-  const auto found =
-      calibrate({{{0, 0}, picture, picture}, {{0.2, 0}, picture, picture}},
-                hc::vision::ideal_pair({800, 600}, 600, 0.1), {0, 0, 0}, stop.get_token());
+  const auto found = calibrate({{{0, 0}, picture, picture}, {{0.2, 0}, picture, picture}},
+                               hc::vision::ideal_pair({800, 600}, 600, 0.1),
+                               hc::gaze::mounted_eyes(), stop.get_token());
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, hc::Code::Stopped);
 }
@@ -154,10 +153,10 @@ TEST(Calibrate, says_when_too_little_is_seen) {
   const cv::Mat dark(600, 800, CV_8U, cv::Scalar(0));
   const auto pair = hc::vision::ideal_pair({800, 600}, 600, 0.1);
   const std::vector<HeadView> views = {{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}};
-  auto found = calibrate(views, pair, {0, 0, 0});
+  auto found = calibrate(views, pair, hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().detail, "too little is seen in both pictures of the eyes");
-  found = calibrate(views, hc::vision::ideal_pair({640, 480}, 600, 0.1), {0, 0, 0});
+  found = calibrate(views, hc::vision::ideal_pair({640, 480}, 600, 0.1), hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().detail, "the cameras' calibration is for pictures of 640 x 480");
 }

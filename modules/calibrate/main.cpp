@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <frames/messages.h>
+#include <frames/module_frames.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
 #include <opencv2/imgproc.hpp>
@@ -22,18 +23,19 @@ using hc::gaze::Angles;
 constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kGaze = 13;
 constexpr double kSecond = 1e9;                  // [ns]
 constexpr std::int64_t kSilent = 1'000'000'000;  // so long nothing comes, then it is gone [ns]
-constexpr double kNear = 0.004;               // of where it was sent: the unit stands there [rad]
-constexpr std::int64_t kRests = 300'000'000;  // so long, then it is at rest [ns]
+constexpr double kNear = 0.004;                  // of where it was sent: it is there [rad]
+constexpr std::int64_t kRests = 300'000'000;     // so long, then it is at rest [ns]
 
 }  // namespace
 
 int main(int argc, char** argv) {
   hc::Module module{"calibrate", "Finds how a head's eyes sit on it, by turning it."};
   auto left = module.input("left", hc::rgb_image<std::uint8_t>().in(kLeftImage),
-                           "left eye, as it is plugged in");
-  auto right = module.input("right", hc::rgb_image<std::uint8_t>().in(kRightImage), "right eye");
-  auto report = module.input("gaze", hc::rotation<double>().in(kGaze), "how the head stands");
-  auto command = module.output("command", hc::rotation<double>().in(kGaze), "how it is to stand");
+                           "image of the left camera");
+  auto right =
+      module.input("right", hc::rgb_image<std::uint8_t>().in(kRightImage), "of the right one");
+  auto command = module.output("command", hc::rotation<double>().in(kGaze),
+                               "commanded head orientation: roll 0, tilt, pan [rad]");
   auto bid = module.output("bid", hc::table<double>(), "salience while it looks, else 0");
   auto result = module.output("result", hc::table<double>(),
                               "1 x 7: eyes swapped 0/1, pan and tilt of the left eye with the unit "
@@ -41,35 +43,32 @@ int main(int argc, char** argv) {
                               "distance from epipolar lines, RMS [px]; once a second");
   auto file = module.parameter(
       "calibration_file", "", "",
-      "of stereo_calibration's: the result is added to it, and taken from it where it is there",
+      "file of stereo_calibration: the result is added to it, and read from it if it has one",
       {.positional = true, .fixed = true});
   auto turn = module.parameter("turn", 0.28, "rad", "how far the head turns to each side",
                                {.min = 0.05, .max = 0.6});
   auto salience = module.parameter("salience", 0.9, "", "of the bid", {.min = 0, .max = 1});
   auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes, without a file",
                                 {.min = 1, .fixed = true});
-  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes, without a file",
-                                   {.min = 0.001, .fixed = true});
   auto patience = module.parameter("patience", 5.0, "s", "for the head to rest where it is sent",
                                    {.min = 0.5, .max = 600});
-  auto pause = module.parameter("pause", 30.0, "s", "after a try in vain", {.min = 0});
-  auto tries = module.parameter("tries", 3, "", "in vain, then it gives up", {.min = 1});
-  auto forward = module.parameter("forward", 0.06, "m", "of the eyes from the unit's axes");
-  auto up = module.parameter("up", 0.05, "m", "of the eyes from the unit's axes");
+  auto pause = module.parameter("pause", 30.0, "s", "after a failed attempt", {.min = 0});
+  auto tries = module.parameter("tries", 3, "", "failed attempts until it gives up", {.min = 1});
+  hc::ModuleFrames frames{module};
 
   std::vector<HeadView> views;
-  std::vector<Angles> stands;
-  std::int64_t rests_from = 0;  // 0: it moves [ns]
-  Angles last;
+  std::vector<Angles> poses;  // that the head takes
+  std::optional<hc::gaze::Eyes> mounted;
+  std::int64_t rests_from = 0;                              // 0: it moves [ns]
   hc::vision::StereoCalibration cameras;                    // once the pictures' size is known
   std::future<hc::Result<hc::gaze::HeadCalibration>> work;  // while it computes
   std::stop_source stop;
   std::optional<hc::gaze::HeadCalibration> found;
   bool is_done = false;
-  std::int64_t last_pair = 0, last_report = 0;  // when they came [ns]
-  std::int64_t sent = 0;                        // to the stand of now; 0: not yet [ns]
-  std::int64_t paused_until = 0;                // [ns]
-  std::int64_t tried = 0;                       // in vain
+  std::int64_t last_pair = 0;     // when both eyes saw, and the head was known [ns]
+  std::int64_t sent = 0;          // to the pose of now; 0: not yet [ns]
+  std::int64_t paused_until = 0;  // [ns]
+  std::int64_t tried = 0;         // in vain
 
   auto tell = [&] {
     const auto numbers = found->numbers();
@@ -84,9 +83,9 @@ int main(int argc, char** argv) {
     constexpr double kDegrees = 180 / M_PI;
     char line[200];
     std::snprintf(line, sizeof line,
-                  "%seyes %s; they look to pan %.2f°, tilt %.2f° with the unit at 0; the right one "
-                  "is off by roll %.2f°, pitch %.2f°, yaw %.2f°",
-                  how, found->swapped ? "swapped" : "as plugged in", found->zero.pan * kDegrees,
+                  "%scameras %s; gaze offset pan %.2f°, tilt %.2f°; right-to-left rotation roll "
+                  "%.2f°, pitch %.2f°, yaw %.2f°",
+                  how, found->swapped ? "swapped" : "not swapped", found->zero.pan * kDegrees,
                   found->zero.tilt * kDegrees, found->offset.z() * kDegrees,
                   found->offset.x() * kDegrees, found->offset.y() * kDegrees);
     module.log(line);
@@ -96,7 +95,7 @@ int main(int argc, char** argv) {
     sent = rests_from = 0;
     is_done = ++tried >= *tries;
     paused_until = module.now() + std::llround(*pause * kSecond);
-    module.log("not calibrated: " + why + (is_done ? "; given up" : "; it is tried again"));
+    module.log("not calibrated: " + why + (is_done ? "; giving up" : "; retrying"));
   };
   /// Takes in what was computed.
   auto take = [&] {
@@ -112,55 +111,59 @@ int main(int argc, char** argv) {
   };
 
   module.on_start([&] {
+    mounted.emplace(frames.fixed("head", "left_eye"), frames.fixed("head", "right_eye"));
     const double t = *turn;
-    stands = {{0, 0},         {t, 0},           {-t, 0},         {0, t},         {0, -t},
-              {t / 2, t / 2}, {-t / 2, -t / 2}, {t / 2, -t / 2}, {-t / 2, t / 2}};
+    poses = {{0, 0},         {t, 0},           {-t, 0},         {0, t},         {0, -t},
+             {t / 2, t / 2}, {-t / 2, -t / 2}, {t / 2, -t / 2}, {-t / 2, t / 2}};
     if (file->empty() || !std::filesystem::exists(*file)) return;
     cameras = hc::value_or_end(hc::vision::read_calibration(*file));
     if (!cameras.head.empty())
       finish(hc::value_or_end(hc::gaze::HeadCalibration::of(cameras.head)),
-             ("by " + *file + ": ").c_str());
+             ("from " + *file + ": ").c_str());
   });
-  module.on(report, [&](const auto& message) {
-    const auto q = hc::rotation_of(message);
-    if (!q) return module.log("gaze: " + q.error().detail);
-    last_report = module.now();
+  /// A pair of images, the head being turned so.
+  auto look = [&](std::int64_t time, const Angles& measured, const hc::Message& one,
+                  const hc::Message& other) {
+    last_pair = module.now();
     if (is_done || work.valid()) return;
-    last = hc::gaze::angles_of(*q);
-    const auto& wanted = stands[views.size()];
-    const bool is_there =
-        std::abs(last.pan - wanted.pan) < kNear && std::abs(last.tilt - wanted.tilt) < kNear;
+    const auto& wanted = poses[views.size()];
+    const bool is_there = std::abs(measured.pan - wanted.pan) < kNear &&
+                          std::abs(measured.tilt - wanted.tilt) < kNear;
     if (!is_there)
       rests_from = 0;
     else if (rests_from == 0)
-      rests_from = message.header.time;
-  });
-  module.on(hc::together(left, right), [&](const auto& one, const auto& other) {
-    last_pair = module.now();
-    const bool looks = !is_done && !work.valid() && rests_from > 0;
-    if (!looks || one.header.time < rests_from + kRests) return;
+      rests_from = time;
+    if (!is_there || time < rests_from + kRests) return;
     HeadView view;
-    view.unit = last;
-    cv::cvtColor(hc::as_mat(one), view.first, cv::COLOR_RGB2GRAY);
-    cv::cvtColor(hc::as_mat(other), view.second, cv::COLOR_RGB2GRAY);
+    view.unit = measured;
+    cv::cvtColor(hc::value_or_end(hc::as_mat(one)), view.first, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(hc::value_or_end(hc::as_mat(other)), view.second, cv::COLOR_RGB2GRAY);
     if (view.first.size() != view.second.size() ||
         (!views.empty() && view.first.size() != views[0].first.size()))
-      throw hc::ModuleError("the pictures have different sizes");
+      throw hc::ModuleError("the images have different sizes");
     if (cameras.M1(0, 0) == 0)
-      cameras = hc::vision::ideal_pair(view.first.size(), *focal, *baseline);
+      cameras = hc::vision::ideal_pair(view.first.size(), *focal, mounted->baseline());
     if (cameras.size.area() == 0) cameras.size = view.first.size();
     views.push_back(std::move(view));
     sent = rests_from = 0;
-    if (views.size() < stands.size()) return;
-    work = std::async(std::launch::async, calibrate, std::exchange(views, {}), cameras,
-                      Eigen::Vector3d(*forward, 0, *up), stop.get_token());
+    if (views.size() < poses.size()) return;
+    mounted->set_baseline(cameras.baseline());
+    work = std::async(std::launch::async, calibrate, std::exchange(views, {}), cameras, *mounted,
+                      stop.get_token());
+  };
+  module.on(hc::together(left, right), [&](const auto& one, const auto& other) {
+    const std::int64_t time = one.header.time;
+    frames.when_known("robot", "head", time, [&, time, one, other](const auto& T_robot_head) {
+      if (!T_robot_head) return;
+      look(time, hc::gaze::angles_of(Eigen::Quaterniond(T_robot_head->linear())), one, other);
+    });
   });
   module.every(std::chrono::milliseconds(50), [&] {
     using std::chrono_literals::operator""ms;
     const std::int64_t now = module.now();
     if (work.valid() && work.wait_for(0ms) == std::future_status::ready) take();
-    // It wants the head only while it sees with both eyes and knows how the head stands.
-    const bool sees = now - last_pair < kSilent && now - last_report < kSilent;
+    // It wants the head only while it sees with both eyes and knows how the head is turned.
+    const bool sees = now - last_pair < kSilent;
     const bool wants = !is_done && now >= paused_until && (sees || work.valid());
     auto message = hc::table({wants ? *salience : 0.0});
     message.header.time = now;
@@ -169,10 +172,10 @@ int main(int argc, char** argv) {
       sent = 0;
       return;
     }
-    const auto& wanted = work.valid() ? stands.back() : stands[views.size()];
+    const auto& wanted = work.valid() ? poses.back() : poses[views.size()];
     if (sent == 0) sent = now;
     if (!work.valid() && static_cast<double>(now - sent) > *patience * kSecond)
-      return fail("the head does not come to rest where it is sent");
+      return fail("the head did not come to rest where it was sent");
     auto draft = command.loan(1, 1);
     draft.header.time = now;
     auto numbers = draft.matrix().numbers();

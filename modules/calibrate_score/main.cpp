@@ -8,18 +8,19 @@
 
 int main(int argc, char** argv) {
   hc::Module module{"calibrate_score", "Compares a head's calibration with the truth."};
-  auto result = module.input("result", hc::table<double>(), "what calibrate has found");
-  auto score = module.output("score", hc::table<double>(),
-                             "1 x 3: left and right told apart 0/1, error of the zero, of the "
-                             "right eye's offset [rad]");
-  auto swapped = module.parameter("swapped", false, "", "truth: the eyes are");
+  auto result = module.input("result", hc::table<double>(), "result of calibrate");
+  auto score =
+      module.output("score", hc::table<double>(),
+                    "1 x 3: left and right identified correctly 0/1, error of the zero, of the "
+                    "right eye's offset [rad]");
+  auto swapped = module.parameter("swapped", false, "", "truth: the cameras are swapped");
   auto zero_pan = module.parameter("zero_pan", 0.0, "rad", "truth");
   auto zero_tilt = module.parameter("zero_tilt", 0.0, "rad", "truth");
   auto offset_roll = module.parameter("offset_roll", 0.0, "rad", "truth");
   auto offset_pitch = module.parameter("offset_pitch", 0.0, "rad", "truth");
   auto offset_yaw = module.parameter("offset_yaw", 0.0, "rad", "truth");
-  auto patience = module.parameter(
-      "patience", 60.0, "s", "after so long without a result it failed", {.min = 1, .max = 3600});
+  auto patience = module.parameter("patience", 60.0, "s", "for a result, then it fails",
+                                   {.min = 1, .max = 3600});
 
   bool is_done = false;
   module.on(result, [&](const auto& message) {
@@ -32,7 +33,8 @@ int main(int argc, char** argv) {
     score.send(hc::table({is_right ? 1.0 : 0.0, zero, offset}));
     char line[160];
     std::snprintf(line, sizeof line, "left and right %s, zero off by %.3f°, camera offset by %.3f°",
-                  is_right ? "told apart" : "MIXED UP", zero * 180 / M_PI, offset * 180 / M_PI);
+                  is_right ? "identified correctly" : "MIXED UP", zero * 180 / M_PI,
+                  offset * 180 / M_PI);
     module.log(line);
     is_done = true;
   });
@@ -41,7 +43,7 @@ int main(int argc, char** argv) {
     constexpr double kLook = 20;  // [Hz]
     module.keep_rate(kLook);
     if (static_cast<double>(++looks) > *patience * kLook)
-      throw hc::ModuleError("there was no result");
+      throw hc::ModuleError("no result within patience");
     return !is_done;
   });
   return module.run(argc, argv);

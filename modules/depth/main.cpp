@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include <frames/module_frames.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
 #include <vision/stereo.h>
@@ -20,14 +21,13 @@ hc::AnyKind picture(std::int32_t coord) {
 
 int main(int argc, char** argv) {
   hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair."};
-  auto left = module.input("left", picture(kLeftRectified), "rectified picture of the left eye");
-  auto right =
-      module.input("right", picture(kRightRectified), "rectified picture of the right eye");
+  auto left = module.input("left", picture(kLeftRectified), "rectified image of the left eye");
+  auto right = module.input("right", picture(kRightRectified), "rectified image of the right eye");
   auto intrinsics = module.input("intrinsics", hc::table<double>(),
-                                 "fx, fy, cx, cy [px], baseline [m] of the rectified pair, as "
-                                 "rectify tells them; without it focal and baseline hold");
+                                 "fx, fy, cx, cy [px], baseline [m] of the rectified pair, from "
+                                 "rectify; until then focal and baseline apply");
   auto disparity = module.output("disparity", hc::intensity_image<float>().in(kDisparity),
-                                 "disparity of the left picture's pixels [px], 0 unknown");
+                                 "disparity of the left image's pixels [px], 0 unknown");
   auto depth = module.output("depth", hc::intensity_image<float>().in(kDepth),
                              "depth along the optical axis [m], 0 unknown");
   auto disparities = module.parameter("disparities", 128, "px", "disparities searched",
@@ -35,35 +35,44 @@ int main(int argc, char** argv) {
   auto block_size = module.parameter("block_size", 5, "px", "side of the window compared",
                                      {.min = 1, .max = 21, .step = 2, .fixed = true});
   auto focal = module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3});
-  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes", {.min = 1e-6});
+  auto baseline = module.parameter("baseline", 0.0, "m",
+                                   "distance of the cameras, 0: that of the frames left_eye and "
+                                   "right_eye",
+                                   {.min = 0});
   auto offset = module.parameter("offset", 0.0, "px",
                                  "added to a disparity before depth is computed from it");
 
+  hc::ModuleFrames frames{module, {.input = false}};
   std::optional<hc::vision::StereoMatcher> matcher;
   struct {
     double focal, baseline;
-  } told{};  // by `intrinsics`; 0: not yet
+  } measured{};  // by `intrinsics`; 0: not yet
   module.on_start([&] {
     matcher.emplace(
         hc::vision::StereoOptions{static_cast<int>(*disparities), static_cast<int>(*block_size)});
   });
+  auto distance = [&] {
+    if (measured.baseline > 0) return measured.baseline;
+    if (*baseline > 0) return *baseline;
+    return frames.fixed("left_eye", "right_eye").translation().norm();
+  };
   module.on(intrinsics, [&](const auto& message) {
     const auto numbers = message.matrix().numbers();
     const bool is_pair = numbers.size() == 5 && std::isfinite(numbers[0]) && numbers[0] > 0 &&
                          std::isfinite(numbers[4]) && numbers[4] > 0;
-    if (!is_pair) return module.log("intrinsics: not those of a pair");
-    told = {numbers[0], numbers[4]};
+    if (!is_pair) return module.log("intrinsics: not fx, fy, cx, cy, baseline of a pair");
+    measured = {numbers[0], numbers[4]};
   });
   module.on(hc::together(left, right), [&](const hc::Message& left_picture,
                                            const hc::Message& right_picture) {
     const auto& size = left_picture.header;
     if (size.width != right_picture.header.width || size.height != right_picture.header.height)
-      throw hc::ModuleError("the left picture is " + std::to_string(size.width) + " x " +
+      throw hc::ModuleError("the left image is " + std::to_string(size.width) + " x " +
                             std::to_string(size.height) + ", the right one " +
                             std::to_string(right_picture.header.width) + " x " +
                             std::to_string(right_picture.header.height));
     if (!matcher->takes({size.width, size.height}))
-      throw hc::ModuleError("pictures of " + std::to_string(size.width) + " x " +
+      throw hc::ModuleError("images of " + std::to_string(size.width) + " x " +
                             std::to_string(size.height) + " are not wider than " +
                             std::to_string(*disparities) + " disparities");
     auto found = disparity.loan(size.width, size.height);
@@ -74,8 +83,7 @@ int main(int argc, char** argv) {
       auto metres = depth.loan(size.width, size.height);
       cv::Mat metres_mat = hc::as_mat(metres);
       hc::vision::depth_of(found_mat,
-                           {told.focal > 0 ? told.focal : *focal,
-                            told.baseline > 0 ? told.baseline : *baseline, *offset},
+                           {measured.focal > 0 ? measured.focal : *focal, distance(), *offset},
                            metres_mat);
       disparity.send(std::move(found));
       depth.send(std::move(metres));

@@ -16,38 +16,32 @@ struct Parameters {
       module.parameter("rate", 100.0, "Hz", "commands a second", {.min = 1, .max = 1000});
   hc::Parameter<double> salience =
       module.parameter("salience", 0.5, "", "of the bid", {.min = 0, .max = 1});
-  hc::Parameter<double> rest =
-      module.parameter("rest", 0.0, "",
-                       "salience with which it looks straight ahead while there is no "
-                       "target, 0: it does nothing then",
-                       {.min = 0, .max = 1});
+  hc::Parameter<double> rest = module.parameter(
+      "rest", 0.0, "", "salience of looking straight ahead while there is no target, 0: idle",
+      {.min = 0, .max = 1});
   hc::Parameter<double> patience =
-      module.parameter("patience", 0.5, "s", "how long a target counts that is not seen any more",
+      module.parameter("patience", 0.5, "s", "how long a target that is lost is still followed",
                        {.min = 0.01, .max = 60});
   hc::Parameter<double> noise =
-      module.parameter("noise", 0.003, "rad", "standard deviation of a target's angles",
+      module.parameter("noise", 0.003, "rad", "measurement noise: σ of the target's angles",
                        {.min = 1e-6, .max = 1, .fixed = true});
-  hc::Parameter<double> liveliness =
-      module.parameter("liveliness", 2.0, "rad/s²",
-                       "standard deviation of what speeds a target up: more follows "
-                       "it more closely, and its noise",
-                       {.min = 1e-3, .max = 1e3, .fixed = true});
+  hc::Parameter<double> liveliness = module.parameter(
+      "liveliness", 2.0, "rad/s²",
+      "process noise: σ of the target's acceleration; larger is faster but noisier",
+      {.min = 1e-3, .max = 1e3, .fixed = true});
   hc::Parameter<double> predict = module.parameter(
-      "predict", 0.03, "s", "how far ahead: what passes from a command to the motion",
-      {.min = 0, .max = 1});
-  hc::Parameter<double> horizon = module.parameter(
-      "horizon", 0.2, "s", "so long a target that is not seen any more goes on as it moved",
-      {.min = 0, .max = 10, .fixed = true});
-  hc::Parameter<double> acceleration =
-      module.parameter("acceleration", 1.795, "rad/s²",
-                       "of the unit, which brakes to stand still where it is sent; 0: it does not",
-                       {.min = 0, .max = 1000});
+      "predict", 0.03, "s", "latency from a command to the motion", {.min = 0, .max = 1});
+  hc::Parameter<double> horizon =
+      module.parameter("horizon", 0.2, "s", "how long to extrapolate a lost target",
+                       {.min = 0, .max = 10, .fixed = true});
+  hc::Parameter<double> acceleration = module.parameter(
+      "acceleration", 1.795, "rad/s²",
+      "braking of the unit, which stops where it is sent; 0: at once", {.min = 0, .max = 1000});
   hc::Parameter<double> base_speed =
       module.parameter("base_speed", 0.8976, "rad/s",
-                       "with which the unit starts and stops at once; only faster it accelerates",
-                       {.min = 0, .max = 100});
+                       "up to which the unit starts and stops at once", {.min = 0, .max = 100});
   hc::Parameter<double> dead_zone = module.parameter(
-      "dead_zone", 0.0, "rad", "nothing is done about a target so near to the middle",
+      "dead_zone", 0.0, "rad", "no command for a target so near to where the head looks",
       {.min = 0, .max = 1});
   hc::Parameter<double> stick_rate = module.parameter(
       "stick_rate", 1.0, "rad/s", "of a stick that is pushed fully", {.min = 0.01, .max = 10});
@@ -57,29 +51,25 @@ struct Parameters {
       module.parameter("tilt_max", 0.81, "rad", "down", {.min = 0, .max = 1.6});
   hc::Parameter<double> tilt_min =
       module.parameter("tilt_min", -0.54, "rad", "up", {.min = -1.6, .max = 0});
-  hc::Parameter<std::string> calibration_file =
-      module.parameter("calibration_file", "", "",
-                       "what stereo_calibration and calibrate wrote; without it focal, cx, "
-                       "cy hold",
-                       {.fixed = true});
+  hc::Parameter<std::string> calibration_file = module.parameter(
+      "calibration_file", "", "",
+      "file of stereo_calibration and calibrate, instead of focal, cx, cy", {.fixed = true});
   hc::Parameter<double> focal =
       module.parameter("focal", 600.0, "px", "focal length of the eyes", {.min = 1, .fixed = true});
   hc::Parameter<double> cx =
-      module.parameter("cx", 399.5, "px", "middle of the pictures", {.fixed = true});
+      module.parameter("cx", 399.5, "px", "principal point", {.fixed = true});
   hc::Parameter<double> cy =
-      module.parameter("cy", 299.5, "px", "middle of the pictures", {.fixed = true});
-  hc::Parameter<double> baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes",
-                                                    {.min = 0, .max = 1, .fixed = true});
+      module.parameter("cy", 299.5, "px", "principal point", {.fixed = true});
   hc::Parameter<double> distance = module.parameter(
-      "distance", 2.5, "m", "of a target that one eye alone has seen", {.min = 0.2});
+      "distance", 2.5, "m", "assumed of a target seen by one eye alone", {.min = 0.2});
 
-  /// Equal eyes that sit as they were built.
-  [[nodiscard]] hc::gaze::Eyes eyes() const {
-    hc::gaze::Eyes eyes;
+  /// Equal eyes, mounted so in the head.
+  [[nodiscard]] hc::gaze::Eyes eyes(const Eigen::Isometry3d& T_head_left,
+                                    const Eigen::Isometry3d& T_head_right) const {
+    hc::gaze::Eyes eyes(T_head_left, T_head_right);
     eyes.focal = *focal;
     eyes.cx = *cx;
     eyes.cy = *cy;
-    eyes.baseline = *baseline;
     return eyes;
   }
   [[nodiscard]] hc::gaze::FollowerOptions follower() const {

@@ -1,71 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "targets.h"
 
-namespace {
-
-constexpr std::int64_t kSetBack = 1'000'000'000;  // a report so far back is of another clock [ns]
-constexpr std::size_t kMostWaiting = 64;
-
-}  // namespace
+using hc::gaze::Side;
 
 double seconds(std::int64_t time) {
   return static_cast<double>(time) * 1e-9;
 }
 
-hc::Status Targets::know(const hc::vision::StereoCalibration& cameras) {
-  hc::gaze::HeadCalibration calibration;
-  calibration.offset = hc::gaze::rotation_vector(cameras.R_left_right());
-  if (!cameras.head.empty()) {
-    auto of_head = hc::gaze::HeadCalibration::of(cameras.head);
-    if (!of_head) return of_head.error();
-    calibration = *of_head;
-  }
+hc::Status Targets::calibrate(const hc::vision::StereoCalibration& cameras) {
   cameras_ = cameras;
-  eyes_.baseline = cameras.baseline();
-  know(calibration);
+  eyes_.set_baseline(cameras.baseline());
+  eyes_.set_offset(cameras.R_left_right());
+  if (cameras.head.empty()) return {};
+  auto of_head = hc::gaze::HeadCalibration::of(cameras.head);
+  if (!of_head) return of_head.error();
+  calibrate(*of_head);
   return {};
 }
 
-void Targets::report(std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
-  if (!gazes_.empty() && gazes_.known().last - time > kSetBack) gazes_.clear();
-  hc::frames::Pose pose;
-  pose.q = R_robot_head;
-  gazes_.add(time, pose);
+std::int32_t Targets::frame_of(std::int32_t coord) {
+  const bool is_seen_by_eye =
+      coord == kLeftEye || coord == kRightEye || coord == kLeftImage || coord == kRightImage;
+  return is_seen_by_eye ? kHead : coord;
 }
 
-Eigen::Quaterniond Targets::R_robot_head(std::int64_t time) const {
-  return gazes_.empty() ? Eigen::Quaterniond::Identity() : gazes_.nearest(time).q;
-}
-
-bool Targets::can_see(std::int32_t coord) {
-  return coord == kLeftImage || coord == kRightImage || coord == kHead || coord == kRobot;
-}
-
-void Targets::see(std::int64_t time, std::int32_t coord, const Eigen::Vector3d& p) {
-  if (waiting_.size() == kMostWaiting) waiting_.pop_front();
-  waiting_.push_back({time, coord, p});
-}
-
-void Targets::take_in(std::int64_t now) {
-  for (; !waiting_.empty() && !gazes_.awaits(waiting_.front().time, now); waiting_.pop_front())
-    take_in(waiting_.front());
-}
-
-void Targets::take_in(const Seen& seen) {
-  auto p = std::optional(seen.p);
-  if (seen.coord == kLeftImage || seen.coord == kRightImage) {
-    const bool is_left = (seen.coord == kLeftImage) != eyes_.calibration.swapped;
-    Eigen::Vector2d pixel = seen.p.head<2>();
-    if (cameras_) {
-      const auto ray =
-          hc::vision::ray_of(*cameras_, is_left ? hc::vision::Eye::Left : hc::vision::Eye::Right,
-                             {pixel.x(), pixel.y()});
-      pixel = {eyes_.cx + eyes_.focal * ray[0], eyes_.cy + eyes_.focal * ray[1]};
-    }
-    p = binocular_.see(eyes_, is_left ? hc::gaze::Side::Left : hc::gaze::Side::Right, seen.time,
-                       pixel, distance_);
+void Targets::see(std::int64_t time, std::int32_t coord, const Eigen::Vector3d& p,
+                  const Eigen::Isometry3d& T_robot_frame) {
+  std::optional<Eigen::Vector3d> in_frame = p;
+  if (frame_of(coord) != coord) {
+    const bool is_left = (coord == kLeftEye || coord == kLeftImage) != eyes_.swapped();
+    const Side side = is_left ? Side::Left : Side::Right;
+    if (coord == kLeftImage || coord == kRightImage)
+      in_frame = place(time, side, p.head<2>());
+    else
+      in_frame = eyes_.T_head_eye(side) * p;
   }
-  if (!p) return;
-  if (seen.coord != kRobot) p = R_robot_head(seen.time) * *p;
-  follower_.see(seconds(seen.time), hc::gaze::aim(*p, eyes_.cyclopean()));
+  if (!in_frame) return;
+  follower_.see(seconds(time), hc::gaze::aim(T_robot_frame * *in_frame, eyes_.cyclopean()));
+}
+
+std::optional<Eigen::Vector3d> Targets::place(std::int64_t time, Side side, Eigen::Vector2d pixel) {
+  if (cameras_) {
+    const auto eye = side == Side::Left ? hc::vision::Eye::Left : hc::vision::Eye::Right;
+    const auto ray = hc::vision::ray_of(*cameras_, eye, {pixel.x(), pixel.y()});
+    pixel = {eyes_.cx + eyes_.focal * ray[0], eyes_.cy + eyes_.focal * ray[1]};
+  }
+  return binocular_.see(eyes_, side, time, pixel, distance_);
 }

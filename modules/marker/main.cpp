@@ -53,36 +53,39 @@ int main(int argc, char** argv) {
                     "Finds ArUco, AprilTag and coloured square markers, and their poses."};
   auto image = module.input(
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "picture of an eye; of the left one unless its coordinate system is "
-      "the right one's");
+      "image of an eye: the left one unless its coordinate system is the right one's");
   auto poses = module.output("poses", hc::transformation<double>(4, 4),
                              "T_eye_marker, one a marker: x right, y down, z into the plate as "
-                             "seen by who looks at it, origin in its middle [m]");
+                             "seen by the viewer, origin in its middle [m]; coord = 1000 · eye + "
+                             "frame of the marker, 0 where it has none");
   auto markers = module.output(
       "markers", hc::table<double>(),
       "12 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
-      "side [m], x y z [m] and qx qy qz qw in the eye, reprojection error, mean side [px]");
+      "side [m], x y z [m] and qx qy qz qw in the eye, which is coord, reprojection error, mean "
+      "side [px]");
   auto frames = module.parameter(
-      "marker_frames", "", "", "numbers of markers' frames, as in \"aruco:23=101 colour:300=103\"");
-  auto sides = module.parameter("sides", "", "m", "of single markers, as in \"aruco:23=0.18\"");
+      "marker_frames", "", "", "numbers of markers' frames, e.g. \"aruco:23=101 colour:300=103\"");
+  auto sides = module.parameter("sides", "", "m", "of single markers, e.g. \"aruco:23=0.18\"");
   auto side = module.parameter("side", 0.1, "m", "of all other markers' black or coloured square",
                                {.min = 1e-4, .max = 100});
+  auto named_only = module.parameter("named_only", false, "",
+                                     "report only markers that marker_frames or sides name");
   auto use_aruco = module.parameter("aruco", true, "", "look for ArUco markers");
   auto dictionary =
       module.parameter("dictionary", "6X6_250", "",
-                       "of the ArUco markers, as 4X4_50 or ARUCO_ORIGINAL", {.fixed = true});
+                       "of the ArUco markers, e.g. 4X4_50, ARUCO_ORIGINAL", {.fixed = true});
   auto use_apriltag = module.parameter("apriltag", true, "", "look for AprilTags (36h11)");
   auto decimate =
-      module.parameter("decimate", 1.0, "", "AprilTags: 2 is three times as fast, and misses some",
+      module.parameter("decimate", 1.0, "", "AprilTags: 2 is three times as fast, but misses some",
                        {.min = 1, .max = 8, .fixed = true});
   auto use_colour = module.parameter("colour", true, "", "look for coloured squares on white");
-  auto file = module.parameter("calibration_file", "", "",
-                               "what stereo_calibration wrote; without it focal, cx, cy hold",
-                               {.fixed = true});
+  auto file =
+      module.parameter("calibration_file", "", "",
+                       "file of stereo_calibration, instead of focal, cx, cy", {.fixed = true});
   auto focal = module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3, .max = 1e6});
-  auto cx = module.parameter("cx", -1.0, "px", "where the optical axis is, -1: in the middle",
+  auto cx = module.parameter("cx", -1.0, "px", "principal point, -1: the middle",
                              {.min = -1, .max = 65535});
-  auto cy = module.parameter("cy", -1.0, "px", "the same downwards", {.min = -1, .max = 65535});
+  auto cy = module.parameter("cy", -1.0, "px", "the same, from the top", {.min = -1, .max = 65535});
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<hc::vision::ArucoFinder> aruco;
@@ -123,13 +126,14 @@ int main(int argc, char** argv) {
           numbers[static_cast<std::size_t>(column)] = row < 3 ? found.pose.R(row, column) : 0;
         numbers[3] = row < 3 ? found.pose.t[row] : 1;
       }
-      if (found.frame != 0) draft.header.coord = 1000 * eye + found.frame;
+      draft.header.coord = 1000 * eye + found.frame;
       poses.send(std::move(draft));
     }
   };
-  auto send_table = [&](const std::vector<Found>& all) {
+  auto send_table = [&](const std::vector<Found>& all, std::int32_t eye) {
     constexpr std::size_t kColumns = 12;
     auto draft = markers.loan(kColumns, static_cast<std::int32_t>(all.size()));
+    draft.header.coord = eye;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto& [marker, metres, pose, frame] = all[i];
       const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(pose.R.val);
@@ -170,6 +174,7 @@ int main(int argc, char** argv) {
       Found found{marker, *side, {}, 0};
       const auto its_side = find_name(side_names, marker.kind, marker.id);
       const auto its_frame = find_name(frame_names, marker.kind, marker.id);
+      if (*named_only && !its_side && !its_frame) continue;
       if (its_side) found.side = its_side->value;
       if (its_frame) found.frame = static_cast<std::int32_t>(its_frame->value);
       // A hue as it is named, and not as the light has made it.
@@ -183,8 +188,9 @@ int main(int argc, char** argv) {
     }
     if (all.empty()) return;
     const bool is_right = header.coord == kRightImage || header.coord == kRightRectified;
-    if (poses.linked()) send_poses(all, is_right ? kRightEye : kLeftEye);
-    if (markers.linked()) send_table(all);
+    const std::int32_t eye = is_right ? kRightEye : kLeftEye;
+    if (poses.linked()) send_poses(all, eye);
+    if (markers.linked()) send_table(all, eye);
   });
   return module.run(argc, argv);
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include <frames/module_frames.h>
 #include <gaze/eyes.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
@@ -30,8 +31,7 @@ int main(int argc, char** argv) {
       {.positional = true, .fixed = true});
   auto focal = module.parameter("focal", 800.0, "px", "focal length of an ideal pair",
                                 {.min = 1e-3, .max = 1e6, .fixed = true});
-  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes of an ideal pair",
-                                   {.min = 1e-6, .max = 1000, .fixed = true});
+  hc::ModuleFrames frames{module, {.input = false}};
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<Rectifier> rectifiers[2];
@@ -51,7 +51,8 @@ int main(int argc, char** argv) {
     if (size.area() == 0) return;
     auto& rectifier = rectifiers[eye == Eye::Left ? 0 : 1];
     if (!rectifier || rectifier->size() != size) {
-      if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, *baseline);
+      const auto between_eyes = frames.fixed("left_eye", "right_eye").translation();
+      if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, between_eyes.norm());
       if (calibration->size.area() == 0) calibration->size = size;
       if (has_message) hc::vision::turn(*calibration, mounting.R_left_right());
       rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ears.h"
 
-#include "head.h"
 #include "schedule.h"
 #include "sounds.h"
 
@@ -17,9 +16,9 @@ void Ears::hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head)
   if (sound_.linked()) {
     auto draft = sound_.loan(static_cast<std::int32_t>(end - sample_), 1);
     draft.header.time = start_ + period_end(sample_, kSoundRate);
-    for (int side : {1, -1}) {
-      const double distance = (T_world_head * Head::ear(side) - kLoudspeaker).norm();
-      hear(sample_, distance, draft.matrix().numbers().subspan(side > 0 ? 0 : 1), 2);
+    for (std::size_t side : {0, 1}) {
+      const double distance = (T_world_head * places_[side] - kLoudspeaker).norm();
+      hear(sample_, distance, draft.matrix().numbers().subspan(side), 2);
     }
     sound_.send(std::move(draft));
   }

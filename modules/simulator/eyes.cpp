@@ -3,17 +3,17 @@
 
 #include <vision/messages.h>
 
-Eyes::Eyes(const Parameters& parameters, hc::graphics::Renderer& renderer, Output left,
-           Output right)
+Eyes::Eyes(const Parameters& parameters, const Head& head, hc::graphics::Renderer& renderer,
+           Output left, Output right)
     : parameters_(parameters),
       renderer_(renderer),
-      head_(parameters.head()),
+      head_(head),
       camera_(parameters.camera()),
       left_{std::move(left), Sensor(2 * parameters.world_seed())},
       right_{std::move(right), Sensor(2 * parameters.world_seed() + 1)} {}
 
 void Eyes::take(const View& view, cv::Mat* depth) {
-  auto first = head_.left_eye(), second = head_.right_eye();
+  auto first = head_.left_eye, second = head_.right_eye;
   if (*parameters_.swapped) std::swap(first, second);
   take(left_, first, view, depth);
   take(right_, second, view, nullptr);

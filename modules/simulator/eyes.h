@@ -27,7 +27,8 @@ class Eyes {
   using Output = hc::Output<Kind>;
 
   /// @param parameters, renderer  must outlive it.
-  Eyes(const Parameters& parameters, hc::graphics::Renderer& renderer, Output left, Output right);
+  Eyes(const Parameters& parameters, const Head& head, hc::graphics::Renderer& renderer,
+       Output left, Output right);
 
   /// Takes a pair; a picture that nobody takes is not drawn, as that is most of the work.
   ///

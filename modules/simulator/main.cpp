@@ -5,13 +5,13 @@
 #include <optional>
 
 #include <frames/messages.h>
+#include <frames/module_frames.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
 
 #include "ball.h"
 #include "ears.h"
 #include "eyes.h"
-#include "neck.h"
 #include "parameters.h"
 #include "schedule.h"
 #include "truth.h"
@@ -49,18 +49,26 @@ int main(int argc, char** argv) {
   Truth truth(module);
   const Parameters parameters{module};
 
-  Neck neck;
+  // The unit says itself how the head is turned.
+  hc::ModuleFrames frames{module, {.input = false}};
   std::unique_ptr<Scene> scene;
   std::string last_parameter;
   module.on_start([&] {
     auto renderer = hc::value_or_end(hc::graphics::Renderer::make());
     auto& drawing = *renderer;
     World world(drawing, parameters.world_seed(), *parameters.text);
+    const Head mounted{frames.fixed("head", "left_eye"), frames.fixed("head", "right_eye")};
+    const Head head = mounted.with(parameters.faults());
+    const auto ear = [&](const char* name) -> Eigen::Vector3d {
+      if (!sound.linked()) return Eigen::Vector3d::Zero();
+      return frames.fixed("head", name).translation();
+    };
     // Time begins when the world is there, which takes a while.
     const std::int64_t start = *parameters.start > 0 ? *parameters.start : module.now();
-    scene.reset(new Scene{std::move(renderer), std::move(world), Ball(parameters.motion()),
-                          parameters.head(), parameters.camera(), Schedule(start, *parameters.rate),
-                          Eyes(parameters, drawing, left, right), Ears(sound, start)});
+    scene.reset(new Scene{std::move(renderer), std::move(world), Ball(parameters.motion()), head,
+                          parameters.camera(), Schedule(start, *parameters.rate),
+                          Eyes(parameters, head, drawing, left, right),
+                          Ears(ear("left_ear"), ear("right_ear"), sound, start)});
     last_parameter = *parameters.text;
   });
 
@@ -71,7 +79,9 @@ int main(int argc, char** argv) {
   module.on(gaze, [&](const auto& message) {
     const auto q = hc::rotation_of(message);
     if (!q) return module.log("gaze: " + q.error().detail);
-    if (message.header.time > 0) neck.add(message.header.time, *q);
+    if (message.header.time <= 0) return;
+    auto fed = frames.feed("robot", "head", message.header.time, Eigen::Isometry3d(*q));
+    if (!fed) module.log("gaze: " + fed.error().detail);
   });
   module.on(text, [&](const auto& message) { write(std::string(message.characters())); });
 
@@ -90,12 +100,12 @@ int main(int argc, char** argv) {
   auto take = [&] {
     const auto& schedule = scene->schedule;
     const auto time = schedule.time();
-    const Eigen::Isometry3d T_world_head = neck.at(time);
+    const Eigen::Isometry3d T_world_head = frames.nearest("world", "head", time);
     const auto ball = scene->ball.at(schedule.seconds());
     const bool is_gone = *parameters.ball == "gone";
     look(is_gone ? kUnderground : ball.position, T_world_head);
     truth.send_poses(time, T_world_head, scene->head);
-    truth.send_ball(time, ball, !is_gone, T_world_head * scene->head.left_eye(), scene->camera);
+    truth.send_ball(time, ball, !is_gone, T_world_head * scene->head.left_eye, scene->camera);
     if (schedule.begins_second()) {
       truth.send_board(time, scene->world.text());
       truth.send_plates(time, scene->world.plates());
@@ -112,7 +122,8 @@ int main(int argc, char** argv) {
     if (*parameters.count > 0 && schedule.number() >= *parameters.count)
       return !scene->eyes.empty();
     if (is_paced) schedule.catch_up(now);
-    if (is_paced && !schedule.is_due(now, neck.awaits(schedule.time(), now))) return true;
+    if (is_paced && !schedule.is_due(now, frames.awaits("world", "head", schedule.time())))
+      return true;
     take();
     schedule.next();
     return true;

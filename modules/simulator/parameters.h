@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The simulator's parameters, and what the head, its eyes and the ball are by them.
+// The simulator's parameters, and what the eyes, their faults and the ball are by them.
 
 #include <string>
 
@@ -31,8 +31,6 @@ struct Parameters {
                                                         {.min = 16, .max = 8192, .fixed = true});
   hc::Parameter<double> focal = module.parameter("focal", 600.0, "px", "focal length of the eyes",
                                                  {.min = 10, .max = 1e5, .fixed = true});
-  hc::Parameter<double> baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes",
-                                                    {.min = 0, .max = 1, .fixed = true});
   hc::Parameter<double> noise = module.parameter(
       "noise", 2.0, "", "standard deviation of the noise, of 255", {.min = 0, .max = 40});
   hc::Parameter<double> blur =
@@ -73,8 +71,8 @@ struct Parameters {
   [[nodiscard]] BallMotion motion() const {
     return {*ball, *ball_speed, *ball_hidden, world_seed()};
   }
-  [[nodiscard]] Head head() const {
-    return {*baseline, {*zero_pan, *zero_tilt, *offset_roll, *offset_pitch, *offset_yaw}};
+  [[nodiscard]] HeadFaults faults() const {
+    return {*zero_pan, *zero_tilt, *offset_roll, *offset_pitch, *offset_yaw};
   }
   /// Each eye's; its optical axis meets the middle of the picture.
   [[nodiscard]] hc::graphics::PinholeCamera camera() const {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "scenery.h"
+
 namespace {
 
 /// The parameters with some set as on the command line.
@@ -31,23 +33,19 @@ TEST_F(ParametersTest, the_camera_looks_through_the_middle_of_its_picture) {
   EXPECT_EQ(camera.project({1, 1, 2}), Eigen::Vector2d(159.5 + 125, 100 + 125));
 }
 
-TEST_F(ParametersTest, eyes_are_as_far_apart_as_is_said) {
-  set("baseline", "0.25");
-  const auto head = parameters.head();
-  const Eigen::Vector3d right = (head.left_eye().inverse() * head.right_eye()).translation();
-  EXPECT_TRUE(right.isApprox(Eigen::Vector3d(0.25, 0, 0), 1e-12));
-}
+/// Of an eye that looks straight ahead.
+const Eigen::Isometry3d optical = hang(Eigen::Vector3d::Zero(), 0);
 
 TEST_F(ParametersTest, faults_turn_the_eyes_as_they_are_named) {
   set("zero_pan", "0.1");     // to the left
   set("zero_tilt", "0.2");    // down
   set("offset_yaw", "0.05");  // about the eye's y, which is down: to the right
-  const auto head = parameters.head();
-  const Eigen::Vector3d forward = head.left_eye().linear().col(2);
+  const Head mounted{optical, optical};
+  const auto head = mounted.with(parameters.faults());
+  const Eigen::Vector3d forward = head.left_eye.linear().col(2);
   EXPECT_NEAR(std::atan2(forward.y(), forward.x()), 0.1, 1e-12);
   EXPECT_NEAR(std::asin(-forward.z()), 0.2, 1e-12);
-  const Eigen::Vector3d other =
-      head.left_eye().linear().transpose() * head.right_eye().linear().col(2);
+  const Eigen::Vector3d other = head.left_eye.linear().transpose() * head.right_eye.linear().col(2);
   EXPECT_NEAR(std::atan2(other.x(), other.z()), 0.05, 1e-12);
 }
 

@@ -3,7 +3,6 @@
 
 #include <string_view>
 
-#include "head.h"
 #include "paint.h"
 #include "room.h"
 
@@ -31,6 +30,17 @@ cv::Mat paint(const Wish& wish) {
                                        : cv::Scalar(20, 190, 20));
 }
 
+/// What holds a plate: from the ceiling where it is high, so that none is before the board.
+void add_rod(Scenery& room, const Vector3d& plate, double side, double yaw, const cv::Mat& colour) {
+  constexpr double kThick = 0.012, kHigh = 1.3;  // [m]
+  const bool hangs = plate.z() > kHigh;
+  const double bottom = hangs ? plate.z() + side / 2 : 0;
+  const double top = hangs ? kRoomCeiling : plate.z() - side / 2;
+  const Vector3d behind = 0.012 * Vector3d(std::cos(yaw), std::sin(yaw), 0);
+  room.add_box({kThick, kThick, top - bottom},
+               Vector3d(plate.x(), plate.y(), (bottom + top) / 2) + behind, colour, yaw);
+}
+
 }  // namespace
 
 std::vector<Plate> add_plates(Scenery& room) {
@@ -41,7 +51,7 @@ std::vector<Plate> add_plates(Scenery& room) {
   };
   const Wish wishes[] = {
       // Straight before the neck: who looks at its middle looks along the world's x.
-      {"apriltag", 0, 0.30, {kRoomFront - 0.02, 0, kNeckHeight}, 0},
+      {"apriltag", 0, 0.30, {kRoomFront - 0.02, 0, kHeadHeight}, 0},
       {"apriltag", 7, 0.16, near(2.9, -1.05, 1.45), -0.35 + room.random(-0.2, 0.2)},
       {"aruco", 23, 0.18, near(2.9, -0.55, 1.75), -0.2 + room.random(-0.2, 0.2)},
       {"aruco", 40, 0.14, near(2.1, 1.75, 1.2), 0.7 + room.random(-0.2, 0.2)},
@@ -56,9 +66,12 @@ std::vector<Plate> add_plates(Scenery& room) {
     const auto whole = static_cast<float>(wish.side * (is_colour ? 1.5 : 1.25));
     const Isometry3d place = hang(wish.place, wish.yaw);
     room.add(make_rectangle(whole, whole), paint(wish), place);
-    if (wish.id != 0)  // a back, seen from behind
-      room.add(make_box({whole, whole, 0.01F}), cv::Mat(1, 1, CV_8UC3, cv::Scalar(90, 90, 92)),
-               place * Translation3d(0, 0, 0.006));
+    const bool is_on_wall = wish.id == 0;
+    if (!is_on_wall) {
+      const cv::Mat grey(1, 1, CV_8UC3, cv::Scalar(90, 90, 92));
+      room.add(make_box({whole, whole, 0.01F}), grey, place * Translation3d(0, 0, 0.006));
+      add_rod(room, wish.place, whole, wish.yaw, grey);
+    }
     plates.push_back({wish.kind, wish.id, wish.side, place});
   }
   return plates;

@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
 
 #include "ball.h"
 #include "paint.h"
@@ -17,16 +20,24 @@ using hc::graphics::make_rectangle;
 
 constexpr double kPi = std::numbers::pi;
 
+/// x to the right, the robot's left above.
+cv::Mat paint_floor(std::uint64_t seed) {
+  const cv::Mat planks = paint_planks(512, 512, seed);
+  cv::Mat floor;
+  cv::resize(cv::repeat(planks, 3, 3), floor, {1024, 1024}, 0, 0, cv::INTER_AREA);
+  return floor;
+}
+
 }  // namespace
 
-void add_room(Scenery& room) {
+hc::graphics::SurfaceId add_room(Scenery& room) {
   const double length = kRoomFront - kRoomBack, middle = (kRoomFront + kRoomBack) / 2;
   auto wall = [&](const Vector3d& place, double yaw, double width) {
     const double grey = room.random(165, 200);
     const auto seed = static_cast<std::uint64_t>(room.random(0, 1e6));
     const double green = grey + room.random(-6, 6), blue = grey + room.random(-8, 8);
-    room.add(make_rectangle(static_cast<float>(width), static_cast<float>(kRoomCeiling), {2, 1}),
-             paint_grains(512, 512, {grey, green, blue}, 26, seed), hang(place, yaw));
+    room.add(make_rectangle(static_cast<float>(width), static_cast<float>(kRoomCeiling)),
+             paint_grains(1024, 512, {grey, green, blue}, 26, seed), hang(place, yaw));
   };
   wall({kRoomFront, 0, kRoomCeiling / 2}, 0, 2 * kRoomSide);
   wall({middle, kRoomSide, kRoomCeiling / 2}, kPi / 2, length);
@@ -36,8 +47,9 @@ void add_room(Scenery& room) {
   Eigen::Matrix3d down, up;
   down << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   up << 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  room.add(make_rectangle(static_cast<float>(length), 2 * static_cast<float>(kRoomSide), {3, 3}),
-           paint_planks(512, 512, room.seed()), Translation3d(middle, 0, 0) * Isometry3d(down));
+  room.add(make_rectangle(static_cast<float>(length), 2 * static_cast<float>(kRoomSide)),
+           paint_floor(room.seed()), Translation3d(middle, 0, 0) * Isometry3d(down));
+  const auto floor = room.items().back().surface;
   room.add(make_rectangle(static_cast<float>(length), 2 * static_cast<float>(kRoomSide), {2, 2}),
            paint_grains(256, 256, {225, 225, 222}, 10, room.seed()),
            Translation3d(middle, 0, kRoomCeiling) * Isometry3d(up));
@@ -49,6 +61,27 @@ void add_room(Scenery& room) {
     if (i == 4) place = hang({1.5 + along, -kRoomSide + 0.01, height}, -kPi / 2);
     room.add(make_rectangle(1.0F, 0.75F), poster, place);
   }
+  return floor;
+}
+
+void add_shadows(Scenery& room, hc::graphics::SurfaceId floor, const Vector3d& to_light) {
+  cv::Mat picture = paint_floor(room.seed()), light(picture.size(), CV_8U, cv::Scalar(255));
+  constexpr double kShade = 150, kSoft = 5;  // of 255; [px]
+  for (const auto& corners : room.boxes()) {
+    std::vector<cv::Point> outline, hull;
+    for (const auto& corner : corners) {
+      const Vector3d on_floor = corner - corner.z() / to_light.z() * to_light;
+      outline.emplace_back(
+          static_cast<int>((on_floor.x() - kRoomBack) / (kRoomFront - kRoomBack) * picture.cols),
+          static_cast<int>((kRoomSide - on_floor.y()) / (2 * kRoomSide) * picture.rows));
+    }
+    cv::convexHull(outline, hull);
+    cv::fillConvexPoly(light, hull, kShade);
+  }
+  cv::GaussianBlur(light, light, {}, kSoft);
+  cv::cvtColor(light, light, cv::COLOR_GRAY2BGR);
+  cv::multiply(picture, light, picture, 1.0 / 255);
+  room.set_texture(floor, picture);
 }
 
 void add_furniture(Scenery& room) {

@@ -25,8 +25,14 @@ void Scenery::add(const hc::graphics::Mesh& mesh, const cv::Mat& texture, const 
 
 void Scenery::add_box(const Vector3d& size, const Vector3d& middle, const cv::Mat& texture,
                       double yaw) {
-  add(hc::graphics::make_box(size.cast<float>()), texture,
-      Isometry3d(Translation3d(middle) * AngleAxisd(yaw, Vector3d::UnitZ())));
+  const Isometry3d place(Translation3d(middle) * AngleAxisd(yaw, Vector3d::UnitZ()));
+  add(hc::graphics::make_box(size.cast<float>()), texture, place);
+  auto& corners = boxes_.emplace_back();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vector3d side((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5,
+                        (i & 4) != 0 ? 0.5 : -0.5);
+    corners[i] = place * size.cwiseProduct(side);
+  }
 }
 
 void Scenery::move_last(const Vector3d& middle) {

@@ -2,12 +2,16 @@
 #pragma once
 // What a room is furnished with: surfaces at their places in the world, and dice for the rest.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include <graphics/renderer.h>
+
+/// How high above the floor the robot's head is for whom the room is furnished [m].
+inline constexpr double kHeadHeight = 1.2;
 
 /// Where a picture hangs, T_world_picture (x right, y down, z into it, of who looks at it).
 ///
@@ -31,6 +35,8 @@ class Scenery {
   /// Puts a box somewhere, turned about the vertical. @param size  along x, y, z [m].
   void add_box(const Eigen::Vector3d& size, const Eigen::Vector3d& middle, const cv::Mat& texture,
                double yaw = 0);
+  /// The corners of all boxes, in the world [m].
+  [[nodiscard]] const std::vector<std::array<Eigen::Vector3d, 8>>& boxes() const { return boxes_; }
   /// Puts another picture on a surface.
   void set_texture(hc::graphics::SurfaceId surface, const cv::Mat& texture) {
     renderer_.set_texture(surface, texture);
@@ -45,4 +51,5 @@ class Scenery {
   hc::graphics::Renderer& renderer_;
   std::uint64_t seed_, state_;
   std::vector<hc::graphics::Item> items_;
+  std::vector<std::array<Eigen::Vector3d, 8>> boxes_;
 };

@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "ball.h"
-#include "head.h"
 
 namespace {
 
-const Eigen::Vector3d kNeck(0, 0, kNeckHeight);
+const Eigen::Vector3d kNeck(0, 0, kHeadHeight);
 
 /// The ball on its bench. @param angle  to the left [rad].
 Eigen::Vector3d ball_at(double angle) {

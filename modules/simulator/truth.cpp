@@ -63,8 +63,8 @@ Truth::Truth(hc::Module& module)
 
 void Truth::send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head, const Head& head) {
   send_pose(head_pose_, time, T_world_head);
-  send_pose(left_pose_, time, T_world_head * head.left_eye());
-  send_pose(right_pose_, time, T_world_head * head.right_eye());
+  send_pose(left_pose_, time, T_world_head * head.left_eye);
+  send_pose(right_pose_, time, T_world_head * head.right_eye);
 }
 
 void Truth::send_ball(std::int64_t time, const Ball::State& ball, bool is_there,

@@ -21,12 +21,13 @@ World::World(hc::graphics::Renderer& renderer, std::uint64_t seed, const std::st
   light_.to_light = Eigen::Vector3f(static_cast<float>(room_.random(-0.6, -0.2)),
                                     static_cast<float>(room_.random(-0.5, 0.5)), 0.8F)
                         .normalized();
-  add_room(room_);
+  const auto floor = add_room(room_);
   add_furniture(room_);
   add_bench(room_);
   add_screen(room_);
   plates_ = add_plates(room_);
   add_board();
+  add_shadows(room_, floor, light_.to_light.cast<double>());
   write(text);
   room_.add(hc::graphics::make_ball(static_cast<float>(kBallRadius)),
             paint_grains(64, 64, {205, 22, 22}, 14, seed), Eigen::Isometry3d::Identity());
@@ -39,6 +40,14 @@ void World::add_board() {
   room_.add_box({0.03, kBoardWidth + 0.06F, kBoardHeight + 0.06F},
                 middle + 0.02 * Vector3d(std::cos(towards), std::sin(towards), 0),
                 cv::Mat(1, 1, CV_8UC3, cv::Scalar(70, 75, 80)), towards);
+  for (const double side : {-0.48, 0.48}) {  // posts
+    const Vector3d along = side * kBoardWidth * Vector3d(-std::sin(towards), std::cos(towards), 0);
+    const double height = middle.z() - kBoardHeight / 2;
+    room_.add_box({0.03, 0.03, height},
+                  Vector3d(middle.x(), middle.y(), height / 2) + along +
+                      0.02 * Vector3d(std::cos(towards), std::sin(towards), 0),
+                  cv::Mat(1, 1, CV_8UC3, cv::Scalar(70, 75, 80)), towards);
+  }
   room_.add(hc::graphics::make_rectangle(kBoardWidth, kBoardHeight),
             cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(255)), hang(middle, towards));
   board_ = room_.items().back().surface;

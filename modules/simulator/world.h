@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The world around the simulated head: a furnished room, in the frame `world` (x forward, y left,
-// z up; [m]). The robot's axis stands in the origin, the pan-tilt unit's axes meet kNeckHeight
-// above.
+// z up; [m]). The room is furnished for a robot in the origin whose head is kHeadHeight above.
 
 #include <cstdint>
 #include <string>

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <frames/messages.h>
+#include <frames/module_frames.h>
 #include <gaze/track_score.h>
 #include <hc/module/module.h>
 
@@ -26,9 +27,8 @@ int main(int argc, char** argv) {
       module.parameter("duration", 20.0, "s", "how long it is scored", {.min = 0.1, .max = 1e6});
   auto within = module.parameter("within", 0.0524, "rad", "an error up to this has acquired it",
                                  {.min = 1e-4, .max = 1});
-  auto baseline = module.parameter("baseline", 0.1, "m", "distance of the eyes");
-
-  auto patience = module.parameter("patience", 60.0, "s", "for a picture, or it has failed",
+  hc::ModuleFrames frames{module, {.input = false}};
+  auto patience = module.parameter("patience", 60.0, "s", "for an image, then it fails",
                                    {.min = 1, .max = 3600});
 
   std::vector<hc::gaze::TrackSample> samples;
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
         const auto T_world_left_eye = hc::value_or_end(hc::pose_of(pose)).T_to_from;
         const auto p = place.matrix().numbers();
         const Eigen::Vector3d to = T_world_left_eye.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
-                                   Eigen::Vector3d(*baseline / 2, 0, 0);
+                                   frames.fixed("left_eye", "right_eye").translation() / 2;
         waits = 0;
         samples.push_back({static_cast<double>(pose.header.time) * 1e-9,
                            std::atan2(to.head<2>().norm(), to.z()), share.matrix().numbers()[3]});
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     constexpr double kLook = 50;  // [Hz]
     module.keep_rate(kLook);
     if (static_cast<double>(++waits) > *patience * kLook)
-      throw hc::ModuleError("there was no picture");
+      throw hc::ModuleError("no image within patience");
     if (samples.empty() || samples.back().time - samples.front().time < *duration) return true;
     const auto score = hc::gaze::score_track(samples, *within);
     const double longest =
@@ -62,11 +62,18 @@ int main(int argc, char** argv) {
         hc::table({score.rms, score.acquired.value_or(-1), static_cast<double>(score.again.size()),
                    is_lost ? -1 : longest, static_cast<double>(score.samples)}));
     char line[200];
-    std::snprintf(line, sizeof line,
-                  "RMS error %.2f°, acquired after %.2f s, came back %zu times, acquired again "
-                  "after %.2f s at most, of %zu pictures",
-                  score.rms * 180 / M_PI, score.acquired.value_or(-1), score.again.size(),
-                  is_lost ? -1 : longest, score.samples);
+    if (!score.acquired)
+      std::snprintf(
+          line, sizeof line,
+          "the ball was never acquired, RMS error %.2f° of %zu images: can the finder see "
+          "it (exposure, colour)?",
+          score.rms * 180 / M_PI, score.samples);
+    else
+      std::snprintf(line, sizeof line,
+                    "RMS error %.2f°, acquired after %.2f s, came back %zu times, acquired again "
+                    "after %.2f s at most, of %zu images",
+                    score.rms * 180 / M_PI, *score.acquired, score.again.size(),
+                    is_lost ? -1 : longest, score.samples);
     module.log(line);
     return false;
   });

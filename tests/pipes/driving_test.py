@@ -116,9 +116,7 @@ class Gaze(Pipes):
             )
         )
         out = self.shell("(%s) | hc gaze --in wish=- --out command=-" % wishes)
-        self.assertRegex(
-            self.err, r"^gaze: left out: a target \d+ ms in the future, as others may be"
-        )
+        self.assertRegex(self.err, r"^gaze: target dropped: its time is \d+ ms in the future")
         self.assertEqual(self.err.count("\n"), 1)
         angles = [line.split() for line in out.splitlines()[1::2]]
         self.assertGreaterEqual(len(angles), 2)

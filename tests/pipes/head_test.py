@@ -5,6 +5,7 @@
 import math
 import pathlib
 import re
+import shutil
 import unittest
 
 from harness import Pipes, ROOT
@@ -57,8 +58,8 @@ class Whole(Head):
             "hc run whole.toml" + "".join(" --set %s=%s" % each for each in options.items()),
         )
         found = re.search(
-            r"calibrate: eyes swapped; they look to pan (\S+)°, tilt (\S+)° with the unit at 0; "
-            r"the right one is off by roll (\S+)°, pitch (\S+)°, yaw (\S+)°",
+            r"calibrate: cameras swapped; gaze offset pan (\S+)°, tilt (\S+)°; "
+            r"right-to-left rotation roll (\S+)°, pitch (\S+)°, yaw (\S+)°",
             self.err,
         )
         self.assertTrue(found, self.err)
@@ -69,6 +70,75 @@ class Whole(Head):
         error = re.search(r"track_score: RMS error (\S+)°, acquired after (\S+) s", self.err)
         self.assertTrue(error, self.err)
         self.assertLess(float(error[1]), 10)
+
+
+class EyesElsewhere(Head):
+    """Eyes that the graph file has mounted elsewhere: in the simulation and in the control."""
+
+    PLACES = {
+        "[0.06, 0.05, 0.05]": "[0.03, 0.09, 0.12]",
+        "[0.06, -0.05, 0.05]": "[0.01, -0.07, 0.1]",
+    }
+
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(ROOT / "graphs", self.path("graphs"))
+        file = pathlib.Path(self.path("graphs/simulated_head.toml"))
+        text = file.read_text()
+        for mounted, elsewhere in self.PLACES.items():
+            self.assertIn(mounted, text)
+            text = text.replace(mounted, elsewhere)
+        file.write_text(text)
+
+    def test_are_calibrated(self):
+        faults = "".join(
+            " --set %s.%s=%s" % (module, *each)
+            for module in ("head_eyes", "calibrate_score")
+            for each in Whole.CROOKED.items()
+        )
+        self.shell("hc run graphs/score_calibrate.toml" + faults)
+        found = re.search(
+            r"identified correctly, zero off by (\S+)°, camera offset by (\S+)°", self.err
+        )
+        self.assertTrue(found, self.err)
+        for error in found.groups():
+            self.assertLess(float(error), 0.4)
+
+    def test_follow_the_ball(self):
+        self.shell("hc run graphs/score_track.toml --set track_score.duration=5 --record kept")
+        found = re.search(r"track_score: RMS error (\S+)°", self.err)
+        self.assertTrue(found, self.err)
+        self.assertLess(float(found[1]), 5)
+        # The truth is that of the file.
+        first = self.shell("hc cat --raw kept/head_eyes.left_pose.mtp | sed -n 2,5p").splitlines()
+        height = float(first[2].split()[3])
+        self.assertGreater(height, 1.2 + 0.1)  # 0.05 above the unit by default
+
+
+class Marker(Head):
+    """graphs/track_marker.toml: the head looks at a coloured marker, by its pose."""
+
+    def test_the_head_turns_to_it(self):
+        graph = (ROOT / "graphs/track_marker.toml").read_text()
+        graph = graph.replace("simulated_head.toml", str(ROOT / "graphs/simulated_head.toml"))
+        for port in ("left_pose", "plates"):
+            graph = graph.replace(
+                "[modes]",
+                '[graphs.head.modules.eyes.outputs.%s]\nto = "file:%s"\n\n[modes]' % (port, port),
+            )
+        self.write("graph.toml", graph)
+        self.shell("hc run graph.toml --set head_eyes.count=100")
+        plates = self.shell("hc cat --raw plates").splitlines()
+        rows = [list(map(float, row.split())) for row in plates[1:]]
+        marker = next(row for row in rows if row[:2] == [2, 300])
+        pose = [
+            list(map(float, r.split())) for r in self.shell("hc cat --raw left_pose").splitlines()
+        ]
+        T = pose[-4:]  # T_world_left_eye
+        to = [marker[3 + i] - T[i][3] for i in range(3)]
+        ahead = sum(T[i][2] * to[i] for i in range(3)) / math.hypot(*to)
+        # The left eye is 0.05 m off the middle, 1 degree at this distance.
+        self.assertGreater(ahead, math.cos(math.radians(2.5)))
 
 
 class CalibrationFile(Head):
@@ -85,9 +155,9 @@ class CalibrationFile(Head):
             self.run_crooked("score_calibrate", "calibrate.calibration_file=cal.yml")
             for _ in range(2)
         )
-        found = re.search(r"calibrate: (eyes swapped; .*)", first)
+        found = re.search(r"calibrate: (cameras swapped; .*)", first)
         self.assertTrue(found, first)
-        self.assertIn("calibrate: by cal.yml: " + found[1], second)
+        self.assertIn("calibrate: from cal.yml: " + found[1], second)
         said = self.run_crooked(
             "score_track", "track.calibration_file=cal.yml", "track_score.duration=4"
         )

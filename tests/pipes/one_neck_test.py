@@ -60,10 +60,6 @@ from = "unix-listen:right"
 [[modules.point.inputs.stick]]
 from = "unix-listen:stick"
 
-[[modules.point.inputs.gaze]]
-from = "head_neck.gaze"
-keep = "latest"
-
 [[modules.workspace.inputs.bids]]
 from = "left.bid"
 

@@ -115,8 +115,8 @@ class Recording(Pipes):
             # Without the rest at 0, in which a unit begins: that may be too short to be seen.
             [
                 rest
-                for rest in self.rests(self.messages(f, "head_neck.gaze"))
-                if max(map(abs, rest)) > 0.01
+                for rest in self.rests(self.messages(f, "head_neck.pose"))
+                if max(map(abs, rest[4:9])) > 0.01
             ]
             for f in ("kept", "again")
         )

@@ -99,6 +99,12 @@ class Task:
             name, parameter = target.split(".")
             self.modules[name].setdefault("parameters", {})[parameter] = value
 
+        # What `hc run` links: the poses of the head, to all that ask for frames.
+        for name, module in self.modules.items():
+            program = module.get("program", name)
+            if program in ("gaze", "calibrate"):
+                self.links.append(("head_neck.pose", name + ".frames"))
+
     def record_command(self):
         options = "".join(" --set %s" % setting for setting in self.settings)
         return "hc run %s --record kept%s" % (self.file, options)

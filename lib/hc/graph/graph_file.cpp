@@ -184,6 +184,10 @@ void record_outputs(Graph& graph, const std::string& folder) {
       outputs.emplace(std::pair(link.from.module, link.from.port), link.place);
   for (const auto& workspace : graph.workspaces)
     outputs.emplace(std::pair(workspace.value, "focus"), workspace.place);
+  for (const auto& frame : graph.frames)
+    if (frame.moved_by)
+      outputs.emplace(std::pair(frame.moved_by->value.module, frame.moved_by->value.port),
+                      frame.moved_by->place);
   for (const auto& [output, place] : outputs) {
     GraphLink link;
     link.from = {output.first, output.second, ""};

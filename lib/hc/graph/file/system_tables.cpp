@@ -17,8 +17,11 @@ std::array<double, 4> quaternion_of(const Angles& degrees) {
   const double cx = std::cos(half(0)), sx = std::sin(half(0));
   const double cy = std::cos(half(1)), sy = std::sin(half(1));
   const double cz = std::cos(half(2)), sz = std::sin(half(2));
-  return {cz * cy * sx - sz * sy * cx, cz * sy * cx + sz * cy * sx, sz * cy * cx - cz * sy * sx,
-          cz * cy * cx + sz * sy * sx};
+  std::array<double, 4> quaternion = {cz * cy * sx - sz * sy * cx, cz * sy * cx + sz * cy * sx,
+                                      sz * cy * cx - cz * sy * sx, cz * cy * cx + sz * sy * sx};
+  // Of right angles it is exact: 0.5 and not 0.5000000000000001.
+  for (double& part : quaternion) part = std::round(part * 1e15) / 1e15;
+  return quaternion;
 }
 
 void read_quaternion(const Fields& fields, const Node& node, const Angles& parts,

@@ -25,16 +25,16 @@ class Frames {
 
   void run() {
     for (const auto& frame : graph_.frames) by_name_[frame.name] = &frame;
+    find_scopes();
     check_numbers();
     check_tree();
     for (const auto& frame : graph_.frames)
       if (frame.moved_by) check_mover(*frame.moved_by);
     check_numbers_of_moved();
     if (!planning_.problems.empty() || graph_.frames.empty()) return;
-    const std::string text = text_of_all();
     for (const auto& [name, description] : planning_.described)
       if (takes_frames(planning_, name))
-        planning_.planned(name)->parameters.try_emplace(kFrames, text);
+        planning_.planned(name)->parameters.try_emplace(kFrames, text_for(name));
   }
 
  private:
@@ -124,13 +124,49 @@ class Frames {
     return frame == by_name_.end() ? 0 : frame->second->coord.value;
   }
 
+  /// What inclusion has put before the names of a file, "head_", by its standard frames.
+  void find_scopes() {
+    for (const auto& frame : graph_.frames)
+      for (const auto& [standard, number] : kStandard)
+        if (frame.place.file != 0 && frame.name.ends_with("_" + standard))
+          scopes_[frame.place.file] = frame.name.substr(0, frame.name.size() - standard.size());
+  }
+  /// A frame's scope; empty: none.
+  [[nodiscard]] std::string scope_of(const GraphFrame& frame) const {
+    auto scope = scopes_.find(frame.place.file);
+    return scope != scopes_.end() && frame.name.starts_with(scope->second) ? scope->second : "";
+  }
+
+  /// The names of frames as a module sees them, by those that they have here. What its own graph
+  /// file declares has no prefix; nor has a standard frame of another file, if it is the only one.
+  [[nodiscard]] std::map<std::string, std::string> names_for(const std::string& module) const {
+    std::map<std::string, int> uses;  // of a name without prefix
+    for (const auto& frame : graph_.frames) ++uses[frame.name.substr(scope_of(frame).size())];
+    std::map<std::string, std::string> names;
+    for (const auto& frame : graph_.frames) {
+      const std::string scope = scope_of(frame), local = frame.name.substr(scope.size());
+      const bool is_own = module.starts_with(scope);
+      const bool is_only = kStandard.contains(local) && uses[local] == 1;
+      const bool is_free = scope.empty() || !by_name_.contains(local);
+      names[frame.name] = is_free && (is_own || is_only) ? local : frame.name;
+    }
+    return names;
+  }
+
   /// As G31 has it.
-  [[nodiscard]] std::string text_of_all() const {
+  [[nodiscard]] std::string text_for(const std::string& module) const {
+    const auto names = names_for(module);
+    auto name_of = [&](const std::string& name) {
+      auto seen = names.find(name);
+      return seen == names.end() ? name : seen->second;
+    };
     std::ostringstream text;
     text.precision(17);
     for (const auto& frame : graph_.frames) {
       if (text.tellp() > 0) text << "; ";
-      text << frame.name << " " << number_of(frame.name) << " " << frame.parent.value;
+      const std::string name = name_of(frame.name);
+      text << name << " " << (kStandard.contains(name) ? kStandard.at(name) : number_of(frame.name))
+           << " " << name_of(frame.parent.value);
       if (frame.moved_by) {
         text << " " << frame.moved_by->value.text() << " " << address_of(frame.moved_by->value);
         continue;
@@ -152,6 +188,7 @@ class Frames {
   Planning& planning_;
   const Graph& graph_;
   std::map<std::string, const GraphFrame*> by_name_;
+  std::map<int, std::string> scopes_;  // by the number of the file
 };
 
 }  // namespace

@@ -34,6 +34,39 @@ coord = 200
   EXPECT_EQ(planned->modules[0].fixed, (std::set<std::string>{"file"}));
 }
 
+constexpr const char* kHead = R"([modules.framed]
+[frames.head]
+parent = "world"
+translation = [0, 0, 1]
+[frames.cup]
+parent = "head"
+)";
+
+TEST(Frames, OfAnIncludedFileHaveTheNamesThatItGivesThem) {
+  auto planned =
+      plan("[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n", {{"head.toml", kHead}});
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->modules[0].parameters.at("frames"),
+            "head 3 world 0 0 1 0 0 0 1; one_cup 0 head 0 0 0 0 0 0 1")
+      << "outside of it, the standard ones";
+  EXPECT_EQ(planned->modules[1].parameters.at("frames"),
+            "head 3 world 0 0 1 0 0 0 1; cup 0 head 0 0 0 0 0 0 1");
+}
+
+TEST(Frames, OfTwoHeadsAreToldApart) {
+  auto planned = plan(
+      "[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n"
+      "[graphs.two]\nfile = \"head.toml\"\n",
+      {{"head.toml", kHead}});
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->modules[0].parameters.at("frames"),
+            "one_head 0 world 0 0 1 0 0 0 1; one_cup 0 one_head 0 0 0 0 0 0 1; "
+            "two_head 0 world 0 0 1 0 0 0 1; two_cup 0 two_head 0 0 0 0 0 0 1");
+  EXPECT_EQ(planned->modules[1].parameters.at("frames"),
+            "head 3 world 0 0 1 0 0 0 1; cup 0 head 0 0 0 0 0 0 1; "
+            "two_head 0 world 0 0 1 0 0 0 1; two_cup 0 two_head 0 0 0 0 0 0 1");
+}
+
 constexpr const char* kMoved = R"([modules.neck]
 [modules.seeker]
 [frames.head]

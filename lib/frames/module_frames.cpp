@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <frames/module_frames.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <frames/default_head.h>
+#include <frames/messages.h>
+
+namespace hc {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 256;
+constexpr std::int64_t kSetBack = 1'000'000'000;  // [ns]
+
+}  // namespace
+
+ModuleFrames::ModuleFrames(Module& module, const Options& options)
+    : module_(module),
+      options_(options),
+      text_(module.parameter("frames", std::string(frames::kDefaultHead), "",
+                             "frames of the graph: set by hc run, else those of the default head",
+                             {.fixed = true})) {
+  if (!options.input) return;
+  auto poses =
+      module.input("frames", any_of(transformation<double>(4, 4), transformation<float>(4, 4)),
+                   "poses of the frames that move, T_parent_child [m]: linked by hc run");
+  module.on(poses, [this](const Message& message) {
+    auto mover = known().mover_of(message.header.src, message.header.coord);
+    auto pose = rigid_of(message);
+    Status fed;
+    if (!mover)
+      fed = mover.error();
+    else if (!pose)
+      fed = pose.error();
+    else
+      fed = feed((*mover)->parent, (*mover)->child, message.header.time, *pose);
+    if (!fed) module_.log(fed.error().detail);
+  });
+  module.every(std::chrono::milliseconds(10), [this] { answer_known(); });
+}
+
+ModuleFrames::Name::Name(const frames::Frame& frame) {
+  if (const auto* of = std::get_if<std::int32_t>(&frame))
+    number = *of;
+  else
+    name = std::get<std::string_view>(frame);
+}
+
+ModuleFrames::Name::operator frames::Frame() const {
+  if (name.empty()) return number;
+  return std::string_view(name);
+}
+
+frames::GraphFrames& ModuleFrames::known() {
+  if (!frames_) frames_ = value_or_end(frames::read_frames(*text_, options_.memory));
+  return *frames_;
+}
+
+Eigen::Isometry3d ModuleFrames::nearest(const frames::Frame& target, const frames::Frame& source,
+                                        std::int64_t time) {
+  return value_or_end(tree().nearest(target, source, time));
+}
+
+Eigen::Isometry3d ModuleFrames::fixed(const frames::Frame& target, const frames::Frame& source) {
+  const auto span = value_or_end(tree().known(target, source));
+  if (span != frames::TimeSpan{})
+    throw ModuleError(Error{Code::Invalid, "frames: a joint moves where a fixed one is expected"});
+  return value_or_end(lookup(target, source, 0));
+}
+
+Status ModuleFrames::feed(std::string_view parent, std::string_view child, std::int64_t time,
+                          const Eigen::Isometry3d& T_parent_child) {
+  auto& newest = newest_.emplace(child, time).first->second;
+  if (time < newest - kSetBack) {
+    known().tree.forget();
+    newest_.clear();
+  } else {
+    newest = std::max(newest, time);
+  }
+  fed_ = module_.now();
+  auto fed = known().tree.feed(parent, child, time, T_parent_child);
+  if (!fed) return fed.error();
+  answer_known();
+  return {};
+}
+
+bool ModuleFrames::awaits(const frames::Frame& target, const frames::Frame& source,
+                          std::int64_t time) {
+  return fed_ > 0 && module_.now() - fed_ < options_.silence.count() &&
+         tree().is_ahead(target, source, time);
+}
+
+bool ModuleFrames::is_awaited(const Waiting& waiting) {
+  if (!tree().is_ahead(waiting.target, waiting.source, waiting.time)) return false;
+  const auto now = module_.now();
+  const bool is_first = fed_ == 0 && now - waiting.since < options_.first.count();
+  return is_first || awaits(waiting.target, waiting.source, waiting.time);
+}
+
+void ModuleFrames::when_known(const frames::Frame& target, const frames::Frame& source,
+                              std::int64_t time, Handler handler) {
+  waiting_.push_back({Name(target), Name(source), time, module_.now(), std::move(handler)});
+  answer_known();
+}
+
+void ModuleFrames::answer_known() {
+  while (!waiting_.empty() && (waiting_.size() > kMaxWaiting || !is_awaited(waiting_.front()))) {
+    const Waiting first = std::move(waiting_.front());
+    waiting_.pop_front();
+    first.handler(lookup(first.target, first.source, first.time));
+  }
+}
+
+void ModuleFrames::answer_all() {
+  options_.silence = options_.first = {};
+  answer_known();
+}
+
+}  // namespace hc

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <frames/module_frames.h>
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include <hc/base/clock.h>
+
+namespace hc {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000, kStart = 1'700'000'000'000'000'000;
+
+/// The default head, which turns to the left by 1 rad a second.
+class DefaultHead : public ::testing::Test {
+ protected:
+  void feed_at(std::int64_t ms) {
+    const Eigen::Isometry3d T(frames::rotation(0, 0, 0.001 * static_cast<double>(ms)));
+    const auto fed = frames_.feed("robot", "head", kStart + ms * kMillisecond, T);
+    EXPECT_TRUE(fed) << fed.error().text();
+  }
+  void ask(std::int64_t ms) {
+    frames_.when_known("robot", "head", kStart + ms * kMillisecond, [this](const auto& T) {
+      answers_.push_back(T ? Eigen::AngleAxisd(T->linear()).angle() : -1);
+    });
+  }
+  DefaultHead() { clock_.advance(std::chrono::nanoseconds(kStart)); }
+  void pass(std::int64_t ms) { clock_.advance(std::chrono::milliseconds(ms)); }
+
+  ManualClock clock_;
+  Module module_{"test", "A test.", clock_};
+  ModuleFrames frames_{module_, {.input = false}};
+  std::vector<double> answers_;
+};
+
+TEST_F(DefaultHead, is_known_without_a_graph) {
+  const Eigen::Isometry3d T = frames_.fixed("left_eye", "right_eye");
+  EXPECT_NEAR((T.translation() - Eigen::Vector3d(0.1, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR((T.linear() - Eigen::Matrix3d::Identity()).norm(), 0, 1e-12);
+  const Eigen::Isometry3d T_world_head = frames_.nearest("world", "head", kStart);
+  EXPECT_NEAR((T_world_head.translation() - Eigen::Vector3d(0, 0, 1.2)).norm(), 0, 1e-12);
+  EXPECT_THROW(static_cast<void>(frames_.fixed("world", "head")), ModuleError);
+}
+
+TEST_F(DefaultHead, a_time_to_come_is_waited_for_as_long_as_poses_come) {
+  feed_at(0);
+  ask(10);
+  ask(4);
+  EXPECT_TRUE(frames_.awaits("robot", "left_eye", kStart + 1));
+  EXPECT_FALSE(frames_.awaits("head", "left_eye", kStart + 1));
+  feed_at(5);
+  EXPECT_TRUE(answers_.empty()) << "in the order of asking";
+  feed_at(20);
+  ASSERT_EQ(answers_.size(), 2);
+  EXPECT_NEAR(answers_[0], 0.010, 1e-9);
+  EXPECT_NEAR(answers_[1], 0.004, 1e-9);
+  ask(30);
+  pass(99);
+  frames_.answer_known();
+  EXPECT_EQ(answers_.size(), 2);
+  pass(1);
+  frames_.answer_known();
+  EXPECT_EQ(answers_.at(2), -1);
+  EXPECT_NEAR(
+      Eigen::AngleAxisd(frames_.nearest("robot", "head", kStart + 30 * kMillisecond).linear())
+          .angle(),
+      0.020, 1e-9);
+}
+
+TEST_F(DefaultHead, without_any_pose_nothing_is_waited_for) {
+  ask(1);
+  EXPECT_EQ(answers_, std::vector<double>{-1});
+}
+
+TEST_F(DefaultHead, a_clock_that_was_set_back_begins_anew) {
+  feed_at(3'600'000);
+  feed_at(0);
+  feed_at(10);
+  ask(5);
+  ASSERT_EQ(answers_.size(), 1);
+  EXPECT_NEAR(answers_[0], 0.005, 1e-9);
+}
+
+TEST_F(DefaultHead, few_wait) {
+  feed_at(0);
+  for (int i = 0; i < 300; ++i) ask(10);
+  EXPECT_EQ(answers_.size(), 300 - 256);
+  frames_.answer_all();
+  EXPECT_EQ(answers_.size(), 300);
+}
+
+}  // namespace
+}  // namespace hc

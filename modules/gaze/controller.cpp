@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "controller.h"
+
+using hc::gaze::Angles;
+
+Angles Controller::command(const hc::gaze::Motion& motion) const {
+  return parameters_.within_limits({motion.angles.pan + parameters_.lead(motion.pan_rate),
+                                    motion.angles.tilt + parameters_.lead(motion.tilt_rate)});
+}
+
+std::optional<Angles> Controller::follow(std::int64_t now, const Angles& measured) const {
+  const auto& follower = targets.follower();
+  if (!is_fresh(follower.last(), now))
+    return *parameters_.rest > 0 ? std::optional(parameters_.within_limits({0, 0})) : std::nullopt;
+  const auto motion = *follower.at(seconds(now) + *parameters_.predict);
+  if (hc::gaze::between(motion.angles, measured) < *parameters_.dead_zone) return std::nullopt;
+  return command(motion);
+}
+
+void Controller::push(std::int64_t now, double left, double down, const Angles& measured) {
+  const double full = *parameters_.stick_rate;
+  stick_.push({std::clamp(left, -1.0, 1.0) * full, std::clamp(down, -1.0, 1.0) * full},
+              seconds(now), measured);
+}
+
+std::optional<Angles> Controller::steer(std::int64_t now, const Angles& measured) {
+  constexpr double kLead = 0.02;  // so that it moves at once, and on if a push comes late [s]
+  auto motion = stick_.at(seconds(now), measured);
+  if (!motion) return std::nullopt;
+  motion->angles.pan += motion->pan_rate * kLead;
+  motion->angles.tilt += motion->tilt_rate * kLead;
+  return command(*motion);
+}
+
+bool Controller::wants_head(std::int64_t now) const {
+  return is_fresh(targets.follower().last(), now) || is_fresh(stick_.last(), now);
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the head is commanded: to follow a target, or a stick. No messages; times in nanoseconds.
+
+#include <optional>
+
+#include <gaze/stick.h>
+
+#include "parameters.h"
+#include "targets.h"
+
+class Controller {
+ public:
+  /// @param parameters  must outlive it.
+  Controller(const Parameters& parameters, Targets targets)
+      : targets(std::move(targets)), parameters_(parameters) {}
+
+  /// The command that follows the target: to where it will be when the head gets there. Nothing:
+  /// there is no target, or it is near enough to where the head looks, `measured`.
+  [[nodiscard]] std::optional<hc::gaze::Angles> follow(std::int64_t now,
+                                                       const hc::gaze::Angles& measured) const;
+  /// A stick is pushed. @param left, down  -1 … 1.
+  void push(std::int64_t now, double left, double down, const hc::gaze::Angles& measured);
+  /// The command that follows the stick; nothing: it is in its middle.
+  [[nodiscard]] std::optional<hc::gaze::Angles> steer(std::int64_t now,
+                                                      const hc::gaze::Angles& measured);
+  /// Whether there is a target, or a stick that is pushed.
+  [[nodiscard]] bool wants_head(std::int64_t now) const;
+
+  Targets targets;
+
+ private:
+  [[nodiscard]] bool is_fresh(std::optional<double> last, std::int64_t now) const {
+    return last && seconds(now) - *last <= *parameters_.patience;
+  }
+  /// The command for what moves so: ahead of it by the unit's braking distance, within its limits.
+  [[nodiscard]] hc::gaze::Angles command(const hc::gaze::Motion& motion) const;
+
+  const Parameters& parameters_;
+  hc::gaze::Stick stick_;
+};
