@@ -58,7 +58,8 @@ void Acceptor::accept_all() {
     if (peer)
       newcomers_.push_back(std::move(*peer));
     else if (!later_)
-      remark(Severity::Warning, "nobody is let in for now: " + peer.error().text());
+      remark(Severity::Warning,
+             "not accepting connections: " + peer.error().text() + "; retrying every 200 ms");
   }
   if (!newcomers_.empty()) ::eventfd_write(arrived_.get(), 1);
   has_news_ = !newcomers_.empty() || !remarks_.empty();

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include <hc/os/epoll.h>
-
 namespace hc::internal {
 namespace {
 
@@ -16,13 +14,10 @@ constexpr std::chrono::milliseconds kTellAfter{200};
 
 Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer, Open open,
                                                     const LinkOptions& options) {
-  auto poll = make_epoll();
-  if (!poll) return poll.error();
-  auto timer = make_timer();
-  if (!timer) return timer.error();
-  std::unique_ptr<DialingSource> source(new DialingSource(
-      std::move(dialer), std::move(open), std::move(*poll), std::move(*timer), options));
-  source->watch(source->timer_.get(), EPOLLIN);
+  auto loop = Loop::make();
+  if (!loop) return loop.error();
+  std::unique_ptr<DialingSource> source(
+      new DialingSource(std::move(dialer), std::move(open), std::move(*loop), options));
   static_cast<void>(source->dial());  // the first take() tells if it is in vain
   return std::unique_ptr<Source>(std::move(source));
 }
@@ -54,6 +49,8 @@ Result<Got> DialingSource::take(Message& message) {
 /// Does what is due for a connection, and has the descriptor tell when there is more to do.
 Status DialingSource::dial() {
   auto now = std::chrono::steady_clock::now();
+  watch_.reset();  // before the dialer closes its descriptor
+  retry_.reset();
   auto connected = dialer_->dial(now);
   if (!connected) return connected.error();
   if (auto remark = dialer_->take_remark(now)) log(*remark);
@@ -74,20 +71,17 @@ Status DialingSource::dial() {
       tell_at_ = TimePoint::max();
     }
   }
-  std::chrono::nanoseconds left(0);
   if (source_ == nullptr) {
-    left = std::max(std::min(dialer_->due(), tell_at_) - now, std::chrono::nanoseconds(1));
+    retry_ = loop_->call_at(std::min(dialer_->due(), tell_at_), [] {});
     if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), EPOLLOUT);
   }
-  set_timer(timer_, left);
   return {};
 }
 
 void DialingSource::lose_connection(const std::string& why) {
   const bool was_heard = source_->traffic().messages > 0;
   past_ += source_->traffic();
-  // Messages that are held may keep the connection open.
-  static_cast<void>(control(poll_, EPOLL_CTL_DEL, source_->descriptor()));
+  watch_.reset();
   source_.reset();
   if (finishing_) return;
   auto now = std::chrono::steady_clock::now();
@@ -99,10 +93,9 @@ void DialingSource::lose_connection(const std::string& why) {
                 why.empty() ? "the writer has gone" : why);
 }
 
-/// Watches a descriptor, which is forgotten when it is closed.
-void DialingSource::watch(int descriptor, std::uint32_t events) const {
-  if (!control(poll_, EPOLL_CTL_ADD, descriptor, events))
-    static_cast<void>(control(poll_, EPOLL_CTL_MOD, descriptor, events));
+void DialingSource::watch(int descriptor, std::uint32_t events) {
+  auto watched = loop_->watch(descriptor, events, [](auto) {});
+  if (watched) watch_ = std::move(*watched);
 }
 
 void DialingSource::log(std::string_view line) const {

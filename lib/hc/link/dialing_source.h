@@ -7,6 +7,7 @@
 
 #include <hc/link/dialer.h>
 #include <hc/link/link.h>
+#include <hc/os/loop.h>
 
 namespace hc::internal {
 
@@ -26,7 +27,7 @@ class DialingSource final : public Source {
                                               const LinkOptions& options);
 
   Result<Got> take(Message& message) override;
-  [[nodiscard]] int descriptor() const override { return poll_.get(); }
+  [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
   bool prepare_wait() override { return source_ == nullptr || source_->prepare_wait(); }
   Result<bool> wait(int stop, std::chrono::milliseconds timeout) override {
     return source_ == nullptr ? Source::wait(stop, timeout) : source_->wait(stop, timeout);
@@ -35,24 +36,24 @@ class DialingSource final : public Source {
   void finish() override { finishing_ = true; }
 
  private:
-  DialingSource(std::unique_ptr<Dialer> dialer, Open open, Descriptor poll, Descriptor timer,
+  DialingSource(std::unique_ptr<Dialer> dialer, Open open, std::unique_ptr<Loop> loop,
                 LinkOptions options)
       : dialer_(std::move(dialer)),
         open_(std::move(open)),
-        poll_(std::move(poll)),
-        timer_(std::move(timer)),
+        loop_(std::move(loop)),
         options_(std::move(options)) {}
 
   Status dial();
   /// @param why  empty: the writer said its end.
   void lose_connection(const std::string& why);
-  void watch(int descriptor, std::uint32_t events) const;
+  void watch(int descriptor, std::uint32_t events);
   void log(std::string_view line) const;
 
   std::unique_ptr<Dialer> dialer_;
   Open open_;
-  Descriptor poll_;   // an epoll instance of the connection, or the try at one, and the timer
-  Descriptor timer_;  // says when to try again
+  std::unique_ptr<Loop> loop_;  // of what follows; calls nothing, but its descriptor tells
+  Loop::Handle watch_;          // of the connection, or the attempt at one
+  Loop::Handle retry_;
   LinkOptions options_;
   std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;

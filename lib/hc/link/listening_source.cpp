@@ -5,11 +5,9 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <array>
 
 #include <hc/link/dialer.h>
 #include <hc/link/transports.h>
-#include <hc/os/epoll.h>
 
 namespace hc::internal {
 namespace {
@@ -25,64 +23,21 @@ bool is_readable(int descriptor) {
 
 Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
                                                       const LinkOptions& options) {
-  auto poll = make_epoll();
-  if (!poll) return poll.error();
-  auto timer = make_timer();
-  if (!timer) return timer.error();
+  auto loop = Loop::make();
+  if (!loop) return loop.error();
   std::unique_ptr<ListeningSource> source(
-      new ListeningSource(std::move(socket), std::move(*poll), std::move(*timer), options));
-  auto& self = *source;
-  for (Descriptor* descriptor : {&self.socket_.descriptor, &self.timer_})
-    if (auto watched = self.watch(descriptor->get(), descriptor); !watched) return watched.error();
+      new ListeningSource(std::move(socket), std::move(*loop), options));
+  auto watched = source->loop_->watch(source->socket_.descriptor.get(), EPOLLIN,
+                                      [self = source.get()](auto) { self->accept_all(); });
+  if (!watched) return watched.error();
+  source->listening_ = std::move(*watched);
   return std::unique_ptr<Source>(std::move(source));
 }
 
-Status ListeningSource::watch(int descriptor, void* who) {
-  return control(poll_, EPOLL_CTL_ADD, descriptor, EPOLLIN, {.ptr = who});
-}
-
-void ListeningSource::forget(int descriptor) {
-  static_cast<void>(control(poll_, EPOLL_CTL_DEL, descriptor));
-}
-
-/// Asks who has something; gives whether there was anything before the time was up.
-///
-/// Errors: Stopped, System.
-Result<bool> ListeningSource::poll(std::chrono::milliseconds timeout) {
-  takes_ = 0;
-  std::array<epoll_event, 64> events;
-  auto count = system_call("epoll_wait", "", [&] {
-    return ::epoll_wait(poll_.get(), events.data(), static_cast<int>(events.size()),
-                        static_cast<int>(timeout.count()));
-  });
-  if (!count) return count.error();
-  bool has_come = false, is_to_stop = false;
-  for (const auto& event : std::span(events).first(static_cast<std::size_t>(*count))) {
-    void* who = event.data.ptr;
-    if (who == &stop_) {
-      is_to_stop = true;
-    } else if (who == &socket_.descriptor || who == &timer_) {
-      has_come = true;
-    } else if (auto& peer = *static_cast<Peer*>(who); !peer.is_ready) {
-      peer.is_ready = true;
-      ready_.push_back(&peer);
-    }
-  }
-  if (has_come) accept_all();
-  if (is_to_stop && timeout.count() != 0) return Error{Code::Stopped, "asked to stop"};
-  return *count > 0;
-}
-
 Result<bool> ListeningSource::wait(int stop, std::chrono::milliseconds timeout) {
-  if (auto watched = watch_stop(stop); !watched) return watched.error();
-  return poll(timeout);
-}
-
-Status ListeningSource::watch_stop(int stop) {
-  if (stop == stop_) return {};
-  if (stop_ >= 0) forget(stop_);
-  stop_ = stop;
-  return stop >= 0 ? watch(stop, &stop_) : Status();
+  auto deadline =
+      timeout.count() < 0 ? Deadline::max() : std::chrono::steady_clock::now() + timeout;
+  return wait_for(loop_->descriptor(), POLLIN, stop, deadline);
 }
 
 /// Lets in who waits, as far as there is room.
@@ -95,29 +50,32 @@ void ListeningSource::accept_all() {
     auto accepted = accept_peer(socket_, options_.log);
     if (accepted && !*accepted) return accept_later(false);
     auto peer = std::make_unique<Peer>();
-    auto watched = accepted ? watch(accepted->get(), peer.get()) : Status(accepted.error());
+    auto watched = accepted ? loop_->watch(accepted->get(), EPOLLIN,
+                                           [this, each = peer.get()](auto) {
+                                             if (std::exchange(each->is_ready, true)) return;
+                                             ready_.push_back(each);
+                                           })
+                            : Result<Loop::Handle>(accepted.error());
     if (!watched) {
       if (!later_ && options_.log)
-        options_.log(Severity::Warning, "nobody is let in for now: " + in_words(watched.error()));
+        options_.log(Severity::Warning, "not accepting connections: " + in_words(watched.error()) +
+                                            "; retrying every 200 ms");
       return accept_later(true);
     }
     if (full) leave(*peers_[idlest], "closed the peer that was silent longest, to let another in");
     set_up_reader(accepted->get());
     peer->source = std::make_unique<StreamSource>(std::move(*accepted), options_);
+    peer->watch = std::move(*watched);
     peer->heard = ++count_;
     peers_.push_back(std::move(peer));
   }
 }
 
-/// Says whether somebody waits who cannot be let in now: then the listening socket, which stays
-/// readable, is overlooked, and a timer tells when to try again.
+/// Whether a peer waits that cannot be accepted now: then the listening socket, which stays
+/// readable, is left alone until it is time to try again.
 void ListeningSource::accept_later(bool later) {
-  if (!later && !later_) return;
-  set_timer(timer_, later ? kRetryTime : std::chrono::milliseconds(0));
-  if (later)
-    forget(socket_.descriptor.get());
-  else
-    static_cast<void>(watch(socket_.descriptor.get(), &socket_.descriptor));
+  if (later) listening_.call_at(std::chrono::steady_clock::now() + kRetryTime);
+  static_cast<void>(listening_.want(later ? 0U : EPOLLIN));
   later_ = later;
 }
 
@@ -163,8 +121,10 @@ Traffic ListeningSource::traffic() const {
 Result<Got> ListeningSource::take(Message& message) {
   constexpr int kTakesBetween = 64;  // before the others are asked, whatever the ready ones have
   message = {};
-  if (ready_.empty() || ++takes_ > kTakesBetween)
-    if (auto asked = poll(std::chrono::milliseconds(0)); !asked) return asked.error();
+  if (ready_.empty() || ++takes_ > kTakesBetween) {
+    takes_ = 0;
+    if (auto asked = loop_->turn(std::chrono::milliseconds(0)); !asked) return asked.error();
+  }
   while (!ready_.empty()) {
     if (turn_ >= ready_.size()) turn_ = 0;
     Peer& peer = *ready_[turn_];

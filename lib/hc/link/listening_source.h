@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hc/link/stream_link.h>
+#include <hc/os/loop.h>
 #include <hc/os/socket.h>
 
 namespace hc::internal {
@@ -25,7 +26,7 @@ class ListeningSource final : public Source {
   static Result<std::unique_ptr<Source>> make(ListeningSocket socket, const LinkOptions& options);
 
   Result<Got> take(Message& message) override;
-  [[nodiscard]] int descriptor() const override { return poll_.get(); }
+  [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
   Result<bool> wait(int stop, std::chrono::milliseconds timeout) override;
   [[nodiscard]] Traffic traffic() const override;
 
@@ -34,19 +35,13 @@ class ListeningSource final : public Source {
     std::unique_ptr<StreamSource> source;
     std::uint64_t heard = 0;  // when: the number of messages and peers that had come by then
     bool is_ready = false;    // is in ready_
+    Loop::Handle watch;
   };
   using Peers = std::vector<std::unique_ptr<Peer>>;
 
-  ListeningSource(ListeningSocket socket, Descriptor poll, Descriptor timer, LinkOptions options)
-      : socket_(std::move(socket)),
-        poll_(std::move(poll)),
-        timer_(std::move(timer)),
-        options_(std::move(options)) {}
+  ListeningSource(ListeningSocket socket, std::unique_ptr<Loop> loop, LinkOptions options)
+      : socket_(std::move(socket)), loop_(std::move(loop)), options_(std::move(options)) {}
 
-  Status watch(int descriptor, void* who);
-  void forget(int descriptor);
-  Result<bool> poll(std::chrono::milliseconds timeout);
-  Status watch_stop(int stop);
   void accept_all();
   void accept_later(bool later);
   [[nodiscard]] std::size_t find_idlest() const;
@@ -54,9 +49,8 @@ class ListeningSource final : public Source {
   void rest(Peer& peer);
 
   ListeningSocket socket_;
-  Descriptor poll_;   // an epoll instance of the listening socket, the timer and all peers
-  Descriptor timer_;  // says when to try again, while later_
-  int stop_ = -1;     // is watched too, so that one call is enough to wait
+  std::unique_ptr<Loop> loop_;  // of the listening socket and all peers
+  Loop::Handle listening_;
   LinkOptions options_;
   Peers peers_;
   std::vector<Peer*> ready_;  // those that may have messages; they take turns

@@ -258,8 +258,8 @@ TEST_P(SocketLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
     for (int i = 0; i < 3; ++i) ASSERT_EQ(*source->take(message), Got::Nothing);
   }
   EXPECT_EQ(warnings.lines,
-            std::vector<std::string>{
-                listen() + ": nobody is let in for now: System: accept(): Too many open files"});
+            std::vector<std::string>{listen() + ": not accepting connections: System: accept(): "
+                                                "Too many open files; retrying every 200 ms"});
   EXPECT_TRUE(*receive(*source, message));
 }
 
@@ -279,8 +279,8 @@ TEST_P(SocketLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
     EXPECT_EQ(sink->send(first).error().code, Code::Stopped);
   }
   EXPECT_EQ(warnings.lines,
-            std::vector<std::string>{
-                listen() + ": nobody is let in for now: System: accept(): Too many open files"});
+            std::vector<std::string>{listen() + ": not accepting connections: System: accept(): "
+                                                "Too many open files; retrying every 200 ms"});
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   Message message;
   ASSERT_TRUE(*receive(*source, message));

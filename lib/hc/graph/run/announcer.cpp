@@ -9,7 +9,7 @@
 
 namespace hc::internal {
 
-Result<std::unique_ptr<Announcer>> Announcer::make(EventLoop& loop, const std::string& uri,
+Result<std::unique_ptr<Announcer>> Announcer::make(Loop& loop, const std::string& uri,
                                                    std::function<std::vector<Message>()> welcome) {
   auto parsed = parse_uri(uri);
   if (!parsed) return parsed.error();
@@ -17,7 +17,7 @@ Result<std::unique_ptr<Announcer>> Announcer::make(EventLoop& loop, const std::s
   if (!socket) return socket.error();
   std::unique_ptr<Announcer> announcer(new Announcer(loop, std::move(*socket), std::move(welcome)));
   auto watched = loop.watch(announcer->socket_.descriptor.get(), EPOLLIN,
-                            [self = announcer.get()] { self->let_in(); });
+                            [self = announcer.get()](auto) { self->let_in(); });
   if (!watched) return watched.error();
   announcer->watch_ = std::move(*watched);
   return announcer;
@@ -74,7 +74,7 @@ void Announcer::watch(Peer& peer) {
   const bool waits = !peer.waiting.empty();
   peer.watch.reset();
   auto watched = loop_.watch(
-      peer.socket.get(), waits ? EPOLLIN | EPOLLOUT : EPOLLIN, [this, who = &peer, waits] {
+      peer.socket.get(), waits ? EPOLLIN | EPOLLOUT : EPOLLIN, [this, who = &peer, waits](auto) {
         char piece[256];  // it has nothing to say
         auto size = ::recv(who->socket.get(), piece, sizeof piece, MSG_DONTWAIT);
         who->has_left = size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR);

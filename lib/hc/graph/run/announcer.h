@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/run/event_loop.h>
 #include <hc/mtp/message.h>
+#include <hc/os/loop.h>
 #include <hc/os/socket.h>
 
 namespace hc::internal {
@@ -26,7 +26,7 @@ class Announcer {
   ///
   /// Errors: Invalid, System (the name is in use).
   static Result<std::unique_ptr<Announcer>> make(
-      EventLoop& loop, const std::string& uri, std::function<std::vector<Message>()> welcome = {});
+      Loop& loop, const std::string& uri, std::function<std::vector<Message>()> welcome = {});
 
   /// Says it to all there are; whether all have it or will.
   bool say(const Message& message);
@@ -38,11 +38,11 @@ class Announcer {
   struct Peer {
     Descriptor socket;
     std::string waiting;  // bytes that the socket has not taken
-    EventLoop::Handle watch;
+    Loop::Handle watch;
     bool has_left = false;
   };
 
-  Announcer(EventLoop& loop, ListeningSocket socket, std::function<std::vector<Message>()> welcome)
+  Announcer(Loop& loop, ListeningSocket socket, std::function<std::vector<Message>()> welcome)
       : loop_(loop), socket_(std::move(socket)), welcome_(std::move(welcome)) {}
 
   void let_in();
@@ -51,11 +51,11 @@ class Announcer {
   void watch(Peer& peer);
   void forget_those_who_left();
 
-  EventLoop& loop_;
+  Loop& loop_;
   ListeningSocket socket_;
   std::function<std::vector<Message>()> welcome_;
   std::vector<std::unique_ptr<Peer>> peers_;
-  EventLoop::Handle watch_;
+  Loop::Handle watch_;
 };
 
 /// Says one message to who listens at `unix:…`, if it can be said at once.

@@ -46,7 +46,7 @@ class AnnouncerTest : public ::testing::Test {
     return rows_of(message).at(0).substr(0, 20);
   }
 
-  std::unique_ptr<EventLoop> loop_ = std::move(*EventLoop::make());
+  std::unique_ptr<Loop> loop_ = std::move(*Loop::make());
   std::unique_ptr<Announcer> announcer_;
 };
 

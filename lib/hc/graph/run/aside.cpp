@@ -14,14 +14,14 @@ Result<int> make_event() {
 
 }  // namespace
 
-Result<std::unique_ptr<Aside>> Aside::make(EventLoop& loop) {
+Result<std::unique_ptr<Aside>> Aside::make(Loop& loop) {
   auto stop = make_event();
   if (!stop) return stop.error();
   Descriptor stopped(*stop);
   auto ended = make_event();
   if (!ended) return ended.error();
   std::unique_ptr<Aside> aside(new Aside(std::move(stopped), Descriptor(*ended)));
-  auto watched = loop.watch(*ended, EPOLLIN, [self = aside.get()] { self->finish(); });
+  auto watched = loop.watch(*ended, EPOLLIN, [self = aside.get()](auto) { self->finish(); });
   if (!watched) return watched.error();
   aside->watch_ = std::move(*watched);
   return aside;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <thread>
 
-#include <hc/graph/run/event_loop.h>
+#include <hc/os/loop.h>
 
 namespace hc::internal {
 
@@ -17,7 +17,7 @@ class Aside {
   using Work = std::function<void(int stop)>;
 
   /// Errors: System.
-  static Result<std::unique_ptr<Aside>> make(EventLoop& loop);
+  static Result<std::unique_ptr<Aside>> make(Loop& loop);
   /// Has the work stop, and waits for that. What follows it is not called any more.
   ~Aside();
   Aside(const Aside&) = delete;
@@ -38,7 +38,7 @@ class Aside {
   Descriptor stop_, ended_;  // of eventfd
   bool is_stopped_ = false;
   std::function<void()> done_;
-  EventLoop::Handle watch_;
+  Loop::Handle watch_;
   std::thread thread_;
 };
 

@@ -3,15 +3,15 @@
 
 namespace hc::internal {
 
-Result<std::unique_ptr<Intake>> Intake::make(EventLoop& loop, const std::string& uri, Take take,
+Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri, Take take,
                                              const LinkOptions& options) {
   auto parsed = parse_uri(uri);
   if (!parsed) return parsed.error();
   auto source = open_source(*parsed, options);
   if (!source) return source.error();
   std::unique_ptr<Intake> intake(new Intake(loop, std::move(*source), std::move(take)));
-  auto watched =
-      loop.watch(intake->source_->descriptor(), EPOLLIN, [self = intake.get()] { self->take(); });
+  auto watched = loop.watch(intake->source_->descriptor(), EPOLLIN,
+                            [self = intake.get()](auto) { self->take(); });
   if (!watched) return watched.error();
   intake->watch_ = std::move(*watched);
   // A source may have something before its descriptor has ever been asked to tell.
@@ -37,7 +37,7 @@ void Intake::take() {
   again_ = loop_.call_at(std::chrono::steady_clock::now(), [this] { take(); });
 }
 
-Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri,
+Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri,
                                               StandIn until) {
   auto uri = parse_uri(reader_uri);
   if (!uri) return uri.error();

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include <hc/graph/run/event_loop.h>
 #include <hc/link/link.h>
+#include <hc/os/loop.h>
 
 namespace hc::internal {
 
@@ -17,7 +17,7 @@ class Intake {
   using Take = std::function<void(const Message& message)>;
 
   /// Errors: as open_source(), System.
-  static Result<std::unique_ptr<Intake>> make(EventLoop& loop, const std::string& uri, Take take,
+  static Result<std::unique_ptr<Intake>> make(Loop& loop, const std::string& uri, Take take,
                                               const LinkOptions& options = {});
 
   /// Takes what is there now.
@@ -28,14 +28,14 @@ class Intake {
  private:
   static constexpr int kMostInATurn = 256;
 
-  Intake(EventLoop& loop, std::unique_ptr<Source> source, Take take)
+  Intake(Loop& loop, std::unique_ptr<Source> source, Take take)
       : loop_(loop), source_(std::move(source)), take_(std::move(take)) {}
 
-  EventLoop& loop_;
+  Loop& loop_;
   std::unique_ptr<Source> source_;
   Take take_;
   bool is_over_ = false;
-  EventLoop::Handle watch_, again_;
+  Loop::Handle watch_, again_;
 };
 
 /// For how long there is a reader in another's place.
@@ -50,7 +50,7 @@ enum class StandIn {
 ///     message from being overwritten.
 ///
 /// Errors: as Intake::make.
-Result<std::unique_ptr<Intake>> make_stand_in(EventLoop& loop, const std::string& reader_uri,
+Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri,
                                               StandIn until = StandIn::WhileThereAreWriters);
 
 }  // namespace hc::internal

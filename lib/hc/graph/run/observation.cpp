@@ -23,7 +23,7 @@ Message stamped(Message message, Sender src, std::int64_t& seq) {
 
 }  // namespace
 
-Result<std::unique_ptr<Observation>> Observation::make(EventLoop& loop, const std::string& name,
+Result<std::unique_ptr<Observation>> Observation::make(Loop& loop, const std::string& name,
                                                        Asked asked) {
   const std::string uri = "unix-listen:@hypercolumn." + name + "." + std::to_string(::getpid());
   std::unique_ptr<Observation> observation(new Observation(loop, std::move(asked)));

@@ -25,7 +25,7 @@ class Observation {
   };
 
   /// @param name  of the graph. Errors: System (another graph of this process has the name).
-  static Result<std::unique_ptr<Observation>> make(EventLoop& loop, const std::string& name,
+  static Result<std::unique_ptr<Observation>> make(Loop& loop, const std::string& name,
                                                    Asked asked);
 
   /// Tells the state, if anybody listens.
@@ -36,15 +36,15 @@ class Observation {
   [[nodiscard]] bool is_heard() const { return announcer_->is_heard(); }
 
  private:
-  Observation(EventLoop& loop, Asked asked) : loop_(loop), asked_(std::move(asked)) {}
+  Observation(Loop& loop, Asked asked) : loop_(loop), asked_(std::move(asked)) {}
 
   Message state_message();
   void take_commands(const Message& message) const;
 
-  EventLoop& loop_;
+  Loop& loop_;
   Asked asked_;
   std::int64_t states_ = 0, lines_ = 0;  // told so far
-  EventLoop::Handle soon_;
+  Loop::Handle soon_;
   std::unique_ptr<Announcer> announcer_;
   std::unique_ptr<Intake> commands_;
 };

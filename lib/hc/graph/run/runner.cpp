@@ -38,7 +38,7 @@ Result<RunReport> Runner::run() {
 
 Status Runner::begin() {
   begun_ = now();
-  auto loop = EventLoop::make();
+  auto loop = Loop::make();
   if (!loop) return loop.error();
   loop_ = std::move(*loop);
   if (!options_.name.empty()) {
@@ -50,7 +50,7 @@ Status Runner::begin() {
     observation_ = std::move(*observation);
   }
   if (options_.stop >= 0) {
-    auto watched = loop_->watch(options_.stop, EPOLLIN, [this] {
+    auto watched = loop_->watch(options_.stop, EPOLLIN, [this](auto) {
       stop_.reset();
       is_stopped_ = true;
       end_all();

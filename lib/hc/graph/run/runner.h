@@ -14,10 +14,10 @@
 
 #include <hc/graph/run.h>
 #include <hc/graph/run/aside.h>
-#include <hc/graph/run/event_loop.h>
-#include <hc/graph/run/file_watch.h>
 #include <hc/graph/run/observation.h>
 #include <hc/graph/run/supervised.h>
+#include <hc/os/file_watch.h>
+#include <hc/os/loop.h>
 
 namespace hc::internal {
 
@@ -86,7 +86,7 @@ class Runner {
   Status outcome_;
   std::vector<std::string> commands_;  // that have changed the graph
   std::deque<Change> changes_;         // the first of them is being planned
-  std::unique_ptr<EventLoop> loop_;
+  std::unique_ptr<Loop> loop_;
   std::unique_ptr<Observation> observation_;
   std::unique_ptr<FileWatch> files_;
   std::unique_ptr<Aside> planning_;
@@ -94,7 +94,7 @@ class Runner {
       stand_ins_;                                // for readers that are over; null: failed
   std::vector<std::unique_ptr<Intake>> ending_;  // read links that are taken away
   std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
-  EventLoop::Handle stop_, tick_;
+  Loop::Handle stop_, tick_;
 };
 
 }  // namespace hc::internal

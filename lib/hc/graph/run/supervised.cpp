@@ -42,8 +42,7 @@ std::string end_in_words(int status) {
   return "failed with status " + std::to_string(status);
 }
 
-Supervised::Supervised(EventLoop& loop, PlannedModule plan, const SupervisionLimits& limits,
-                       Hear hear)
+Supervised::Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear)
     : loop_(loop),
       plan_(std::move(plan)),
       told_(plan_),
@@ -53,7 +52,7 @@ Supervised::Supervised(EventLoop& loop, PlannedModule plan, const SupervisionLim
                 static_cast<std::uint32_t>(std::hash<std::string>()(plan_.manage_uri))),
       reports_(plan_.ends) {}
 
-Result<std::unique_ptr<Supervised>> Supervised::make(EventLoop& loop, PlannedModule plan,
+Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule plan,
                                                      const SupervisionLimits& limits, Hear hear) {
   std::unique_ptr<Supervised> module(
       new Supervised(loop, std::move(plan), limits, std::move(hear)));
@@ -123,10 +122,10 @@ Status Supervised::start() {
   process_.emplace(std::move(*process));
   program_ = first_child(process_->guard_number());
   told_ = plan_;
-  auto said = loop_.watch(process_->output(), EPOLLIN, [this] { read_lines(); });
+  auto said = loop_.watch(process_->output(), EPOLLIN, [this](auto) { read_lines(); });
   if (!said) return said.error();
   said_ = std::move(*said);
-  auto ended = loop_.watch(process_->ended(), EPOLLIN, [this] { note_end(); });
+  auto ended = loop_.watch(process_->ended(), EPOLLIN, [this](auto) { note_end(); });
   if (!ended) return ended.error();
   ended_ = std::move(*ended);
   hear_.event("started");

@@ -38,7 +38,7 @@ class Supervised {
   };
 
   /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
-  static Result<std::unique_ptr<Supervised>> make(EventLoop& loop, PlannedModule plan,
+  static Result<std::unique_ptr<Supervised>> make(Loop& loop, PlannedModule plan,
                                                   const SupervisionLimits& limits, Hear hear);
 
   /// Starts it. Errors: NotFound, System; of later starts they are events.
@@ -78,7 +78,7 @@ class Supervised {
   [[nodiscard]] ModuleState state() const;
 
  private:
-  Supervised(EventLoop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
+  Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
 
   Status open_control();
   std::vector<std::string> catch_up();
@@ -94,7 +94,7 @@ class Supervised {
   void go_on(int status);
   void start_again();
 
-  EventLoop& loop_;
+  Loop& loop_;
   PlannedModule plan_;
   PlannedModule told_;   // as its process has been told, which may know links by their older URIs
   ModuleChange change_;  // that is under way
@@ -118,7 +118,7 @@ class Supervised {
   std::unique_ptr<Intake> manage_;
   std::unique_ptr<Announcer> control_;
   std::optional<Process> process_;
-  EventLoop::Handle said_, ended_, timer_;
+  Loop::Handle said_, ended_, timer_;
 };
 
 }  // namespace hc::internal

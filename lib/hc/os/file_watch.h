@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Notices that files are edited. Internal to graph.
+// Notices that files are edited. Internal.
 
 #include <sys/inotify.h>
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/run/event_loop.h>
+#include <hc/os/loop.h>
 
 namespace hc::internal {
 
@@ -25,13 +25,13 @@ class FileWatch {
   static constexpr std::chrono::milliseconds kQuiet{50};
 
   /// Errors: System.
-  static Result<std::unique_ptr<FileWatch>> make(EventLoop& loop, std::function<void()> changed);
+  static Result<std::unique_ptr<FileWatch>> make(Loop& loop, std::function<void()> changed);
 
   /// Watches these, and no others any more.
   void set_files(const std::vector<std::string>& files);
 
  private:
-  FileWatch(EventLoop& loop, Descriptor notes, std::function<void()> changed)
+  FileWatch(Loop& loop, Descriptor notes, std::function<void()> changed)
       : loop_(loop), changed_(std::move(changed)), notes_(std::move(notes)) {}
 
   struct Folder {
@@ -45,12 +45,12 @@ class FileWatch {
   [[nodiscard]] bool is_ours(const inotify_event& note, const char* name) const;
   void read();
 
-  EventLoop& loop_;
+  Loop& loop_;
   std::function<void()> changed_;
   Descriptor notes_;  // of inotify
   std::vector<std::string> files_;
   std::map<int, Folder> folders_;  // by the number of the watch
-  EventLoop::Handle watch_, timer_;
+  Loop::Handle watch_, timer_;
 };
 
 }  // namespace hc::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/graph/run/file_watch.h>
+#include <hc/os/file_watch.h>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class FileWatchTest : public ::testing::Test {
     EXPECT_EQ(calls_, calls);
   }
 
-  std::unique_ptr<EventLoop> loop_ = std::move(*EventLoop::make());
+  std::unique_ptr<Loop> loop_ = std::move(*Loop::make());
   std::unique_ptr<FileWatch> watch_;
   fs::path folder_;
   int calls_ = 0;

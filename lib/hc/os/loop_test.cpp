@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/graph/run/event_loop.h>
+#include <hc/os/loop.h>
 
 #include <gtest/gtest.h>
 #include <sys/eventfd.h>
@@ -11,23 +11,23 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class EventLoopTest : public ::testing::Test {
+class LoopTest : public ::testing::Test {
  protected:
   static Descriptor event() { return Descriptor(::eventfd(1, EFD_NONBLOCK | EFD_CLOEXEC)); }
 
-  EventLoop::Handle watch(const Descriptor& descriptor, EventLoop::Callback callback) {
+  Loop::Handle watch(const Descriptor& descriptor, Loop::Callback callback) {
     auto handle = loop_->watch(descriptor.get(), EPOLLIN, std::move(callback));
     HC_CHECK(handle, handle.error().detail);
     return std::move(*handle);
   }
 
-  std::unique_ptr<EventLoop> loop_ = std::move(*EventLoop::make());
+  std::unique_ptr<Loop> loop_ = std::move(*Loop::make());
   std::string heard_;
 };
 
-TEST_F(EventLoopTest, CallsAsLongAsItIsReadable) {
+TEST_F(LoopTest, CallsAsLongAsItIsReadable) {
   auto descriptor = event();
-  auto handle = watch(descriptor, [&] { heard_ += "a"; });
+  auto handle = watch(descriptor, [&](auto) { heard_ += "a"; });
   ASSERT_TRUE(loop_->turn());
   ASSERT_TRUE(loop_->turn());
   EXPECT_EQ(heard_, "aa");
@@ -37,7 +37,7 @@ TEST_F(EventLoopTest, CallsAsLongAsItIsReadable) {
   EXPECT_EQ(heard_, "aat");
 }
 
-TEST_F(EventLoopTest, TimesComeInTheirOrderAndOnce) {
+TEST_F(LoopTest, TimesComeInTheirOrderAndOnce) {
   auto now = std::chrono::steady_clock::now();
   auto second = loop_->call_at(now + 2ms, [&] { heard_ += "2"; });
   auto never = loop_->call_at(now + 1h, [&] { heard_ += "3"; });
@@ -48,15 +48,15 @@ TEST_F(EventLoopTest, TimesComeInTheirOrderAndOnce) {
   EXPECT_EQ(heard_, "124");
 }
 
-TEST_F(EventLoopTest, WhoEndsAnotherInACallbackIsTheLastToBeCalled) {
+TEST_F(LoopTest, WhoEndsAnotherInACallbackIsTheLastToBeCalled) {
   auto one = event(), other = event();
-  EventLoop::Handle first, second;
-  first = watch(one, [&] {
+  Loop::Handle first, second;
+  first = watch(one, [&](auto) {
     heard_ += "1";
     first.reset();
     second.reset();
   });
-  second = watch(other, [&] {
+  second = watch(other, [&](auto) {
     heard_ += "2";
     second.reset();
     first.reset();
@@ -65,11 +65,11 @@ TEST_F(EventLoopTest, WhoEndsAnotherInACallbackIsTheLastToBeCalled) {
   EXPECT_EQ(heard_.size(), 1U);
 }
 
-TEST_F(EventLoopTest, WhatCannotBeWatchedIsAnError) {
-  EXPECT_FALSE(loop_->watch(-1, EPOLLIN, [] {}));
+TEST_F(LoopTest, WhatCannotBeWatchedIsAnError) {
+  EXPECT_FALSE(loop_->watch(-1, EPOLLIN, [](auto) {}));
   auto descriptor = event();
-  auto handle = watch(descriptor, [] {});
-  EXPECT_FALSE(loop_->watch(descriptor.get(), EPOLLIN, [] {})) << "it is watched already";
+  auto handle = watch(descriptor, [](auto) {});
+  EXPECT_FALSE(loop_->watch(descriptor.get(), EPOLLIN, [](auto) {})) << "it is watched already";
   EXPECT_TRUE(loop_->turn());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/graph/run/file_watch.h>
+#include <hc/os/file_watch.h>
 
 #include <sys/inotify.h>
 
@@ -19,12 +19,12 @@ constexpr int kMostLinks = 8;  // that lead to one another
 
 }  // namespace
 
-Result<std::unique_ptr<FileWatch>> FileWatch::make(EventLoop& loop, std::function<void()> changed) {
+Result<std::unique_ptr<FileWatch>> FileWatch::make(Loop& loop, std::function<void()> changed) {
   auto notes =
       system_call("inotify_init1", "", [] { return ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC); });
   if (!notes) return notes.error();
   std::unique_ptr<FileWatch> files(new FileWatch(loop, Descriptor(*notes), std::move(changed)));
-  auto watched = loop.watch(*notes, EPOLLIN, [self = files.get()] { self->read(); });
+  auto watched = loop.watch(*notes, EPOLLIN, [self = files.get()](auto) { self->read(); });
   if (!watched) return watched.error();
   files->watch_ = std::move(*watched);
   return files;

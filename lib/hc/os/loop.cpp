@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/os/loop.h>
+
+#include <sys/timerfd.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::uint64_t kTimerId = 0;  // entries have others
+
+}  // namespace
+
+Result<std::unique_ptr<Loop>> Loop::make() {
+  auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+  if (!poll) return poll.error();
+  Descriptor owner(*poll);
+  auto timer = system_call("timerfd_create", "", [] {
+    return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+  });
+  if (!timer) return timer.error();
+  std::unique_ptr<Loop> loop(new Loop(std::move(owner), Descriptor(*timer)));
+  if (auto added = loop->control(EPOLL_CTL_ADD, *timer, EPOLLIN, kTimerId); !added)
+    return added.error();
+  return loop;
+}
+
+Status Loop::control(int operation, int descriptor, std::uint32_t events, std::uint64_t id) const {
+  epoll_event event{events, {.u64 = id}};
+  auto done = system_call("epoll_ctl", "",
+                          [&] { return ::epoll_ctl(poll_.get(), operation, descriptor, &event); });
+  return done ? Status() : done.error();
+}
+
+Result<Loop::Handle> Loop::watch(int descriptor, std::uint32_t events, Callback callback) {
+  entries_.emplace(++last_id_, std::make_shared<Entry>(Entry{descriptor, std::move(callback)}));
+  Handle handle(this, last_id_);
+  if (auto wanted = want(last_id_, events); !wanted) return wanted.error();
+  return handle;
+}
+
+Loop::Handle Loop::call_at(TimePoint when, std::function<void()> callback) {
+  Handle handle = std::move(*watch(-1, 0, [call = std::move(callback)](auto) { call(); }));
+  handle.call_at(when);
+  return handle;
+}
+
+Status Loop::want(std::uint64_t id, std::uint32_t events) {
+  auto found = entries_.find(id);
+  if (found == entries_.end()) return {};
+  Entry& entry = *found->second;
+  if (events == entry.wanted && (events & EPOLLONESHOT) == 0) return {};
+  int operation = events == 0 ? EPOLL_CTL_DEL : entry.wanted == 0 ? EPOLL_CTL_ADD : EPOLL_CTL_MOD;
+  auto done = control(operation, entry.descriptor, events, id);
+  if (done) entry.wanted = events;
+  return done;
+}
+
+void Loop::set_due(std::uint64_t id, TimePoint when) {
+  auto found = entries_.find(id);
+  if (found == entries_.end() || found->second->due <= when) return;
+  due_.erase({found->second->due, id});
+  found->second->due = when;
+  due_.emplace(when, id);
+  if (when < timer_due_) set_timer(when);
+}
+
+/// A time that has passed makes the timer readable at once.
+void Loop::set_timer(TimePoint when) {
+  using std::chrono::nanoseconds;
+  timer_due_ = when;
+  itimerspec spec{};
+  if (when != TimePoint::max()) {
+    auto since = std::max<nanoseconds>(nanoseconds(1), when.time_since_epoch());
+    spec.it_value = {since.count() / std::nano::den, since.count() % std::nano::den};
+  }
+  ::timerfd_settime(timer_.get(), TFD_TIMER_ABSTIME, &spec, nullptr);
+}
+
+void Loop::remove(std::uint64_t id) {
+  auto found = entries_.find(id);
+  if (found == entries_.end()) return;
+  auto entry = found->second;  // what its callback holds may end other watches
+  entries_.erase(found);
+  due_.erase({entry->due, id});
+  if (entry->due == timer_due_ && entry->due != TimePoint::max()) set_timer(next_due());
+  if (entry->wanted != 0) static_cast<void>(control(EPOLL_CTL_DEL, entry->descriptor, 0, id));
+}
+
+void Loop::call_due() {
+  const auto now = std::chrono::steady_clock::now();
+  while (!due_.empty() && due_.begin()->first <= now) {
+    auto entry = entries_.at(due_.begin()->second);  // may end itself
+    due_.erase(due_.begin());
+    entry->due = TimePoint::max();
+    entry->callback(0);
+  }
+  set_timer(next_due());
+}
+
+Status Loop::turn(std::chrono::milliseconds timeout) {
+  std::array<epoll_event, 64> events;
+  auto count = system_call("epoll_wait", "", [&] {
+    return ::epoll_wait(poll_.get(), events.data(), static_cast<int>(events.size()),
+                        static_cast<int>(timeout.count()));
+  });
+  if (!count) return count.error();
+  bool is_time = false;
+  for (const auto& event : std::span(events).first(static_cast<std::size_t>(*count))) {
+    is_time = is_time || event.data.u64 == kTimerId;
+    auto found = entries_.find(event.data.u64);
+    if (found == entries_.end()) continue;  // ended by a callback before
+    auto entry = found->second;             // may end itself
+    // It may have been wanted no more since.
+    auto wanted = entry->wanted == 0 ? 0 : event.events & (entry->wanted | EPOLLERR | EPOLLHUP);
+    if (wanted != 0) entry->callback(wanted);
+  }
+  if (is_time) call_due();
+  return {};
+}
+
+}  // namespace hc::internal
