@@ -95,7 +95,7 @@ void add_graph(CLI::App& app) {
   add_change(*verb, options, "remove", "End a module, and take its links away", {module});
   add_change(*verb, options, "restart", "End a module, and start it again", {module});
   add_change(*verb, options, "link", "Add a link, or give one another policy", {from, to},
-             {"KEY=VALUE", "its policy: keep, rate, burst, byte_rate, byte_burst, memory"});
+             {"KEY=VALUE", "its policy: keep, rate, burst, memory"});
   add_change(*verb, options, "unlink", "Take a link away", {from, to});
   add_change(*verb, options, "set", "Set a parameter",
              {{"MODULE.PARAMETER=VALUE", "which parameter, and its new value"}});

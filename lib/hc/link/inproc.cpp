@@ -77,7 +77,7 @@ class InprocSource final : public Source {
   ~InprocSource() override {
     std::lock_guard lock(channel_->mutex);
     channel_->source_left = true;
-    channel_->messages.clear();
+    channel_->messages.clear(channel_->losses);
     raise(channel_->writable);
   }
 
@@ -143,7 +143,7 @@ class InprocSink final : public Sink {
     std::lock_guard lock(channel_->mutex);
     Traffic all = channel_->losses;
     all.messages = messages_;
-    all.bytes = bytes_;
+    all.bytes += bytes_;
     return all;
   }
 

@@ -65,10 +65,13 @@ TEST_P(LastingLink, WhoDropsGoesOnWithoutReadersAndCounts) {
 }
 
 TEST_P(LastingLink, WhatWaitsWhenItIsAbandonedIsLost) {
-  auto sink = sink_of(ends_.sink + "?keep=2&byte_rate=1");
+  auto sink = sink_of(ends_.sink + "?keep=2&rate=1");
   auto source = source_of(ends_.source);
   Message message;
-  for (int i = 0; i < 4; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
+  ASSERT_TRUE(sink->send(numbered(0, 10)));
+  const auto bytes_of_one = sink->traffic().bytes;
+  EXPECT_GT(bytes_of_one, 0U);
+  for (int i = 1; i < 4; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, 0);
   sink->abandon();
@@ -76,6 +79,7 @@ TEST_P(LastingLink, WhatWaitsWhenItIsAbandonedIsLost) {
   EXPECT_EQ(traffic.messages, 4U);
   EXPECT_EQ(traffic.cut, 2U);
   EXPECT_EQ(traffic.over_rate, 1U);
+  EXPECT_EQ(traffic.bytes, bytes_of_one) << "what was never sent has no bytes";
   sink.reset();
   EXPECT_FALSE(*receive(*source, message));
 }

@@ -31,6 +31,7 @@ enum class Got {
 struct Traffic {
   std::uint64_t messages = 0;
   /// As on the wire; of elements alone where there is no wire (inproc), with their header (shm).
+  /// Of a sink, without messages that were dropped before they were sent.
   std::uint64_t bytes = 0;
   /// Messages that had to wait for their turn (`rate`), and went later or are among the lost.
   std::uint64_t kept_back = 0;
@@ -164,8 +165,6 @@ struct LinkOptions {
 ///   taken, and small messages that are gathered to be written together, have begun. `latest` is 1.
 /// - `rate=N` [message/s], `burst=N` (default 1): messages go no faster, but so many may follow at
 ///   once. Where none is dropped the writer waits for its turn.
-/// - `byte_rate=N` [byte/s], `byte_burst=N` (default: of 1 s): the same in bytes. A message that is
-///   larger goes when all of the burst is there, and leaves a debt.
 /// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be
 ///   larger, but not with shm, where it is all the memory that is shared.
 /// A source of shm may have a `keep` of its own; `all` makes no sink wait that drops.

@@ -25,8 +25,7 @@ TEST(Open, OptionsAreChecked) {
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
   EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Invalid);
   EXPECT_EQ(open_sink(*parse_uri("-?wait=3")).error().detail,
-            "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"byte_rate\", "
-            "\"byte_burst\", \"memory\"");
+            "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"memory\"");
   EXPECT_EQ(open_sink(*parse_uri("-?keep=some")).error().code, Code::Invalid);
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?wait=x")).error().code, Code::Invalid);
   EXPECT_EQ(open_sink(*parse_uri("unix-listen:@x?readers=-1")).error().code, Code::Invalid);
@@ -64,8 +63,6 @@ TEST(Open, NumbersHaveARange) {
   EXPECT_EQ(sink_error("shm:x?readers=65"),
             "Invalid: option readers is a whole number from 0 to 64");
   EXPECT_EQ(sink_error("-?burst=2"), "Invalid: option burst wants rate beside it");
-  EXPECT_EQ(sink_error("-?byte_burst=2&rate=1"),
-            "Invalid: option byte_burst wants byte_rate beside it");
 }
 
 TEST(Open, SharedMemoryHasAName) {

@@ -16,14 +16,6 @@ namespace {
 
 constexpr std::chrono::microseconds kFollowTime{10};
 
-void add_losses(Traffic& sum, const Traffic& losses) {
-  sum.kept_back += losses.kept_back;
-  sum.superseded += losses.superseded;
-  sum.over_rate += losses.over_rate;
-  sum.over_memory += losses.over_memory;
-  sum.cut += losses.cut;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const Uri& uri,
@@ -65,7 +57,10 @@ Status ListeningSink::await(std::size_t readers) {
 }
 
 void ListeningSink::leave(std::size_t peer) {
-  add_losses(traffic_, peers_[peer]->losses());
+  // Its dropped bytes count where no other reader has got them.
+  Traffic losses = peers_[peer]->losses();
+  if (peers_.size() > 1) losses.bytes = 0;
+  traffic_ += losses;
   peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
   last_send_ = {};  // there is room for who waits outside
 }
@@ -171,7 +166,13 @@ void ListeningSink::abandon() {
 
 Traffic ListeningSink::traffic() const {
   Traffic all = traffic_;
-  for (const auto& peer : peers_) add_losses(all, peer->losses());
+  std::uint64_t fewest_dropped = peers_.empty() ? 0 : all.bytes;
+  for (const auto& peer : peers_) {
+    Traffic losses = peer->losses();
+    fewest_dropped = std::min(fewest_dropped, 0 - std::exchange(losses.bytes, 0));
+    all += losses;
+  }
+  all.bytes -= fewest_dropped;
   return all;
 }
 

@@ -21,7 +21,7 @@ template <typename Item>
 class Outbox {
  public:
   explicit Outbox(const Policy& policy)
-      : keep_(policy.keep), memory_(policy.memory), pacer_(policy) {}
+      : keep_(policy.keep), memory_(policy.memory), pace_(policy.rate, policy.burst) {}
 
   [[nodiscard]] bool empty() const { return items_.empty(); }
   [[nodiscard]] std::size_t size() const { return items_.size(); }
@@ -41,31 +41,31 @@ class Outbox {
     bytes_ += bytes;
     if (held) hold(items_.back(), traffic);
     if (keep_ == Policy::kAll) return;
-    while (items_.size() > 1 && bytes_ > memory_) drop(traffic.over_memory);
+    while (items_.size() > 1 && bytes_ > memory_) drop(traffic, traffic.over_memory);
     while (items_.size() > keep_)
-      drop(items_.front().held ? traffic.over_rate : traffic.superseded);
+      drop(traffic, items_.front().held ? traffic.over_rate : traffic.superseded);
   }
 
   /// When the first message may go: `now` or later; for ever later where there is none.
   TimePoint ready_at(TimePoint now, Traffic& traffic) {
     if (items_.empty()) return TimePoint::max();
-    auto ready = pacer_.ready_at(items_.front().bytes, now);
+    auto ready = pace_.ready_at(1, now);
     if (ready > now) hold(items_.front(), traffic);
     return ready;
   }
 
   /// Takes the first message, which is ready.
   Item pop(TimePoint now) {
-    pacer_.take(items_.front().bytes, now);
+    pace_.take(1, now);
     return remove_front();
   }
 
   /// Whether a message that comes now may pass the queue by, which is empty: counts it if so.
-  bool pass(std::uint64_t bytes, TimePoint now) {
+  bool pass(TimePoint now) {
     if (!items_.empty()) return false;
-    if (!pacer_.limited()) return true;
-    if (pacer_.ready_at(bytes, now) > now) return false;
-    pacer_.take(bytes, now);
+    if (!pace_.limited()) return true;
+    if (pace_.ready_at(1, now) > now) return false;
+    pace_.take(1, now);
     return true;
   }
 
@@ -75,9 +75,9 @@ class Outbox {
     items_.pop_back();
   }
 
-  /// Drops all; gives their number.
-  std::size_t clear() {
-    bytes_ = 0;
+  /// Drops all, and takes their bytes off; gives their number.
+  std::size_t clear(Traffic& traffic) {
+    traffic.bytes -= std::exchange(bytes_, 0);
     auto count = items_.size();
     items_.clear();
     return count;
@@ -94,8 +94,10 @@ class Outbox {
     if (!std::exchange(entry.held, true)) ++traffic.kept_back;
   }
 
-  void drop(std::uint64_t& counter) {
+  /// What is dropped was counted when it was put in, but never sent: its bytes are taken off.
+  void drop(Traffic& traffic, std::uint64_t& counter) {
     ++counter;
+    traffic.bytes -= items_.front().bytes;
     remove_front();
   }
 
@@ -109,7 +111,7 @@ class Outbox {
   std::size_t keep_;
   std::uint64_t memory_;
   std::uint64_t bytes_ = 0;
-  Pacer pacer_;
+  TokenBucket pace_;
   std::deque<Entry> items_;
 };
 

@@ -85,7 +85,7 @@ void Outlet::watch(int descriptor) {
 Result<bool> Outlet::send(Outgoing& message, TimePoint now) {
   std::lock_guard lock(mutex_);
   if (failed_) return *failed_;
-  bool passes = connected() && !blocked_ && outbox_.pass(message.size(), now);
+  bool passes = connected() && !blocked_ && outbox_.pass(now);
   if (passes) {
     put(message.borrowed(), now);
   } else {
@@ -161,7 +161,8 @@ void Outlet::fail(const Error& why) {
   failed_ = why;
   watch_.reset();
   // What a waiting writer has in the outbox is told to it, and is not among the lost.
-  auto waiting = outbox_.clear();
+  Traffic untold;
+  auto waiting = outbox_.clear(writer_waits_ ? untold : losses_);
   losses_.cut += writer_.clear() + (writer_waits_ ? 0 : waiting);
 }
 

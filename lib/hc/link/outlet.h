@@ -86,7 +86,7 @@ class Outlet {
   /// Ends the link with what can be written at once; the rest is lost.
   void abandon();
 
-  /// What was lost or kept back, and nothing of what was sent.
+  /// What was lost or throttled; `bytes` is minus those of messages that were dropped.
   [[nodiscard]] Traffic losses() const;
   /// Whether the connection has failed for good.
   [[nodiscard]] bool has_failed() const;

@@ -52,14 +52,16 @@ class PacedSink final : public Sink {
 
   void abandon() override {
     std::lock_guard lock(mutex_);
-    lost_.cut += outbox_.clear();
+    lost_.cut += outbox_.clear(lost_);
     sink_->abandon();
   }
 
   [[nodiscard]] Traffic traffic() const override {
     std::lock_guard lock(mutex_);
     Traffic traffic = sink_->traffic();
+    const auto sent = traffic.bytes;
     traffic += lost_;
+    traffic.bytes = sent;
     traffic.messages += lost_.lost() + outbox_.size();
     return traffic;
   }
@@ -72,7 +74,7 @@ class PacedSink final : public Sink {
     std::lock_guard lock(mutex_);
     if (!outcome_) return outcome_;
     auto now = Clock::now();
-    if (outbox_.pass(bytes, now)) return sink_->send(message);
+    if (outbox_.pass(now)) return sink_->send(message);
     outbox_.push(message.keep(), bytes, lost_);
     auto ready = outbox_.ready_at(now, lost_);
     if (!writer_waits_) {
@@ -136,7 +138,7 @@ class PacedSink final : public Sink {
 Result<std::unique_ptr<Sink>> make_paced(std::unique_ptr<Sink> sink, const Policy& policy,
                                          const LinkOptions& options,
                                          std::shared_ptr<Remarks> remarks) {
-  if (policy.rate == 0 && policy.byte_rate == 0) return sink;
+  if (!policy.is_paced()) return sink;
   auto changed =
       system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
   if (!changed) return changed.error();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The pace of a policy (`rate`, `byte_rate`) before a sink that has none itself. Internal.
+// The pace of a policy (`rate`) before a sink that has none itself. Internal.
 
 #include <memory>
 

@@ -46,14 +46,10 @@ Result<Policy> parse_policy(const Uri& uri) {
   if (kept != "all") policy.keep = keep;
   for (auto [key, units, value] : {std::tuple{"rate", false, &policy.rate},
                                    {"burst", false, &policy.burst},
-                                   {"byte_rate", true, &policy.byte_rate},
                                    {"memory", true, &policy.memory}})
     if (auto got = read(uri, key, units, *value); !got) return got.error();
-  for (auto [key, needed] : {std::pair{"burst", "rate"}, {"byte_burst", "byte_rate"}})
-    if (!uri.option(key, "").empty() && uri.option(needed, "").empty())
-      return Error{Code::Invalid, "option " + std::string(key) + " wants " + needed + " beside it"};
-  if (policy.byte_rate > 0) policy.byte_burst = policy.byte_rate;
-  if (auto got = read(uri, "byte_burst", true, policy.byte_burst); !got) return got.error();
+  if (policy.rate == 0 && !uri.option("burst", "").empty())
+    return Error{Code::Invalid, "option burst wants rate beside it"};
   return policy;
 }
 
@@ -86,15 +82,6 @@ void TokenBucket::take(std::uint64_t tokens, TimePoint now) {
   if (rate_ == 0) return;
   fill(now);
   level_ -= static_cast<std::int64_t>(tokens) * kTick;
-}
-
-TimePoint Pacer::ready_at(std::uint64_t bytes, TimePoint now) {
-  return std::max(messages_.ready_at(1, now), bytes_.ready_at(bytes, now));
-}
-
-void Pacer::take(std::uint64_t bytes, TimePoint now) {
-  messages_.take(1, now);
-  bytes_.take(bytes, now);
 }
 
 }  // namespace hc::internal

@@ -23,21 +23,19 @@ struct Policy {
   /// Messages that wait for a slow reader before the oldest is dropped; kAll: the writer waits, and
   /// none is dropped.
   std::size_t keep = kAll;
-  std::uint64_t rate = 0;        ///< [message/s]; 0: as fast as they come
-  std::uint64_t burst = 1;       ///< messages that may follow at once when none came for long
-  std::uint64_t byte_rate = 0;   ///< [byte/s]; 0: as fast as they come
-  std::uint64_t byte_burst = 1;  ///< [byte]
+  std::uint64_t rate = 0;   ///< [message/s]; 0: as fast as they come
+  std::uint64_t burst = 1;  ///< messages that may follow at once when none came for long
   std::uint64_t memory = std::uint64_t{64} << 20;  ///< of the messages that wait [byte]
 
   [[nodiscard]] bool writer_waits() const { return keep == kAll; }
-  [[nodiscard]] bool is_paced() const { return rate > 0 || byte_rate > 0; }
+  [[nodiscard]] bool is_paced() const { return rate > 0; }
 };
 
 /// The names of these options, as the table of transports needs them.
-constexpr std::string_view kPolicyOptions = "keep rate burst byte_rate byte_burst memory";
+constexpr std::string_view kPolicyOptions = "keep rate burst memory";
 
-/// Reads `keep=all|latest|N`, `rate=`, `burst=` (default 1), `byte_rate=`, `byte_burst=` (default:
-/// of one second), `memory=`; the last three are bytes, perhaps with K, M or G (of 1024) behind.
+/// Reads `keep=all|latest|N`, `rate=`, `burst=` (default 1) and `memory=`, which is bytes, perhaps
+/// with a suffix K, M or G (of 1024).
 ///
 /// Errors: Invalid; also for a burst without its rate.
 Result<Policy> parse_policy(const Uri& uri);
@@ -46,13 +44,15 @@ Result<Policy> parse_policy(const Uri& uri);
 /// more than the burst passes when the bucket is full, and leaves a debt. Exact: integers alone.
 class TokenBucket {
  public:
-  /// Full at first. Both up to kMost; rate 0: there is no limit.
+  /// Full at first. Both up to kMost; rate 0: no limit.
   TokenBucket(std::uint64_t rate, std::uint64_t burst);
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
 
   /// When `tokens`, up to kMost, may be taken: `now`, or later if none are taken until then.
   TimePoint ready_at(std::uint64_t tokens, TimePoint now);
   void take(std::uint64_t tokens, TimePoint now);
+  /// Whether there is a limit; without one, no time needs to be known.
+  [[nodiscard]] bool limited() const { return rate_ > 0; }
 
  private:
   void fill(TimePoint now);
@@ -61,25 +61,6 @@ class TokenBucket {
   std::int64_t capacity_;  // [1e-9 token]
   std::int64_t level_;     // the same; below 0: debt
   TimePoint filled_ = TimePoint::min();
-};
-
-/// Both limits of a policy: messages and bytes.
-class Pacer {
- public:
-  explicit Pacer(const Policy& policy)
-      : limited_(policy.is_paced()),
-        messages_(policy.rate, policy.burst),
-        bytes_(policy.byte_rate, policy.byte_burst) {}
-
-  /// Whether there is any limit; without one, no time needs to be known.
-  [[nodiscard]] bool limited() const { return limited_; }
-  /// When a message of so many bytes may go: `now` or later.
-  TimePoint ready_at(std::uint64_t bytes, TimePoint now);
-  void take(std::uint64_t bytes, TimePoint now);
-
- private:
-  bool limited_;
-  TokenBucket messages_, bytes_;
 };
 
 }  // namespace hc::internal

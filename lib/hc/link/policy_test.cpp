@@ -29,22 +29,20 @@ TEST(Policy, TheWriterWaitsUnlessAskedOtherwise) {
 }
 
 TEST(Policy, IsReadFromOptions) {
-  auto policy = policy_of("?keep=5&rate=30&burst=3&byte_rate=2M&byte_burst=100&memory=1G");
+  auto policy = policy_of("?keep=5&rate=30&burst=3&memory=1G");
   ASSERT_TRUE(policy) << policy.error().text();
   EXPECT_EQ(policy->keep, 5U);
   EXPECT_EQ(policy->rate, 30U);
   EXPECT_EQ(policy->burst, 3U);
-  EXPECT_EQ(policy->byte_rate, 2U << 20);
-  EXPECT_EQ(policy->byte_burst, 100U);
   EXPECT_EQ(policy->memory, 1U << 30);
   EXPECT_EQ(policy_of("?keep=latest")->keep, 1U);
-  EXPECT_EQ(policy_of("?byte_rate=7K")->byte_burst, 7U << 10);
+  EXPECT_EQ(policy_of("?memory=7K")->memory, 7U << 10);
 }
 
 TEST(Policy, WhatMakesNoSenseIsRefused) {
   for (const char* options :
        {"?keep=0", "?keep=-1", "?keep=newest", "?keep=1K", "?rate=0", "?rate=x", "?rate=3M",
-        "?burst=1.5", "?byte_rate=3T", "?byte_burst=K", "?memory=5G", "?memory=4294967297"})
+        "?burst=1.5", "?memory=3T", "?memory=K", "?memory=5G", "?memory=4294967297"})
     EXPECT_EQ(policy_of(options).error().code, Code::Invalid) << options;
   EXPECT_EQ(policy_of("?keep=x").error().detail,
             "option keep is all, latest, or how many messages");
@@ -159,9 +157,9 @@ TEST(Outbox, TheNewestStaysHoweverLarge) {
 TEST(Outbox, WhatThePaceKeepsBackIsCountedOnce) {
   Traffic traffic;
   Outbox<int> outbox(*policy_of("?keep=2&rate=10&burst=2"));
-  EXPECT_TRUE(outbox.pass(1, kBegin));
-  EXPECT_TRUE(outbox.pass(1, kBegin));
-  ASSERT_FALSE(outbox.pass(1, kBegin));
+  EXPECT_TRUE(outbox.pass(kBegin));
+  EXPECT_TRUE(outbox.pass(kBegin));
+  ASSERT_FALSE(outbox.pass(kBegin));
   for (int i = 0; i < 5; ++i) {
     outbox.push(i, 1, traffic);
     EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin + milliseconds(100));
@@ -175,14 +173,6 @@ TEST(Outbox, WhatThePaceKeepsBackIsCountedOnce) {
   EXPECT_EQ(outbox.pop(now), 3);
   EXPECT_EQ(outbox.ready_at(now, traffic), now + milliseconds(100));
   EXPECT_EQ(traffic.kept_back, 5U);
-}
-
-TEST(Outbox, BytesHaveAPaceToo) {
-  Traffic traffic;
-  Outbox<int> outbox(*policy_of("?keep=9&byte_rate=1000&byte_burst=500"));
-  EXPECT_TRUE(outbox.pass(800, kBegin));
-  outbox.push(1, 200, traffic);
-  EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin + milliseconds(500));
 }
 
 TEST(Outbox, OneThatNobodyHoldsBackIsSuperseded) {
@@ -204,7 +194,7 @@ TEST(Outbox, OneMayBeTakenBack) {
   outbox.take_back();
   EXPECT_EQ(outbox.bytes(), 5U);
   EXPECT_EQ(outbox.front(), 0);
-  EXPECT_EQ(outbox.clear(), 1U);
+  EXPECT_EQ(outbox.clear(traffic), 1U);
   EXPECT_EQ(outbox.ready_at(kBegin, traffic), TimePoint::max());
 }
 

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <functional>
 #include <random>
 #include <string>
@@ -245,6 +246,46 @@ class NoDescriptors {
  private:
   rlimit saved_{};
 };
+
+/// How many descriptors this process has open.
+inline std::size_t open_descriptors() {
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator("/proc/self/fd"))
+    ++count;
+  return count;
+}
+
+constexpr int kPeersThatLeave = static_cast<int>(internal::kMaxPeers) + 20;
+
+TEST_P(SocketLink, AWriterThatLeftIsForgotten) {
+  Warnings warnings;
+  auto source = source_of(listen(), warnings.options());
+  const auto before = open_descriptors();
+  Message message;
+  for (int i = 0; i < kPeersThatLeave; ++i) {
+    auto sink = sink_of(dial());
+    ASSERT_TRUE(sink->send(numbered(i, 1)));
+    ASSERT_TRUE(sink->close());
+    sink.reset();
+    ASSERT_TRUE(*receive(*source, message));
+    while (open_descriptors() > before) ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  EXPECT_TRUE(warnings.lines.empty()) << warnings.lines.front();
+  EXPECT_EQ(source->traffic().messages, static_cast<std::uint64_t>(kPeersThatLeave));
+}
+
+TEST_P(SocketLink, AReaderThatLeftIsForgotten) {
+  auto sink = sink_of(listen() + "?readers=1&stay=1&keep=latest");
+  const auto before = open_descriptors();
+  Message message;
+  for (int i = 0; i < kPeersThatLeave; ++i) {
+    auto source = source_of(dial());
+    ASSERT_TRUE(sink->send(numbered(i, 1)));
+    ASSERT_TRUE(*receive(*source, message));
+    source.reset();
+    while (open_descriptors() > before) ASSERT_TRUE(sink->send(numbered(i, 1)));
+  }
+}
 
 TEST_P(SocketLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
   Warnings warnings;

@@ -32,7 +32,7 @@ Status StreamSink::close() {
 Traffic StreamSink::traffic() const {
   Traffic traffic = outlet_->losses();
   traffic.messages = messages_;
-  traffic.bytes = bytes_;
+  traffic.bytes += bytes_;
   return traffic;
 }
 

@@ -115,7 +115,7 @@ class LinkCheck {
 };
 
 bool is_paced(const GraphLink& link) {
-  return link.policy.contains("rate") || link.policy.contains("byte_rate");
+  return link.policy.contains("rate");
 }
 
 std::string way_in_words(const std::vector<const GraphLink*>& way, const std::string& last) {
