@@ -10,6 +10,7 @@
 #include <hc/compress/compress.h>
 #include <hc/mtp/codec.h>
 #include <hc/mtp/text.h>
+#include <hc/testing/decode.h>
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include <frames/tree.h>
-#include <hc/mtp/codec.h>
+#include <hc/testing/decode.h>
 
 namespace hc {
 namespace {

@@ -2,6 +2,7 @@
 // Any message with compressed elements: it expands to just what its header promises, or is refused.
 #include <hc/compress/compress.h>
 #include <hc/mtp/codec.h>
+#include <hc/testing/decode.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   hc::Message message;

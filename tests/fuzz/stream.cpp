@@ -6,6 +6,7 @@
 
 #include <hc/mtp/codec.h>
 #include <hc/mtp/stream_reader.h>
+#include <hc/testing/decode.h>
 
 namespace {
 

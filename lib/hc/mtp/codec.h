@@ -1,38 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages to bytes and back, where all bytes are in memory (spec/mtp-1.md). Pure.
-// stream_reader.h reads what comes in pieces.
+// Messages to bytes (spec/mtp-1.md). Pure. stream_reader.h is the way back.
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 
-#include <hc/base/result.h>
 #include <hc/mtp/header_memo.h>
 #include <hc/mtp/message.h>
 
 namespace hc {
-
-/// Reads the first message in `bytes`.
-///
-///     Message message;
-///     auto used = decode(bytes, message);
-///     if (!used) return used.error();       // refused
-///     if (*used == 0) return read_more();   // not complete yet
-///
-/// @param bytes  start of a stream; less or more than one message.
-/// @param[out] message  set when the result is > 0. Its elements view `bytes` where they stand
-/// there
-///     in binary form and aligned for their scalar (as u8 always is); others are copied.
-/// @param byte  where `bytes` stand in their stream, for errors.
-/// @returns  bytes used; 0 when the message is not complete yet.
-///
-/// Errors: Malformed, Unsupported, TooLarge; the detail names rule, field and byte.
-/// Cost: no allocation for a message that views `bytes`, nor before the message is complete.
-Result<std::size_t> decode(std::span<const std::byte> bytes, Message& message,
-                           const Limits& limits = {}, std::uint64_t byte = 0);
 
 /// A message as it goes onto a wire: pieces to be written one after the other.
 /// Lives no longer than the encoder that gave it and the message's elements.

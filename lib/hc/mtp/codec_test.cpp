@@ -9,6 +9,7 @@
 #include <random>
 
 #include <hc/mtp/stream_reader.h>
+#include <hc/testing/decode.h>
 
 namespace hc {
 namespace {

@@ -2,11 +2,9 @@
 #include <hc/mtp/framing.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include <hc/mtp/refusal.h>
-#include <hc/mtp/text.h>
 
 namespace hc::internal {
 namespace {
@@ -64,20 +62,6 @@ Result<std::size_t> read_closing(const Header& header, std::string_view text, st
   return refusal(Code::Malformed, 26, "elements",
                  in_quotes(text.substr(0, 1)) + " stands where a line feed closes the elements",
                  byte);
-}
-
-Result<std::size_t> check_rows(const Header& header, std::string_view text, std::uint64_t byte) {
-  constexpr std::size_t kPiece = 4096;
-  alignas(8) std::array<std::byte, (kPiece / 2 + 1) * 8> numbers;
-  TextRows rows(header);
-  std::size_t at = 0;
-  while (at < text.size()) {
-    auto used = rows.read(text.substr(at, kPiece), byte + at, numbers.data());
-    if (!used) return used.error();
-    if (*used == 0) break;
-    at += *used;
-  }
-  return std::size_t{0};
 }
 
 }  // namespace hc::internal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The pieces between which a message's elements stand, for both readers. Internal. Pure.
+// The pieces between which a message's elements stand, for every reader. Internal. Pure.
 
 #include <cstddef>
 #include <cstdint>
@@ -44,8 +44,5 @@ Result<LengthLine> read_length_line(std::string_view text, const Limits& limits,
 /// Reads the line end that closes elements which are not rows (R26); gives its bytes, 0 when it is
 /// not complete yet.
 Result<std::size_t> read_closing(const Header& header, std::string_view text, std::uint64_t byte);
-
-/// Reads rows that are not complete for their errors alone; gives 0, or the first error.
-Result<std::size_t> check_rows(const Header& header, std::string_view text, std::uint64_t byte);
 
 }  // namespace hc::internal

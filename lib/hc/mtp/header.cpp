@@ -125,110 +125,10 @@ Header header_of(const Fields& values, const Info& info) {
   return header;
 }
 
-/// Takes the fields off a line in the spelling that every writer writes, and gives up on any other.
-/// It goes byte by byte: a branch that is foretold right costs less than arithmetic that the next
-/// field would wait for. No digit is asked whether the line ends: the last space is found first,
-/// and every field but the last stops there at the latest.
-class CanonicalFields {
- public:
-  explicit CanonicalFields(std::string_view line)
-      : at_(line.data()), last_(at_ + (line.rfind(' ') + 1)), end_(at_ + line.size()) {}
-
-  /// Takes the next field, not the last one, 0 … `most`; gives false for anything else.
-  template <class Integer>
-  bool take(Integer& field, std::uint64_t most = kMax31) {
-    if (at_ >= last_) return false;
-    if (auto digit = digit_at(at_); digit <= 9 && at_[1] == ' ') {  // the commonest fields
-      field = static_cast<Integer>(digit);
-      at_ += 2;
-      return true;
-    }
-    const char* begin = at_;
-    std::uint64_t value = 0;
-    if (most > kMax31 && last_ - at_ > 16) take_words(value);
-    for (; digit_at(at_) <= 9; ++at_) value = value * 10 + digit_at(at_);
-    field = static_cast<Integer>(value);
-    return is_canonical(begin, value, most) && *at_++ == ' ';
-  }
-
-  /// Takes the next field, which may have a sign.
-  bool take_signed(std::int32_t& field) {
-    if (at_ >= last_ || *at_ != '-') return take(field);
-    ++at_;
-    std::int64_t value;
-    if (!take(value, kMax31 + 1) || value == 0) return false;
-    field = static_cast<std::int32_t>(-value);
-    return true;
-  }
-
-  /// Takes the info field.
-  bool take_info(Info& info) {
-    if (last_ - at_ < 7) return false;
-    unsigned type = digit_at(at_);
-    bool has_two_digits = at_[5] != ' ';
-    if (has_two_digits ? type != 1 : type > 9) return false;
-    if (has_two_digits) type = 10 + digit_at(++at_);
-    unsigned tens = digit_at(at_ + 1), ones = digit_at(at_ + 2);
-    unsigned scalar = digit_at(at_ + 3), encoding = digit_at(at_ + 4);
-    if (type > 12 || tens > 9 || ones > 9 || scalar > 9 || encoding > 9 || at_[5] != ' ')
-      return false;
-    info = {static_cast<MatrixType>(type), static_cast<std::uint8_t>(10 * tens + ones),
-            static_cast<Scalar>(scalar), static_cast<Encoding>(encoding)};
-    at_ += 6;
-    return broken_rule(info) == 0;
-  }
-
-  /// Takes the last field; gives false, too, when others are left.
-  bool take_last(std::int32_t& field) {
-    if (at_ != last_) return false;
-    const char* begin = at_;
-    std::uint64_t value = 0;
-    for (; at_ < end_ && digit_at(at_) <= 9; ++at_) value = value * 10 + digit_at(at_);
-    field = static_cast<std::int32_t>(value);
-    return is_canonical(begin, value, kMax31) && at_ == end_;
-  }
-
- private:
-  static unsigned digit_at(const char* at) { return static_cast<unsigned>(*at - '0'); }
-
-  /// Whether the digits that end here are a number as R5 wants it; 19 digits fit into 64 bits.
-  bool is_canonical(const char* begin, std::uint64_t value, std::uint64_t most) const {
-    auto length = at_ - begin;
-    return value <= most && (length == 1 || (length > 1 && length <= 19 && *begin != '0'));
-  }
-
-  /// As many as 16 digits, if so many are next.
-  void take_words(std::uint64_t& value) {
-    for (int i = 0; i < 2; ++i) {
-      std::uint64_t word = internal::load8(at_);
-      if (internal::non_digits(word) != 0) return;
-      value = value * 100'000'000 + internal::value_of_digits(word);
-      at_ += 8;
-    }
-  }
-
-  const char* at_;
-  const char* last_;  // where the last field begins
-  const char* end_;
-};
-
 /// Whether a header's sides have rules of their own (R21 … R23).
 bool has_shape_rule(const Info& info) {
   return info.encoding == Encoding::Jpeg || info.type == MatrixType::DenseGraph ||
          info.type == MatrixType::SparseGraph;
-}
-
-/// Reads a header in canonical form; gives false, and leaves the judgement to the slow way, for
-/// every other one and for those whose sides have rules of their own (R21 … R23).
-bool parse_canonical(std::string_view line, const Limits& limits, Header& header) {
-  CanonicalFields fields(line);
-  int version;
-  return fields.take(version) && version == kVersion && fields.take(header.src) &&
-         fields.take_signed(header.dst) && fields.take(header.seq, kMax63) &&
-         fields.take(header.ttl, kMaxTtl) && fields.take(header.time, kMax63) &&
-         fields.take_info(header.info) && fields.take(header.mode) && fields.take(header.coord) &&
-         fields.take(header.width) && fields.take_last(header.height) &&
-         !has_shape_rule(header.info) && has_good_size(header, limits);
 }
 
 /// Integers as R5 spells them, or nothing. One that does not fit into 64 bits becomes the largest
@@ -245,8 +145,9 @@ std::optional<std::int64_t> parse_integer(std::string_view token, bool& fits) {
   return value;
 }
 
-/// The slow way: every spelling that is allowed, and a precise error for every other.
-Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint64_t byte) {
+}  // namespace
+
+Result<Header> parse_header(std::string_view line, const Limits& limits, std::uint64_t byte) {
   Fields values{};
   std::array<std::size_t, kFields> begins{};
   Info info;
@@ -295,14 +196,6 @@ Result<Header> parse_any(std::string_view line, const Limits& limits, std::uint6
   Header header = header_of(values, info);
   if (auto error = find_size_error(header, limits)) return refuse(*error);
   return header;
-}
-
-}  // namespace
-
-Result<Header> parse_header(std::string_view line, const Limits& limits, std::uint64_t byte) {
-  Result<Header> header = Header{};
-  if (parse_canonical(line, limits, *header)) return header;
-  return parse_any(line, limits, byte);
 }
 
 Status check(const Header& header, const Limits& limits) {

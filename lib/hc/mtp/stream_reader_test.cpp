@@ -10,6 +10,7 @@
 #include <new>
 
 #include <hc/mtp/codec.h>
+#include <hc/testing/decode.h>
 
 namespace {
 

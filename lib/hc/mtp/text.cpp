@@ -2,13 +2,10 @@
 #include <hc/mtp/text.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <optional>
 
 #include <hc/mtp/digits.h>
 #include <hc/mtp/refusal.h>
@@ -24,33 +21,6 @@ constexpr std::size_t kMaxWritten = 32;  // bytes of a number in canonical form,
 bool is_end(char c) {
   return c == ' ' || c == '\n';
 }
-
-constexpr int kMaxShortDigits = 18;  // below 2⁶³
-
-constexpr std::array<std::uint64_t, kMaxShortDigits + 1> kPowersOfTen = [] {
-  std::array<std::uint64_t, kMaxShortDigits + 1> powers{1};
-  for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
-  return powers;
-}();
-
-__extension__ using Wide = unsigned __int128;
-
-/// 1 / 10^n is mantissa × 2^exponent and a little more; the mantissa has all 64 bits.
-struct Reciprocal {
-  std::uint64_t mantissa;
-  int exponent;
-};
-
-constexpr std::array<Reciprocal, kMaxShortDigits + 1> kReciprocals = [] {
-  std::array<Reciprocal, kMaxShortDigits + 1> all{};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    Wide whole = (static_cast<Wide>(1) << 127) / kPowersOfTen[i];
-    int exponent = -127;
-    for (; whole >> 64 != 0; ++exponent) whole >>= 1;
-    all[i] = {static_cast<std::uint64_t>(whole), exponent};
-  }
-  return all;
-}();
 
 /// How reading a number went; the rule's number when it did not.
 enum class Outcome { Good, NotANumber = 27, OutOfRange = 28 };
@@ -111,83 +81,6 @@ bool is_tiny(std::string_view number) {
   return places + (negative_exponent ? -exponent : exponent) <= 0;
 }
 
-/// Reads digits and adds them to the end of `value`; what does not fit is lost.
-[[gnu::always_inline]] inline const char* read_digits(const char* at, const char* last,
-                                                      std::uint64_t& value) {
-  for (unsigned digit; at != last && (digit = static_cast<unsigned>(*at - '0')) <= 9; ++at)
-    value = value * 10 + digit;
-  return at;
-}
-
-/// The same for many digits: eight at a time.
-[[gnu::always_inline]] inline const char* read_many_digits(const char* at, const char* last,
-                                                           std::uint64_t& value) {
-  while (last - at >= 8) {
-    std::uint64_t word = internal::load8(at);
-    if (internal::non_digits(word) != 0) break;
-    value = value * kPowersOfTen[8] + internal::value_of_digits(word);
-    at += 8;
-  }
-  return read_digits(at, last, value);
-}
-
-/// The T nearest to ± digits / 10^places; nothing when 64 bits of the quotient do not tell which it
-/// is. Without branches, which would be foretold wrong as often as not.
-///
-/// @param digits  0 … 10¹⁸ - 1.
-/// @param places  0 … 18.
-///
-/// Source: the multiplication by a rounded reciprocal, and when it may be trusted, as in D. Lemire,
-/// Number Parsing at a Gigabyte per Second, Software: Practice and Experience 51 (2021).
-template <typename T>
-[[gnu::always_inline]] inline std::optional<T> divide(std::uint64_t digits, std::size_t places,
-                                                      bool negative) {
-  using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-  auto sign = static_cast<Bits>(negative) << (8 * sizeof(T) - 1);
-  if (digits == 0) return std::bit_cast<T>(sign);
-
-  // The quotient is mantissa × 2^exponent and a little more, less than 6 in the last place.
-  const Reciprocal& reciprocal = kReciprocals[places];
-  int shift = std::countl_zero(digits);
-  auto product = static_cast<Wide>(digits << shift) * reciprocal.mantissa;
-  auto mantissa = static_cast<std::uint64_t>(product >> 64);
-  int last_shift = 1 - static_cast<int>(mantissa >> 63);
-  mantissa <<= last_shift;
-  int exponent = reciprocal.exponent + 64 - shift - last_shift;
-
-  // Rounded to the digits of a T, unless that close to the middle of two.
-  constexpr int kSpare = 64 - std::numeric_limits<T>::digits;
-  constexpr std::uint64_t kMiddle = std::uint64_t{1} << (kSpare - 1);
-  std::uint64_t below = mantissa & (2 * kMiddle - 1);
-  if (below + 6 - kMiddle <= 6) return std::nullopt;
-  auto rounded = static_cast<Bits>((mantissa >> kSpare) + (below > kMiddle ? 1 : 0));
-
-  // The leading bit of `rounded`, which is not stored, is added to the exponent.
-  auto biased = static_cast<Bits>(exponent + 63 + std::numeric_limits<T>::max_exponent - 2);
-  return std::bit_cast<T>(sign | ((biased << (std::numeric_limits<T>::digits - 1)) + rounded));
-}
-
-/// Reads the commonest floats, [-]digits[.digits] of at most 18 digits; gives null for any other.
-template <typename T>
-[[gnu::always_inline]] inline const char* read_short_float(const char* first, const char* last,
-                                                           T& value) {
-  bool negative = *first == '-';
-  const char* begin = first + static_cast<std::ptrdiff_t>(negative);
-  std::uint64_t digits = 0;
-  const char* at = read_digits(begin, last, digits);
-  std::ptrdiff_t count = at - begin, places = 0;
-  if (at != last && *at == '.') {
-    const char* point = at;
-    at = read_many_digits(point + 1, last, digits);
-    places = at - point - 1;
-  }
-  if (count == 0 || count + places > kMaxShortDigits || at == last || !is_end(*at)) return nullptr;
-  auto quotient = divide<T>(digits, static_cast<std::size_t>(places), negative);
-  if (!quotient) return nullptr;
-  value = *quotient;
-  return at;
-}
-
 template <typename T>
 Outcome read_float(const char* first, const char* last, T& value, const char*& next) {
   auto [stop, status] = std::from_chars(first, last, value);
@@ -246,18 +139,6 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
 
   // The numbers and line ends one after the other, up to one that is not whole.
   while (rows_left_ > 0) {
-    if constexpr (std::is_floating_point_v<T>) {  // most of them, for speed
-      std::uint64_t column = column_;
-      T value;
-      for (const char* next; column < row_numbers_ && at != end &&
-                             (next = read_short_float(at, end, value)) != nullptr;
-           ++column) {
-        std::memcpy(numbers++, &value, sizeof value);
-        at = next + (*next == ' ' ? 1 : 0);
-      }
-      count_ += column - column_;
-      column_ = column;
-    }
     while (at != end && *at == ' ') ++at;
     if (at == end) break;
 
