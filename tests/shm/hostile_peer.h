@@ -14,11 +14,11 @@
 #include <thread>
 #include <vector>
 
-#include <hc/link/dialing.h>
 #include <hc/link/link.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
-#include <hc/link/unix.h>
+#include <hc/link/stream/dialing.h>
+#include <hc/link/stream/unix.h>
 #include <hc/os/descriptor.h>
 
 namespace hc::testing {

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <string>
 
-#include <hc/link/outbox.h>
-#include <hc/link/stream_link.h>
+#include <hc/link/queue.h>
+#include <hc/link/stream/source.h>
 #include <hc/link/transports.h>
 #include <hc/os/reactor.h>
 
@@ -19,7 +19,7 @@ constexpr std::size_t kCapacity = 64;  // messages under way before a sender wai
 /// What the two ends share. Each end holds it; the last one frees it.
 struct Channel {
   std::mutex mutex;
-  Outbox<Message> messages{Policy{}};
+  SendQueue<Message> messages{Policy{}};
   Traffic losses;
   bool has_source = false, has_sink = false;
   bool source_left = false, sink_left = false;
@@ -182,7 +182,7 @@ Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions
     timer = std::move(*made);
   }
   std::lock_guard lock(channel.mutex);
-  channel.messages = Outbox<Message>(*policy);
+  channel.messages = SendQueue<Message>(*policy);
   channel.timer = std::move(timer);
   return sink;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/link_conformance.h>
+#include <hc/testing/link_conformance.h>
 
 namespace hc::testing {
 namespace {

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <thread>
 
-#include <hc/link/link_conformance.h>
-#include <hc/link/socket_test.h>
+#include <hc/testing/link_conformance.h>
+#include <hc/testing/socket_link.h>
 
 namespace hc::testing {
 namespace {

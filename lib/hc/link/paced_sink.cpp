@@ -5,8 +5,8 @@
 
 #include <mutex>
 
-#include <hc/link/outbox.h>
-#include <hc/link/stream_link.h>
+#include <hc/link/queue.h>
+#include <hc/link/stream/source.h>
 #include <hc/os/reactor.h>
 
 namespace hc::internal {
@@ -20,7 +20,7 @@ class PacedSink final : public Sink {
         log_(options.log),
         sink_(std::move(sink)),
         writer_waits_(policy.writer_waits()),
-        outbox_(policy),
+        queue_(policy),
         changed_(std::move(changed)),
         stop_(options.stop) {}
 
@@ -52,7 +52,7 @@ class PacedSink final : public Sink {
 
   void abandon() override {
     std::lock_guard lock(mutex_);
-    lost_.cut += outbox_.clear(lost_);
+    lost_.cut += queue_.clear(lost_);
     sink_->abandon();
   }
 
@@ -62,7 +62,7 @@ class PacedSink final : public Sink {
     const auto sent = traffic.bytes;
     traffic += lost_;
     traffic.bytes = sent;
-    traffic.messages += lost_.lost() + outbox_.size();
+    traffic.messages += lost_.lost() + queue_.size();
     return traffic;
   }
 
@@ -74,18 +74,18 @@ class PacedSink final : public Sink {
     std::lock_guard lock(mutex_);
     if (!outcome_) return outcome_;
     auto now = Clock::now();
-    if (outbox_.pass(now)) return sink_->send(message);
-    outbox_.push(message.keep(), bytes, lost_);
-    auto ready = outbox_.ready_at(now, lost_);
+    if (queue_.pass(now)) return sink_->send(message);
+    queue_.push(message.keep(), bytes, lost_);
+    auto ready = queue_.ready_at(now, lost_);
     if (!writer_waits_) {
       alarm_->call_at(ready);
       return {};
     }
     if (auto waited = wait_until(ready); !waited) {
-      outbox_.take_back();
+      queue_.take_back();
       return waited;
     }
-    return sink_->send(outbox_.pop(Clock::now()));
+    return sink_->send(queue_.pop(Clock::now()));
   }
 
   Status finish() {
@@ -93,7 +93,7 @@ class PacedSink final : public Sink {
       {
         std::lock_guard lock(mutex_);
         if (!outcome_) return outcome_;
-        if (outbox_.empty()) return sink_->close();
+        if (queue_.empty()) return sink_->close();
         eventfd_t count = 0;
         ::eventfd_read(changed_.get(), &count);
       }
@@ -108,13 +108,13 @@ class PacedSink final : public Sink {
 
   void send_what_is_ready() {
     std::lock_guard lock(mutex_);
-    while (outcome_ && !outbox_.empty()) {
+    while (outcome_ && !queue_.empty()) {
       auto now = Clock::now();
-      if (auto ready = outbox_.ready_at(now, lost_); ready > now) {
+      if (auto ready = queue_.ready_at(now, lost_); ready > now) {
         alarm_->call_at(ready);
         return;
       }
-      outcome_ = sink_->send(outbox_.pop(now));
+      outcome_ = sink_->send(queue_.pop(now));
     }
     ::eventfd_write(changed_.get(), 1);
   }
@@ -124,7 +124,7 @@ class PacedSink final : public Sink {
   mutable std::mutex mutex_;  // of what follows
   std::unique_ptr<Sink> sink_;
   bool writer_waits_;
-  Outbox<Message> outbox_;
+  SendQueue<Message> queue_;
   Traffic lost_;
   Status outcome_;      // of the thread that serves links; told at the next call
   Descriptor changed_;  // eventfd: nothing waits any more, or the sink has failed

@@ -6,7 +6,7 @@
 
 #include <hc/link/link.h>
 #include <hc/link/policy.h>
-#include <hc/link/remarks.h>
+#include <hc/link/stream/remarks.h>
 
 namespace hc::internal {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <hc/link/outbox.h>
+#include <hc/link/queue.h>
 
 namespace hc::internal {
 namespace {
@@ -105,97 +105,97 @@ TEST(TokenBucket, AClockThatStandsStillGivesNothing) {
 }
 
 /// Pushes messages 0, 1, … of `bytes` each; gives what is left.
-std::vector<int> left_of(Outbox<int>& outbox, int count, std::uint64_t bytes, Traffic& traffic) {
-  for (int i = 0; i < count; ++i) outbox.push(i, bytes, traffic);
+std::vector<int> left_of(SendQueue<int>& queue, int count, std::uint64_t bytes, Traffic& traffic) {
+  for (int i = 0; i < count; ++i) queue.push(i, bytes, traffic);
   std::vector<int> left;
-  while (!outbox.empty()) left.push_back(outbox.pop(kBegin));
+  while (!queue.empty()) left.push_back(queue.pop(kBegin));
   return left;
 }
 
-TEST(Outbox, KeepsAllThatAreToBeKept) {
+TEST(SendQueue, KeepsAllThatAreToBeKept) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of(""));
-  EXPECT_EQ(left_of(outbox, 1000, 10, traffic).size(), 1000U);
+  SendQueue<int> queue(*policy_of(""));
+  EXPECT_EQ(left_of(queue, 1000, 10, traffic).size(), 1000U);
   EXPECT_EQ(traffic.superseded, 0U);
-  EXPECT_EQ(outbox.bytes(), 0U);
+  EXPECT_EQ(queue.bytes(), 0U);
 }
 
-TEST(Outbox, DropsTheOldestAndCountsThem) {
+TEST(SendQueue, DropsTheOldestAndCountsThem) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of("?keep=3"));
-  EXPECT_EQ(left_of(outbox, 10, 10, traffic), (std::vector<int>{7, 8, 9}));
+  SendQueue<int> queue(*policy_of("?keep=3"));
+  EXPECT_EQ(left_of(queue, 10, 10, traffic), (std::vector<int>{7, 8, 9}));
   EXPECT_EQ(traffic.superseded, 7U);
   EXPECT_EQ(traffic.kept_back + traffic.over_rate + traffic.over_memory + traffic.cut, 0U);
 }
 
-TEST(Outbox, IsBoundedInMemoryToo) {
+TEST(SendQueue, IsBoundedInMemoryToo) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of("?keep=100&memory=1K"));
-  EXPECT_EQ(left_of(outbox, 10, 300, traffic), (std::vector<int>{7, 8, 9}));
+  SendQueue<int> queue(*policy_of("?keep=100&memory=1K"));
+  EXPECT_EQ(left_of(queue, 10, 300, traffic), (std::vector<int>{7, 8, 9}));
   EXPECT_EQ(traffic.over_memory, 7U);
   EXPECT_EQ(traffic.superseded, 0U);
 }
 
-TEST(Outbox, DropsNothingForMemoryWhereAllAreKept) {
+TEST(SendQueue, DropsNothingForMemoryWhereAllAreKept) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of("?memory=1K"));
-  EXPECT_TRUE(outbox.has_memory(5000));
-  outbox.push(0, 5000, traffic);
-  EXPECT_FALSE(outbox.has_memory(1));
-  outbox.push(1, 5000, traffic);
-  EXPECT_EQ(outbox.size(), 2U);
+  SendQueue<int> queue(*policy_of("?memory=1K"));
+  EXPECT_TRUE(queue.has_memory(5000));
+  queue.push(0, 5000, traffic);
+  EXPECT_FALSE(queue.has_memory(1));
+  queue.push(1, 5000, traffic);
+  EXPECT_EQ(queue.size(), 2U);
   EXPECT_EQ(traffic.over_memory, 0U);
 }
 
-TEST(Outbox, TheNewestStaysHoweverLarge) {
+TEST(SendQueue, TheNewestStaysHoweverLarge) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of("?keep=100&memory=1K"));
-  EXPECT_EQ(left_of(outbox, 3, 5000, traffic), std::vector<int>{2});
+  SendQueue<int> queue(*policy_of("?keep=100&memory=1K"));
+  EXPECT_EQ(left_of(queue, 3, 5000, traffic), std::vector<int>{2});
   EXPECT_EQ(traffic.over_memory, 2U);
 }
 
-TEST(Outbox, WhatThePaceKeepsBackIsCountedOnce) {
+TEST(SendQueue, WhatThePaceKeepsBackIsCountedOnce) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of("?keep=2&rate=10&burst=2"));
-  EXPECT_TRUE(outbox.pass(kBegin));
-  EXPECT_TRUE(outbox.pass(kBegin));
-  ASSERT_FALSE(outbox.pass(kBegin));
+  SendQueue<int> queue(*policy_of("?keep=2&rate=10&burst=2"));
+  EXPECT_TRUE(queue.pass(kBegin));
+  EXPECT_TRUE(queue.pass(kBegin));
+  ASSERT_FALSE(queue.pass(kBegin));
   for (int i = 0; i < 5; ++i) {
-    outbox.push(i, 1, traffic);
-    EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin + milliseconds(100));
-    EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin + milliseconds(100));
+    queue.push(i, 1, traffic);
+    EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin + milliseconds(100));
+    EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin + milliseconds(100));
   }
   EXPECT_EQ(traffic.kept_back, 5U);
   EXPECT_EQ(traffic.over_rate, 3U);
   EXPECT_EQ(traffic.superseded, 0U);
   auto now = kBegin + milliseconds(100);
-  EXPECT_EQ(outbox.ready_at(now, traffic), now);
-  EXPECT_EQ(outbox.pop(now), 3);
-  EXPECT_EQ(outbox.ready_at(now, traffic), now + milliseconds(100));
+  EXPECT_EQ(queue.ready_at(now, traffic), now);
+  EXPECT_EQ(queue.pop(now), 3);
+  EXPECT_EQ(queue.ready_at(now, traffic), now + milliseconds(100));
   EXPECT_EQ(traffic.kept_back, 5U);
 }
 
-TEST(Outbox, OneThatNobodyHoldsBackIsSuperseded) {
+TEST(SendQueue, OneThatNobodyHoldsBackIsSuperseded) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of("?keep=1&rate=10"));
-  outbox.push(0, 1, traffic);  // it could go, were there room
-  EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin);
-  outbox.push(1, 1, traffic);
+  SendQueue<int> queue(*policy_of("?keep=1&rate=10"));
+  queue.push(0, 1, traffic);  // it could go, were there room
+  EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin);
+  queue.push(1, 1, traffic);
   EXPECT_EQ(traffic.superseded, 1U);
   EXPECT_EQ(traffic.kept_back + traffic.over_rate, 0U);
-  EXPECT_EQ(outbox.ready_at(kBegin, traffic), kBegin);
+  EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin);
 }
 
-TEST(Outbox, OneMayBeTakenBack) {
+TEST(SendQueue, OneMayBeTakenBack) {
   Traffic traffic;
-  Outbox<int> outbox(*policy_of(""));
-  outbox.push(0, 5, traffic);
-  outbox.push(1, 6, traffic);
-  outbox.take_back();
-  EXPECT_EQ(outbox.bytes(), 5U);
-  EXPECT_EQ(outbox.front(), 0);
-  EXPECT_EQ(outbox.clear(traffic), 1U);
-  EXPECT_EQ(outbox.ready_at(kBegin, traffic), TimePoint::max());
+  SendQueue<int> queue(*policy_of(""));
+  queue.push(0, 5, traffic);
+  queue.push(1, 6, traffic);
+  queue.take_back();
+  EXPECT_EQ(queue.bytes(), 5U);
+  EXPECT_EQ(queue.front(), 0);
+  EXPECT_EQ(queue.clear(traffic), 1U);
+  EXPECT_EQ(queue.ready_at(kBegin, traffic), TimePoint::max());
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ namespace hc {
 namespace testing {
 
 /// Reads rows that are not complete for their errors alone; gives 0, or the first error.
-inline Result<std::size_t> check_rows(const Header& header, std::string_view text, std::uint64_t byte) {
+inline Result<std::size_t> check_rows(const Header& header, std::string_view text,
+                                      std::uint64_t byte) {
   constexpr std::size_t kPiece = 4096;
   alignas(8) std::array<std::byte, (kPiece / 2 + 1) * 8> numbers;
   TextRows rows(header);
@@ -48,8 +49,8 @@ inline Result<std::size_t> check_rows(const Header& header, std::string_view tex
 ///
 /// Errors: Malformed, Unsupported, TooLarge; the detail names rule, field and byte.
 /// Cost: no allocation for a message that views `bytes`, nor before the message is complete.
-inline Result<std::size_t> decode(std::span<const std::byte> bytes, Message& message, const Limits& limits = {},
-                                  std::uint64_t byte = 0) {
+inline Result<std::size_t> decode(std::span<const std::byte> bytes, Message& message,
+                                  const Limits& limits = {}, std::uint64_t byte = 0) {
   std::string_view rest{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   internal::HeaderMemo memo;  // of one line, which it cannot help
   auto line = internal::read_header_line(rest, limits, byte, memo);
@@ -87,7 +88,9 @@ inline Result<std::size_t> decode(std::span<const std::byte> bytes, Message& mes
   if (!end) return end.error();
   if (*end == 0) return std::size_t{0};
   message = {header, std::as_bytes(std::span(elements)), nullptr, elements_byte};
-  if (message.plain() && reinterpret_cast<std::uintptr_t>(elements.data()) % size_of(header.info.scalar) != 0) message = message.keep();
+  if (message.plain() &&
+      reinterpret_cast<std::uintptr_t>(elements.data()) % size_of(header.info.scalar) != 0)
+    message = message.keep();
   return at + *end;
 }
 

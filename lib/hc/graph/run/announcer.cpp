@@ -4,7 +4,7 @@
 #include <sys/socket.h>
 
 #include <hc/base/uri.h>
-#include <hc/link/unix.h>
+#include <hc/link/stream/unix.h>
 #include <hc/mtp/codec.h>
 
 namespace hc::internal {

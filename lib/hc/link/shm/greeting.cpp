@@ -11,7 +11,7 @@
 #include <optional>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/stream_link.h>
+#include <hc/link/stream/source.h>
 #include <hc/os/socket.h>
 
 namespace hc::internal {

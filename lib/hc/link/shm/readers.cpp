@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/unix.h>
+#include <hc/link/stream/unix.h>
 
 namespace hc::internal {
 namespace {

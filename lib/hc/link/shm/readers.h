@@ -9,9 +9,9 @@
 #include <mutex>
 #include <vector>
 
-#include <hc/link/remarks.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
+#include <hc/link/stream/remarks.h>
 #include <hc/os/reactor.h>
 #include <hc/os/socket.h>
 

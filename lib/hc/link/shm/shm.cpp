@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // `shm:NAME`: how either end is opened; sink.h and source.h are what is opened.
-#include <hc/link/awaiting_source.h>
-#include <hc/link/dialing.h>
 #include <hc/link/paced_sink.h>
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/shm/sink.h>
 #include <hc/link/shm/source.h>
+#include <hc/link/stream/awaiting_source.h>
+#include <hc/link/stream/dialing.h>
+#include <hc/link/stream/unix.h>
 #include <hc/link/transports.h>
-#include <hc/link/unix.h>
 
 namespace hc::internal {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 // What tests of shared memory share: names that nobody else has, and sizes of messages.
 
-#include <hc/link/socket_test.h>
+#include <hc/testing/socket_link.h>
 #include <unistd.h>
 
 #include <string>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/stream_link.h>
+#include <hc/link/stream/source.h>
 
 namespace hc::internal {
 namespace {

@@ -9,7 +9,7 @@
 #include <array>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/stream_link.h>
+#include <hc/link/stream/source.h>
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <emmintrin.h>

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/connection.h>
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+
+#include <hc/link/stream/source.h>
+#include <hc/os/socket.h>
+
+namespace hc::internal {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr microseconds kRetryTime{50};      // while another thread uses the connection
+constexpr milliseconds kLongRetryTime{20};  // while it waits
+
+TimePoint clock_now() {
+  return std::chrono::steady_clock::now();
+}
+
+bool is_tcp(int descriptor) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  return ::getsockopt(descriptor, IPPROTO_TCP, TCP_INFO, &info, &size) == 0;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Connection>> Connection::make(Descriptor connection, const Policy& policy,
+                                                     const LinkOptions& options,
+                                                     std::unique_ptr<Dialer> dialer) {
+  std::unique_ptr<Connection> made(new Connection(policy, options, std::move(dialer)));
+  auto timer = Watch::make(-1, [self = made.get()](std::uint32_t) { self->on_event(0); });
+  if (!timer) return timer.error();
+  made->timer_ = std::move(*timer);
+  std::lock_guard lock(made->mutex_);
+  auto now = clock_now();
+  if (connection)
+    made->connect(std::move(connection), now);
+  else
+    made->dial(now);
+  made->arm(now);
+  return made;
+}
+
+Connection::~Connection() {
+  std::unique_ptr<Watch> watch;  // ends without the lock, and waits for its callback then
+  std::lock_guard lock(mutex_);
+  if (!failed_ && connected()) static_cast<void>(writer_.write());
+  failed_ = Error{Code::Closed, "the link was closed"};
+  watch.swap(watch_);
+}
+
+void Connection::connect(Descriptor connection, TimePoint now) {
+  is_tcp_ = is_tcp(connection.get());
+  writer_.start(std::move(connection));
+  blocked_ = false;
+  connected_at_ = now;
+  look_due_ = TimePoint::max();
+  watch(writer_.descriptor());
+}
+
+void Connection::dial(TimePoint now) {
+  watch_.reset();  // before the dialer closes what it watches
+  auto made = dialer_->dial(now);
+  if (!made) return fail(made.error());
+  if (auto remark = dialer_->take_remark(now)) remarks_.add(*remark);
+  if (*made) return connect(std::move(*made), now);
+  if (dialer_->descriptor() >= 0) watch(dialer_->descriptor());
+}
+
+void Connection::watch(int descriptor) {
+  watch_.reset();
+  missed_events_ = 0;  // of another connection
+  auto made = Watch::make(descriptor, [this](std::uint32_t events) { on_event(events); });
+  if (made) watch_ = std::move(*made);
+  wanted_ = 0;
+}
+
+Result<bool> Connection::send(Outgoing& message, TimePoint now) {
+  std::lock_guard lock(mutex_);
+  if (failed_) return *failed_;
+  bool passes = connected() && !blocked_ && queue_.pass(now);
+  if (passes) {
+    put(message.borrowed(), now);
+  } else {
+    queue_.push(writer_waits_ ? message.borrowed() : message.kept(), message.size(), losses_);
+    if (!writer_waits_) advance(now);
+  }
+  if (failed_) return *failed_;
+  bool under_way = blocked_ || !queue_.empty() || !connected();
+  if (writer_waits_ && under_way) {
+    if (auto drained = drain(false); !drained) return drained.error();
+    return true;
+  }
+  if (writer_.borrows()) writer_.keep(message.kept().pieces, message.kept().keeper);
+  if (under_way) arm(now);
+  return all_written();
+}
+
+/// Begins a message, for which there is no hindrance.
+void Connection::put(const Parcel& parcel, TimePoint now) {
+  const bool is_first = writer_.gathered() == 0;
+  if (writer_.add(parcel.pieces, parcel.keeper)) {
+    if (is_first) oldest_ = now;
+    bool pays = !is_first || gathering_.pays(now - last_write_ < kFollowTime);
+    if (pays && writer_.gathered() < kFlushBytes && now - oldest_ < kFlushAge) {
+      is_gathering_ = true;
+      // The reactor has work only when no further message comes; else they are written here.
+      if (!std::exchange(flush_is_due_, true)) timer_->call_at(flush_due());
+      return;
+    }
+  }
+  write();
+}
+
+void Connection::write() {
+  if (std::exchange(is_gathering_, false)) gathering_.learn(writer_.messages());
+  auto written = writer_.write();
+  last_write_ = clock_now();
+  if (!written) return lose_connection(written.error(), last_write_);
+  blocked_ = !*written;
+  if (!is_tcp_ || look_due_ != TimePoint::max()) return;
+  look_due_ = last_write_ + kLookPeriod;
+  timer_->call_at(look_due_);
+}
+
+/// Does all that can be done by now without waiting.
+void Connection::advance(TimePoint now) {
+  if (failed_) return;
+  if (look_due_ <= now) look_at_reader(now);
+  if (!failed_ && !connected()) dial(now);
+  while (!failed_ && connected()) {
+    if (!writer_.empty()) write();
+    if (blocked_ || !writer_.empty()) return;
+    while (queue_.ready_at(now, losses_) <= now) {
+      if (!writer_.empty() && !writer_.has_room(queue_.front().size())) break;
+      auto parcel = queue_.pop(now);
+      writer_.add(parcel.pieces, parcel.keeper);
+    }
+    if (writer_.empty()) return;
+  }
+}
+
+void Connection::lose_connection(const Error& why, TimePoint now) {
+  watch_.reset();
+  look_due_ = TimePoint::max();
+  blocked_ = false;
+  if (dialer_ == nullptr) return fail(why);
+  remarks_.add(in_words(why) + "; connecting again");
+  writer_.start(Descriptor());
+  dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime, in_words(why));
+}
+
+void Connection::fail(const Error& why) {
+  failed_ = why;
+  watch_.reset();
+  // What a waiting writer has in the queue is told to it, and is not among the lost.
+  Traffic untold;
+  auto waiting = queue_.clear(writer_waits_ ? untold : losses_);
+  losses_.cut += writer_.clear() + (writer_waits_ ? 0 : waiting);
+}
+
+void Connection::look_at_reader(TimePoint now) {
+  auto look = look_at_peer(writer_.descriptor());
+  look_due_ = look.must_answer ? now + look.next : TimePoint::max();
+  if (look.vanished) lose_connection({Code::Closed, "the reader has vanished"}, now);
+}
+
+/// Whether the connection has failed while nobody used it.
+void Connection::check_events(std::uint32_t events, TimePoint now) {
+  if (!connected() || (events & (EPOLLERR | EPOLLHUP)) == 0) return;
+  int number = 0;
+  socklen_t size = sizeof number;
+  ::getsockopt(writer_.descriptor(), SOL_SOCKET, SO_ERROR, &number, &size);
+  lose_connection(
+      number == 0 ? Error{Code::Closed, "the reader has gone"} : system_error("write", "", number),
+      now);
+}
+
+/// The reactor calls.
+void Connection::on_event(std::uint32_t events) {
+  missed_events_ |= events;
+  const auto now = clock_now();
+  std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) {
+    timer_->call_at(now + (waits_ ? microseconds(kLongRetryTime) : kRetryTime));
+    return;
+  }
+  flush_is_due_ = false;
+  if (events = missed_events_.exchange(0); events != 0) wanted_ = 0;
+  if (failed_) return;
+  check_events(events, now);
+  if (!connected() || blocked_ || due(now) <= now) advance(now);
+  arm(now);
+}
+
+/// Has the reactor call when there is something to do.
+void Connection::arm(TimePoint now) {
+  if (failed_) return;
+  want(blocked_ || !connected() ? EPOLLOUT : EPOLLERR);
+  auto when = due(now);
+  if (when == TimePoint::max()) return;
+  flush_is_due_ = writer_.gathered() > 0;
+  timer_->call_at(when);
+}
+
+/// Has the descriptor watched for events, which are told once. A file cannot be, and need not.
+void Connection::want(std::uint32_t events) {
+  if (watch_ == nullptr || std::exchange(wanted_, events) == events) return;
+  static_cast<void>(watch_->want(events == 0 ? 0 : events | EPOLLONESHOT));
+}
+
+/// When there is something to do next, beside what the descriptor tells.
+TimePoint Connection::due(TimePoint now) {
+  if (failed_) return TimePoint::max();
+  if (!connected()) return dialer_->due();
+  auto when = look_due_;
+  if (blocked_) return when;
+  if (!writer_.empty()) when = std::min(when, flush_due());
+  return std::min(when, queue_.ready_at(now, losses_));
+}
+
+/// Waits until all has been written.
+/// @param give_up  set when it is to stop inside a message.
+Status Connection::drain(bool closing, std::optional<TimePoint> give_up) {
+  while (true) {
+    auto now = clock_now();
+    advance(now);
+    if (failed_) return *failed_;
+    if (all_written() && (connected() || closing)) break;
+    if (give_up && now >= *give_up) {
+      bool begun = writer_.inside_message();
+      fail({begun ? Code::Truncated : Code::Stopped,
+            begun ? "asked to stop, and the reader did not take the rest of a message"
+                  : "asked to stop, and the reader did not take all messages"});
+      return *failed_;
+    }
+    tell_log();
+    auto waited = wait(give_up, now);
+    if (waited) continue;
+    if (waited.error().code != Code::Stopped) return waited.error();
+    if (!closing && take_back()) {
+      arm(now);
+      return waited.error();
+    }
+    give_up = clock_now() + kGrace;
+  }
+  arm(clock_now());
+  return {};
+}
+
+/// Takes back the message that a thread waits with; false when it was begun.
+bool Connection::take_back() {
+  if (queue_.empty()) return writer_.take_back();
+  queue_.take_back();
+  return true;
+}
+
+/// Waits for room, a connection, or the time when something is to be done.
+Result<bool> Connection::wait(std::optional<TimePoint> give_up, TimePoint now) {
+  int descriptor = !connected() ? dialer_->descriptor() : blocked_ ? writer_.descriptor() : -1;
+  if (wanted_ == EPOLLOUT) want(0);  // this thread sees to it
+  waits_ = true;
+  auto waited = wait_for(descriptor, POLLOUT, give_up ? -1 : stop_,
+                         std::min(due(now), give_up.value_or(TimePoint::max())));
+  waits_ = false;
+  return waited;
+}
+
+Status Connection::close(bool patient) {
+  std::lock_guard lock(mutex_);
+  std::optional<TimePoint> give_up;
+  if (!patient) give_up = clock_now();
+  Status closed = failed_ ? Status(*failed_) : drain(true, give_up);
+  watch_.reset();
+  if (connected()) writer_.close();
+  if (!failed_) failed_ = Error{Code::Closed, "the link was closed"};
+  return closed;
+}
+
+void Connection::abandon() {
+  std::lock_guard lock(mutex_);
+  if (failed_) return;
+  if (connected()) static_cast<void>(writer_.write());
+  fail({Code::Closed, "the link was closed"});
+}
+
+Traffic Connection::losses() const {
+  std::lock_guard lock(mutex_);
+  return losses_;
+}
+
+bool Connection::has_failed() const {
+  std::lock_guard lock(mutex_);
+  return failed_.has_value();
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The sending side of one connection: what is to go over it waits, is begun, and goes, by the
+// thread that sends or, where that one is not to wait, by the reactor. Internal.
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <hc/link/link.h>
+#include <hc/link/policy.h>
+#include <hc/link/queue.h>
+#include <hc/link/stream/dialer.h>
+#include <hc/link/stream/parcel.h>
+#include <hc/link/stream/remarks.h>
+#include <hc/link/stream/writer.h>
+#include <hc/os/reactor.h>
+
+namespace hc::internal {
+
+/// Tells whether messages follow so close that it pays to gather them.
+///
+/// Whether more will come nobody knows; but who answers a question sends nothing more either,
+/// though the question came right behind the last answer. So the more often it was in vain, the
+/// longer a row of messages must be before the next one is gathered.
+class Gathering {
+ public:
+  /// Counts a message that follows, or not; gives whether to gather it.
+  bool pays(bool follows) {
+    row_ = follows ? row_ + 1 : 0;
+    return row_ > wanted_;
+  }
+  /// Says how many messages were written at once in the end.
+  void learn(std::size_t count) {
+    bool was_worth_it = count >= kWorthwhile;
+    if (!was_worth_it) row_ = 0;
+    wanted_ = was_worth_it ? kFewest : std::min(2 * wanted_, kMost);
+  }
+
+ private:
+  static constexpr std::size_t kWorthwhile = 8, kFewest = 2, kMost = 1024;
+  std::size_t row_ = 0, wanted_ = kFewest;
+};
+
+/// Sends the messages of one thread over one connection, with the help of the reactor.
+///
+/// A message is written at once where nothing is under way. When some follow right behind another,
+/// small ones are gathered, up to kFlushBytes or kFlushAge, whichever comes first; see Gathering.
+/// What is gathered or partly written has been begun and is finished; the policy is about what
+/// waits behind it.
+///
+/// The lock is held while a sending thread waits, so the reactor only tries to take it, and comes
+/// back later: nobody else's link waits for this one.
+class Connection {
+ public:
+  /// How long a reader may take, after `stop`, for the rest of a message.
+  static constexpr std::chrono::seconds kGrace{2};
+  /// How often a reader that owes an answer is looked after, whether it is still there.
+  static constexpr std::chrono::seconds kLookPeriod{1};
+  /// Messages follow one another when no more time has passed since the last system call.
+  static constexpr std::chrono::microseconds kFollowTime{3};
+  static constexpr std::chrono::microseconds kFlushAge{150};
+  static constexpr std::size_t kFlushBytes = 60 << 10;
+
+  /// @param connection  may be none (-1) with a dialer.
+  /// @param dialer  makes the connection anew when it is lost; without one the link ends with it.
+  ///
+  /// Errors: System.
+  static Result<std::unique_ptr<Connection>> make(Descriptor connection, const Policy& policy,
+                                                  const LinkOptions& options,
+                                                  std::unique_ptr<Dialer> dialer = nullptr);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// Takes a message; whether all that was taken is with the kernel, and not in memory of ours.
+  /// Errors: as Sink::send.
+  Result<bool> send(Outgoing& message, TimePoint now);
+  /// Waits until all has been written, unless it is not `patient`, and ends the stream.
+  /// Errors: as Sink::close.
+  Status close(bool patient = true);
+  /// Ends the link with what can be written at once; the rest is lost.
+  void abandon();
+
+  /// What was lost or throttled; `bytes` is minus those of messages that were dropped.
+  [[nodiscard]] Traffic losses() const;
+  /// Whether the connection has failed for good.
+  [[nodiscard]] bool has_failed() const;
+  /// Tells the log what has happened to the connection; on the thread that sends, which also hears
+  /// of it while it waits in send() or close().
+  void tell_log() { remarks_.tell(log_); }
+  [[nodiscard]] int descriptor() const { return writer_.descriptor(); }
+
+ private:
+  Connection(const Policy& policy, const LinkOptions& options, std::unique_ptr<Dialer> dialer)
+      : writer_waits_(policy.writer_waits()),
+        stop_(options.stop),
+        log_(options.log),
+        dialer_(std::move(dialer)),
+        queue_(policy) {}
+
+  [[nodiscard]] bool connected() const { return writer_.descriptor() >= 0; }
+  [[nodiscard]] bool all_written() const { return writer_.empty() && queue_.empty(); }
+  void connect(Descriptor connection, TimePoint now);
+  void dial(TimePoint now);
+  void watch(int descriptor);
+  void put(const Parcel& parcel, TimePoint now);
+  void advance(TimePoint now);
+  void write();
+  void lose_connection(const Error& why, TimePoint now);
+  void fail(const Error& why);
+  void look_at_reader(TimePoint now);
+  void check_events(std::uint32_t events, TimePoint now);
+  void on_event(std::uint32_t events);
+  void arm(TimePoint now);
+  void want(std::uint32_t events);
+  [[nodiscard]] TimePoint due(TimePoint now);
+  [[nodiscard]] TimePoint flush_due() const { return oldest_ + 2 * kFlushAge; }
+  bool take_back();
+  Status drain(bool closing, std::optional<TimePoint> give_up = std::nullopt);
+  Result<bool> wait(std::optional<TimePoint> give_up, TimePoint now);
+
+  mutable std::mutex mutex_;
+  const bool writer_waits_;
+  const int stop_;
+  const LogSink log_;
+  std::unique_ptr<Dialer> dialer_;
+  SendQueue<Parcel> queue_;  // not begun
+  StreamWriter writer_;      // begun
+  bool blocked_ = false;     // the last write found no room for all
+  bool is_tcp_ = false;
+  Gathering gathering_;
+  TimePoint connected_at_, last_write_, oldest_;  // the last: when the first was gathered
+  TimePoint look_due_ = TimePoint::max();
+  bool is_gathering_ = false;
+  bool flush_is_due_ = false;  // the reactor will look at what is gathered
+  std::optional<Error> failed_;
+  Traffic losses_;
+  Remarks remarks_;
+  std::uint32_t wanted_ = 0;        // of watch_
+  std::unique_ptr<Watch> watch_;    // of the connection, or the dialer's try
+  std::atomic<bool> waits_{false};  // a thread does, and holds the lock
+  std::atomic<std::uint32_t> missed_events_{0};
+  std::unique_ptr<Watch> timer_;  // for life: ends first, and its callback uses all the others
+};
+
+}  // namespace hc::internal

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/dialer.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace hc::internal {
+
+std::chrono::nanoseconds Backoff::next() {
+  std::uniform_int_distribution<std::int64_t> pause(0, bound_.count());
+  std::chrono::nanoseconds chosen(pause(random_));
+  bound_ = std::min<std::chrono::nanoseconds>(2 * bound_, longest_);
+  return chosen;
+}
+
+Dialer::Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patience, TimePoint now)
+    : peer_(std::move(peer)),
+      first_(first),
+      patience_(patience),
+      backoff_(std::random_device{}(), peer_.longest_pause),
+      begin_(now),
+      give_up_(now + first),
+      next_try_(now) {}
+
+Result<Descriptor> Dialer::dial(TimePoint now) {
+  if (!attempt_ && now >= next_try_) try_next(now);
+  if (attempt_ && is_connected(now)) {
+    was_there_ = true;
+    set_up_connection(attempt_.get());
+    return std::move(attempt_);
+  }
+  if (attempt_ && now >= answer_due_) {
+    fail(ETIMEDOUT, now);
+    if (now < give_up_) try_next(now);
+  }
+  if (now >= give_up_)
+    return Error{was_there_ ? Code::Closed : Code::NotFound,
+                 "nobody was there for " +
+                     std::to_string((was_there_ ? patience_ : first_).count()) + " s: " + why_};
+  return Descriptor();
+}
+
+std::optional<std::string> Dialer::take_remark(TimePoint now) {
+  if (was_there_ || why_.empty() || now < begin_ + kQuiet || std::exchange(told_, true))
+    return std::nullopt;
+  return "nobody is there yet: " + why_ + "; it is given up after " +
+         std::to_string(first_.count()) + " s";
+}
+
+TimePoint Dialer::due() const {
+  return std::min(give_up_, attempt_ ? answer_due_ : next_try_);
+}
+
+void Dialer::lost(TimePoint now, bool was_of_use, std::string why) {
+  why_ = std::move(why);
+  give_up_ = now + patience_;
+  if (was_of_use) backoff_.reset();
+  next_try_ = was_of_use ? now : std::min(now + backoff_.next(), give_up_);
+}
+
+void Dialer::try_next(TimePoint now) {
+  const Address& address = peer_.addresses[turn_];
+  auto socket = open_socket(address);
+  if (!socket) return fail(errno, now);
+  attempt_ = std::move(*socket);
+  answer_due_ = now + kAnswer;
+  if (::connect(attempt_.get(), address.get(), address.size) != 0 && errno != EINPROGRESS)
+    fail(errno, now);
+}
+
+/// Whether the try under way has succeeded; ends it if it has failed.
+bool Dialer::is_connected(TimePoint now) {
+  pollfd polled{attempt_.get(), POLLOUT, 0};
+  if (::poll(&polled, 1, 0) <= 0) return false;
+  int status = 0;
+  socklen_t size = sizeof status;
+  ::getsockopt(attempt_.get(), SOL_SOCKET, SO_ERROR, &status, &size);
+  if (status == 0 && is_with_itself(attempt_.get())) status = ECONNREFUSED;
+  auto admitted = status == 0 && peer_.admit ? peer_.admit(attempt_.get()) : Status();
+  if (status == 0 && admitted) return true;
+  fail(status == 0 ? EACCES : status, now);
+  if (status == 0) why_ = admitted.error().detail;
+  return false;
+}
+
+void Dialer::fail(int number, TimePoint now) {
+  attempt_.reset();
+  why_ = std::strerror(number);
+  turn_ = (turn_ + 1) % peer_.addresses.size();
+  bool all_tried = turn_ == 0;
+  next_try_ = now;
+  if (!all_tried || number == ETIMEDOUT) return;
+  auto pause = backoff_.next();
+  bool away = number == ENETUNREACH || number == EHOSTUNREACH || number == ENETDOWN;
+  next_try_ += away ? std::min<std::chrono::nanoseconds>(pause, kAway) : pause;
+  next_try_ = std::max(std::min(next_try_, give_up_), now);  // once more at the very end
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/dialer.h>
+
+#include <gtest/gtest.h>
+
+#include <sys/socket.h>
+#include <unistd.h>
+#include <array>
+
+#include <algorithm>
+
+#include <hc/link/stream/unix.h>
+#include <hc/testing/loopback.h>
+
+namespace hc::testing {
+namespace {
+
+using internal::Backoff;
+using internal::Dialer;
+using internal::TimePoint;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+// The first pauses are within 100, 200, 400, 800, 1600 and 3200 ms, and all others within 5 s.
+constexpr std::array<milliseconds, 9> kBounds = {
+    milliseconds(100),  milliseconds(200),  milliseconds(400),
+    milliseconds(800),  milliseconds(1600), milliseconds(3200),
+    milliseconds(5000), milliseconds(5000), milliseconds(5000)};
+
+TEST(Backoff, APauseIsAnywhereBelowABoundThatDoublesUpTo5Seconds) {
+  constexpr int kSeeds = 2000, kParts = 10;
+  for (std::size_t number = 0; number < kBounds.size(); ++number) {
+    std::array<int, kParts> drawn{};
+    for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+      Backoff backoff(seed * 7919);
+      for (std::size_t i = 0; i < number; ++i) backoff.next();
+      nanoseconds pause = backoff.next();
+      ASSERT_GE(pause, nanoseconds(0));
+      ASSERT_LE(pause, kBounds.at(number));
+      auto part = kParts * pause / (nanoseconds(kBounds.at(number)) + nanoseconds(1));
+      ++drawn.at(static_cast<std::size_t>(part));
+    }
+    // As often in each tenth of the interval, but for 5 standard deviations.
+    for (int count : drawn) EXPECT_NEAR(count, kSeeds / kParts, 5 * 13.5) << number;
+  }
+}
+
+TEST(Backoff, BeginsAnewWhenItIsReset) {
+  Backoff backoff(1);
+  for (int i = 0; i < 100; ++i) {
+    for (int tries = 0; tries < 10; ++tries) backoff.next();
+    backoff.reset();
+    EXPECT_LE(backoff.next(), kBounds[0]);
+    EXPECT_LE(backoff.next(), kBounds[1]);
+    backoff.reset();
+  }
+}
+
+/// Time that a test turns by hand, and a peer that may listen or not.
+class DialerTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] Dialer dialer(seconds first = seconds(60), seconds patience = seconds(60)) const {
+    return {{internal::unix_peer(*parse_uri("unix:" + name_))->addresses, "peer", admit_},
+            first,
+            patience,
+            now_};
+  }
+  void listen() {
+    auto socket = internal::listen_unix(*parse_uri("unix-listen:" + name_));
+    ASSERT_TRUE(socket) << socket.error().text();
+    listening_ = std::move(*socket);
+  }
+  /// Whether there is a connection when it is tried now.
+  bool connects(Dialer& dialer) const {
+    auto made = dialer.dial(now_);
+    EXPECT_TRUE(made) << made.error().text();
+    return made && *made;
+  }
+  /// Lets tries fail until each pause is drawn from 5 s.
+  void tire(Dialer& dialer) {
+    for (std::size_t i = 0; i < kBounds.size(); ++i) {
+      EXPECT_FALSE(connects(dialer));
+      EXPECT_LE(dialer.due() - now_, kBounds.at(i));
+      now_ = dialer.due();
+    }
+  }
+
+  std::string name_ = "@hc-dialer-" + std::to_string(::getpid());
+  std::function<Status(int)> admit_;
+  internal::ListeningSocket listening_;
+  TimePoint now_{seconds(1000)};
+};
+
+TEST_F(DialerTest, ConnectsAtOnceWhereSomebodyListens) {
+  listen();
+  auto dialer = this->dialer();
+  EXPECT_EQ(dialer.due(), now_);
+  EXPECT_TRUE(connects(dialer));
+  EXPECT_EQ(dialer.descriptor(), -1);
+}
+
+TEST_F(DialerTest, TriesNoSoonerThanItSays) {
+  auto dialer = this->dialer();
+  EXPECT_FALSE(connects(dialer));
+  const auto due = dialer.due();
+  ASSERT_GT(due, now_);
+  listen();
+  EXPECT_FALSE(connects(dialer));
+  now_ = due - nanoseconds(1);
+  EXPECT_FALSE(connects(dialer));
+  now_ = due;
+  EXPECT_TRUE(connects(dialer));
+}
+
+TEST_F(DialerTest, GivesUpWhenNobodyComesAndSaysWhy) {
+  auto dialer = this->dialer(seconds(10), seconds(60));
+  const auto end = now_ + seconds(10);
+  for (; now_ < end; now_ = dialer.due()) EXPECT_FALSE(connects(dialer));
+  EXPECT_EQ(now_, end);  // due() says no later
+  auto made = dialer.dial(now_);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().text(), "NotFound: nobody was there for 10 s: Connection refused");
+}
+
+TEST_F(DialerTest, GivesUpWhenNobodyComesBack) {
+  listen();
+  auto dialer = this->dialer(seconds(60), seconds(10));
+  EXPECT_TRUE(connects(dialer));
+  listening_ = {};
+  dialer.lost(now_, true, "it has gone");
+  const auto end = now_ + seconds(10);
+  for (; now_ < end; now_ = dialer.due()) EXPECT_FALSE(connects(dialer));
+  EXPECT_EQ(now_, end);
+  EXPECT_EQ(dialer.dial(now_).error().text(),
+            "Closed: nobody was there for 10 s: Connection refused");
+}
+
+TEST_F(DialerTest, SaysOnceThatItsFirstConnectionIsLongInComing) {
+  auto dialer = this->dialer();
+  EXPECT_FALSE(dialer.take_remark(now_ + Dialer::kQuiet));  // has not tried yet
+  EXPECT_FALSE(connects(dialer));
+  EXPECT_FALSE(dialer.take_remark(now_ + Dialer::kQuiet - nanoseconds(1)));
+  EXPECT_EQ(dialer.take_remark(now_ + Dialer::kQuiet),
+            "nobody is there yet: Connection refused; it is given up after 60 s");
+  EXPECT_FALSE(dialer.take_remark(now_ + 2 * Dialer::kQuiet));
+}
+
+TEST_F(DialerTest, AfterAConnectionOfUseItTriesAtOnceAndWithShortPauses) {
+  auto dialer = this->dialer();
+  tire(dialer);
+  listen();
+  EXPECT_TRUE(connects(dialer));
+  listening_ = {};
+  dialer.lost(now_, true, "it has gone");
+  EXPECT_EQ(dialer.due(), now_);
+  tire(dialer);  // checks the bounds
+}
+
+TEST_F(DialerTest, AfterOneOfNoUseItGoesOnWithItsPauses) {
+  nanoseconds longest(0);
+  for (int i = 0; i < 20; ++i) {
+    auto dialer = this->dialer();
+    tire(dialer);
+    listen();
+    EXPECT_TRUE(connects(dialer));
+    dialer.lost(now_, false, "it has gone");
+    EXPECT_LE(dialer.due() - now_, Backoff::kLongest);
+    longest = std::max(longest, nanoseconds(dialer.due() - now_));
+    listening_ = {};
+  }
+  EXPECT_GT(longest, 3 * Backoff::kFirst);
+}
+
+TEST_F(DialerTest, PatienceBeginsAnewWithEachLoss) {
+  listen();
+  auto dialer = this->dialer(seconds(10), seconds(10));
+  EXPECT_TRUE(connects(dialer));
+  now_ += seconds(100);
+  listening_ = {};
+  dialer.lost(now_, true, "it has gone");
+  EXPECT_FALSE(connects(dialer));
+  listen();
+  now_ = dialer.due();
+  EXPECT_TRUE(connects(dialer));
+}
+
+TEST_F(DialerTest, WhoIsOfNoUseIsTriedOnceMoreBeforeItIsGivenUp) {
+  listen();
+  auto dialer = this->dialer(seconds(1), seconds(1));
+  EXPECT_TRUE(connects(dialer));
+  for (int i = 0; i < 100; ++i) {  // the pauses become longer than the patience
+    dialer.lost(now_, false, "it refuses us");
+    now_ = dialer.due();
+    ASSERT_TRUE(connects(dialer)) << i;
+  }
+}
+
+TEST_F(DialerTest, WhoComesShortlyBeforeTheEndIsStillMet) {
+  for (int i = 0; i < 30; ++i) {
+    listening_ = {};
+    auto dialer = this->dialer(seconds(2));
+    const auto end = now_ + seconds(2);
+    while (dialer.due() < end) {
+      now_ = dialer.due();
+      ASSERT_FALSE(connects(dialer));
+    }
+    listen();
+    now_ = end;
+    ASSERT_TRUE(connects(dialer)) << i;
+  }
+}
+
+TEST_F(DialerTest, APeerThatIsNotWantedIsNoConnection) {
+  listen();
+  admit_ = [](int) { return Error{Code::System, "not of this user"}; };
+  auto dialer = this->dialer(seconds(10));
+  EXPECT_FALSE(connects(dialer));
+  EXPECT_GT(dialer.due(), now_);  // after a pause
+  EXPECT_EQ(dialer.descriptor(), -1);
+  EXPECT_EQ(dialer.dial(now_ + seconds(10)).error().text(),
+            "NotFound: nobody was there for 10 s: not of this user");
+}
+
+TEST_F(DialerTest, AllAddressesAreTriedBeforeAPause) {
+  listen();
+  auto here = internal::unix_peer(*parse_uri("unix:" + name_))->addresses;
+  auto nobody = internal::unix_peer(*parse_uri("unix:" + name_ + "-nobody"))->addresses;
+  Dialer dialer({{nobody[0], nobody[0], here[0]}, "peer", {}}, seconds(10), seconds(10), now_);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_FALSE(connects(dialer));
+    EXPECT_EQ(dialer.due(), now_);
+  }
+  EXPECT_TRUE(connects(dialer));
+}
+
+TEST_F(DialerTest, ATryWithoutAnAnswerIsFollowedByTheNextAtOnce) {
+  SilentPort silent;
+  Dialer dialer({{loopback_address(silent.port())}, "peer", {}}, seconds(3), seconds(3), now_);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(connects(dialer));
+    EXPECT_GE(dialer.descriptor(), 0);
+    EXPECT_EQ(dialer.due(), now_ + Dialer::kAnswer);
+    EXPECT_FALSE(connects(dialer));  // is the same try still
+    now_ = dialer.due();
+  }
+  EXPECT_EQ(dialer.dial(now_).error().text(),
+            "NotFound: nobody was there for 3 s: Connection timed out");
+}
+
+}  // namespace
+}  // namespace hc::testing

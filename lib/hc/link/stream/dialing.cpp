@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/dialing.h>
+
+#include <hc/link/stream/sink.h>
+#include <hc/link/stream/source.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
+
+/// None where the link is to end with its connection. Errors: Invalid.
+Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
+  auto patience = number_option(uri, "reconnect", 0, kMostSeconds);
+  if (!patience) return patience.error();
+  if (*patience == 0) return std::unique_ptr<Dialer>();
+  auto first = number_option(uri, "wait", 0, kMostSeconds);
+  if (!first) return first.error();
+  if (*first == 0) first = *patience;
+  return std::make_unique<Dialer>(peer, std::chrono::seconds(*first),
+                                  std::chrono::seconds(*patience),
+                                  std::chrono::steady_clock::now());
+}
+
+}  // namespace
+
+Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
+  auto wait = number_option(uri, "wait", 0, kMostSeconds);
+  if (!wait) return wait.error();
+  auto connected = connect_to(peer.addresses, peer.name, std::chrono::seconds(*wait), options.stop);
+  if (!connected || !peer.admit) return connected;
+  if (auto admitted = peer.admit(connected->get()); !admitted) return admitted.error();
+  return connected;
+}
+
+Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
+                                            const LinkOptions& options) {
+  return dial_source(peer, uri, options, [options](Descriptor connection) {
+    set_up_reader(connection.get());
+    return Result<std::unique_ptr<Source>>(
+        std::make_unique<StreamSource>(std::move(connection), options));
+  });
+}
+
+Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
+                                            const LinkOptions& options, DialingSource::Open open) {
+  auto dialer = dialer_for(peer, uri);
+  if (!dialer) return dialer.error();
+  if (*dialer != nullptr) return DialingSource::make(std::move(*dialer), std::move(open), options);
+  auto connected = connect_now(peer, uri, options);
+  if (!connected) return connected.error();
+  return open(std::move(*connected));
+}
+
+Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
+                                        const LinkOptions& options) {
+  auto dialer = dialer_for(peer, uri);
+  if (!dialer) return dialer.error();
+  if (*dialer != nullptr) return StreamSink::make(Descriptor(), uri, options, std::move(*dialer));
+  auto connected = connect_now(peer, uri, options);
+  if (!connected) return connected.error();
+  return StreamSink::make(std::move(*connected), uri, options);
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <hc/mtp/codec.h>
+#include <hc/testing/link_conformance.h>
+
+namespace hc::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes with the test.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "hc-test-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  [[nodiscard]] std::string operator/(const char* name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+TEST(File, HoldsTheBytesOfTheWire) {
+  Folder folder;
+  auto sink = sink_of("file:" + (folder / "eyes.mtp"));
+  ASSERT_TRUE(sink->send(numbered(1, 3)));
+  ASSERT_TRUE(sink->send(numbered(2, 100000)));
+  ASSERT_TRUE(sink->close());
+  std::ifstream file(folder / "eyes.mtp", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(bytes, encode(numbered(1, 3)) + encode(numbered(2, 100000)));
+  EXPECT_EQ(sink->traffic().bytes, bytes.size());
+
+  auto source = source_of(folder / "eyes.mtp");
+  Message message;
+  EXPECT_TRUE(*receive(*source, message));
+  EXPECT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.characters(), numbered(2, 100000).characters());
+  EXPECT_FALSE(*receive(*source, message));
+  EXPECT_EQ(source->traffic().bytes, bytes.size());
+}
+
+TEST(File, ThatIsNotThereIsNotFound) {
+  auto source = open_source(*parse_uri("/nowhere/eyes.mtp"));
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::NotFound);
+  EXPECT_EQ(source.error().detail, "open(/nowhere/eyes.mtp): No such file or directory");
+  EXPECT_FALSE(open_sink(*parse_uri("/nowhere/eyes.mtp")));
+}
+
+TEST(File, R40_IsReadOnBehindDamage) {
+  Folder folder;
+  std::ofstream(folder / "x") << encode(numbered(0, 3)) << "1 7 0 0 8 0 40101 0 7 50000 1\nshort\n"
+                              << encode(numbered(1, 3)) << encode(numbered(2, 30000));
+  auto source = source_of(folder / "x");
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  auto damaged = receive(*source, message);
+  ASSERT_FALSE(damaged);
+  ASSERT_TRUE(source->resume());
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 2);
+  EXPECT_FALSE(*receive(*source, message));
+}
+
+TEST(File, AFullDiskIsTold) {
+  auto sink = sink_of("file:/dev/full");
+  auto sent = sink->send(numbered(0, 10));
+  ASSERT_FALSE(sent);
+  EXPECT_EQ(sent.error().detail, "write(): No space left on device");
+}
+
+std::pair<std::string, std::string> make_fifo() {
+  static Folder folder;
+  static int number = 0;
+  std::string path = folder / std::to_string(number++).c_str();
+  EXPECT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  return {"file:" + path, "file:" + path};
+}
+
+INSTANTIATE_TEST_SUITE_P(Fifo, LinkConformance,
+                         ::testing::Values(Transport{"fifo", make_fifo, false, true}));
+
+TEST(Fifo, HasNoEndBeforeAWriterHasCome) {
+  auto [from, to] = make_fifo();
+  auto source = source_of(from);
+  Message message;
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+  Stop stop;
+  stop.raise();
+  EXPECT_EQ(receive(*source, message, stop.options().stop).error().code, Code::Stopped);
+  ASSERT_TRUE(sink_of(to)->close());
+  EXPECT_FALSE(*receive(*source, message));
+}
+
+TEST(Fifo, WaitingForAReaderEndsWhenToldToStop) {
+  Stop stop;
+  stop.raise();
+  auto sink = open_sink(*parse_uri(make_fifo().second), stop.options());
+  ASSERT_FALSE(sink);
+  EXPECT_EQ(sink.error().code, Code::Stopped);
+}
+
+TEST(Fifo, AWriterWaitsForAReader) {
+  auto [from, to] = make_fifo();
+  std::thread writer([uri = to] {
+    auto sink = sink_of(uri);
+    ASSERT_TRUE(sink->send(numbered(1, 10)));
+    ASSERT_TRUE(sink->close());
+  });
+  auto source = source_of(from);
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_FALSE(*receive(*source, message));
+  writer.join();
+}
+
+}  // namespace
+}  // namespace hc::testing

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/listening_sink.h>
+
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+
+#include <hc/link/stream/listening_source.h>
+#include <hc/link/stream/source.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::chrono::microseconds kFollowTime{10};
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const Uri& uri,
+                                                  const LinkOptions& options) {
+  auto readers = number_option(uri, "readers", 0, kMaxPeers);
+  if (!readers) return readers.error();
+  auto stays = number_option(uri, "stay", 0, 1);
+  if (!stays) return stays.error();
+  auto policy = parse_policy(uri);
+  if (!policy) return policy.error();
+  auto acceptor = Acceptor::make(std::move(socket), kMaxPeers);
+  if (!acceptor) return acceptor.error();
+  return std::unique_ptr<Sink>(new ListeningSink(
+      std::move(*acceptor), static_cast<std::size_t>(*readers), *stays == 1, *policy, options));
+}
+
+/// Makes peers of those who have come.
+void ListeningSink::let_in() {
+  for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= kMaxPeers;)
+    if (peers_[i]->has_failed()) leave(i);
+  for (auto& newcomer : acceptor_->take(kMaxPeers - peers_.size())) {
+    auto connection = Connection::make(std::move(newcomer), policy_, options_);
+    if (connection) peers_.push_back(std::move(*connection));
+  }
+  for (const auto& line : acceptor_->take_remarks())
+    if (options_.log) options_.log(Severity::Warning, line);
+}
+
+Status ListeningSink::await(std::size_t readers) {
+  let_in();
+  const bool awaits = peers_.size() < readers && options_.awaits_reader;
+  if (awaits) options_.awaits_reader(true);
+  for (; peers_.size() < readers; let_in()) {
+    auto come = wait_for(acceptor_->descriptor(), POLLIN, options_.stop);
+    if (!come) return come.error();
+  }
+  if (awaits) options_.awaits_reader(false);
+  return {};
+}
+
+void ListeningSink::leave(std::size_t peer) {
+  // Its dropped bytes count where no other reader has got them.
+  Traffic losses = peers_[peer]->losses();
+  if (peers_.size() > 1) losses.bytes = 0;
+  traffic_ += losses;
+  peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
+  last_send_ = {};  // there is room for who waits outside
+}
+
+Status ListeningSink::send(const Message& message) {
+  Outgoing outgoing(encoder_.encode(message), message);
+  while (true) {
+    if (begun_ && readers_ > 0 && !stays_ && peers_.empty())
+      return Error{Code::Closed, "all readers have gone"};
+    if (begun_ && stays_ && peers_.empty() && !policy_.writer_waits()) {
+      let_in();
+      if (peers_.empty()) {
+        ++traffic_.messages;
+        ++traffic_.cut;
+        return {};
+      }
+    }
+    // Between messages that follow one another the reactor alone lets peers in.
+    auto now = std::chrono::steady_clock::now();
+    bool follows = now - last_send_ < kFollowTime;
+    if (!begun_ || peers_.empty() || !follows || acceptor_->has_news()) {
+      auto awaited = await(begun_ || readers_ == 0 ? 1 : readers_);
+      if (!awaited) return awaited;
+      now = std::chrono::steady_clock::now();
+    }
+    begun_ = true;
+    auto has = put_to_all(outgoing, now);
+    if (has && !*has) has = has_reader();
+    if (!has) return has.error();
+    if (!*has) continue;  // the message is for the next who comes
+    last_send_ = now;
+    ++traffic_.messages;
+    traffic_.bytes += outgoing.size();
+    return {};
+  }
+}
+
+/// Whether some of what a peer is to get is in memory of ours still, so that it is no use to ask
+/// whether it has been taken.
+Result<bool> ListeningSink::put_to_all(Outgoing& message, TimePoint now) {
+  bool is_ours = false;
+  for (std::size_t i = 0; i < peers_.size();) {
+    auto sent = peers_[i]->send(message, now);
+    if (!sent && (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated))
+      return sent.error();
+    is_ours = is_ours || (sent && !*sent);
+    if (sent)
+      ++i;
+    else
+      leave(i);
+  }
+  return is_ours;
+}
+
+/// Whether a peer has taken what was sent to it, or will.
+///
+/// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
+/// succeeds in either case; what tells is its kernel's answer, an acknowledgement or a reset.
+Result<bool> ListeningSink::has_taken(const Connection& peer) const {
+  Pauses pauses;
+  while (true) {
+    pollfd polled{peer.descriptor(), POLLRDHUP, 0};
+    ::poll(&polled, 1, 0);
+    if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
+    bool shut = (polled.revents & POLLRDHUP) != 0;
+    int under_way = 0;
+    if (!shut || !policy_.writer_waits() || ::ioctl(peer.descriptor(), SIOCOUTQ, &under_way) != 0 ||
+        under_way == 0)
+      return true;
+    if (look_at_peer(peer.descriptor()).vanished) return false;
+    if (auto waited = pauses.next(options_.stop); !waited) return waited.error();
+  }
+}
+
+/// Whether there is a reader that has taken what was sent; one is enough.
+Result<bool> ListeningSink::has_reader() {
+  while (!peers_.empty()) {
+    auto taken = has_taken(*peers_.back());
+    if (!taken) return taken.error();
+    if (*taken) return true;
+    leave(peers_.size() - 1);
+  }
+  return false;
+}
+
+Status ListeningSink::close() {
+  Status awaited;
+  if (readers_ > 0 && !begun_) awaited = await(readers_);
+  bool patient = true;
+  for (auto& peer : peers_) {
+    auto closed = peer->close(patient);
+    patient = patient && (closed || closed.error().code == Code::Closed);
+    if (awaited && !patient) awaited = closed;
+  }
+  while (!peers_.empty()) leave(peers_.size() - 1);
+  acceptor_.reset();  // who has connected and was not let in yet finds the end too
+  return awaited;
+}
+
+void ListeningSink::abandon() {
+  for (auto& peer : peers_) peer->abandon();
+}
+
+Traffic ListeningSink::traffic() const {
+  Traffic all = traffic_;
+  std::uint64_t fewest_dropped = peers_.empty() ? 0 : all.bytes;
+  for (const auto& peer : peers_) {
+    Traffic losses = peer->losses();
+    fewest_dropped = std::min(fewest_dropped, 0 - std::exchange(losses.bytes, 0));
+    all += losses;
+  }
+  all.bytes -= fewest_dropped;
+  return all;
+}
+
+}  // namespace hc::internal

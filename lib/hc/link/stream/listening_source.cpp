@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/listening_source.h>
+
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+
+#include <hc/link/stream/dialer.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::chrono::milliseconds kRetryTime{200};  // until one is let in who could not be
+
+bool is_readable(int descriptor) {
+  pollfd polled{descriptor, POLLIN, 0};
+  return ::poll(&polled, 1, 0) > 0;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
+                                                      const LinkOptions& options) {
+  auto loop = Loop::make();
+  if (!loop) return loop.error();
+  std::unique_ptr<ListeningSource> source(
+      new ListeningSource(std::move(socket), std::move(*loop), options));
+  auto watched = source->loop_->watch(source->socket_.descriptor.get(), EPOLLIN,
+                                      [self = source.get()](auto) { self->accept_all(); });
+  if (!watched) return watched.error();
+  source->listening_ = std::move(*watched);
+  return std::unique_ptr<Source>(std::move(source));
+}
+
+Result<bool> ListeningSource::wait(int stop, std::chrono::milliseconds timeout) {
+  auto deadline =
+      timeout.count() < 0 ? Deadline::max() : std::chrono::steady_clock::now() + timeout;
+  return wait_for(loop_->descriptor(), POLLIN, stop, deadline);
+}
+
+/// Lets in who waits, as far as there is room.
+void ListeningSource::accept_all() {
+  while (true) {
+    bool full = peers_.size() == kMaxPeers;
+    if (full && !is_readable(socket_.descriptor.get())) return accept_later(false);
+    std::size_t idlest = full ? find_idlest() : peers_.size();
+    if (full && idlest == peers_.size()) return accept_later(true);
+    auto accepted = accept_peer(socket_, options_.log);
+    if (accepted && !*accepted) return accept_later(false);
+    auto peer = std::make_unique<Peer>();
+    auto watched = accepted ? loop_->watch(accepted->get(), EPOLLIN,
+                                           [this, each = peer.get()](auto) {
+                                             if (std::exchange(each->is_ready, true)) return;
+                                             ready_.push_back(each);
+                                           })
+                            : Result<Loop::Handle>(accepted.error());
+    if (!watched) {
+      if (!later_ && options_.log)
+        options_.log(Severity::Warning, "not accepting connections: " + in_words(watched.error()) +
+                                            "; retrying every 200 ms");
+      return accept_later(true);
+    }
+    if (full) leave(*peers_[idlest], "closed the peer that was silent longest, to let another in");
+    set_up_reader(accepted->get());
+    peer->source = std::make_unique<StreamSource>(std::move(*accepted), options_);
+    peer->watch = std::move(*watched);
+    peer->heard = ++count_;
+    peers_.push_back(std::move(peer));
+  }
+}
+
+/// Whether a peer waits that cannot be accepted now: then the listening socket, which stays
+/// readable, is left alone until it is time to try again.
+void ListeningSource::accept_later(bool later) {
+  if (later) listening_.call_at(std::chrono::steady_clock::now() + kRetryTime);
+  static_cast<void>(listening_.want(later ? 0U : EPOLLIN));
+  later_ = later;
+}
+
+/// The peer whose last message was longest ago, of those that say nothing now; peers_.size() when
+/// there is none.
+std::size_t ListeningSource::find_idlest() const {
+  std::size_t idlest = peers_.size();
+  for (std::size_t i = 0; i < peers_.size(); ++i) {
+    const auto& source = peers_[i]->source;
+    int unread = 0;
+    if (idlest < peers_.size() && peers_[i]->heard > peers_[idlest]->heard) continue;
+    if (!source->between_messages() || ::ioctl(source->descriptor(), FIONREAD, &unread) != 0)
+      continue;
+    if (unread == 0) idlest = i;
+  }
+  return idlest;
+}
+
+void ListeningSource::leave(const Peer& peer, std::string_view why) {
+  if (!why.empty() && options_.log) options_.log(Severity::Warning, why);
+  Traffic traffic = peer.source->traffic();
+  left_.messages += traffic.messages;
+  left_.bytes += traffic.bytes;
+  std::erase(ready_, &peer);
+  std::erase_if(peers_, [&](const auto& entry) { return entry.get() == &peer; });
+}
+
+/// Says that a peer has nothing more for now.
+void ListeningSource::rest(Peer& peer) {
+  peer.is_ready = false;
+  std::erase(ready_, &peer);
+}
+
+Traffic ListeningSource::traffic() const {
+  Traffic all = left_;
+  for (const auto& peer : peers_) {
+    all.messages += peer->source->traffic().messages;
+    all.bytes += peer->source->traffic().bytes;
+  }
+  return all;
+}
+
+Result<Got> ListeningSource::take(Message& message) {
+  constexpr int kTakesBetween = 64;  // before the others are asked, whatever the ready ones have
+  message = {};
+  if (ready_.empty() || ++takes_ > kTakesBetween) {
+    takes_ = 0;
+    if (auto asked = loop_->turn(std::chrono::milliseconds(0)); !asked) return asked.error();
+  }
+  while (!ready_.empty()) {
+    if (turn_ >= ready_.size()) turn_ = 0;
+    Peer& peer = *ready_[turn_];
+    auto got = peer.source->take(message);
+    if (!got || *got == Got::End) {
+      leave(peer, got ? "" : "closed a connection: " + in_words(got.error()));
+    } else if (*got == Got::Nothing) {
+      rest(peer);
+    } else {
+      peer.heard = ++count_;
+      ++turn_;
+      return Got::Message;
+    }
+  }
+  return Got::Nothing;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/source.h>
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+
+namespace hc::internal {
+namespace {
+
+constexpr int kPipeBytes = 1 << 20;
+
+bool would_wait(int number) {
+  return number == EAGAIN || number == EWOULDBLOCK;
+}
+
+}  // namespace
+
+Result<Got> StreamSource::take(Message& message) {
+  while (true) {
+    auto got = reader_.next(message);
+    if (!got) return got.error();
+    if (*got) return Got::Message;
+    // Who asked and got an answer waits for the next one now: to read once more would be in vain.
+    if (std::exchange(is_dry_, false) && between_messages()) return nothing();
+    auto space = reader_.space();
+    ssize_t size = is_socket_ ? ::recv(descriptor_.get(), space.data(), space.size(), MSG_DONTWAIT)
+                              : ::read(descriptor_.get(), space.data(), space.size());
+    if (size < 0 && errno == ENOTSOCK && is_socket_) {
+      is_socket_ = false;
+      continue;
+    }
+    if (size > 0) {
+      reader_.commit(static_cast<std::size_t>(size));
+      is_dry_ = is_socket_ && static_cast<std::size_t>(size) < space.size();
+      continue;
+    }
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0 && would_wait(errno)) return nothing();
+    // A peer that was killed with our bytes unread resets the connection: the end of what it said.
+    if (size < 0 && errno != ECONNRESET) {
+      auto error = system_error("read", "");
+      if (error.code == Code::Closed && !between_messages()) error.code = Code::Truncated;
+      return error;
+    }
+    if (size == 0 && awaits_writer()) return Got::Nothing;
+    auto end = reader_.finish();
+    if (!end) return end.error();
+    return Got::End;
+  }
+}
+
+/// Nothing more for now. Who waits inside a large message is woken for a good part of it (by TCP;
+/// Unix sockets wake for every piece): each wake keeps the writer from its work.
+Got StreamSource::nothing() {
+  constexpr std::uint64_t kGoodPart = std::uint64_t{128} << 10;
+  int bytes = static_cast<int>(std::clamp<std::uint64_t>(reader_.missing(), 1, kGoodPart));
+  if (is_socket_ && std::exchange(wakes_at_, bytes) != bytes)
+    ::setsockopt(descriptor_.get(), SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
+  return Got::Nothing;
+}
+
+Result<bool> StreamSource::wait(int stop, std::chrono::milliseconds timeout) {
+  auto deadline =
+      timeout.count() < 0 ? Deadline::max() : std::chrono::steady_clock::now() + timeout;
+  return wait_for(descriptor_.get(), POLLIN, stop, deadline);
+}
+
+bool StreamSource::awaits_writer() const {
+  // Reading gives 0 before a writer has come as it does when all have left; only poll tells.
+  pollfd polled{descriptor_.get(), POLLIN, 0};
+  return may_await_writer_ && reader_.bytes() == 0 && ::poll(&polled, 1, 0) == 0;
+}
+
+Status StreamSource::resume() {
+  // The reader begins again where the refused message began, and so must the file.
+  auto begin = begin_ + static_cast<off_t>(reader_.message_begin());
+  struct stat status {};
+  if (::fstat(descriptor_.get(), &status) != 0 || !S_ISREG(status.st_mode)) return Source::resume();
+  auto moved =
+      system_call("lseek", "", [&] { return ::lseek(descriptor_.get(), begin, SEEK_SET); });
+  if (!moved) return moved.error();
+  reader_.resume();
+  return {};
+}
+
+Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
+  struct stat status {};
+  auto looked = system_call("fstat", "", [&] { return ::fstat(number, &status); });
+  if (!looked) return looked.error();
+  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode)) {
+    // A second open gets flags of its own; setting them on the first would set them for the shell
+    // and for everybody else who shares it.
+    std::string path = "/proc/self/fd/" + std::to_string(number);
+    Descriptor own(::open(path.c_str(), access_mode | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (own) {
+      widen_pipe(own.get());
+      return own;
+    }
+  }
+  auto copy = system_call("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
+  if (!copy) return copy.error();
+  return Descriptor(*copy);
+}
+
+void widen_pipe(int descriptor) {
+  ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// `tcp:HOST:PORT` and `tcp-listen:[HOST:]PORT`: between hosts, and to netcat.
+#include <netdb.h>
+#include <sys/socket.h>
+
+#include <vector>
+
+#include <hc/link/stream/dialing.h>
+#include <hc/link/stream/listening_sink.h>
+#include <hc/link/stream/listening_source.h>
+
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+struct FreeAddresses {
+  void operator()(addrinfo* list) const { ::freeaddrinfo(list); }
+};
+using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
+
+Result<Addresses> resolve(const Uri& uri, int flags) {
+  auto place = parse_host_port(uri.rest);
+  if (!place) return place.error();
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = flags | AI_NUMERICSERV;
+  addrinfo* list = nullptr;
+  std::string port = std::to_string(place->port);
+  const char* host = place->host.empty() ? "127.0.0.1" : place->host.c_str();
+  int status = ::getaddrinfo(host, port.c_str(), &hints, &list);
+  if (status != 0) return Error{Code::NotFound, std::string(host) + ": " + ::gai_strerror(status)};
+  return Addresses(list);
+}
+
+/// A name may have several addresses; localhost has two.
+Result<Peer> peer_of(const Uri& uri) {
+  auto list = resolve(uri, 0);
+  if (!list) return list.error();
+  Peer peer;
+  peer.name = uri.rest;
+  for (const addrinfo* each = list->get(); each != nullptr; each = each->ai_next)
+    peer.addresses.emplace_back(each->ai_addr, each->ai_addrlen);
+  return peer;
+}
+
+Result<ListeningSocket> listen_tcp(const Uri& uri) {
+  auto addresses = resolve(uri, AI_PASSIVE);
+  if (!addresses) return addresses.error();
+  auto descriptor = listen_on({(*addresses)->ai_addr, (*addresses)->ai_addrlen}, uri.rest);
+  if (!descriptor) return descriptor.error();
+  ListeningSocket socket;
+  socket.descriptor = std::move(*descriptor);
+  return socket;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> open_tcp_source(const Uri& uri, const LinkOptions& options) {
+  auto peer = peer_of(uri);
+  if (!peer) return peer.error();
+  return dial_source(*peer, uri, options);
+}
+
+Result<std::unique_ptr<Sink>> open_tcp_sink(const Uri& uri, const LinkOptions& options) {
+  auto peer = peer_of(uri);
+  if (!peer) return peer.error();
+  return dial_sink(*peer, uri, options);
+}
+
+Result<std::unique_ptr<Source>> listen_tcp_source(const Uri& uri, const LinkOptions& options) {
+  auto socket = listen_tcp(uri);
+  if (!socket) return socket.error();
+  return ListeningSource::make(std::move(*socket), options);
+}
+
+Result<std::unique_ptr<Sink>> listen_tcp_sink(const Uri& uri, const LinkOptions& options) {
+  auto socket = listen_tcp(uri);
+  if (!socket) return socket.error();
+  return ListeningSink::make(std::move(*socket), uri, options);
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <linux/filter.h>
+
+#include <dlfcn.h>
+
+#include <array>
+#include <atomic>
+
+#include <hc/link/stream/listening_source.h>
+#include <hc/testing/reconnect.h>
+
+namespace {
+
+/// Whether the kernel chooses the other's port for a socket that connects, as it may.
+std::atomic<bool> chooses_the_same_port{false};
+
+}  // namespace
+
+extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
+  static auto* next = reinterpret_cast<decltype(&connect)>(::dlsym(RTLD_NEXT, "connect"));
+  if (chooses_the_same_port) {
+    EXPECT_EQ(::bind(socket, address, size), 0);
+  }
+  return next(socket, address, size);
+}
+
+namespace hc::testing {
+namespace {
+
+internal::Descriptor connect(const std::string& place) {
+  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
+  sockaddr_in address = loopback(parse_host_port(place)->port);
+  EXPECT_EQ(::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  return socket;
+}
+
+const SocketScheme kTcp{"tcp", free_port, "tcp:", "tcp-listen:", connect};
+
+INSTANTIATE_TEST_SUITE_P(Tcp, LinkConformance, ::testing::ValuesIn(both_ways(kTcp)));
+INSTANTIATE_TEST_SUITE_P(Tcp, SocketLink, ::testing::Values(kTcp));
+
+TEST(Tcp, ListensOnLoopbackUnlessAskedOtherwise) {
+  std::string port = free_port().substr(10);
+  auto source = source_of("tcp-listen:" + port);
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  // The listening socket is the only one of this process.
+  for (int number = 3; number < 64; ++number) {
+    int listening = 0;
+    socklen_t flag_size = sizeof listening;
+    if (::getsockopt(number, SOL_SOCKET, SO_ACCEPTCONN, &listening, &flag_size) != 0 || !listening)
+      continue;
+    ASSERT_EQ(::getsockname(number, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    EXPECT_EQ(ntohl(address.sin_addr.s_addr), INADDR_LOOPBACK);
+  }
+  EXPECT_EQ(std::to_string(ntohs(address.sin_port)), port);
+}
+
+/// A name that stands for two ports of 127.0.0.1.
+std::array<internal::Address, 2> both(std::uint16_t first, std::uint16_t second) {
+  return {loopback_address(first), loopback_address(second)};
+}
+
+TEST(Tcp, WaitingEndsThoughNobodyAnswers) {
+  SilentPort silent;
+  std::string place = "127.0.0.1:" + std::to_string(silent.port());
+  EXPECT_EQ(open_source(*parse_uri("tcp:" + place + "?wait=1")).error().code, Code::Closed);
+  EXPECT_EQ(open_source(*parse_uri("tcp:" + place)).error().code, Code::Closed);
+  Stop stop;
+  stop.raise();
+  EXPECT_EQ(open_source(*parse_uri("tcp:" + place), stop.options()).error().code, Code::Stopped);
+}
+
+TEST(Tcp, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
+  SilentPort silent;
+  std::string place = free_port();
+  auto source = source_of("tcp-listen:" + place);
+  auto addresses = both(silent.port(), parse_host_port(place)->port);
+  EXPECT_TRUE(internal::connect_to(addresses, "both", std::chrono::seconds(1), -1));
+}
+
+TEST(Tcp, EveryAddressIsTriedAgain) {
+  std::string place = free_port();
+  auto addresses = both(parse_host_port(place)->port, parse_host_port(free_port())->port);
+  std::unique_ptr<Source> source;
+  std::thread late([&] { source = source_of("tcp-listen:" + place); });
+  EXPECT_TRUE(internal::connect_to(addresses, "both", std::chrono::seconds(60), -1));
+  late.join();
+}
+
+/// As if the network cable were pulled: what comes to the socket is thrown away unanswered.
+void cut_off(const internal::Descriptor& socket) {
+  sock_filter drop_all = BPF_STMT(BPF_RET | BPF_K, 0);
+  sock_fprog program = {1, &drop_all};
+  ASSERT_EQ(::setsockopt(socket.get(), SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program), 0);
+}
+
+TEST(Tcp, AWriterThatVanishesIsNoticed) {
+  Warnings warnings;
+  std::string place = free_port();
+  auto source = source_of("tcp-listen:" + place, warnings.options());
+  auto peer = connect(place);
+  Message message;
+  ASSERT_EQ(*source->take(message), Got::Nothing);
+  cut_off(peer);
+  while (warnings.lines.empty()) {
+    std::array<int, 1> descriptors = {source->descriptor()};
+    ASSERT_TRUE(wait_readable(descriptors));
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  EXPECT_EQ(warnings.lines[0],
+            "tcp-listen:" + place + ": closed a connection: read(): Connection timed out");
+}
+
+TEST(Tcp, AReaderThatVanishesIsNoticed) {
+  std::string place = free_port();
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1");
+  auto peer = connect(place);
+  ASSERT_TRUE(sink->send(numbered(0, 1)));
+  cut_off(peer);
+  Status sent;
+  for (int i = 0; sent; ++i) sent = sink->send(numbered(i, 100'000));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST(Tcp, AReaderThatVanishesIsNoticedThoughItsBufferHasRoom) {
+  std::string place = free_port();
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1");
+  auto peer = connect(place);
+  ASSERT_TRUE(sink->send(numbered(0, 1)));
+  cut_off(peer);
+  ASSERT_TRUE(sink->send(numbered(1, 1)));
+  // Nothing wakes a sink that waits for nothing; the peer's kernel is silent for all to see.
+  internal::Pauses pauses;
+  Status sent;
+  for (int i = 0; sent; ++i) {
+    ASSERT_TRUE(pauses.next(-1));
+    sent = sink->send(numbered(i, 1));
+  }
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST(Tcp, AConnectionWithItselfIsNone) {
+  std::string place = free_port();
+  chooses_the_same_port = true;
+  auto source = open_source(*parse_uri("tcp:" + place));
+  auto patient = source_of("tcp:" + place + "?reconnect=60");
+  Message message;
+  // A listener could not have its port otherwise.
+  EXPECT_EQ(*patient->take(message), Got::Nothing);
+  chooses_the_same_port = false;
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::Closed);
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1");
+  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(1, 10))); });
+  ASSERT_TRUE(*receive(*patient, message));
+  EXPECT_EQ(message.header.seq, 1);
+  sender.join();
+}
+
+TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
+  auto listening = *internal::listen_on(loopback_address(0), "any");
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+  auto peer = connect("127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
+  internal::Descriptor accepted(::accept(listening.get(), nullptr, nullptr));
+  const int reading = accepted.get();
+  internal::StreamSource source(std::move(accepted), {});
+  auto wakes_at = [&] {
+    int bytes = 0;
+    socklen_t length = sizeof bytes;
+    EXPECT_EQ(::getsockopt(reading, SOL_SOCKET, SO_RCVLOWAT, &bytes, &length), 0);
+    return bytes;
+  };
+  std::string_view rest;
+  auto send = [&](std::size_t bytes) {
+    for (; bytes > 0;) {
+      auto sent = ::send(peer.get(), rest.data(), bytes, 0);
+      ASSERT_GT(sent, 0);
+      bytes -= static_cast<std::size_t>(sent);
+      rest.remove_prefix(static_cast<std::size_t>(sent));
+    }
+  };
+  Message message;
+  const auto take = [&] {
+    auto got = *source.take(message);
+    // Bytes on their way wake, or have been taken with those before.
+    while (got == Got::Nothing && *source.wait(-1, std::chrono::milliseconds(0)))
+      got = *source.take(message);
+    return got;
+  };
+  const std::string large = encode(numbered(7, 200'000)), small = encode(numbered(8, 1));
+  rest = large;
+  send(large.size() - 150'000);
+  EXPECT_EQ(take(), Got::Nothing);
+  EXPECT_EQ(wakes_at(), 128 << 10);
+  send(20'000);
+  EXPECT_FALSE(*source.wait(-1, std::chrono::milliseconds(0)));
+  EXPECT_EQ(*source.take(message), Got::Nothing);
+  EXPECT_LE(wakes_at(), 130'000);
+  send(rest.size());
+  ASSERT_TRUE(*receive(source, message));
+  EXPECT_EQ(message.header.seq, 7);
+  EXPECT_EQ(take(), Got::Nothing);
+  EXPECT_EQ(wakes_at(), 1);
+  rest = small;
+  send(small.size());
+  ASSERT_TRUE(*receive(source, message));
+  EXPECT_EQ(message.header.seq, 8);
+}
+
+TEST(Tcp, AHostWithoutAnAddressIsNotFound) {
+  auto source = open_source(*parse_uri("tcp:no.such.host.invalid:80"));
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::NotFound);
+  EXPECT_EQ(open_source(*parse_uri("tcp:localhost")).error().code, Code::Invalid);
+}
+
+}  // namespace
+}  // namespace hc::testing

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/stream/writer.h>
+
+#include <pthread.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <ctime>
+
+namespace hc::internal {
+namespace {
+
+/// Keeps SIGPIPE, which a write to a pipe without a reader raises, from a process that may not have
+/// ignored it. Sockets have a flag for that.
+class NoPipeSignal {
+ public:
+  NoPipeSignal() {
+    ::sigemptyset(&pipe_);
+    ::sigaddset(&pipe_, SIGPIPE);
+    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~NoPipeSignal() {
+    if (::sigismember(&before_, SIGPIPE) == 0) ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NoPipeSignal(const NoPipeSignal&) = delete;
+  NoPipeSignal& operator=(const NoPipeSignal&) = delete;
+
+  /// To be called when it has been raised: takes it, so that it does not come later.
+  void take() const {
+    constexpr timespec kNow{};
+    ::sigtimedwait(&pipe_, nullptr, &kNow);
+  }
+
+ private:
+  sigset_t pipe_, before_;
+};
+
+ssize_t write_to_pipe(int descriptor, const iovec* parts, std::size_t count) {
+  NoPipeSignal guard;
+  ssize_t size = ::writev(descriptor, parts, static_cast<int>(count));
+  if (size < 0 && errno == EPIPE) {
+    guard.take();
+    errno = EPIPE;
+  }
+  return size;
+}
+
+ssize_t write_to_socket(int descriptor, iovec* parts, std::size_t count) {
+  msghdr header{};
+  header.msg_iov = parts;
+  header.msg_iovlen = count;
+  return ::sendmsg(descriptor, &header, MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+bool is_socket(int descriptor) {
+  int type = 0;
+  socklen_t size = sizeof type;
+  return ::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) == 0;
+}
+
+}  // namespace
+
+bool StreamWriter::add(const Pieces& pieces, const std::shared_ptr<const void>& keeper) {
+  const auto size = size_of(pieces);
+  if (has_room(size)) {
+    gather(pieces);
+    return true;
+  }
+  HC_CHECK(large_left_ == 0, large_left_);
+  large_left_ = size;
+  keep(pieces, keeper);
+  return false;
+}
+
+void StreamWriter::gather(const Pieces& pieces) {
+  if (bytes_.capacity() == 0) bytes_.reserve(kMostGathered + kMostCopied);
+  for (auto piece : pieces) bytes_.insert(bytes_.end(), piece.begin(), piece.end());
+  ends_.push_back(bytes_.size());
+}
+
+void StreamWriter::keep(const Pieces& pieces, std::shared_ptr<const void> keeper) {
+  large_ = pieces;
+  keeper_ = std::move(keeper);
+}
+
+Result<bool> StreamWriter::write() {
+  while (!empty()) {
+    std::array<iovec, 1 + std::tuple_size_v<Pieces>> parts{};
+    std::size_t used = 0;
+    auto add = [&](std::span<const std::byte> part) {
+      if (!part.empty()) parts.at(used++) = {const_cast<std::byte*>(part.data()), part.size()};
+    };
+    add(std::span(bytes_).subspan(written_));
+    std::size_t skip = large_left_ == 0 ? 0 : size_of(large_) - large_left_;
+    for (auto piece : large_) {
+      if (large_left_ == 0) break;
+      add(piece.subspan(std::min(skip, piece.size())));
+      skip -= std::min(skip, piece.size());
+    }
+    ssize_t size = is_socket_ ? write_to_socket(descriptor_.get(), parts.data(), used)
+                              : write_to_pipe(descriptor_.get(), parts.data(), used);
+    if (size >= 0) {
+      advance(static_cast<std::size_t>(size));
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      forget_written();
+      return false;
+    } else if (errno != EINTR) {
+      int number = errno;
+      forget_written();
+      return system_error("write", "", number);
+    }
+  }
+  return true;
+}
+
+void StreamWriter::advance(std::size_t size) {
+  std::size_t small = std::min(size, gathered());
+  written_ += small;
+  if (gathered() == 0) {
+    bytes_.clear();
+    ends_.clear();
+    written_ = 0;
+  }
+  large_left_ -= size - small;
+  if (large_left_ == 0) keeper_.reset();
+}
+
+/// Leaves of the gathered bytes those of messages that are not written whole.
+void StreamWriter::forget_written() {
+  auto first = std::upper_bound(ends_.begin(), ends_.end(), written_);
+  std::size_t begin = first == ends_.begin() ? 0 : *(first - 1);
+  bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin));
+  ends_.erase(ends_.begin(), first);
+  for (auto& end : ends_) end -= begin;
+  written_ -= begin;
+}
+
+bool StreamWriter::inside_message() const {
+  return written_ > 0 || (large_left_ > 0 && large_left_ < size_of(large_));
+}
+
+bool StreamWriter::take_back() {
+  if (large_left_ > 0) {
+    if (large_left_ < size_of(large_)) return false;
+    large_left_ = 0;
+    keeper_.reset();
+    return true;
+  }
+  if (ends_.empty()) return false;
+  std::size_t begin = ends_.size() == 1 ? 0 : ends_[ends_.size() - 2];
+  if (written_ > begin) return false;
+  bytes_.resize(begin);
+  ends_.pop_back();
+  return true;
+}
+
+void StreamWriter::start(Descriptor descriptor) {
+  descriptor_ = std::move(descriptor);
+  is_socket_ = internal::is_socket(descriptor_.get());
+  written_ = 0;
+  if (large_left_ > 0) large_left_ = size_of(large_);
+}
+
+std::size_t StreamWriter::clear() {
+  std::size_t count = ends_.size() + (large_left_ > 0 ? 1 : 0);
+  bytes_.clear();
+  ends_.clear();
+  written_ = large_left_ = 0;
+  keeper_.reset();
+  return count;
+}
+
+void StreamWriter::close() {
+  if (is_socket_) ::shutdown(descriptor_.get(), SHUT_WR);
+  descriptor_.reset();
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What tcp and unix links do that outlive their connections.
+
+#include <memory>
+#include <thread>
+
+#include <hc/testing/socket_link.h>
+
+namespace hc::testing {
+
+TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
+  auto source = source_of(dial() + "?reconnect=60");
+  Message message;
+  EXPECT_EQ(*source->take(message), Got::Nothing);
+  const int descriptor = source->descriptor();
+  for (int i = 0; i < 3; ++i) {  // and outlives several
+    auto sink = sink_of(listen() + "?readers=1");
+    std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+    sender.join();
+  }
+  EXPECT_EQ(source->descriptor(), descriptor);
+  EXPECT_EQ(source->traffic().messages, 3U);
+}
+
+TEST_P(SocketLink, ASinkThatLosesNothingWaitsForEachReader) {
+  auto sink = sink_of(dial() + "?reconnect=60");
+  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
+  auto source = source_of(listen());
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 0);
+  sender.join();
+}
+
+TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
+  auto sink = sink_of(dial() + "?reconnect=60");
+  Warnings warnings;
+  auto options = warnings.options();
+  options.limits.element_bytes = 1000;  // so that it closes a connection inside the message
+  auto source = source_of(listen(), options);
+  std::thread sender([&] {
+    ASSERT_TRUE(sink->send(numbered(0, 10'000'000)));
+    ASSERT_TRUE(sink->close());
+  });
+  Message message;
+  while (warnings.lines.empty()) {
+    ASSERT_TRUE(source->wait(-1, std::chrono::milliseconds(-1)));
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  source.reset();
+  source = source_of(listen());
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.characters(), numbered(0, 10'000'000).characters());
+  sender.join();
+  EXPECT_EQ(sink->traffic().cut, 0U);
+}
+
+TEST_P(SocketLink, ASinkThatKeepsTheLatestWaitsForNobody) {
+  auto sink = sink_of(dial() + "?reconnect=60&keep=latest");
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
+  EXPECT_EQ(sink->traffic().superseded, 9U);
+  auto source = source_of(listen());
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));  // nothing more needs to be sent
+  EXPECT_EQ(message.header.seq, 9);
+}
+
+TEST_P(SocketLink, WhoNeverFindsAnybodySaysSo) {
+  for (const char* options : {"?reconnect=1", "?reconnect=86400&wait=1"}) {
+    auto source = source_of(dial() + options);
+    auto sink = sink_of(dial() + options);
+    Message message;
+    auto got = receive(*source, message);
+    ASSERT_FALSE(got);
+    EXPECT_TRUE(got.error().text().starts_with("NotFound: nobody was there for 1 s: "))
+        << got.error().text();
+    EXPECT_EQ(*source->take(message), Got::End);
+    EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::NotFound);
+  }
+}
+
+TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
+  Warnings warnings;
+  std::unique_ptr<Source> source;
+  std::unique_ptr<Sink> sink;
+  Message message;
+  {
+    auto writer = sink_of(listen());
+    source = source_of(dial() + "?reconnect=1", warnings.options());
+    ASSERT_TRUE(writer->send(numbered(0, 1)));
+    ASSERT_TRUE(*receive(*source, message));
+  }
+  EXPECT_FALSE(*receive(*source, message));
+  ASSERT_EQ(warnings.lines.size(), 2U);
+  EXPECT_EQ(warnings.lines[0], dial() + "?reconnect=1: the writer has gone; connecting again");
+  EXPECT_TRUE(warnings.lines[1].starts_with(dial() + "?reconnect=1: nobody was there for 1 s: "));
+  {
+    auto reader = source_of(listen());
+    sink = sink_of(dial() + "?reconnect=1");
+    ASSERT_TRUE(sink->send(numbered(0, 1)));
+    ASSERT_TRUE(*receive(*reader, message));
+  }
+  Status sent;
+  while (sent) sent = sink->send(numbered(0, 1));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
+  Warnings warnings;
+  auto source = source_of(dial() + "?reconnect=60", warnings.options());
+  Message message;
+  auto wait = [&] {
+    ASSERT_TRUE(source->wait());
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  };
+  while (warnings.lines.empty()) wait();
+  for (int i = 0; i < 3; ++i) wait();
+  EXPECT_EQ(warnings.lines.size(), 1U);
+  EXPECT_TRUE(warnings.lines[0].starts_with(dial() + "?reconnect=60: nobody is there yet: "))
+      << warnings.lines[0];
+}
+
+TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {
+  Stop stop;
+  auto options = stop.options();
+  int lines = 0;
+  options.log = [&](Severity, std::string_view) {
+    ++lines;
+    stop.raise();
+  };
+  auto sink = sink_of(dial() + "?reconnect=60", options);
+  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
+  EXPECT_EQ(lines, 1);
+}
+
+TEST_P(SocketLink, ConnectingEndsWhenToldToStop) {
+  Stop stop;
+  stop.raise();
+  auto sink = sink_of(dial() + "?reconnect=60", stop.options());
+  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
+  auto source = source_of(dial() + "?reconnect=60");
+  Message message;
+  EXPECT_EQ(receive(*source, message, stop.options().stop).error().code, Code::Stopped);
+}
+
+}  // namespace hc::testing
