@@ -77,6 +77,13 @@ class [[nodiscard]] Result {
     return *std::get_if<1>(&state_);
   }
 
+  /// Calls `next` with the value, or hands the error on; `next` returns a Result.
+  template <typename F>
+  auto and_then(F&& next) const -> std::invoke_result_t<F, const T&> {
+    if (!has_value()) return error();
+    return std::forward<F>(next)(value());
+  }
+
  private:
   std::variant<T, Error> state_;
 };

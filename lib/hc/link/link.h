@@ -30,8 +30,7 @@ enum class Got {
 /// What went over a link, and what did not.
 struct Traffic {
   std::uint64_t messages = 0;
-  /// As on the wire; of elements alone where there is no wire (inproc), with their header (shm).
-  /// Of a sink, without messages that were dropped before they were sent.
+  /// Sent, as on the wire; elements alone where there is none (inproc), with their header (shm).
   std::uint64_t bytes = 0;
   /// Messages that had to wait for their turn (`rate`), and went later or are among the lost.
   std::uint64_t kept_back = 0;
@@ -153,8 +152,10 @@ struct LinkOptions {
 ///   tell a peer's end from its death, so both lead to trying again. A name's addresses are looked
 ///   up once.
 /// - `readers=N` (listening sinks, shm sink): how many readers to wait for before the first message
-///   and before the end; default, and 0: 1 before the first message, and none before the end. When
-///   as many as were counted have all left, the link is closed.
+///   and before the end; default: 1 before the first message, and none before the end. When as many
+///   as were counted have all left, the link is closed. 0: none, ever; what is sent without a
+///   reader is lost (Traffic::cut), and the link goes on. For a program that must not wait for
+///   those who observe it.
 /// - `stay=1` (the same): who has left may come back, so the link is not closed then. With keep=all
 ///   send() waits for the next reader; else what is sent meanwhile is lost (Traffic::cut).
 /// - `spin=MICROSECONDS` (shm source; default 20): how long wait() looks before it sleeps.

@@ -59,6 +59,12 @@ Status Loop::want(std::uint64_t id, std::uint32_t events) {
   return done;
 }
 
+void Loop::move(std::uint64_t id, int descriptor) {
+  static_cast<void>(want(id, 0));
+  if (auto found = entries_.find(id); found != entries_.end())
+    found->second->descriptor = descriptor;
+}
+
 void Loop::set_due(std::uint64_t id, TimePoint when) {
   auto found = entries_.find(id);
   if (found == entries_.end() || found->second->due <= when) return;

@@ -52,6 +52,9 @@ class Loop {
     ///
     /// Errors: System (no memory; a descriptor that epoll cannot wait for).
     Status want(std::uint32_t events) { return loop_->want(id_, events); }
+    /// Has another descriptor watched from now on, for nothing yet. To be called before the one
+    /// there is is closed; -1: none.
+    void move_to(int descriptor) { loop_->move(id_, descriptor); }
     /// Has the callback called once with events 0, at `when` or at an earlier time set before.
     void call_at(TimePoint when) { loop_->set_due(id_, when); }
 
@@ -94,6 +97,7 @@ class Loop {
 
   Status control(int operation, int descriptor, std::uint32_t events, std::uint64_t id) const;
   Status want(std::uint64_t id, std::uint32_t events);
+  void move(std::uint64_t id, int descriptor);
   void set_due(std::uint64_t id, TimePoint when);
   void set_timer(TimePoint when);
   void remove(std::uint64_t id);

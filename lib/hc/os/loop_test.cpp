@@ -65,6 +65,29 @@ TEST_F(LoopTest, WhoEndsAnotherInACallbackIsTheLastToBeCalled) {
   EXPECT_EQ(heard_.size(), 1U);
 }
 
+TEST_F(LoopTest, AHandleMovesToAnotherDescriptor) {
+  auto one = event();
+  auto handle = watch(one, [&](auto) { heard_ += "a"; });
+  ASSERT_TRUE(loop_->turn());
+  Descriptor other(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
+  handle.move_to(other.get());
+  one.reset();
+  ASSERT_TRUE(loop_->turn(0ms));
+  ASSERT_TRUE(handle.want(EPOLLIN));
+  ASSERT_TRUE(loop_->turn(0ms));
+  EXPECT_EQ(heard_, "a");
+  ::eventfd_write(other.get(), 1);
+  ASSERT_TRUE(loop_->turn());
+  EXPECT_EQ(heard_, "aa");
+}
+
+TEST_F(LoopTest, ATimeThatIsCancelledLeavesTheLoopQuiet) {
+  auto now = std::chrono::steady_clock::now();
+  auto timer = loop_->call_at(now, [&] { heard_ += "t"; });
+  timer.reset();
+  EXPECT_FALSE(*wait_for(loop_->descriptor(), POLLIN, -1, now)) << "it can be nested";
+}
+
 TEST_F(LoopTest, WhatCannotBeWatchedIsAnError) {
   EXPECT_FALSE(loop_->watch(-1, EPOLLIN, [](auto) {}));
   auto descriptor = event();

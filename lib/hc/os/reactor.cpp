@@ -55,6 +55,11 @@ class Watch::Reactor {
     return state.has_ended ? Status() : state.handle.want(events);
   }
 
+  void move(State& state, int descriptor) {
+    std::lock_guard lock(mutex_);
+    if (!state.has_ended) state.handle.move_to(descriptor);
+  }
+
   void call_at(State& state, TimePoint when) {
     std::lock_guard lock(mutex_);
     if (!state.has_ended) state.handle.call_at(when);
@@ -125,6 +130,10 @@ Watch::~Watch() {
 
 Status Watch::want(std::uint32_t events) {
   return reactor().want(*state_, events);
+}
+
+void Watch::move_to(int descriptor) {
+  reactor().move(*state_, descriptor);
 }
 
 void Watch::call_at(TimePoint when) {

@@ -38,6 +38,7 @@ class Watch {
 
   /// As Loop::Handle's. Cost: a system call where something changes, or the next time of all does.
   Status want(std::uint32_t events);
+  void move_to(int descriptor);
   void call_at(TimePoint when);
 
  private:

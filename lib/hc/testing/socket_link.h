@@ -287,6 +287,20 @@ TEST_P(SocketLink, AReaderThatLeftIsForgotten) {
   }
 }
 
+TEST_P(SocketLink, WithNoReadersToWaitForItNeverWaits) {
+  auto sink = sink_of(listen() + "?readers=0");
+  ASSERT_TRUE(sink->send(numbered(1, 1)));
+  EXPECT_EQ(sink->traffic().cut, 1U);
+  auto source = source_of(dial());
+  ASSERT_TRUE(sink->send(numbered(2, 1)));
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 2);
+  source.reset();
+  while (sink->traffic().cut < 3) ASSERT_TRUE(sink->send(numbered(3, 1)));
+  EXPECT_TRUE(sink->close());
+}
+
 TEST_P(SocketLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());

@@ -30,11 +30,13 @@ void Announcer::let_in() {
     if (peers_.size() == kMostPeers) continue;
     auto peer = std::make_unique<Peer>();
     peer->socket = std::move(*accepted);
-    auto& newcomer = *peer;
+    auto watched = loop_.watch(peer->socket.get(), EPOLLIN,
+                               [this, each = peer.get()](auto events) { serve(*each, events); });
+    if (!watched) continue;
+    peer->watch = std::move(*watched);
     peers_.push_back(std::move(peer));
     if (welcome_)
-      for (const auto& message : welcome_()) put(newcomer, encode(message));
-    watch(newcomer);
+      for (const auto& message : welcome_()) put(*peers_.back(), encode(message));
   }
   forget_those_who_left();
 }
@@ -52,40 +54,29 @@ bool Announcer::put(Peer& peer, const std::string& bytes) {
   if (peer.waiting.size() + bytes.size() > kMostWaiting) return false;
   const bool was_waiting = !peer.waiting.empty();
   peer.waiting += bytes;
-  if (was_waiting) return true;
-  write(peer);
-  if (!peer.waiting.empty() && peer.watch) watch(peer);
+  if (!was_waiting) write(peer);
   return true;
 }
 
 void Announcer::write(Peer& peer) {
-  auto sent = system_call("send", "", [&] {
-    return ::send(peer.socket.get(), peer.waiting.data(), peer.waiting.size(),
-                  MSG_NOSIGNAL | MSG_DONTWAIT);
-  });
-  if (sent)
-    peer.waiting.erase(0, static_cast<std::size_t>(*sent));
-  else if (errno != EAGAIN)
+  const auto sent = ::send(peer.socket.get(), peer.waiting.data(), peer.waiting.size(),
+                           MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent >= 0)
+    peer.waiting.erase(0, static_cast<std::size_t>(sent));
+  else if (errno != EAGAIN && errno != EINTR)
     peer.has_left = true;
+  const auto watched = peer.watch.want(peer.waiting.empty() ? EPOLLIN : EPOLLIN | EPOLLOUT);
+  peer.has_left = peer.has_left || !watched;
 }
 
-/// Watches for its leaving, and where something waits for room too.
-void Announcer::watch(Peer& peer) {
-  const bool waits = !peer.waiting.empty();
-  peer.watch.reset();
-  auto watched = loop_.watch(
-      peer.socket.get(), waits ? EPOLLIN | EPOLLOUT : EPOLLIN, [this, who = &peer, waits](auto) {
-        char piece[256];  // it has nothing to say
-        auto size = ::recv(who->socket.get(), piece, sizeof piece, MSG_DONTWAIT);
-        who->has_left = size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR);
-        if (waits && !who->has_left) write(*who);
-        if (waits && who->waiting.empty()) watch(*who);
-        forget_those_who_left();
-      });
-  if (watched)
-    peer.watch = std::move(*watched);
-  else
-    peer.has_left = true;
+void Announcer::serve(Peer& peer, std::uint32_t events) {
+  char piece[256];  // nothing is expected from it but its end
+  if ((events & ~EPOLLOUT) != 0) {
+    const auto size = ::recv(peer.socket.get(), piece, sizeof piece, MSG_DONTWAIT);
+    peer.has_left = size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR);
+  }
+  if (!peer.has_left && !peer.waiting.empty()) write(peer);
+  forget_those_who_left();
 }
 
 void Announcer::forget_those_who_left() {

@@ -48,7 +48,7 @@ class Announcer {
   void let_in();
   bool put(Peer& peer, const std::string& bytes);
   void write(Peer& peer);
-  void watch(Peer& peer);
+  void serve(Peer& peer, std::uint32_t events);
   void forget_those_who_left();
 
   Loop& loop_;

@@ -13,12 +13,6 @@
 namespace hc::internal {
 namespace {
 
-using std::chrono::microseconds;
-using std::chrono::milliseconds;
-
-constexpr microseconds kRetryTime{50};      // while another thread uses the connection
-constexpr milliseconds kLongRetryTime{20};  // while it waits
-
 TimePoint clock_now() {
   return std::chrono::steady_clock::now();
 }
@@ -35,9 +29,10 @@ Result<std::unique_ptr<Connection>> Connection::make(Descriptor connection, cons
                                                      const LinkOptions& options,
                                                      std::unique_ptr<Dialer> dialer) {
   std::unique_ptr<Connection> made(new Connection(policy, options, std::move(dialer)));
-  auto timer = Watch::make(-1, [self = made.get()](std::uint32_t) { self->on_event(0); });
-  if (!timer) return timer.error();
-  made->timer_ = std::move(*timer);
+  auto watch = Watch::make(-1, [self = made.get()](auto events) { self->on_event(events); });
+  if (!watch) return watch.error();
+  made->watch_ = std::move(*watch);
+  made->watching_ = made->watch_.get();
   std::lock_guard lock(made->mutex_);
   auto now = clock_now();
   if (connection)
@@ -49,11 +44,9 @@ Result<std::unique_ptr<Connection>> Connection::make(Descriptor connection, cons
 }
 
 Connection::~Connection() {
-  std::unique_ptr<Watch> watch;  // ends without the lock, and waits for its callback then
   std::lock_guard lock(mutex_);
   if (!failed_ && connected()) static_cast<void>(writer_.write());
-  failed_ = Error{Code::Closed, "the link was closed"};
-  watch.swap(watch_);
+  fail({Code::Closed, "the link was closed"});
 }
 
 void Connection::connect(Descriptor connection, TimePoint now) {
@@ -62,28 +55,25 @@ void Connection::connect(Descriptor connection, TimePoint now) {
   blocked_ = false;
   connected_at_ = now;
   look_due_ = TimePoint::max();
-  watch(writer_.descriptor());
+  watching_->move_to(writer_.descriptor());
 }
 
 void Connection::dial(TimePoint now) {
-  watch_.reset();  // before the dialer closes what it watches
+  stop_watching();  // before the dialer closes its descriptor
   auto made = dialer_->dial(now);
   if (!made) return fail(made.error());
   if (auto remark = dialer_->take_remark(now)) remarks_.add(*remark);
   if (*made) return connect(std::move(*made), now);
-  if (dialer_->descriptor() >= 0) watch(dialer_->descriptor());
+  watching_->move_to(dialer_->descriptor());
 }
 
-void Connection::watch(int descriptor) {
-  watch_.reset();
-  missed_events_ = 0;  // of another connection
-  auto made = Watch::make(descriptor, [this](std::uint32_t events) { on_event(events); });
-  if (made) watch_ = std::move(*made);
+void Connection::stop_watching() {
+  watching_->move_to(-1);
   wanted_ = 0;
 }
 
 Result<bool> Connection::send(Outgoing& message, TimePoint now) {
-  std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (failed_) return *failed_;
   bool passes = connected() && !blocked_ && queue_.pass(now);
   if (passes) {
@@ -95,7 +85,7 @@ Result<bool> Connection::send(Outgoing& message, TimePoint now) {
   if (failed_) return *failed_;
   bool under_way = blocked_ || !queue_.empty() || !connected();
   if (writer_waits_ && under_way) {
-    if (auto drained = drain(false); !drained) return drained.error();
+    if (auto drained = drain(lock, false); !drained) return drained.error();
     return true;
   }
   if (writer_.borrows()) writer_.keep(message.kept().pieces, message.kept().keeper);
@@ -112,7 +102,7 @@ void Connection::put(const Parcel& parcel, TimePoint now) {
     if (pays && writer_.gathered() < kFlushBytes && now - oldest_ < kFlushAge) {
       is_gathering_ = true;
       // The reactor has work only when no further message comes; else they are written here.
-      if (!std::exchange(flush_is_due_, true)) timer_->call_at(flush_due());
+      if (!std::exchange(flush_is_due_, true)) watching_->call_at(flush_due());
       return;
     }
   }
@@ -127,7 +117,7 @@ void Connection::write() {
   blocked_ = !*written;
   if (!is_tcp_ || look_due_ != TimePoint::max()) return;
   look_due_ = last_write_ + kLookPeriod;
-  timer_->call_at(look_due_);
+  watching_->call_at(look_due_);
 }
 
 /// Does all that can be done by now without waiting.
@@ -148,7 +138,7 @@ void Connection::advance(TimePoint now) {
 }
 
 void Connection::lose_connection(const Error& why, TimePoint now) {
-  watch_.reset();
+  stop_watching();
   look_due_ = TimePoint::max();
   blocked_ = false;
   if (dialer_ == nullptr) return fail(why);
@@ -159,7 +149,7 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
 
 void Connection::fail(const Error& why) {
   failed_ = why;
-  watch_.reset();
+  stop_watching();
   // What a waiting writer has in the queue is told to it, and is not among the lost.
   Traffic untold;
   auto waiting = queue_.clear(writer_waits_ ? untold : losses_);
@@ -172,9 +162,11 @@ void Connection::look_at_reader(TimePoint now) {
   if (look.vanished) lose_connection({Code::Closed, "the reader has vanished"}, now);
 }
 
-/// Whether the connection has failed while nobody used it.
-void Connection::check_events(std::uint32_t events, TimePoint now) {
-  if (!connected() || (events & (EPOLLERR | EPOLLHUP)) == 0) return;
+/// Whether the connection has failed while nobody used it; asked, as an event may be an older
+/// one's.
+void Connection::check_connection(TimePoint now) {
+  pollfd polled{writer_.descriptor(), 0, 0};
+  if (!connected() || ::poll(&polled, 1, 0) <= 0) return;
   int number = 0;
   socklen_t size = sizeof number;
   ::getsockopt(writer_.descriptor(), SOL_SOCKET, SO_ERROR, &number, &size);
@@ -185,17 +177,12 @@ void Connection::check_events(std::uint32_t events, TimePoint now) {
 
 /// The reactor calls.
 void Connection::on_event(std::uint32_t events) {
-  missed_events_ |= events;
-  const auto now = clock_now();
-  std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock) {
-    timer_->call_at(now + (waits_ ? microseconds(kLongRetryTime) : kRetryTime));
-    return;
-  }
+  std::lock_guard lock(mutex_);
   flush_is_due_ = false;
-  if (events = missed_events_.exchange(0); events != 0) wanted_ = 0;
-  if (failed_) return;
-  check_events(events, now);
+  if (events != 0) wanted_ = 0;  // it is told once
+  if (failed_ || waits_) return;
+  const auto now = clock_now();
+  if ((events & (EPOLLERR | EPOLLHUP)) != 0) check_connection(now);
   if (!connected() || blocked_ || due(now) <= now) advance(now);
   arm(now);
 }
@@ -207,13 +194,13 @@ void Connection::arm(TimePoint now) {
   auto when = due(now);
   if (when == TimePoint::max()) return;
   flush_is_due_ = writer_.gathered() > 0;
-  timer_->call_at(when);
+  watching_->call_at(when);
 }
 
 /// Has the descriptor watched for events, which are told once. A file cannot be, and need not.
 void Connection::want(std::uint32_t events) {
-  if (watch_ == nullptr || std::exchange(wanted_, events) == events) return;
-  static_cast<void>(watch_->want(events == 0 ? 0 : events | EPOLLONESHOT));
+  if (std::exchange(wanted_, events) == events) return;
+  static_cast<void>(watching_->want(events == 0 ? 0 : events | EPOLLONESHOT));
 }
 
 /// When there is something to do next, beside what the descriptor tells.
@@ -228,7 +215,8 @@ TimePoint Connection::due(TimePoint now) {
 
 /// Waits until all has been written.
 /// @param give_up  set when it is to stop inside a message.
-Status Connection::drain(bool closing, std::optional<TimePoint> give_up) {
+Status Connection::drain(std::unique_lock<std::mutex>& lock, bool closing,
+                         std::optional<TimePoint> give_up) {
   while (true) {
     auto now = clock_now();
     advance(now);
@@ -242,7 +230,7 @@ Status Connection::drain(bool closing, std::optional<TimePoint> give_up) {
       return *failed_;
     }
     tell_log();
-    auto waited = wait(give_up, now);
+    auto waited = wait(lock, give_up, now);
     if (waited) continue;
     if (waited.error().code != Code::Stopped) return waited.error();
     if (!closing && take_back()) {
@@ -263,22 +251,25 @@ bool Connection::take_back() {
 }
 
 /// Waits for room, a connection, or the time when something is to be done.
-Result<bool> Connection::wait(std::optional<TimePoint> give_up, TimePoint now) {
+Result<bool> Connection::wait(std::unique_lock<std::mutex>& lock, std::optional<TimePoint> give_up,
+                              TimePoint now) {
   int descriptor = !connected() ? dialer_->descriptor() : blocked_ ? writer_.descriptor() : -1;
   if (wanted_ == EPOLLOUT) want(0);  // this thread sees to it
+  const auto until = std::min(due(now), give_up.value_or(TimePoint::max()));
   waits_ = true;
-  auto waited = wait_for(descriptor, POLLOUT, give_up ? -1 : stop_,
-                         std::min(due(now), give_up.value_or(TimePoint::max())));
+  lock.unlock();
+  auto waited = wait_for(descriptor, POLLOUT, give_up ? -1 : stop_, until);
+  lock.lock();
   waits_ = false;
   return waited;
 }
 
 Status Connection::close(bool patient) {
-  std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   std::optional<TimePoint> give_up;
   if (!patient) give_up = clock_now();
-  Status closed = failed_ ? Status(*failed_) : drain(true, give_up);
-  watch_.reset();
+  Status closed = failed_ ? Status(*failed_) : drain(lock, true, give_up);
+  stop_watching();
   if (connected()) writer_.close();
   if (!failed_) failed_ = Error{Code::Closed, "the link was closed"};
   return closed;

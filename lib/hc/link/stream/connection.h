@@ -4,7 +4,6 @@
 // thread that sends or, where that one is not to wait, by the reactor. Internal.
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -53,8 +52,8 @@ class Gathering {
 /// What is gathered or partly written has been begun and is finished; the policy is about what
 /// waits behind it.
 ///
-/// The lock is held while a sending thread waits, so the reactor only tries to take it, and comes
-/// back later: nobody else's link waits for this one.
+/// The lock is free while a sending thread waits; that thread then sees to all there is to do, and
+/// the reactor to nothing.
 class Connection {
  public:
   /// How long a reader may take, after `stop`, for the rest of a message.
@@ -107,22 +106,24 @@ class Connection {
   [[nodiscard]] bool all_written() const { return writer_.empty() && queue_.empty(); }
   void connect(Descriptor connection, TimePoint now);
   void dial(TimePoint now);
-  void watch(int descriptor);
   void put(const Parcel& parcel, TimePoint now);
   void advance(TimePoint now);
   void write();
   void lose_connection(const Error& why, TimePoint now);
   void fail(const Error& why);
   void look_at_reader(TimePoint now);
-  void check_events(std::uint32_t events, TimePoint now);
+  void check_connection(TimePoint now);
   void on_event(std::uint32_t events);
   void arm(TimePoint now);
   void want(std::uint32_t events);
+  void stop_watching();
   [[nodiscard]] TimePoint due(TimePoint now);
   [[nodiscard]] TimePoint flush_due() const { return oldest_ + 2 * kFlushAge; }
   bool take_back();
-  Status drain(bool closing, std::optional<TimePoint> give_up = std::nullopt);
-  Result<bool> wait(std::optional<TimePoint> give_up, TimePoint now);
+  Status drain(std::unique_lock<std::mutex>& lock, bool closing,
+               std::optional<TimePoint> give_up = std::nullopt);
+  Result<bool> wait(std::unique_lock<std::mutex>& lock, std::optional<TimePoint> give_up,
+                    TimePoint now);
 
   mutable std::mutex mutex_;
   const bool writer_waits_;
@@ -141,11 +142,10 @@ class Connection {
   std::optional<Error> failed_;
   Traffic losses_;
   Remarks remarks_;
-  std::uint32_t wanted_ = 0;        // of watch_
-  std::unique_ptr<Watch> watch_;    // of the connection, or the dialer's try
-  std::atomic<bool> waits_{false};  // a thread does, and holds the lock
-  std::atomic<std::uint32_t> missed_events_{0};
-  std::unique_ptr<Watch> timer_;  // for life: ends first, and its callback uses all the others
+  std::uint32_t wanted_ = 0;      // of watch_
+  bool waits_ = false;            // a thread, in wait()
+  Watch* watching_ = nullptr;     // for the callback, which may run while watch_ is destroyed
+  std::unique_ptr<Watch> watch_;  // of the connection or the dialer's attempt, and of the next time
 };
 
 }  // namespace hc::internal

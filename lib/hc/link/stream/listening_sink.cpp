@@ -20,7 +20,7 @@ constexpr std::chrono::microseconds kFollowTime{10};
 
 Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const Uri& uri,
                                                   const LinkOptions& options) {
-  auto readers = number_option(uri, "readers", 0, kMaxPeers);
+  auto readers = number_option(uri, "readers", -1, kMaxPeers);
   if (!readers) return readers.error();
   auto stays = number_option(uri, "stay", 0, 1);
   if (!stays) return stays.error();
@@ -28,8 +28,8 @@ Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const 
   if (!policy) return policy.error();
   auto acceptor = Acceptor::make(std::move(socket), kMaxPeers);
   if (!acceptor) return acceptor.error();
-  return std::unique_ptr<Sink>(new ListeningSink(
-      std::move(*acceptor), static_cast<std::size_t>(*readers), *stays == 1, *policy, options));
+  return std::unique_ptr<Sink>(
+      new ListeningSink(std::move(*acceptor), *readers, *stays == 1, *policy, options));
 }
 
 /// Makes peers of those who have come.
@@ -44,7 +44,10 @@ void ListeningSink::let_in() {
     if (options_.log) options_.log(Severity::Warning, line);
 }
 
-Status ListeningSink::await(std::size_t readers) {
+/// Waits for those that the next message is for, or for all before the first one.
+Status ListeningSink::await_readers() {
+  const bool any = begun_ ? readers_ != 0 : readers_ < 0;
+  const auto readers = any ? 1 : begun_ ? 0 : static_cast<std::size_t>(readers_);
   let_in();
   const bool awaits = peers_.size() < readers && options_.awaits_reader;
   if (awaits) options_.awaits_reader(true);
@@ -70,7 +73,7 @@ Status ListeningSink::send(const Message& message) {
   while (true) {
     if (begun_ && readers_ > 0 && !stays_ && peers_.empty())
       return Error{Code::Closed, "all readers have gone"};
-    if (begun_ && stays_ && peers_.empty() && !policy_.writer_waits()) {
+    if (peers_.empty() && (readers_ == 0 || (begun_ && stays_ && !policy_.writer_waits()))) {
       let_in();
       if (peers_.empty()) {
         ++traffic_.messages;
@@ -82,8 +85,7 @@ Status ListeningSink::send(const Message& message) {
     auto now = std::chrono::steady_clock::now();
     bool follows = now - last_send_ < kFollowTime;
     if (!begun_ || peers_.empty() || !follows || acceptor_->has_news()) {
-      auto awaited = await(begun_ || readers_ == 0 ? 1 : readers_);
-      if (!awaited) return awaited;
+      if (auto awaited = await_readers(); !awaited) return awaited;
       now = std::chrono::steady_clock::now();
     }
     begun_ = true;
@@ -148,7 +150,7 @@ Result<bool> ListeningSink::has_reader() {
 
 Status ListeningSink::close() {
   Status awaited;
-  if (readers_ > 0 && !begun_) awaited = await(readers_);
+  if (readers_ > 0 && !begun_) awaited = await_readers();
   bool patient = true;
   for (auto& peer : peers_) {
     auto closed = peer->close(patient);

@@ -14,9 +14,10 @@ namespace hc::internal {
 /// Puts each message to every peer that is connected, each by an Connection of its own: with
 /// another policy than keep=all none waits for another.
 ///
-/// Waits for the first ones to come; peers that leave are forgotten, and those that come later hear
-/// what is sent from then on. When all have left, it waits for another; but if the readers were
-/// counted the link is closed, or stays: then only a policy that loses nothing waits for another.
+/// Waits for the first readers; peers that leave are forgotten, and those that come later receive
+/// what is sent from then on. When all have left, it waits for another; but if readers were counted
+/// the link is closed, or stays: then only a policy that loses nothing waits for another. With a
+/// count of 0 it never waits for a reader, and what is sent without one is lost.
 class ListeningSink final : public Sink {
  public:
   /// A sink with the readers and the policy that the URI's options say. Errors: Invalid, System.
@@ -29,7 +30,7 @@ class ListeningSink final : public Sink {
   [[nodiscard]] Traffic traffic() const override;
 
  private:
-  ListeningSink(std::unique_ptr<Acceptor> acceptor, std::size_t readers, bool stays,
+  ListeningSink(std::unique_ptr<Acceptor> acceptor, std::int64_t readers, bool stays,
                 const Policy& policy, LinkOptions options)
       : acceptor_(std::move(acceptor)),
         readers_(readers),
@@ -38,16 +39,16 @@ class ListeningSink final : public Sink {
         options_(std::move(options)) {}
 
   void let_in();
-  Status await(std::size_t readers);
+  Status await_readers();
   void leave(std::size_t peer);
   Result<bool> put_to_all(Outgoing& message, TimePoint now);
   Result<bool> has_reader();
   [[nodiscard]] Result<bool> has_taken(const Connection& peer) const;
 
   std::unique_ptr<Acceptor> acceptor_;
-  std::size_t readers_;  // to wait for before the first message and before the end; 0: one, none
-  bool stays_;           // when all who were waited for have left
-  Policy policy_;        // of each peer
+  std::int64_t readers_;  // to wait for before the first message and before the end; -1: one, none
+  bool stays_;            // when all who were waited for have left
+  Policy policy_;         // of each peer
   LinkOptions options_;
   bool begun_ = false;  // the readers that were to be waited for have come
   TimePoint last_send_;
