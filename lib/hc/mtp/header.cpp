@@ -147,6 +147,8 @@ std::optional<std::int64_t> parse_integer(std::string_view token, bool& fits) {
 
 }  // namespace
 
+// The fields one by one, as the errors name rule and byte: 124 ns, where from_chars alone takes 33
+// ns. On a stream nearly all headers take HeaderMemo's way instead (15 ns). See bench/mtp.cpp.
 Result<Header> parse_header(std::string_view line, const Limits& limits, std::uint64_t byte) {
   Fields values{};
   std::array<std::size_t, kFields> begins{};

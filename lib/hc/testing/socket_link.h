@@ -17,6 +17,7 @@
 #include <hc/link/stream/source.h>
 #include <hc/mtp/codec.h>
 #include <hc/os/descriptor.h>
+#include <hc/os/reactor.h>
 #include <hc/testing/link_conformance.h>
 #include <hc/testing/loopback.h>
 
@@ -260,6 +261,7 @@ constexpr int kPeersThatLeave = static_cast<int>(internal::kMaxPeers) + 20;
 TEST_P(SocketLink, AWriterThatLeftIsForgotten) {
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());
+  ASSERT_TRUE(internal::Watch::make(-1, [](auto) {}));  // the thread for links has descriptors too
   const auto before = open_descriptors();
   Message message;
   for (int i = 0; i < kPeersThatLeave; ++i) {
