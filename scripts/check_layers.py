@@ -13,21 +13,22 @@ ALLOWED = {
     "base": set(),
     "os": {"base"},
     "mtp": {"base"},
+    "contract": {"base", "mtp"},
     "compress": {"base", "mtp"},
     "testing": set(),  # what tests share
     "link": {"base", "os", "mtp"},
-    "module": {"base", "os", "mtp", "compress", "link"},
-    "graph": {"base", "os", "mtp", "link"},
+    "module": {"base", "os", "mtp", "contract", "compress", "link"},
+    "graph": {"base", "os", "mtp", "contract", "link"},
     "frames": {"base"},
     "vision": {"base"},
     "gaze": {"base"},
     "graphics": {"base"},
     "sound": {"base"},
     "drivers": {"base"},
-    "modules": {"base", "os", "mtp", "compress", "module", "drivers"} | PACKAGES,
-    "tools": {"base", "os", "mtp", "compress", "link", "graph"},
+    "modules": {"base", "os", "mtp", "contract", "compress", "module", "drivers"} | PACKAGES,
+    "tools": {"base", "os", "mtp", "contract", "compress", "link", "graph"},
 }
-CORE = {"base", "os", "mtp", "compress", "link", "module", "graph"}
+CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "graph"}
 # The mtp layer is pure: no input or output, no threads, no clock.
 IMPURE = re.compile(
     r"<(sys/.*|unistd\.h|fcntl\.h|poll\.h|net.*|thread|mutex|atomic|condition_variable|future"

@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::size_t kMostSuggestions = 100;  // each is compared with all names that are known
 
+/// A type's elements, were they encoded so.
+Info info_with(const PortType& type, Encoding encoding) {
+  Info info = type.info;
+  info.encoding = encoding;
+  return info;
+}
+
 /// Plans a module, but for what others have a part in: addresses, modes, links.
 class ModulePlanner {
  public:
@@ -46,25 +53,25 @@ class ModulePlanner {
                                        suggest(planning_, name, names_of(description.parameters)));
         continue;
       }
-      ParameterState state = parameter->state;
+      ParameterState state = *parameter;
       if (auto set = state.set(value.value); !set)
         problems_.add(value.place, "module " + module_.name + ": " + set.error().detail);
       planned_.parameters[name] = value.value;
     }
     for (const auto& parameter : description.parameters)
-      if (parameter.fixed) planned_.fixed.insert(parameter.state.name);
+      if (parameter.options.fixed) planned_.fixed.insert(parameter.name);
   }
 
   void add_encodings(const Description& description) {
     for (const auto& [port, encoding] : module_.encodings) {
-      const DescribedPort* output = find_output(description, port);
+      const PortDescription* output = find_named(description.outputs, port);
       if (output == nullptr) {
         add_no_port(planning_, encoding.place, {module_.name, port, {}}, "output",
                     description.outputs);
         continue;
       }
       if (!output->types.empty())
-        if (auto broken = find_error(info_from(output->types.front(), encoding.value)))
+        if (auto broken = find_error(info_with(output->types.front(), encoding.value)))
           problems_.add(encoding.place, "module " + module_.name + ": R" +
                                             std::to_string(broken->rule) + " " + port + ": " +
                                             broken->what);
@@ -125,7 +132,7 @@ void add_no_module(Planning& planning, const Place& place, const std::string& mo
 }
 
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
-                 const std::string& kind, const std::vector<DescribedPort>& ports) {
+                 const std::string& kind, const std::vector<PortDescription>& ports) {
   planning.problems.add(place, "module " + port.module + " has no " + kind + " \"" + port.port +
                                    "\"" + suggest(planning, port.port, names_of(ports)));
 }

@@ -52,7 +52,7 @@ struct LinkState {
   Traffic traffic;         ///< of its sender, with what its reader has lost
   /// Of what its reader has taken, where that tells.
   double per_second = 0, bytes_per_second = 0;
-  std::uint64_t left_out = 0;                ///< not handled by its reader: out of focus or idle
+  std::uint64_t left_out = 0;                ///< not handled by its reader: out of focus
   std::optional<std::array<double, 3>> age;  ///< p50, p99, greatest [s]
   std::optional<std::array<double, 3>> gap;  ///< between messages, the same [s]
   bool in_workspace = false;

@@ -104,32 +104,7 @@ LinkOptions with_name(LinkOptions options, const Uri& uri) {
   return options;
 }
 
-/// A Traffic's members in the order of a report.
-constexpr std::array kMembers = {&Traffic::messages,   &Traffic::bytes,     &Traffic::kept_back,
-                                 &Traffic::superseded, &Traffic::over_rate, &Traffic::over_memory,
-                                 &Traffic::cut};
-static_assert(kMembers.size() == std::tuple_size_v<Counters>);
-
 }  // namespace
-
-Traffic& Traffic::operator+=(const Traffic& other) {
-  for (auto member : kMembers) this->*member += other.*member;
-  return *this;
-}
-
-Counters counters_of(const Traffic& traffic) {
-  Counters counters{};
-  for (std::size_t i = 0; i < counters.size(); ++i)
-    counters[i] = static_cast<std::int64_t>(traffic.*kMembers[i]);
-  return counters;
-}
-
-Traffic traffic_of(const Counters& counters) {
-  Traffic traffic;
-  for (std::size_t i = 0; i < counters.size(); ++i)
-    traffic.*kMembers[i] = static_cast<std::uint64_t>(counters[i]);
-  return traffic;
-}
 
 std::vector<std::string_view> transports() {
   std::vector<std::string_view> schemes;

@@ -4,7 +4,6 @@
 // carries them; link.cpp has the one table of schemes, and each transport is a file of its own.
 // An object is used from one thread; different objects from different threads.
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -15,6 +14,7 @@
 
 #include <hc/base/log.h>
 #include <hc/base/result.h>
+#include <hc/base/traffic.h>
 #include <hc/base/uri.h>
 #include <hc/mtp/message.h>
 
@@ -26,31 +26,6 @@ enum class Got {
   Nothing,  ///< none now; wait() or wait_any() tell when to ask again
   End,      ///< none any more: the other side has closed, or the file is at its end
 };
-
-/// What went over a link, and what did not.
-struct Traffic {
-  std::uint64_t messages = 0;
-  /// Sent, as on the wire; elements alone where there is none (inproc), with their header (shm).
-  std::uint64_t bytes = 0;
-  /// Messages that had to wait for their turn (`rate`), and went later or are among the lost.
-  std::uint64_t kept_back = 0;
-  /// Messages lost because a newer one took their place while the reader was slow (`keep`),
-  std::uint64_t superseded = 0;
-  /// … while they were kept back (`rate`),
-  std::uint64_t over_rate = 0;
-  /// … because there was no memory for them (`memory`),
-  std::uint64_t over_memory = 0;
-  /// … because the connection was lost when they were on their way (`reconnect`).
-  std::uint64_t cut = 0;
-
-  Traffic& operator+=(const Traffic& other);
-  [[nodiscard]] std::uint64_t lost() const { return superseded + over_rate + over_memory + cut; }
-};
-
-/// The numbers of a Traffic in the order of its members, as a module reports them.
-using Counters = std::array<std::int64_t, 7>;
-Counters counters_of(const Traffic& traffic);
-Traffic traffic_of(const Counters& counters);
 
 /// The end of a link where messages come out.
 class Source {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <string_view>
 #include <tuple>
 
@@ -11,7 +12,7 @@ namespace hc::internal {
 namespace {
 
 template <typename List>
-auto find_named(const List& list, std::string_view name) {
+auto position_of(const List& list, std::string_view name) {
   return std::find_if(list.begin(), list.end(),
                       [&](const auto& each) { return each->name == name; });
 }
@@ -23,7 +24,7 @@ std::string names(const List& list) {
   return text.empty() ? "none" : text;
 }
 
-Error usage(std::string detail) {
+Error invalid(std::string detail) {
   return {Code::Invalid, std::move(detail)};
 }
 
@@ -31,14 +32,14 @@ Error usage(std::string detail) {
 template <typename Ports>
 Result<std::pair<std::size_t, std::string>> split_port(const Ports& ports, std::string_view kind,
                                                        std::string_view text) {
-  if (ports.empty()) return usage("this module has no " + std::string(kind));
+  if (ports.empty()) return invalid("this module has no " + std::string(kind));
   auto equals = text.find('=');
   if (equals == std::string_view::npos || text.find_first_of(":/.?") < equals)
     return std::pair<std::size_t, std::string>{0, text};
-  auto port = find_named(ports, text.substr(0, equals));
+  auto port = position_of(ports, text.substr(0, equals));
   if (port == ports.end())
-    return usage("no " + std::string(kind) + " \"" + std::string(text.substr(0, equals)) +
-                 "\"; there are: " + names(ports));
+    return invalid("no " + std::string(kind) + " \"" + std::string(text.substr(0, equals)) +
+                   "\"; there are: " + names(ports));
   return std::pair<std::size_t, std::string>{static_cast<std::size_t>(port - ports.begin()),
                                              text.substr(equals + 1)};
 }
@@ -57,72 +58,80 @@ class Parser {
     return std::move(arguments_);
   }
 
+  Status in(const std::string& value) { return read_link(true, value); }
+  Status out(const std::string& value) { return read_link(false, value); }
+
+  Status address(const std::string& value) {
+    const auto wrong = "--address needs [PORT=]NUMBER, 0 to 2147483647, not \"" + value + "\"";
+    return read_address(value, wrong, 0, &OutputState::address);
+  }
+  Status to(const std::string& value) {
+    const auto wrong = "--to needs [PORT=]NUMBER, not \"" + value + "\"";
+    return read_address(value, wrong, std::numeric_limits<std::int32_t>::min(), &OutputState::to);
+  }
+
+  Status encoding(const std::string& value) {
+    bool all = value.find('=') == std::string::npos;
+    auto split = split_port(module_.outputs(), "output", value);
+    if (!split) return split.error();
+    auto encoding = encoding_of(split->second);
+    if (!encoding)
+      return invalid("--encoding is text, binary, zstd or jpeg, not \"" + split->second + "\"");
+    for (std::size_t i = 0; i < module_.outputs().size(); ++i)
+      if (all || i == split->first) module_.outputs()[i]->encoding = *encoding;
+    return {};
+  }
+
+  Status limit(const std::string& value) {
+    return read_number(value, arguments_.limits.element_bytes, "--limit needs a number of bytes");
+  }
+  Status name(const std::string& value) {
+    arguments_.instance = value;
+    return {};
+  }
+  Status mode(const std::string& value) {
+    const auto wrong = "--mode needs a number from 1 on, not \"" + value + "\"";
+    auto read = read_number(value, arguments_.attention.own, wrong);
+    return read && arguments_.attention.own < 1 ? invalid(wrong) : read;
+  }
+  Status modes(const std::string& value) {
+    const auto wrong = "--modes needs numbers from 1 on, not \"" + value + "\"";
+    for (std::string_view rest = value; !rest.empty();) {
+      auto word = std::string(rest.substr(0, rest.find(',')));
+      rest.remove_prefix(std::min(rest.size(), word.size() + 1));
+      auto& number = arguments_.attention.modes.emplace_back();
+      if (auto read = read_number(word, number, wrong); !read || number < 1) return invalid(wrong);
+    }
+    return {};
+  }
+  Status exclusive(const std::string& value) {
+    auto input = position_of(module_.inputs(), value);
+    if (input == module_.inputs().end())
+      return invalid("no input \"" + value + "\"; there are: " + names(module_.inputs()));
+    (*input)->is_exclusive = true;
+    return {};
+  }
+  Status route(const std::string& value) {
+    auto route = parse_link_route(value);
+    if (!route) return route.error();
+    arguments_.routes.push_back(std::move(*route));
+    return {};
+  }
+  Status clock(const std::string& value) {
+    if (value != "machine" && value != "messages")
+      return invalid("--clock is machine or messages, not \"" + value + "\"");
+    arguments_.by_messages = value == "messages";
+    if (arguments_.by_messages && module_.inputs().empty())
+      return invalid("--clock messages needs inputs, and this module has none");
+    return {};
+  }
+  Status manage(const std::string& value) { return read_uri(value, arguments_.manage); }
+  Status control(const std::string& value) { return read_uri(value, arguments_.control); }
+  Status describe(const std::string&) { return set_task(Arguments::Task::Describe); }
+  Status help(const std::string&) { return set_task(Arguments::Task::Help); }
+
  private:
-  Status read_word() {
-    std::string_view word = words_[at_++];
-    if (!word.starts_with("--") && !word.starts_with("-h")) return read_positional(word);
-    auto equals = word.find('=');
-    std::string key{word.substr(0, equals)};
-    std::optional<std::string> given;
-    if (equals != std::string_view::npos) given = word.substr(equals + 1);
-
-    if (key == "--help" || key == "-h") return set_task(Arguments::Task::Help);
-    if (key == "--describe") return set_task(Arguments::Task::Describe);
-
-    auto parameter = find_named(module_.parameters(), std::string_view(key).substr(2));
-    bool is_parameter = key.size() > 2 && parameter != module_.parameters().end();
-    // A flag stands alone, or with a value after an equals sign.
-    if (is_parameter && std::holds_alternative<bool>((*parameter)->value))
-      return (*parameter)->set(given.value_or("true"));
-    if (!given) {
-      if (!is_parameter && !is_common(key)) return unknown(key);
-      if (at_ == words_.size()) return usage(key + " wants a value");
-      given = words_[at_++];
-    }
-    if (is_parameter) return (*parameter)->set(*given);
-    return read_common(key, *given);
-  }
-
-  static bool is_common(std::string_view key) {
-    constexpr std::array<std::string_view, 15> kCommon = {
-        "--in",     "--out",     "--name",  "--address",   "--encoding",
-        "--manage", "--control", "--limit", "--route",     "--to",
-        "--mode",   "--modes",   "--clock", "--idle-rate", "--exclusive"};
-    return std::find(kCommon.begin(), kCommon.end(), key) != kCommon.end();
-  }
-
-  Status unknown(const std::string& key) const {
-    return usage("no option \"" + key + "\"; parameters are: " + names(module_.parameters()) +
-                 "; see --help");
-  }
-
-  Status read_common(const std::string& key, const std::string& value) {
-    if (key == "--in" || key == "--out") return read_link(key == "--in", value);
-    if (key == "--address" || key == "--to") return read_address(key, value);
-    if (key == "--encoding") return read_encoding(value);
-    if (key == "--mode" || key == "--modes" || key == "--idle-rate") return read_mode(key, value);
-    if (key == "--exclusive") return read_exclusive(value);
-    if (key == "--clock") return read_clock(value);
-    if (key == "--route") {
-      auto route = parse_link_route(value);
-      if (!route) return route.error();
-      arguments_.routes.push_back(std::move(*route));
-      return {};
-    }
-    if (key == "--name") {
-      arguments_.instance = value;
-      return {};
-    }
-    if (key == "--manage" || key == "--control") {
-      auto uri = parse_uri(value);
-      if (!uri) return uri.error();
-      (key == "--manage" ? arguments_.manage : arguments_.control) = *uri;
-      return {};
-    }
-    if (key == "--limit")
-      return read_number(value, arguments_.limits.element_bytes, "--limit wants a number of bytes");
-    return unknown(key);
-  }
+  Status read_word();
 
   Status read_link(bool is_input, const std::string& value) {
     auto link = parse_port_link(module_, is_input, value);
@@ -134,65 +143,19 @@ class Parser {
     return {};
   }
 
-  Status read_address(const std::string& key, const std::string& value) {
+  Status read_address(const std::string& value, const std::string& wrong, std::int32_t min,
+                      std::int32_t OutputState::*address) {
     auto split = split_port(module_.outputs(), "output", value);
     if (!split) return split.error();
-    const bool is_src = key == "--address";
     auto& output = *module_.outputs()[split->first];
-    auto& address = is_src ? output.address : output.to;
-    std::string wrong = key + " wants [PORT=]NUMBER" + (is_src ? ", 0 to 2147483647" : "") +
-                        ", not \"" + value + "\"";
-    if (auto read = read_number(split->second, address, wrong); !read) return read;
-    return is_src && address < 0 ? usage(wrong) : Status();
+    auto read = read_number(split->second, output.*address, wrong);
+    return read && output.*address < min ? invalid(wrong) : read;
   }
 
-  Status read_encoding(const std::string& value) {
-    bool all = value.find('=') == std::string::npos;
-    auto split = split_port(module_.outputs(), "output", value);
-    if (!split) return split.error();
-    auto encoding = encoding_of(split->second);
-    if (!encoding)
-      return usage("--encoding is text, binary, zstd or jpeg, not \"" + split->second + "\"");
-    for (std::size_t i = 0; i < module_.outputs().size(); ++i)
-      if (all || i == split->first) module_.outputs()[i]->encoding = *encoding;
-    return {};
-  }
-
-  Status read_mode(const std::string& key, const std::string& value) {
-    auto& attention = arguments_.attention;
-    if (key == "--idle-rate") {
-      auto read = read_number(value, attention.idle_rate, "--idle-rate wants a number [Hz]");
-      if (!read) return read;
-      return attention.idle_rate >= 0 ? Status() : usage("--idle-rate is not below 0");
-    }
-    std::string wrong = key + " wants numbers from 1 on, not \"" + value + "\"";
-    for (std::string_view rest = value; !rest.empty();) {
-      auto word = std::string(rest.substr(0, rest.find(',')));
-      rest.remove_prefix(std::min(rest.size(), word.size() + 1));
-      std::int32_t number = 0;
-      if (auto read = read_number(word, number, wrong); !read || number < 1) return usage(wrong);
-      if (key == "--mode")
-        attention.own = number;
-      else
-        attention.modes.push_back(number);
-    }
-    return {};
-  }
-
-  Status read_exclusive(const std::string& value) {
-    auto input = find_named(module_.inputs(), value);
-    if (input == module_.inputs().end())
-      return usage("no input \"" + value + "\"; there are: " + names(module_.inputs()));
-    (*input)->is_exclusive = true;
-    return {};
-  }
-
-  Status read_clock(const std::string& value) {
-    if (value != "machine" && value != "messages")
-      return usage("--clock is machine or messages, not \"" + value + "\"");
-    arguments_.by_messages = value == "messages";
-    if (arguments_.by_messages && module_.inputs().empty())
-      return usage("--clock messages wants inputs, and this module has none");
+  static Status read_uri(const std::string& value, std::optional<Uri>& uri) {
+    auto parsed = parse_uri(value);
+    if (!parsed) return parsed.error();
+    uri = *parsed;
     return {};
   }
 
@@ -200,7 +163,7 @@ class Parser {
   static Status read_number(const std::string& text, Number& number, const std::string& wrong) {
     const char* end = text.data() + text.size();
     auto [stop, status] = std::from_chars(text.data(), end, number);
-    return status == std::errc() && stop == end ? Status() : usage(wrong);
+    return status == std::errc() && stop == end ? Status() : invalid(wrong);
   }
 
   /// Words without a name go to the positional parameters, in the order of declaration.
@@ -208,7 +171,7 @@ class Parser {
     std::size_t skip = positional_++;
     for (const auto& parameter : module_.parameters())
       if (parameter->options.positional && skip-- == 0) return parameter->set(word);
-    return usage("one argument too many: \"" + std::string(word) + "\"; see --help");
+    return invalid("one argument too many: \"" + std::string(word) + "\"; see --help");
   }
 
   Status set_task(Arguments::Task task) {
@@ -223,11 +186,96 @@ class Parser {
   Arguments arguments_;
 };
 
+/// An option of every module: what reads it, and what --help and the documents say of it.
+struct Option {
+  std::string_view name, argument, doc;
+  Status (Parser::*read)(const std::string& value);
+  enum { Always, Inputs, Outputs } needs = Always;
+};
+
+constexpr std::array<Option, 16> kOptions = {{
+    {"--in", "[PORT=]URI",
+     "link an input, the first unless PORT is given; may be repeated; without any, inputs share "
+     "standard input",
+     &Parser::in, Option::Inputs},
+    {"--out", "[PORT=]URI",
+     "link an output, the first unless PORT is given; may be repeated; without any, outputs share "
+     "standard output",
+     &Parser::out, Option::Outputs},
+    {"--address", "[PORT=]NUMBER",
+     "src of an output's messages (default: 1 for the first output, 2 for the second, …)",
+     &Parser::address, Option::Outputs},
+    {"--to", "[PORT=]NUMBER", "dst of an output's messages that have none", &Parser::to,
+     Option::Outputs},
+    {"--encoding", "[PORT=]NAME", "text, binary, zstd or jpeg; of all outputs unless PORT is given",
+     &Parser::encoding, Option::Outputs},
+    {"--limit", "BYTES", "maximum size of a message's payload [bytes] (default 268435456)",
+     &Parser::limit},
+    {"--name", "NAME", "name used in log lines", &Parser::name},
+    {"--mode", "NUMBER",
+     "system mode of its messages (default: that of the message handled, else the one in focus)",
+     &Parser::mode},
+    {"--modes", "NUMBER,…", "modes in which it is active (default: all)", &Parser::modes},
+    {"--exclusive", "PORT",
+     "an input that takes only messages of the mode in focus; may be repeated", &Parser::exclusive,
+     Option::Inputs},
+    {"--route", "'PORT=URI WORDS'",
+     "which messages a link takes, by their dst (to=21,-5 or to=*), and who is at its other end "
+     "(peer=NAME), to whom nothing is sent back; may be repeated",
+     &Parser::route},
+    {"--clock", "NAME", "clock: machine, or messages: the times of the messages (default machine)",
+     &Parser::clock, Option::Inputs},
+    {"--manage", "URI", "link to send reports to", &Parser::manage},
+    {"--control", "URI", "link to take commands from", &Parser::control},
+    {"--describe", "", "print ports and parameters as one line of JSON, and end",
+     &Parser::describe},
+    {"--help", "", "print this, and end (also -h)", &Parser::help},
+}};
+
+Status Parser::read_word() {
+  std::string_view word = words_[at_++];
+  if (word == "-h") word = "--help";
+  if (!word.starts_with("--")) return read_positional(word);
+  auto equals = word.find('=');
+  const std::string key{word.substr(0, equals)};
+  std::optional<std::string> given;
+  if (equals != std::string_view::npos) given = word.substr(equals + 1);
+
+  auto parameter = position_of(module_.parameters(), std::string_view(key).substr(2));
+  const bool is_parameter = key.size() > 2 && parameter != module_.parameters().end();
+  // A flag stands alone, or with a value after an equals sign.
+  if (is_parameter && std::holds_alternative<bool>((*parameter)->value))
+    return (*parameter)->set(given.value_or("true"));
+  auto option = std::find_if(kOptions.begin(), kOptions.end(),
+                             [&](const Option& each) { return each.name == key; });
+  if (!is_parameter && option == kOptions.end())
+    return invalid("no option \"" + key + "\"; parameters are: " + names(module_.parameters()) +
+                   "; see --help");
+  if (!is_parameter && option->argument.empty()) return (this->*option->read)("");
+  if (!given) {
+    if (at_ == words_.size()) return invalid(key + " needs a value");
+    given = words_[at_++];
+  }
+  return is_parameter ? (*parameter)->set(*given) : (this->*option->read)(*given);
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> options_of(const Module& module) {
+  std::vector<std::pair<std::string, std::string>> options;
+  for (const auto& option : kOptions) {
+    if (option.needs == Option::Inputs && module.inputs().empty()) continue;
+    if (option.needs == Option::Outputs && module.outputs().empty()) continue;
+    std::string left(option.name);
+    if (!option.argument.empty()) left.append(" ").append(option.argument);
+    options.emplace_back(std::move(left), option.doc);
+  }
+  return options;
+}
 
 Result<PortLink> parse_port_link(const Module& module, bool is_input, const std::string& text) {
   constexpr std::string_view kFocus = "focus=";
-  const bool has_own = find_named(module.inputs(), "focus") != module.inputs().end();
+  const bool has_own = position_of(module.inputs(), "focus") != module.inputs().end();
   PortLink link;
   link.is_focus = is_input && !has_own && text.starts_with(kFocus);
   std::string uri = text;

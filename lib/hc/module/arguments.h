@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hc/base/uri.h>
+#include <hc/contract/description.h>
 #include <hc/module/module.h>
 
 namespace hc::internal {
@@ -22,7 +23,7 @@ struct Arguments {
   std::vector<std::pair<std::size_t, Uri>> outputs;   ///< port, link
   std::vector<Uri> focus;                             ///< --in focus=URI
   std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
-  Attention attention;                                ///< --mode, --modes, --idle-rate
+  Attention attention;                                ///< --mode, --modes
   bool by_messages = false;                           ///< --clock messages
   std::optional<Uri> manage;                          ///< --manage
   std::optional<Uri> control;                         ///< --control
@@ -47,11 +48,13 @@ Result<PortLink> parse_port_link(const Module& module, bool is_input, const std:
 /// Reads `PORT=URI WORDS`, as --route has it: the first word, and the others. Errors: Invalid.
 Result<std::pair<std::string, Route>> parse_link_route(std::string_view text);
 
+/// The options that every module like this one has, with their arguments, and what they mean.
+std::vector<std::pair<std::string, std::string>> options_of(const Module& module);
+
+/// What a module says of itself.
+Description description_of(const Module& module);
+
 /// The text of --help.
 std::string help(const Module& module);
-
-/// The text of --describe: a JSON object of ports, parameters and what goes with them; see
-/// doc/modules.md.
-std::string describe(const Module& module);
 
 }  // namespace hc::internal

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A module's place among the system modes: whether it works for the one in focus, and how much it
-// does while it does not. Pure. Internal.
+// A module's place among the system modes. Pure. Internal.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,7 +12,6 @@ namespace hc::internal {
 struct Attention {
   std::vector<std::int32_t> modes;  ///< in which the module works; empty: in all
   std::int32_t own = 0;             ///< mode of all its messages, where it is a task
-  double idle_rate = 0;             ///< what it does out of focus [Hz]; 0: as much as in focus
   std::int32_t focus = 0;           ///< as last heard; 0: none, or there is no workspace
   bool is_told = false;             ///< whether anybody tells the focus
 
@@ -24,12 +22,6 @@ struct Attention {
   [[nodiscard]] bool has_focus(std::int32_t mode) const { return mode != 0 && mode == focus; }
   /// Whether an exclusive input takes what the module sends of its own mode, as far as it knows.
   [[nodiscard]] bool is_heard() const { return !is_told || own == 0 || has_focus(own); }
-  /// Whether it is to do less now.
-  [[nodiscard]] bool is_idle() const { return idle_rate > 0 && !in_focus(); }
-  /// A rate as it is now. [Hz]
-  [[nodiscard]] double rate(double wanted) const {
-    return is_idle() ? std::min(wanted, idle_rate) : wanted;
-  }
   /// The mode of a message that is made while one of `handled` mode is handled, or none is (0).
   [[nodiscard]] std::int32_t mode_of(std::int32_t handled) const {
     if (own != 0) return own;

@@ -138,12 +138,6 @@ TEST_F(ByMessages, TheFocusIsHeardInItsTime) {
   EXPECT_EQ(run(), Log({"a 5 at 5"}));
 }
 
-TEST_F(ByMessages, WhatIsIdleIsSoByTheirTime) {
-  feed("a", {at(0), at(400), at(999), at(1000), at(1500)});
-  words.insert(words.end(), {"--modes", "3", "--idle-rate", "1"});
-  EXPECT_EQ(run(), Log({"a 0 at 0", "a 1000 at 1000"}));
-}
-
 TEST_F(ByMessages, WhoIsBehindIsWaitedFor) {
   reports_ = source_of(uri("reports"));
   auto ahead = sink_of(uri("a")), behind = sink_of(uri("b"));
@@ -172,7 +166,7 @@ TEST_F(ByMessages, AClockThatThereIsNotIsRefused) {
   EXPECT_EQ(refused(module, "machine"), "");
   Module source{"source", "Has no inputs."};
   EXPECT_EQ(refused(source, "messages"),
-            "Invalid: --clock messages wants inputs, and this module has none");
+            "Invalid: --clock messages needs inputs, and this module has none");
 }
 
 }  // namespace

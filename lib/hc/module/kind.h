@@ -15,28 +15,11 @@
 #include <type_traits>
 #include <vector>
 
+#include <hc/contract/port_type.h>
 #include <hc/mtp/coords.h>
 #include <hc/mtp/message.h>
 
 namespace hc {
-
-/// What a port takes: elements, and shape and coordinate system where they are fixed.
-struct PortType {
-  Info info;                ///< the encoding is the default of an output
-  std::int32_t width = 0;   ///< 0: any
-  std::int32_t height = 0;  ///< 0: any
-  std::int32_t coord = 0;   ///< 0: any
-  bool finite = false;      ///< an input drops messages with NaN or infinity, and counts them
-};
-
-/// Whether a message fits a type.
-///
-/// Errors: Malformed; the detail begins with the rule of the field that does not fit, "R19: …".
-Status fits(const Header& header, const PortType& type);
-
-/// "rgb_image 3 x u8, coordinate system 9"; several with "or" between them, none: "anything".
-std::string in_words(const PortType& type);
-std::string in_words(const std::vector<PortType>& types);
 
 /// A kind of message: matrix type and scalar are fixed at compile time, the rest at run time.
 template <MatrixType kMatrix, ScalarType T>

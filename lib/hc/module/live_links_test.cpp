@@ -18,11 +18,11 @@ TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
   auto reports = source_of(uri("reports"));
   start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--manage=" + uri("reports"),
                  "--mode=3", "--factor=4"});
-  EXPECT_EQ(rows_of(next(*reports, internal::Report::Links)),
+  EXPECT_EQ(rows_of(next(*reports, Report::Links)),
             (std::vector<std::string>{"in in " + uri("in"), "out out " + uri("out")}));
-  EXPECT_EQ(rows_of(next(*reports, internal::Report::Parameters)),
+  EXPECT_EQ(rows_of(next(*reports, Report::Parameters)),
             (std::vector<std::string>{"factor=4", "title=a b"}));
-  auto state = next(*reports, internal::Report::State);
+  auto state = next(*reports, Report::State);
   auto numbers = state.view<std::int64_t>()->row(0);
   EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1, 0}));
   ASSERT_TRUE(sink->close());
@@ -41,7 +41,7 @@ TEST_F(RunningModule, TellsThatItWaitsForAReader) {
     });
     auto reports = source_of(uri("reports"));
     auto awaits_reader = [&] {
-      return next(*reports, internal::Report::State).view<std::int64_t>()->at(0, 0, 3);
+      return next(*reports, Report::State).view<std::int64_t>()->at(0, 0, 3);
     };
     start(module, {"--out=" + listens, "--manage=" + uri("reports")});
     EXPECT_EQ(awaits_reader(), 0);
@@ -87,7 +87,7 @@ TEST_F(RunningModule, HasOnlyTheLinksThatItIsToldOf) {
   module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
   start_managed(module);
   // Neither standard input, which may have ended, nor standard output.
-  EXPECT_TRUE(rows_of(next(*reports_, internal::Report::Links)).empty());
+  EXPECT_TRUE(rows_of(next(*reports_, Report::Links)).empty());
   auto first = sink_of(uri("first"));
   auto from = source_of(uri("out"));
   ASSERT_TRUE(tell(*control_, "link out out=" + uri("out")));
@@ -105,8 +105,7 @@ TEST_F(RunningModule, ReportsWithoutLinksToo) {
   auto in = module.input("in", table<double>(), "");
   module.on(in, [](const auto&) {});
   start_managed(module);
-  for (int i = 0; i < 2; ++i)
-    EXPECT_EQ(next(*reports_, internal::Report::Counters).header.height, 0);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(next(*reports_, Report::Counters).header.height, 0);
   ASSERT_TRUE(control_->close());
   EXPECT_EQ(join(), 0);
 }
@@ -134,7 +133,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   EXPECT_EQ(rows[1][0], 3);
   ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("in")));
   std::vector<std::string> links;
-  while (links.size() != 2) links = rows_of(next(*reports_, internal::Report::Links));
+  while (links.size() != 2) links = rows_of(next(*reports_, Report::Links));
   EXPECT_EQ(links, (std::vector{"in in " + uri("other"), "out out " + uri("out")}));
   ASSERT_TRUE(other->close());
   EXPECT_EQ(join(), 0);
@@ -155,7 +154,7 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersTold) {
   for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
     ASSERT_TRUE(tell(*control_, "unlink " + end));
     EXPECT_EQ(next_counters(*reports_).back()[0], 1);
-    next(*reports_, internal::Report::Links);
+    next(*reports_, Report::Links);
   }
   ASSERT_TRUE(control_->close());
   EXPECT_EQ(join(), 0);
@@ -198,12 +197,12 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   });
   auto sums = source_of(uri("out"));
   start_managed(module, {"--out=" + uri("out")});
-  next(*reports_, internal::Report::Links);
+  next(*reports_, Report::Links);
   std::string place = uri("left");
   auto l = sink_of(place), r = sink_of(uri("right"));
   auto obeyed = [&](const std::string& command) {
     ASSERT_TRUE(tell(*control_, command));
-    next(*reports_, internal::Report::Links);
+    next(*reports_, Report::Links);
   };
   obeyed("link in right=" + uri("right"));
   obeyed("link in left=" + place);
@@ -228,14 +227,14 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   module.on(in, [](const auto&) {});
   auto one = sink_of(uri("one")), other = sink_of(uri("other"));
   start_managed(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other")});
-  next(*reports_, internal::Report::State);
+  next(*reports_, Report::State);
   ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
   ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
-  next(*reports_, internal::Report::Links);
-  EXPECT_EQ(rows_of(next(*reports_, internal::Report::Refusal)),
+  next(*reports_, Report::Links);
+  EXPECT_EQ(rows_of(next(*reports_, Report::Refusal)),
             std::vector{"command \"unlink in focus=" + uri("one") + "\": there is no such link"});
   ASSERT_TRUE(other->send(table<std::int32_t>({7})));
-  EXPECT_EQ(next(*reports_, internal::Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
+  EXPECT_EQ(next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
   ASSERT_TRUE(control_->close());
   EXPECT_EQ(join(), 0);
 }

@@ -60,7 +60,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
 
 std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri) {
   auto options = options_;
-  options.awaits_reader = [this](bool awaits) { tell_state(awaits); };
+  options.awaits_reader = [this](bool awaits) { report_state(awaits); };
   auto sink = open_sink(uri, options);
   if (!sink) fail(uri.text(), sink.error());
   auto link = std::make_shared<LinkedSink>();
@@ -107,7 +107,7 @@ bool Module::Loop::join_renewed() {
       continue;
     }
     renewed->past += link->past;
-    renewed->left_out += link->left_out;
+    renewed->ignored += link->ignored;
     link = sources_.erase(link);
     any = true;
   }
@@ -140,7 +140,7 @@ void Module::Loop::run() {
     read_watched();
     const bool any = module_.message_time_ ? take_earliest() : take_each();
     end_unneeded();
-    if (join_renewed()) tell_links();
+    if (join_renewed()) report_links();
     if (any) continue;
     if (is_generators_turn()) {
       if (!generate()) break;
@@ -300,8 +300,8 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
       continue;
     }
     if (!input->handler) return;
-    if (!may_handle(*input, message)) {
-      ++link.left_out;
+    if (input->is_exclusive && !module_.attention_.has_focus(message.header.mode)) {
+      ++link.ignored;
       return;
     }
     auto plain = input->is_raw ? Result<Message>(message) : expand(message);
@@ -323,30 +323,6 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
   if (message.header.coord != 0)
     what += ", coordinate system " + std::to_string(message.header.coord);
   fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
-}
-
-/// Whether a message is handled now: where it is asked for, one of the mode in focus alone is; and
-/// of all others so many as the module does while idle.
-bool Module::Loop::may_handle(internal::InputState& input, const Message& message) {
-  const auto& attention = module_.attention_;
-  if (input.is_exclusive && !attention.has_focus(message.header.mode)) return false;
-  // What is taken together is left out together.
-  return input.matcher != nullptr || may_while_idle(input.handled_at);
-}
-
-bool Module::Loop::may_handle(internal::TogetherState& together) {
-  if (may_while_idle(together.handled_at)) return true;
-  ++together.left_out;
-  return false;
-}
-
-/// Whether it is time for the next, when the module does less than it could.
-bool Module::Loop::may_while_idle(std::optional<MonotonicTime>& last) const {
-  const auto& attention = module_.attention_;
-  if (!attention.is_idle()) return true;
-  if (last && time() - *last < internal::period_of(attention.idle_rate)) return false;
-  last = time();
-  return true;
 }
 
 /// Notes how old a message is, and how long after the one before it came.
@@ -405,7 +381,7 @@ void Module::Loop::close() {
     failed = link.get();
     failure = closed;
   }
-  tell_counters();
+  report_counters();
   if (failed != nullptr) fail(failed->uri, failure.error());
 }
 

@@ -27,7 +27,7 @@ struct LinkedSource {
   std::optional<Message> head;  ///< with --clock messages: taken, and to be handled in its time
   Route route;                  ///< who is at the other end
   Traffic past = {};            ///< of sources that have ended
-  std::int64_t left_out = 0;    ///< messages that no handler got: out of focus, or while idle
+  std::uint64_t ignored = 0;    ///< messages that no handler got: another mode has the focus
   Quantiles ages, gaps;         ///< of the messages since the last report; gaps between them
   MonotonicTime last_come{0};   ///< the message before; 0: none
 
@@ -77,8 +77,6 @@ struct Module::Loop {
   void pause(const std::function<MonotonicTime()>& due);
   /// Ends the outputs.
   void close();
-  /// Whether a set of messages that were taken together is handled now.
-  [[nodiscard]] bool may_handle(internal::TogetherState& together);
 
  private:
   std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri);
@@ -99,8 +97,6 @@ struct Module::Loop {
   void tell_left_out();
   void measure(internal::LinkedSource& link, const Message& message);
   void deliver(internal::LinkedSource& link, const Message& message);
-  [[nodiscard]] bool may_handle(internal::InputState& input, const Message& message);
-  [[nodiscard]] bool may_while_idle(std::optional<MonotonicTime>& last) const;
   void fire_timers();
   void read_watched();
   [[nodiscard]] MonotonicTime next_timer() const;
@@ -119,17 +115,18 @@ struct Module::Loop {
   void hear_focus();
   void heed(const Message& focus);
   void obey(const std::string& command);
-  Status carry_out(const std::string& command);
-  Status set_parameter(const std::string& assignment);
+  Status carry_out(const std::string& row);
+  Status set_parameter(const std::string& name, const std::string& value);
   Status link(bool is_input, const std::string& text);
   Status unlink(bool is_input, const std::string& text);
   Status unlink_output(internal::OutputState& output, const std::string& uri);
   Status finish(const std::string& text);
+  void send(Report report, Message message);
   void report();
-  void tell_counters();
-  void tell_links();
-  void tell_parameters();
-  void tell_state(bool awaits_reader = false);
+  void report_counters();
+  void report_links();
+  void report_parameters();
+  void report_state(bool awaits_reader = false);
 
   Module& module_;
   LinkOptions options_;

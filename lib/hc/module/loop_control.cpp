@@ -2,16 +2,16 @@
 // A module's loop: what it is told by who runs it, and what it reports.
 #include <algorithm>
 #include <array>
-#include <tuple>
 
+#include <hc/contract/command.h>
 #include <hc/module/loop.h>
+#include <hc/mtp/rows.h>
 
 namespace hc {
 namespace {
 
 using internal::LinkedSink;
 using internal::LinkedSource;
-using internal::Report;
 
 /// How often a module that is busy looks for commands; one that waits is woken by them.
 constexpr std::chrono::milliseconds kLookPeriod{10};
@@ -21,18 +21,16 @@ std::string text_of(const std::string& port, const std::string& uri) {
   return port + "=" + uri;
 }
 
-/// Numbers of a report that has one row for each link: a Traffic's, left out, ages and gaps.
-constexpr std::size_t kQuantileColumns = 3;
-constexpr std::size_t kColumns = std::tuple_size_v<Counters> + 1 + 2 * kQuantileColumns;
-
 Status unknown_link() {
   return Error{Code::NotFound, "there is no such link"};
 }
 
-void add_quantiles(const internal::Quantiles& quantiles, std::vector<std::int64_t>& row) {
-  const bool none = quantiles.empty();
-  for (double part : {0.5, 0.99}) row.push_back(none ? -1 : quantiles.quantile(part));
-  row.push_back(none ? -1 : quantiles.most());
+/// What has come since the last report; the next begins with none.
+Durations take_durations(internal::Quantiles& quantiles) {
+  if (quantiles.empty()) return {-1, -1, -1};
+  const Durations taken = {quantiles.quantile(0.5), quantiles.quantile(0.99), quantiles.most()};
+  quantiles.clear();
+  return taken;
 }
 
 }  // namespace
@@ -62,13 +60,10 @@ void Module::Loop::hear_focus() {
 }
 
 void Module::Loop::heed(const Message& focus) {
-  const bool was_idle = module_.attention_.is_idle();
   const auto before = module_.attention_.focus;
   if (auto modes = focus.view<std::int32_t>(); modes && !modes->empty())
     module_.attention_.focus = modes->at(0, 0);
-  if (was_idle && !module_.attention_.is_idle())
-    for (auto& input : module_.inputs_) input->handled_at.reset();
-  if (module_.attention_.focus != before) tell_state();
+  if (module_.attention_.focus != before) report_state();
 }
 
 void Module::Loop::obey(const std::string& command) {
@@ -77,45 +72,46 @@ void Module::Loop::obey(const std::string& command) {
   if (done) return;
   const std::string line = "command \"" + command + "\": " + done.error().detail;
   if (management_.is_heard())
-    management_.tell(Report::Refusal, std::array{line}, module_.clock_.wall());
+    send(Report::Refusal, make_rows(std::array{line}));
   else
     module_.log(line);
 }
 
-Status Module::Loop::carry_out(const std::string& command) {
-  auto verb = command.substr(0, command.find(' '));
-  auto rest = command.substr(std::min(command.size(), verb.size() + 1));
-  if (verb == "set") return set_parameter(rest);
-  if (verb == "finish") return finish(rest);
-  if (verb == "route") {
-    auto route = internal::parse_link_route(rest);
-    if (!route) return route.error();
-    set_route(route->first, route->second);
-    return {};
+Status Module::Loop::carry_out(const std::string& row) {
+  const auto command = parse_module_command(row);
+  if (!command) return command.error();
+  switch (command->verb) {
+    case ModuleCommand::Verb::Set:
+      return set_parameter(command->target, command->value);
+    case ModuleCommand::Verb::Finish:
+      return finish(command->target);
+    case ModuleCommand::Verb::Route: {
+      auto route = internal::parse_route(command->value);
+      if (!route) return route.error();
+      set_route(command->target, *route);
+      return {};
+    }
+    case ModuleCommand::Verb::Link:
+    case ModuleCommand::Verb::Unlink:
+      break;
   }
-  const bool is_input = rest.starts_with("in ");
-  if ((verb == "link" || verb == "unlink") && (is_input || rest.starts_with("out "))) {
-    auto text = rest.substr(rest.find(' ') + 1);
-    auto done = verb == "link" ? link(is_input, text) : unlink(is_input, text);
-    if (done) tell_links();
-    return done;
-  }
-  return Error{Code::Invalid,
-               "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, "
-               "route PORT=URI WORDS"};
+  auto done = command->verb == ModuleCommand::Verb::Link
+                  ? link(command->is_input, command->target)
+                  : unlink(command->is_input, command->target);
+  if (done) report_links();
+  return done;
 }
 
-Status Module::Loop::set_parameter(const std::string& assignment) {
-  auto name = assignment.substr(0, assignment.find('='));
+Status Module::Loop::set_parameter(const std::string& name, const std::string& value) {
   for (auto& parameter : module_.parameters_) {
-    if (parameter->name != name || name.size() == assignment.size()) continue;
+    if (parameter->name != name) continue;
     if (parameter->options.fixed)
       return Error{Code::Invalid, "parameter " + name + " is fixed while the module runs"};
-    auto set = parameter->set(assignment.substr(name.size() + 1));
-    if (set) tell_parameters();
+    auto set = parameter->set(value);
+    if (set) report_parameters();
     return set;
   }
-  return Error{Code::Invalid, "no parameter \"" + name + "\", or no value"};
+  return Error{Code::Invalid, "no parameter \"" + name + "\""};
 }
 
 Status Module::Loop::link(bool is_input, const std::string& text) {
@@ -146,7 +142,7 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   if (!link) return link.error();
   auto uri = link->uri.text();
   if (!is_input) return unlink_output(*module_.outputs_[link->port], uri);
-  tell_counters();  // the last of this link
+  report_counters();  // the last of this link
   if (link->is_focus) {
     const auto erased = std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
     return erased == 0 ? unknown_link() : Status();
@@ -171,7 +167,7 @@ Status Module::Loop::unlink_output(internal::OutputState& output, const std::str
     if (const auto lost = sink->traffic().cut - before; lost > 0)
       module_.log(output.name + ": " + std::to_string(lost) + " waiting, lost with the link");
   }
-  tell_counters();  // the last of this link
+  report_counters();  // the last of this link
   sinks_.erase(std::find(sinks_.begin(), sinks_.end(), *found));
   links.erase(found);
   return {};
@@ -198,70 +194,57 @@ void Module::Loop::set_route(const std::string& link, const internal::Route& rou
       if (text_of(output->name, each->uri) == link) each->route = route;
 }
 
+void Module::Loop::send(Report report, Message message) {
+  management_.send(report, std::move(message), module_.clock_.wall());
+}
+
 void Module::Loop::report() {
   if (!management_.is_heard() || now_ - reported_ < kReportPeriod) return;
   if (reported_.count() == 0) {
-    tell_links();
-    tell_parameters();
-    tell_state();
+    report_links();
+    report_parameters();
+    report_state();
   }
-  tell_counters();
+  report_counters();
 }
 
-void Module::Loop::tell_counters() {
+/// Also where there is no link: that a module reports shows that it is not stuck.
+void Module::Loop::report_counters() {
   reported_ = now_;
   to_wall_ = module_.clock_.wall() - module_.clock_.monotonic().count();
-  std::vector<std::int64_t> numbers;
-  auto put = [&](const Traffic& traffic) {
-    auto counters = counters_of(traffic);
-    numbers.insert(numbers.end(), counters.begin(), counters.end());
-  };
-  for (auto& link : sources_) {
-    put(link.traffic());
-    auto left_out = link.left_out;
-    for (const auto& together : module_.together_)
-      if (link.inputs.front()->matcher == &together->matcher) left_out += together->left_out;
-    numbers.push_back(left_out);
-    add_quantiles(link.ages, numbers);
-    add_quantiles(link.gaps, numbers);
-    link.ages.clear();
-    link.gaps.clear();
-  }
-  for (const auto& link : sinks_) {
-    put(link->sink ? link->sink->traffic() : link->traffic);
-    numbers.push_back(0);
-    numbers.insert(numbers.end(), 2 * kQuantileColumns, -1);
-  }
-  // Also where there is no row: that we report tells that we are not stuck.
-  management_.tell(Report::Counters, numbers, kColumns, module_.clock_.wall());
+  std::vector<LinkCounters> links;
+  for (auto& link : sources_)
+    links.push_back(
+        {link.traffic(), link.ignored, take_durations(link.ages), take_durations(link.gaps)});
+  for (const auto& link : sinks_)
+    links.push_back({link->sink ? link->sink->traffic() : link->traffic});
+  send(Report::Counters, make_counters(links));
 }
 
-void Module::Loop::tell_links() {
-  std::vector<std::string> lines;
+void Module::Loop::report_links() {
+  std::vector<LinkEnd> ends;
   for (const auto& link : sources_)
-    lines.push_back("in " + (link.inputs.size() == 1 ? link.inputs[0]->name : "-") + " " +
-                    link.uri);
+    ends.push_back({true, link.inputs.size() == 1 ? link.inputs[0]->name : "-", link.uri});
   for (const auto& sink : sinks_)
     for (const auto& output : module_.outputs_)
       if (std::find(output->links.begin(), output->links.end(), sink) != output->links.end()) {
-        lines.push_back("out " + output->name + " " + sink->uri);
+        ends.push_back({false, output->name, sink->uri});
         break;  // standard output may be of several ports
       }
-  management_.tell(Report::Links, lines, module_.clock_.wall());
+  send(Report::Links, make_links(ends));
 }
 
-void Module::Loop::tell_parameters() {
-  std::vector<std::string> lines;
+void Module::Loop::report_parameters() {
+  std::map<std::string, std::string> values;
   for (const auto& parameter : module_.parameters_)
-    lines.push_back(parameter->name + "=" + text(parameter->value));
-  management_.tell(Report::Parameters, lines, module_.clock_.wall());
+    values[parameter->name] = text(parameter->value);
+  send(Report::Parameters, make_parameters(values));
 }
 
-void Module::Loop::tell_state(bool awaits_reader) {
+void Module::Loop::report_state(bool awaits_reader) {
   const auto& attention = module_.attention_;
-  const std::int64_t state[] = {attention.own, attention.focus, attention.in_focus() ? 1 : 0,
-                                awaits_reader ? 1 : 0};
-  management_.tell(Report::State, state, std::size(state), module_.clock_.wall());
+  send(Report::State,
+       make_state({attention.own, attention.focus, attention.in_focus(), awaits_reader}));
 }
 
 }  // namespace hc

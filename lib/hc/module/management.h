@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // A module's links to who runs it: reports go out, commands come in, both as messages like any
-// other. Internal. doc/modules.md says what they look like.
+// other (spec/module.md). Internal.
 
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include <hc/contract/report.h>
 #include <hc/link/link.h>
 
 namespace hc::internal {
-
-/// What a module reports, by the src of the message.
-enum class Report : std::int32_t { Counters = 1, Links, Parameters, State, Refusal };
 
 /// The two links, of which either may be missing. When one breaks, the module goes on without.
 class Management {
@@ -29,15 +26,10 @@ class Management {
   /// The commands that have come, a line each. Never waits.
   std::vector<std::string> take_commands();
 
-  /// Sends lines (links, parameters, a refusal). Never waits for who does not listen.
-  void tell(Report report, std::span<const std::string> lines, std::int64_t time);
-  /// Sends numbers: (rows, 1, columns), row by row.
-  void tell(Report report, std::span<const std::int64_t> numbers, std::size_t columns,
-            std::int64_t time);
-
- private:
+  /// Sends a report; dropped where nobody takes it in time.
   void send(Report report, Message message, std::int64_t time);
 
+ private:
   std::unique_ptr<Sink> reports_;
   std::unique_ptr<Source> commands_;
   std::int64_t sent_ = 0;

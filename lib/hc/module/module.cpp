@@ -66,9 +66,7 @@ std::shared_ptr<ParameterState> Module::add_parameter(std::string name,
 
 void Module::add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
                           const Matching& how, Matcher::Take handler) {
-  const auto index = together_.size();
-  auto take = [this, index, handler = std::move(handler)](std::span<const Message> set) {
-    if (loop_ != nullptr && !loop_->may_handle(*together_[index])) return;
+  auto take = [this, handler = std::move(handler)](std::span<const Message> set) {
     const Header& latest =
         std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
           return a.header.time < b.header.time;
@@ -82,7 +80,7 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
     handled_ = {};
   };
   together_.push_back(std::make_unique<internal::TogetherState>(
-      internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take)), 0, {}}));
+      internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take))}));
   internal::TogetherState& state = *together_.back();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     internal::InputState& input = *inputs[i];
@@ -144,7 +142,7 @@ void Timeout::restart(std::chrono::nanoseconds duration) {
 }
 
 void Module::keep_rate(double rate) {
-  auto period = [&] { return internal::period_of(attention_.rate(rate)); };
+  auto period = [&] { return internal::period_of(rate); };
   loop_->pause([&] { return last_period_ ? *last_period_ + period() : MonotonicTime(0); });
   // Periods that were missed are not made up for.
   auto now = monotonic();
@@ -223,9 +221,9 @@ int Module::run(int argc, char** argv) {
   }
   using Task = internal::Arguments::Task;
   if (arguments->task != Task::Run) {
-    auto printed =
-        write_all(STDOUT_FILENO, arguments->task == Task::Help ? internal::help(*this)
-                                                               : internal::describe(*this));
+    auto printed = write_all(STDOUT_FILENO, arguments->task == Task::Help
+                                                ? internal::help(*this)
+                                                : to_json(internal::description_of(*this)) + "\n");
     if (printed || printed.error().code == Code::Closed) return kDone;
     log(printed.error().text());
     return kFailure;

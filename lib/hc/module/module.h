@@ -210,8 +210,7 @@ class Module {
   }
 
   /// For generators: waits until the next period of a rate begins, counted from the first call.
-  /// Slower while the module is idle, since another mode has the focus. A module that is told to
-  /// stop ends here. @param rate [Hz]
+  /// A module that is told to stop ends here. @param rate [Hz]
   void keep_rate(double rate);
 
   /// Writes a line to standard error, with the module's name before it.

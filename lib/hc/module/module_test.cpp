@@ -365,7 +365,7 @@ TEST(Module, ReportsItsCounters) {
             0);
   Message message, last;
   while (*manage->take(message) == Got::Message)
-    if (message.header.src == static_cast<int>(internal::Report::Counters)) last = message;
+    if (message.header.src == static_cast<int>(Report::Counters)) last = message;
   auto rows = *last.view<std::int64_t>();
   ASSERT_EQ(rows.height(), 2U);
   EXPECT_EQ(rows.at(0, 0, 0), 7);
@@ -378,13 +378,13 @@ TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {
       {{"--colour", "3"}, "no option \"--colour\"; parameters are: hue, on; see --help"},
       {{"--hue", "2"}, "parameter hue: \"2\" is not from 0 to 1"},
-      {{"--hue"}, "--hue wants a value"},
+      {{"--hue"}, "--hue needs a value"},
       {{"--on=maybe"}, "parameter on: \"maybe\" is not true or false"},
       {{"--in", "up=-"}, "no input \"up\"; there are: in"},
       {{"--in", "in="}, "a URI cannot be empty: \"\""},
-      {{"--address", "out=-1"}, "--address wants [PORT=]NUMBER, 0 to 2147483647, not \"out=-1\""},
+      {{"--address", "out=-1"}, "--address needs [PORT=]NUMBER, 0 to 2147483647, not \"out=-1\""},
       {{"--encoding", "png"}, "--encoding is text, binary, zstd or jpeg, not \"png\""},
-      {{"--limit", "much"}, "--limit wants a number of bytes"},
+      {{"--limit", "much"}, "--limit needs a number of bytes"},
       {{"0.5", "extra"}, "one argument too many: \"extra\"; see --help"},
   };
   for (const auto& [words, line] : cases) {
@@ -409,7 +409,7 @@ TEST(Module, DescribesItself) {
   auto hue = module.parameter("hue", 0.5, "turn", "colour", {.min = 0, .max = 1});
   auto how = module.parameter("how", "fast", "", "way", {.choices = {"fast", "good"}});
   EXPECT_EQ(
-      internal::describe(module),
+      to_json(internal::description_of(module)),
       R"({"name":"blob","summary":"Finds the \"largest\" blob.","inputs":[{"name":"image","types":)"
       R"([{"type":"rgb_image","components":3,"scalar":"u8","width":0,"height":0,"coord":7}],)"
       R"("doc":"picture"},{"name":"depth","types":[],"doc":"its depth"}],)"
@@ -420,12 +420,12 @@ TEST(Module, DescribesItself) {
       R"("doc":"colour"},{"name":"how","type":"string","unit":"","default":"fast","choices":)"
       R"(["fast","good"],"doc":"way"}],)"
       R"("transports":["-","file","tcp","tcp-listen","unix","unix-listen","inproc","shm"],"control":true,)"
-      R"("routes":false})"
-      "\n");
+      R"("routes":false})");
   std::string help = internal::help(module);
-  for (const char* part : {"Usage: hc blob", "picture (rgb_image 3 x u8, coordinate system 7)",
-                           "Taken together, by their times: image, depth\n",
-                           "colour [turn] (default 0.5)", "way: fast, good (default fast)"})
+  for (const char* part :
+       {"Usage: hc blob", "picture (rgb_image 3 x u8 in coordinate system 7)",
+        "Taken together, by their times: image, depth\n", "colour [turn] (default 0.5)",
+        "way: fast, good (default fast)", "--exclusive PORT", "--route 'PORT=URI WORDS'"})
     EXPECT_NE(help.find(part), std::string::npos) << help;
 }
 

@@ -40,7 +40,6 @@ struct InputState {
   bool is_raw = false;         ///< the handler gets messages as they came, compressed ones too
   bool is_actor = false;       ///< moves something: one writer at a time is to have it
   bool is_exclusive = false;   ///< takes messages of the mode in focus alone
-  std::optional<MonotonicTime> handled_at;  ///< the last message, while idle
 
   [[nodiscard]] bool wants_finite() const {
     return std::any_of(types.begin(), types.end(), [](const auto& type) { return type.finite; });
@@ -78,8 +77,6 @@ struct Handled {
 struct TogetherState {
   std::vector<std::shared_ptr<InputState>> inputs;
   Matcher matcher;
-  std::int64_t left_out = 0;                ///< sets that were not handled while idle
-  std::optional<MonotonicTime> handled_at;  ///< the last, while idle
 };
 
 struct OutputState {

@@ -71,7 +71,7 @@ class RunningModule : public ::testing::Test {
 };
 
 /// The next report of a kind.
-inline Message next(Source& reports, internal::Report kind) {
+inline Message next(Source& reports, Report kind) {
   Message message;
   do {
     HC_CHECK(*receive(reports, message));
@@ -96,13 +96,13 @@ inline CounterRows counters_of(const Message& message) {
   return rows;
 }
 inline CounterRows next_counters(Source& reports) {
-  return counters_of(next(reports, internal::Report::Counters));
+  return counters_of(next(reports, Report::Counters));
 }
 /// The last of a module that has ended.
 inline CounterRows last_counters(Source& reports) {
   Message message, last;
   while (*reports.take(message) == Got::Message)
-    if (message.header.src == static_cast<int>(internal::Report::Counters)) last = message;
+    if (message.header.src == static_cast<int>(Report::Counters)) last = message;
   return counters_of(last);
 }
 

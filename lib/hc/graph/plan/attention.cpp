@@ -51,13 +51,13 @@ class Attention {
     if (!planning_.names.contains(name)) add_no_module(planning_, place, name);
     const Description* description = planning_.description_of(name);
     if (description == nullptr) return false;
-    const DescribedPort* output = find_output(*description, kFocus);
+    const PortDescription* output = find_named(description->outputs, kFocus);
     if (output == nullptr)
       add_no_port(planning_, place, {name, kFocus, {}}, "output", description->outputs);
-    else if (!fits(*output, focus_input()))
+    else if (!fits(output->types, focus_input().types))
       problems_.add(place, name + ".focus sends " + in_words(output->types) + ", not " +
                                in_words(focus_input().types));
-    return output != nullptr && fits(*output, focus_input());
+    return output != nullptr && fits(output->types, focus_input().types);
   }
 
   static bool wants_focus(const GraphModule& module) {

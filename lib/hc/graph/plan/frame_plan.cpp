@@ -99,7 +99,7 @@ class Frames {
     if (!planning_.names.contains(port.module))
       return add_no_module(planning_, mover.place, port.module);
     const Description* description = planning_.description_of(port.module);
-    if (description != nullptr && find_output(*description, port.port) == nullptr)
+    if (description != nullptr && find_named(description->outputs, port.port) == nullptr)
       add_no_port(planning_, mover.place, port, "output", description->outputs);
   }
 
@@ -197,7 +197,7 @@ bool takes_frames(const Planning& planning, const std::string& module) {
   const Description* description = planning.description_of(module);
   if (description == nullptr) return false;
   const auto* parameter = find_named(description->parameters, kFrames);
-  return parameter != nullptr && std::holds_alternative<std::string>(parameter->state.value);
+  return parameter != nullptr && std::holds_alternative<std::string>(parameter->value);
 }
 
 void link_frames(Planning& planning) {
@@ -206,7 +206,8 @@ void link_frames(Planning& planning) {
     if (!frame.moved_by) continue;
     const GraphPort& port = frame.moved_by->value;
     const Description* description = planning.description_of(port.module);
-    const bool is_there = description != nullptr && find_output(*description, port.port) != nullptr;
+    const bool is_there =
+        description != nullptr && find_named(description->outputs, port.port) != nullptr;
     auto is_it = [&](const auto& each) { return each.value.text() == port.text(); };
     if (is_there && std::none_of(movers.begin(), movers.end(), is_it))
       movers.push_back(*frame.moved_by);

@@ -23,12 +23,12 @@ class LinkCheck {
                     "duplicate link from " + link.from.text() + " to " + link.to.text());
       return false;
     }
-    const DescribedPort* from = end(link, link.from, false);
-    const DescribedPort* to = end(link, link.to, true);
+    const PortDescription* from = end(link, link.from, false);
+    const PortDescription* to = end(link, link.to, true);
     if (link.route) check_route(link);
     if (!link.from.uri.empty()) check_outer_policy(link);
     if (from == nullptr || to == nullptr) return true;
-    const bool right = fits(*from, *to);
+    const bool right = fits(from->types, to->types);
     if (!right)
       problems_.add(link.place, link.from.text() + " sends " + in_words(from->types) + ", " +
                                     link.to.text() + " takes " + in_words(to->types));
@@ -46,7 +46,7 @@ class LinkCheck {
   }
 
   /// Null where there is none, or where nobody knows since the module is not described.
-  const DescribedPort* end(const GraphLink& link, const GraphPort& port, bool is_input) {
+  const PortDescription* end(const GraphLink& link, const GraphPort& port, bool is_input) {
     if (!port.uri.empty()) {
       check_uri(link, port, is_input);
       return nullptr;
@@ -54,8 +54,8 @@ class LinkCheck {
     if (!planning_.names.contains(port.module)) add_no_module(planning_, link.place, port.module);
     const Description* description = planning_.description_of(port.module);
     if (description == nullptr) return nullptr;
-    const DescribedPort* found =
-        is_input ? find_input(*description, port.port) : find_output(*description, port.port);
+    const PortDescription* found = is_input ? find_input(*description, port.port)
+                                            : find_named(description->outputs, port.port);
     if (found == nullptr)
       add_no_port(planning_, link.place, port, is_input ? "input" : "output",
                   is_input ? description->inputs : description->outputs);
@@ -185,7 +185,7 @@ void check_actors(Planning& planning) {
   for (const auto& link : planning.graph.links) {
     const Description* description = planning.description_of(link.to.module);
     if (description == nullptr || planning.routes(link.from)) continue;
-    const DescribedPort* input = find_named(description->inputs, link.to.port);
+    const PortDescription* input = find_named(description->inputs, link.to.port);
     const PlannedModule* planned = planning.planned(link.to.module);
     if (input == nullptr || !input->actor || planned->exclusive.contains(link.to.port)) continue;
     auto [first, is_first] = writers.emplace(link.to.text(), link.from.text());

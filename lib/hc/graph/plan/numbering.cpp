@@ -33,7 +33,7 @@ class Numbering {
         planning_.problems.add(address.place,
                                "address " + std::to_string(address.value) + " is used twice");
       if (description == nullptr) continue;
-      if (find_output(*description, port) != nullptr) continue;
+      if (find_named(description->outputs, port) != nullptr) continue;
       if (find_named(description->inputs, port) != nullptr) {
         if (address.value != 0) inputs_[module.name + "." + port] = address.value;
         continue;
@@ -107,7 +107,7 @@ class Numbering {
   void send_to(const GraphModule& module, const std::string& port, const Lined<Addressee>& to) {
     const Description* description = planning_.description_of(module.name);
     if (description == nullptr) return;
-    if (find_output(*description, port) == nullptr)
+    if (find_named(description->outputs, port) == nullptr)
       return add_no_port(planning_, to.place, {module.name, port, {}}, "output",
                          description->outputs);
     std::optional<std::int64_t> address;

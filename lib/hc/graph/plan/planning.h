@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <hc/contract/description.h>
 #include <hc/graph/plan.h>
-#include <hc/graph/plan/description.h>
 
 namespace hc::internal {
 
@@ -34,7 +34,7 @@ struct Planning {
   /// Whether messages leave an output by their address: of a router, one that gives anything.
   [[nodiscard]] bool routes(const GraphPort& output) const {
     if (!output.uri.empty() || !is_router(output.module)) return false;
-    const DescribedPort* port = find_output(described.at(output.module), output.port);
+    const PortDescription* port = find_named(described.at(output.module).outputs, output.port);
     return port != nullptr && port->types.empty();
   }
   [[nodiscard]] PlannedModule* planned(const std::string& module) {
@@ -51,7 +51,7 @@ std::string suggest(const Planning& planning, std::string_view name,
 void add_no_module(Planning& planning, const Place& place, const std::string& module);
 /// Says that a module has no such port. @param kind  "input", "output" or "port".
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
-                 const std::string& kind, const std::vector<DescribedPort>& ports);
+                 const std::string& kind, const std::vector<PortDescription>& ports);
 
 /// Gives ports their addresses, and messages of outputs their destinations.
 void number_ports(Planning& planning);

@@ -4,9 +4,12 @@
 #include <algorithm>
 
 #include <hc/base/uri.h>
+#include <hc/contract/command.h>
 
 namespace hc::internal {
 namespace {
+
+using Verb = ModuleCommand::Verb;
 
 const PlannedEnd* find_same(const std::vector<PlannedEnd>& ends, const PlannedEnd& wanted) {
   auto found = std::find_if(ends.begin(), ends.end(),
@@ -36,21 +39,21 @@ void add_settings(const PlannedModule& before, const PlannedModule& after, Modul
     auto found = before.parameters.find(key);
     if (found != before.parameters.end() && found->second == value) continue;
     if (after.fixed.contains(key)) change.needs_restart = true;
-    change.settings.push_back("set " + key + "=" + value);
+    change.settings.push_back(text({Verb::Set, true, key, value}));
   }
 }
 
 void add_links(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
   for (const auto& end : before.ends)
     if (find_same(after.ends, end) == nullptr)
-      change.unlinks.push_back((end.is_input ? "unlink in " : "unlink out ") + place(end));
+      change.unlinks.push_back(text({Verb::Unlink, end.is_input, place(end), {}}));
   for (const auto& end : after.ends) {
     auto& commands = end.is_input ? change.inputs : change.outputs;
     const PlannedEnd* old = find_same(before.ends, end);
-    if (old == nullptr) commands.push_back((end.is_input ? "link in " : "link out ") + place(end));
+    if (old == nullptr) commands.push_back(text({Verb::Link, end.is_input, place(end), {}}));
     if (end.route != (old == nullptr ? "" : old->route))
-      commands.push_back("route " + place(old == nullptr ? end : *old) +
-                         (end.route.empty() ? " to=*" : " " + end.route));
+      commands.push_back(text({Verb::Route, end.is_input, place(old == nullptr ? end : *old),
+                               end.route.empty() ? "to=*" : end.route}));
   }
 }
 

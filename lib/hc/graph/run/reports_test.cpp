@@ -92,7 +92,7 @@ TEST_F(ReportsTest, RowsOfOneLinkAddUp) {
   for (int i = 0; i < 3; ++i)
     count({{5, 50, 0, 0, 0, 0, 0, 2}, {3, 30, 0, 0, 0, 0, 0, 1}, {7, 70, 0, 0, 0, 0, 0, 0}});
   EXPECT_EQ(reports_.find(in_)->traffic.messages, 8U);
-  EXPECT_EQ(reports_.find(in_)->left_out, 3U);
+  EXPECT_EQ(reports_.find(in_)->ignored, 3U);
   EXPECT_EQ(reports_.find(in_)->per_second, 0);
   EXPECT_EQ(reports_.find(out_)->traffic.messages, 7U);
 }
@@ -114,7 +114,7 @@ TEST_F(ReportsTest, AllColumnsAreTaken) {
   count({{1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 20, 21, 22}});
   const auto* report = reports_.find(in_);
   EXPECT_EQ(report->traffic.cut, 7U);
-  EXPECT_EQ(report->left_out, 8U);
+  EXPECT_EQ(report->ignored, 8U);
   EXPECT_EQ(report->age, (std::array<std::int64_t, 3>{10, 11, 12}));
   EXPECT_EQ(report->gap, (std::array<std::int64_t, 3>{20, 21, 22}));
 }
@@ -126,12 +126,12 @@ TEST_F(ReportsTest, ParametersAndModeTellOfChangesAlone) {
   EXPECT_EQ(reports_.parameters().at("text"), "a = b");
   EXPECT_TRUE(reports_.take(table(4, {{2, 1, 0}}), now_));
   EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0}}), now_));
-  EXPECT_FALSE(reports_.awaits_reader);
+  EXPECT_FALSE(reports_.state().awaits_reader);
   EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0, 1}}), now_));  // told only when it lasts
-  EXPECT_TRUE(reports_.awaits_reader);
-  EXPECT_EQ(reports_.mode, 2);
-  EXPECT_EQ(reports_.focus, 1);
-  EXPECT_FALSE(reports_.in_focus);
+  EXPECT_TRUE(reports_.state().awaits_reader);
+  EXPECT_EQ(reports_.state().mode, 2);
+  EXPECT_EQ(reports_.state().focus, 1);
+  EXPECT_FALSE(reports_.state().in_focus);
 }
 
 TEST_F(ReportsTest, OfTooManyTheFirstAreKept) {

@@ -25,7 +25,7 @@ GraphState Runner::state() const {
     state.modules.push_back(module->state());
     // The workspace tells the focus and does not hear it; those that hear it work, or may be wrong.
     if (state.focus == 0 && module->status() == ModuleStatus::Running)
-      state.focus = module->reports().focus;
+      state.focus = module->reports().state().focus;
   }
   for (const auto& link : plan_.links) state.links.push_back(state_of(link));
   const auto workspace = global_workspace(plan_, state.focus_name());
@@ -63,7 +63,7 @@ LinkState Runner::state_of(const PlannedLink& link) const {
     lost.messages = lost.bytes = lost.kept_back = 0;
     state.traffic += lost;
   }
-  state.left_out = reader->left_out;
+  state.left_out = reader->ignored;
   auto seconds = [](const std::array<std::int64_t, 3>& times) {
     std::optional<std::array<double, 3>> result;
     if (times[0] < 0) return result;

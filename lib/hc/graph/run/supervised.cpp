@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include <hc/contract/command.h>
 #include <hc/mtp/rows.h>
 
 namespace hc::internal {
@@ -88,7 +89,8 @@ std::vector<std::string> Supervised::catch_up() {
   std::vector<std::string> commands;
   for (const auto* some : {&change.unlinks, &change.settings, &change.outputs, &change.inputs})
     commands.insert(commands.end(), some->begin(), some->end());
-  for (const auto& input : finished_) commands.push_back("finish " + input);
+  for (const auto& input : finished_)
+    commands.push_back(text({ModuleCommand::Verb::Finish, true, input, {}}));
   set_told();
   return commands;
 }
@@ -226,7 +228,8 @@ void Supervised::tell(const std::string& command) {
 
 void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
   std::string what = end.port + "=" + end.uri;
-  if (is_finished && finished_.insert(what).second) tell("finish " + what);
+  if (is_finished && finished_.insert(what).second)
+    tell(text({ModuleCommand::Verb::Finish, true, what, {}}));
   if (!is_finished && finished_.erase(what) != 0) tell("link in " + what);
 }
 
@@ -247,7 +250,8 @@ bool Supervised::read_piece() {
 void Supervised::take_report(const Message& message) {
   heard_ = now();
   const bool has_changed = reports_.take(message, heard_);
-  if (message.header.src == Reports::kRefusal && message.header.info.type == MatrixType::String)
+  if (message.header.src == static_cast<int>(Report::Refusal) &&
+      message.header.info.type == MatrixType::String)
     for (const auto& line : rows_of(message)) hear_.event(line);
   if (status_ == ModuleStatus::Stalled) hear_.event("resumed");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
@@ -257,7 +261,7 @@ void Supervised::take_report(const Message& message) {
 }
 
 void Supervised::look(MonotonicTime time) {
-  const bool is_stalled = status_ == ModuleStatus::Stalled, awaits = reports_.awaits_reader;
+  const bool is_stalled = status_ == ModuleStatus::Stalled, awaits = reports_.state().awaits_reader;
   if (status_ != ModuleStatus::Running && !(is_stalled && awaits)) return;
   if (heard_ == MonotonicTime(0) || time - heard_ < limits_.stall) return;
   const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
@@ -359,7 +363,7 @@ ModuleState Supervised::state() const {
   state.memory = usage_.memory;
   state.mode = plan_.mode;
   state.modes = plan_.modes;
-  state.in_focus = reports_.in_focus;
+  state.in_focus = reports_.state().in_focus;
   state.parameters = plan_.parameters;
   for (const auto& [key, value] : reports_.parameters()) state.parameters[key] = value;
   return state;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/module/kind.h>
+#include <hc/contract/port_type.h>
+
+#include <algorithm>
 
 namespace hc {
 namespace {
@@ -31,12 +33,23 @@ Status fits(const Header& header, const PortType& type) {
   return {};
 }
 
+bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken) {
+  auto same = [](std::int32_t a, std::int32_t b) { return a == 0 || b == 0 || a == b; };
+  if (given.empty() || taken.empty()) return true;
+  const PortType& from = given.front();
+  return std::any_of(taken.begin(), taken.end(), [&](const PortType& to) {
+    return from.info.type == to.info.type && from.info.scalar == to.info.scalar &&
+           from.info.components == to.info.components && same(from.width, to.width) &&
+           same(from.height, to.height) && same(from.coord, to.coord);
+  });
+}
+
 std::string in_words(const PortType& type) {
   std::string text(name(type.info.type));
   text += " " + std::to_string(type.info.components) + " x " + std::string(name(type.info.scalar));
   if (type.width != 0) text += ", width " + std::to_string(type.width);
   if (type.height != 0) text += ", height " + std::to_string(type.height);
-  if (type.coord != 0) text += ", coordinate system " + std::to_string(type.coord);
+  if (type.coord != 0) text += " in coordinate system " + std::to_string(type.coord);
   return text;
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/contract/command.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hc {
+namespace {
+
+constexpr std::array<std::string_view, 5> kVerbs = {"set", "link", "unlink", "finish", "route"};
+
+/// The part of `text` before `mark`, which is taken off it with the mark.
+std::string_view take_until(std::string_view& text, char mark) {
+  const auto part = text.substr(0, text.find(mark));
+  text.remove_prefix(std::min(text.size(), part.size() + 1));
+  return part;
+}
+
+bool has_end(ModuleCommand::Verb verb) {
+  return verb == ModuleCommand::Verb::Link || verb == ModuleCommand::Verb::Unlink;
+}
+
+}  // namespace
+
+std::string text(const ModuleCommand& command) {
+  std::string row(kVerbs[static_cast<std::size_t>(command.verb)]);
+  if (has_end(command.verb)) row += command.is_input ? " in" : " out";
+  row += " " + command.target;
+  if (command.verb == ModuleCommand::Verb::Set) row += "=" + command.value;
+  if (command.verb == ModuleCommand::Verb::Route) row += " " + command.value;
+  return row;
+}
+
+Result<ModuleCommand> parse_module_command(std::string_view row) {
+  const Error wrong{Code::Invalid,
+                    "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, "
+                    "or route PORT=URI WORDS"};
+  const auto verb = std::find(kVerbs.begin(), kVerbs.end(), take_until(row, ' '));
+  if (verb == kVerbs.end() || row.empty()) return wrong;
+  ModuleCommand command;
+  command.verb = static_cast<ModuleCommand::Verb>(verb - kVerbs.begin());
+  if (has_end(command.verb)) {
+    const auto end = take_until(row, ' ');
+    if ((end != "in" && end != "out") || row.empty()) return wrong;
+    command.is_input = end == "in";
+  }
+  if (command.verb == ModuleCommand::Verb::Set) {
+    if (row.find('=') == std::string_view::npos) return wrong;
+    command.target = take_until(row, '=');
+    command.value = row;
+  } else if (command.verb == ModuleCommand::Verb::Route) {
+    command.target = take_until(row, ' ');
+    command.value = row;
+  } else {
+    command.target = row;
+  }
+  return command;
+}
+
+}  // namespace hc

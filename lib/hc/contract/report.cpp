@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/contract/report.h>
+
+#include <algorithm>
+
+#include <hc/mtp/rows.h>
+
+namespace hc {
+namespace {
+
+using Row = std::array<std::int64_t, kCounterColumns.size()>;
+constexpr std::size_t kIgnored = kTrafficMembers.size(), kAge = kIgnored + 1, kGap = kAge + 3;
+static_assert(kGap + 3 == kCounterColumns.size());
+
+template <std::size_t kColumns>
+Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
+  Draft draft = Draft::make({MatrixType::Table, kColumns, Scalar::I64, Encoding::Text}, 1,
+                            static_cast<std::int32_t>(rows.size()));
+  auto table = draft.view<std::int64_t>();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    std::copy(rows[i].begin(), rows[i].end(), table.row(i).begin());
+  return std::move(draft).finish();
+}
+
+LinkCounters counters_of(std::span<const std::int64_t> given) {
+  Row row{};
+  std::fill(row.begin() + kAge, row.end(), -1);
+  std::copy_n(given.begin(), std::min(given.size(), row.size()), row.begin());
+  LinkCounters link;
+  for (std::size_t i = 0; i < kTrafficMembers.size(); ++i)
+    link.traffic.*kTrafficMembers[i] = static_cast<std::uint64_t>(row[i]);
+  link.ignored = static_cast<std::uint64_t>(row[kIgnored]);
+  std::copy_n(row.begin() + kAge, link.age.size(), link.age.begin());
+  std::copy_n(row.begin() + kGap, link.gap.size(), link.gap.begin());
+  return link;
+}
+
+}  // namespace
+
+Message make_counters(std::span<const LinkCounters> links) {
+  std::vector<Row> rows;
+  for (const auto& link : links) {
+    Row& row = rows.emplace_back();
+    for (std::size_t i = 0; i < kTrafficMembers.size(); ++i)
+      row[i] = static_cast<std::int64_t>(link.traffic.*kTrafficMembers[i]);
+    row[kIgnored] = static_cast<std::int64_t>(link.ignored);
+    std::copy(link.age.begin(), link.age.end(), row.begin() + kAge);
+    std::copy(link.gap.begin(), link.gap.end(), row.begin() + kGap);
+  }
+  return make_table<kCounterColumns.size()>(rows);
+}
+
+std::vector<LinkCounters> read_counters(const Message& message) {
+  std::vector<LinkCounters> links;
+  const auto table = message.view<std::int64_t>();
+  if (!table || table->empty() || table->width() != 1 || table->components() < 2) return links;
+  for (std::size_t i = 0; i < table->height(); ++i) links.push_back(counters_of(table->row(i)));
+  return links;
+}
+
+Message make_links(std::span<const LinkEnd> links) {
+  std::vector<std::string> rows;
+  for (const auto& link : links)
+    rows.push_back((link.is_input ? "in " : "out ") + link.port + " " + link.uri);
+  return make_rows(rows);
+}
+
+std::vector<LinkEnd> read_links(const Message& message) {
+  std::vector<LinkEnd> links;
+  for (const auto& row : rows_of(message)) {
+    const auto port = row.find(' ');
+    const auto uri = port == std::string::npos ? port : row.find(' ', port + 1);
+    if (uri == std::string::npos) continue;
+    links.push_back(
+        {row.starts_with("in "), row.substr(port + 1, uri - port - 1), row.substr(uri + 1)});
+  }
+  return links;
+}
+
+Message make_parameters(const std::map<std::string, std::string>& values) {
+  std::vector<std::string> rows;
+  for (const auto& [name, value] : values) rows.push_back(name + "=" + value);
+  return make_rows(rows);
+}
+
+std::map<std::string, std::string> read_parameters(const Message& message, std::size_t max) {
+  std::map<std::string, std::string> values;
+  for (const auto& row : rows_of(message)) {
+    const auto equals = row.find('=');
+    if (values.size() == max) break;
+    if (equals != std::string::npos) values[row.substr(0, equals)] = row.substr(equals + 1);
+  }
+  return values;
+}
+
+Message make_state(const StateReport& state) {
+  const std::array<std::int64_t, 4> row = {state.mode, state.focus, state.in_focus ? 1 : 0,
+                                           state.awaits_reader ? 1 : 0};
+  return make_table<row.size()>(std::span(&row, 1));
+}
+
+std::optional<StateReport> read_state(const Message& message) {
+  const auto table = message.view<std::int64_t>();
+  if (!table || table->empty()) return std::nullopt;
+  const auto numbers = table->numbers();
+  if (numbers.size() < 3) return std::nullopt;
+  return StateReport{numbers[0], numbers[1], numbers[2] != 0,
+                     numbers.size() > 3 && numbers[3] != 0};
+}
+
+}  // namespace hc
