@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
+#include <algorithm>
+#include <charconv>
+#include <map>
 #include <string>
 
 #include <hc/module/module.h>
@@ -13,46 +16,64 @@ std::chrono::nanoseconds seconds(double value) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(value));
 }
 
-/// Tells of refused bids, once a second at most.
+/// "track=1,read=3", as the graph gives it; what is not NAME=NUMBER is ignored.
+std::map<std::int32_t, std::string> names_of(std::string_view text) {
+  std::map<std::int32_t, std::string> names;
+  while (!text.empty()) {
+    const auto word = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    const auto equals = word.find('=');
+    std::int32_t mode = 0;
+    if (equals == std::string_view::npos) continue;
+    std::from_chars(word.data() + equals + 1, word.data() + word.size(), mode);
+    if (mode > 0) names[mode] = word.substr(0, equals);
+  }
+  return names;
+}
+
+/// Logs refused bids, once a second at most.
 class Complaints {
  public:
-  void tell(const hc::Module& module, const hc::Error& why, const Refused& refused,
-            hc::MonotonicTime now) {
-    if (told_ && now - *told_ < std::chrono::seconds(1)) return;
-    told_ = now;
+  void log(const hc::Module& module, const hc::Error& why, const Refused& refused,
+           hc::MonotonicTime now) {
+    if (logged_ && now - *logged_ < std::chrono::seconds(1)) return;
+    logged_ = now;
     module.log("bid refused: " + why.text() + "; " + std::to_string(refused.total()) +
                " refused so far");
   }
 
  private:
-  std::optional<hc::MonotonicTime> told_;
+  std::optional<hc::MonotonicTime> logged_;
 };
 
 }  // namespace
 
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
-  hc::Module module{"workspace", "Gives the focus to the mode that bids most, and tells all.",
-                    clock};
+  hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", clock};
   auto bids = module.input("bids", hc::table<double>(),
                            "1 x 1: salience 0 … 1 of the message's mode; 0 withdraws");
   auto person = module.input("person", hc::table<double>(),
-                             "the same from a person, above all others while it stands");
+                             "the same from a person, above all others while it is valid");
   auto focus = module.output("focus", hc::table<std::int32_t>(),
                              "1 x 1: number of the mode in focus, 0 none; each period");
   auto standings = module.output(
       "standings", hc::table<double>(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
-  auto rate = module.parameter("rate", 20.0, "Hz", "how often it is decided who has the focus",
-                               {.min = 0.1, .max = 1000});
-  auto margin = module.parameter("margin", 0.1, "",
-                                 "by more than which a challenger's salience must be greater",
-                                 {.min = 0, .max = 1});
-  auto dwell = module.parameter("dwell", 1.0, "s", "how long the focus stays where it is at least",
-                                {.min = 0, .max = 86400});
+  auto rate = module.parameter(
+      "rate", 20.0, "Hz",
+      "how often the focus is decided and repeated; an exclusive input trusts it for 0.2 s",
+      {.min = 20, .max = 1000});
+  auto margin =
+      module.parameter("margin", 0.1, "", "a challenger must bid more than the focus does by this",
+                       {.min = 0, .max = 1});
+  auto dwell =
+      module.parameter("dwell", 1.0, "s", "how long a mode keeps the focus at least, while it bids",
+                       {.min = 0, .max = 86400});
   auto expiry =
-      module.parameter("expiry", 1.0, "s", "how long a bid stands", {.min = 0.001, .max = 86400});
+      module.parameter("expiry", 1.0, "s", "how long a bid is valid", {.min = 0.001, .max = 86400});
   auto person_expiry = module.parameter(
-      "person_expiry", 60.0, "s", "how long a person's bid stands", {.min = 0.001, .max = 86400});
+      "person_expiry", 60.0, "s", "how long a person's bid is valid", {.min = 0.001, .max = 86400});
+  auto modes = module.parameter("modes", "", "", "names of modes for log lines: track=1,read=3");
 
   Workspace workspace;
   Complaints complaints;
@@ -62,7 +83,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     // Without its one number a bid has a salience that is refused as any other.
     double salience = numbers.size() == 1 ? numbers[0] : -1;
     auto taken = (workspace.*bid)(message.header.mode, salience, now);
-    if (!taken) complaints.tell(module, taken.error(), workspace.refused(), now);
+    if (!taken) complaints.log(module, taken.error(), workspace.refused(), now);
   };
   module.on(bids, [&](const auto& message) { take(message, &Workspace::bid); });
   module.on(person, [&](const auto& message) { take(message, &Workspace::bid_of_person); });
@@ -70,7 +91,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   module.every(rate, [&] {
     auto now = module.monotonic();
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
-    workspace.decide(now);
+    if (workspace.decide(now)) module.log("focus: " + workspace.last_change(names_of(*modes)));
     const std::int64_t time = module.now();
     auto told = hc::table({workspace.focus()});
     told.header.time = time;

@@ -2,7 +2,21 @@
 #include "workspace.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <string>
+#include <utility>
+
+namespace {
+
+std::string two_digits(double value) {
+  std::array<char, 64> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, 2).ptr;
+  return {text.data(), end};
+}
+
+}  // namespace
 
 hc::Status Workspace::check(std::int32_t mode, double salience) {
   if (!(salience >= 0 && salience <= 1)) {  // nor is not-a-number
@@ -64,9 +78,24 @@ bool Workspace::decide(hc::MonotonicTime now) {
   drop_expired(now);
   std::int32_t next = winner(now);
   if (next == focus_) return false;
-  focus_ = next;
+  before_ = std::exchange(focus_, next);
   since_ = now;
   return true;
+}
+
+std::string Workspace::last_change(const std::map<std::int32_t, std::string>& names) const {
+  auto text = [&](std::int32_t mode) {
+    auto name = names.find(mode);
+    std::string words = name == names.end() ? "mode " + std::to_string(mode) : name->second;
+    if (person_ && person_->first == mode) return words + " (a person's bid)";
+    auto bid = bids_.find(mode);
+    return bid == bids_.end() ? words : words + " (" + two_digits(bid->second.salience) + ")";
+  };
+  if (focus_ == 0) return "none; no bid is left";
+  const bool is_contested = before_ != 0 && bids_.contains(before_);
+  if (!is_contested) return text(focus_) + (before_ == 0 ? "" : "; no bid of " + text(before_));
+  return text(focus_) + " over " + text(before_) +
+         (person_ ? "" : ", margin " + two_digits(options_.margin));
 }
 
 std::vector<Standing> Workspace::standings(hc::MonotonicTime now) const {

@@ -4,8 +4,9 @@
 // never goes back.
 //
 // The rules, judged by decide() and at no other time:
-// - A bid stands until it expires, or until the next of its mode takes its place. One of salience 0
-//   withdraws it, which is the same as if it expired there and then.
+// - A bid is valid until it expires, or the next of its mode replaces it. One of salience 0
+// withdraws
+//   it, as if it expired then.
 // - While the mode in focus has a bid, a challenger takes focus with a salience that is greater by
 //   more than the margin, when the focus has been where it is for the dwell time.
 // - A focus whose bid has ended goes at once, within its dwell time too, to the greatest bid, of
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <hc/base/clock.h>
@@ -66,6 +68,10 @@ class Workspace {
   /// Applies the rules; true when the focus has changed. To be called each period.
   bool decide(hc::MonotonicTime now);
 
+  /// The last change of focus and the bids behind it: "track (0.60) over read (0.40), margin 0.10".
+  /// @param names  of modes; those that have none are told by their numbers.
+  [[nodiscard]] std::string last_change(const std::map<std::int32_t, std::string>& names) const;
+
   /// The mode in focus as decide() left it; 0: none.
   [[nodiscard]] std::int32_t focus() const { return focus_; }
 
@@ -87,7 +93,7 @@ class Workspace {
   WorkspaceOptions options_;
   std::map<std::int32_t, Bid> bids_;  // by mode
   std::optional<std::pair<std::int32_t, Bid>> person_;
-  std::int32_t focus_ = 0;
+  std::int32_t focus_ = 0, before_ = 0;
   hc::MonotonicTime since_{};  // of the focus
   Refused refused_;
 };

@@ -104,6 +104,28 @@ TEST(Workspace, standings_tell_each_mode_that_bids) {
   EXPECT_EQ(rows[2].mode, 4);
 }
 
+TEST(Workspace, a_change_of_focus_tells_the_bids_behind_it) {
+  Table table;
+  const std::map<std::int32_t, std::string> names = {{1, "track"}, {2, "read"}};
+  auto change = [&] { return table.workspace.last_change(names); };
+  table.bid(1, 0.4);
+  EXPECT_EQ(table.after(kPeriod), 1);
+  EXPECT_EQ(change(), "track (0.40)");
+  table.after(milliseconds(900));
+  table.bid(1, 0.4);
+  table.bid(2, 0.6);
+  EXPECT_EQ(table.after(milliseconds(100)), 2);
+  EXPECT_EQ(change(), "read (0.60) over track (0.40), margin 0.10");
+  table.bid(2, 0);
+  EXPECT_EQ(table.after(milliseconds(0)), 1);
+  EXPECT_EQ(change(), "track (0.40); no bid of read");
+  table.person(3, 1);
+  EXPECT_EQ(table.after(milliseconds(0)), 3);
+  EXPECT_EQ(change(), "mode 3 (a person's bid) over track (0.40)");
+  EXPECT_EQ(table.after(milliseconds(70000)), 0);
+  EXPECT_EQ(change(), "none; no bid is left");
+}
+
 TEST(Workspace, bids_that_make_no_sense_are_counted_and_change_nothing) {
   Table table;
   table.bid(1, 0.5);

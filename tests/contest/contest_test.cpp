@@ -107,9 +107,10 @@ class Contest {
       : random_(seed), options_(pick_options()), rules_(options_), due_(clock_.monotonic()) {
     start_workspace();
     command_in_each_mode();
-    actor_.emplace(run_actor, std::vector<std::string>{
-                                  "actor", "--exclusive=command", "--in=command=" + uri("command"),
-                                  "--in=focus=" + uri("focus-actor"), "--out=done=" + uri("done")});
+    actor_.emplace(
+        [this](int argc, char** argv) { return run_actor(argc, argv, clock_); },
+        std::vector<std::string>{"actor", "--exclusive=command", "--in=command=" + uri("command"),
+                                 "--in=focus=" + uri("focus-actor"), "--out=done=" + uri("done")});
     gate_.wait_until_held();
     check_actor();
   }

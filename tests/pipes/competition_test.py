@@ -10,7 +10,8 @@ import signal
 import socket
 import unittest
 
-from harness import Pipes, ROOT, WATCHDOG, free_port, wait_until
+from graphs import Graphs
+from harness import ROOT, WATCHDOG, free_port, wait_until
 
 Message = collections.namedtuple(
     "Message", "src dst seq ttl time info mode coord width height rows"
@@ -34,7 +35,7 @@ def read_messages(path):
     return messages
 
 
-class Demonstrations(Pipes):
+class Demonstrations(Graphs):
     def write_copy(self, name, *links, **changes):
         """A copy of a demonstration that records outputs, as `"herald.command"`, into files."""
         text = (ROOT / "tests/graphs" / name).read_text()
@@ -192,6 +193,35 @@ class Demonstrations(Pipes):
         self.assertEqual({tuple(each.rows[0]) for each in self.recorded("actor.done")}, {(1, 1)})
         self.assertIn("workspace: bid refused: Malformed: salience nan", self.read("errors"))
         self.assertIn("bids refused: 3 for their salience", self.read("errors"))
+
+    def test_nobody_commands_the_actor_while_the_workspace_hangs_or_is_dead(self):
+        self.write_copy("contest.toml", "actor.done", "looking.command", never="failure")
+        process = self.start(
+            "exec hc run contest.toml --set looking.script=0:0.9 --set tracking.script=0:0 "
+            "--set reading.script=0:0 2>errors"
+        )
+        done = lambda: len(self.recorded("actor.done"))
+        sent = lambda: len(self.recorded("looking.command"))
+        self.wait_for(lambda: done() > 3, "errors")
+        messages = self.observe(process, "contest")
+        focused = lambda state: state["focus"] is not None
+        state = self.state(messages, focused)
+        workspace = self.module(state, "workspace")["pid"]
+        os.kill(workspace, signal.SIGSTOP)
+        self.state(messages, lambda state: not focused(state))
+        before, so_far = done(), sent()
+        self.wait_for(lambda: sent() > so_far + 20, "errors")
+        self.assertEqual(done(), before)
+        os.kill(workspace, signal.SIGCONT)
+        self.state(messages, focused)
+        self.wait_for(lambda: done() > before, "errors")
+        os.kill(workspace, signal.SIGKILL)
+        again = lambda state: self.module(state, "workspace")["pid"] not in (0, workspace)
+        self.state(messages, lambda state: again(state) and focused(state))
+        before = done()
+        self.wait_for(lambda: done() > before, "errors")
+        self.interrupt(process)
+        self.assertIn("workspace: focus: ", self.read("errors"))
 
 
 if __name__ == "__main__":

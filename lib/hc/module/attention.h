@@ -3,17 +3,25 @@
 // A module's place among the system modes. Pure. Internal.
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
+#include <hc/base/clock.h>
+
 namespace hc::internal {
+
+/// How long a message of the focus counts. The workspace repeats it four times as often, so when it
+/// hangs or dies, exclusive inputs take nothing until it is back.
+constexpr std::chrono::milliseconds kFocusExpiry{200};
 
 /// Modes are numbers from 1 on; 0 is none.
 struct Attention {
   std::vector<std::int32_t> modes;  ///< in which the module works; empty: in all
   std::int32_t own = 0;             ///< mode of all its messages, where it is a task
-  std::int32_t focus = 0;           ///< as last heard; 0: none, or there is no workspace
-  bool is_told = false;             ///< whether anybody tells the focus
+  std::int32_t focus = 0;           ///< as last received; 0: none, or that has expired
+  MonotonicTime received{0};        ///< when that was
+  bool is_linked = false;           ///< whether there is a link from a workspace
 
   [[nodiscard]] bool in_focus() const {
     return modes.empty() || std::find(modes.begin(), modes.end(), focus) != modes.end();
@@ -21,7 +29,13 @@ struct Attention {
   /// Whether an exclusive input takes messages of a mode: none of them while nobody has the focus.
   [[nodiscard]] bool has_focus(std::int32_t mode) const { return mode != 0 && mode == focus; }
   /// Whether an exclusive input takes what the module sends of its own mode, as far as it knows.
-  [[nodiscard]] bool is_heard() const { return !is_told || own == 0 || has_focus(own); }
+  [[nodiscard]] bool has_own_focus() const { return !is_linked || own == 0 || has_focus(own); }
+  /// Forgets a focus that was not repeated in time; whether it was forgotten now.
+  bool expire(MonotonicTime now) {
+    if (focus == 0 || now - received <= kFocusExpiry) return false;
+    focus = 0;
+    return true;
+  }
   /// The mode of a message that is made while one of `handled` mode is handled, or none is (0).
   [[nodiscard]] std::int32_t mode_of(std::int32_t handled) const {
     if (own != 0) return own;

@@ -138,6 +138,18 @@ TEST_F(ByMessages, TheFocusIsHeardInItsTime) {
   EXPECT_EQ(run(), Log({"a 5 at 5"}));
 }
 
+TEST_F(ByMessages, AFocusExpiresInTheirTime) {
+  feed("a", {at(1, 4), at(201, 4), at(202, 4), at(303, 4)});
+  auto focus = [](std::int64_t milliseconds, std::int32_t mode) {
+    auto message = table({mode});
+    message.header.time = at(milliseconds).header.time;
+    return Message(message);
+  };
+  feed("focus", {focus(1, 4), focus(300, 4)});
+  words.insert(words.end(), {"--exclusive", "a"});
+  EXPECT_EQ(run(), Log({"a 1 at 1", "a 201 at 201", "a 303 at 303"}));
+}
+
 TEST_F(ByMessages, WhoIsBehindIsWaitedFor) {
   reports_ = source_of(uri("reports"));
   auto ahead = sink_of(uri("a")), behind = sink_of(uri("b"));

@@ -95,7 +95,8 @@ TEST_F(RunningModule, WhoReportsToNobodyTellsOnStandardErrorWhatIsWrong) {
 }
 
 TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
-  Module module{"actor", "Acts."};
+  ManualClock clock;  // stands still
+  Module module{"actor", "Acts.", clock};
   auto in = module.input("command", table<double>(), "");
   auto out = module.output("done", table<double>(), "");
   module.actor(in);
@@ -129,6 +130,48 @@ TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   EXPECT_EQ(join(), 0);
   EXPECT_FALSE(*receive(*done, message));
   EXPECT_EQ(last_counters(*reports).at(0).at(7), 4);
+}
+
+TEST_F(RunningModule, AFocusThatIsNotRepeatedExpires) {
+  ManualClock clock;
+  Module module{"actor", "Takes commands.", clock};
+  auto command = module.input("command", table<double>(), "");
+  auto direct = module.input("direct", table<double>(), "");
+  auto out = module.output("done", table<double>(), "");
+  for (const auto& input : {command, direct})
+    module.on(input, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  auto commands = sink_of(uri("in")), person = sink_of(uri("direct")),
+       focus = sink_of(uri("focus"));
+  auto done = source_of(uri("out")), reports = source_of(uri("reports"));
+  start(module,
+        {"--in=command=" + uri("in"), "--in=direct=" + uri("direct"), "--in=focus=" + uri("focus"),
+         "--out=" + uri("out"), "--exclusive=command", "--manage=" + uri("reports")});
+  auto await_focus = [&](std::int64_t mode) {
+    while (read_state(next(*reports, Report::State))->focus != mode) {
+    }
+  };
+  auto next_done = [&] {
+    Message message;
+    EXPECT_TRUE(*receive(*done, message));
+    return message.view<double>()->at(0, 0);
+  };
+  ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
+  await_focus(1);
+  clock.advance(std::chrono::milliseconds(200));
+  ASSERT_TRUE(commands->send(in_mode(table({1.0}), 1)));
+  EXPECT_EQ(next_done(), 1);
+  clock.advance(std::chrono::milliseconds(1));
+  ASSERT_TRUE(commands->send(in_mode(table({2.0}), 1)));
+  await_focus(0);
+  ASSERT_TRUE(person->send(in_mode(table({3.0}), 1)));
+  EXPECT_EQ(next_done(), 3);
+  ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
+  await_focus(1);
+  ASSERT_TRUE(commands->send(in_mode(table({4.0}), 1)));
+  EXPECT_EQ(next_done(), 4);
+  ASSERT_TRUE(commands->close());
+  ASSERT_TRUE(person->close());
+  EXPECT_EQ(join(), 0);
 }
 
 TEST_F(RunningModule, KnowsWhetherItsModeHasTheFocus) {

@@ -20,11 +20,23 @@ constexpr const char* kReportsKept = "64";  // for one who does not listen for a
 
 /// The longest wait at a time: poll() counts in 32 bits.
 constexpr std::chrono::milliseconds kLongestWait = std::chrono::hours(1);
+constexpr const char* kSetsKept = "4";  // by links whose newest complete set is handled
+constexpr int kMostAtOnce = 16;         // messages that a link gives in one turn
 
 /// What ends a module: cleanly when it was told to stop, else with the name of who failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
   if (error.code == Code::Stopped) throw Stopped();
   throw ModuleError(Error{error.code, who + ": " + error.detail});
+}
+
+/// Whether a link has keep=latest, which makes place for a short queue.
+bool keeps_latest(Uri& uri) {
+  for (auto& [key, value] : uri.options)
+    if (key == "keep" && (value == "latest" || value == "1")) {
+      value = kSetsKept;
+      return true;
+    }
+  return false;
 }
 
 }  // namespace
@@ -53,7 +65,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
                                      arguments.control ? open(*arguments.control) : nullptr);
   open_inputs(arguments);
   for (const auto& uri : arguments.focus) focus_.push_back({uri.text(), open(uri), {}});
-  module_.attention_.is_told = !focus_.empty();
+  module_.attention_.is_linked = !focus_.empty();
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   module_.loop_ = this;
 }
@@ -79,18 +91,31 @@ void Module::Loop::open_outputs(const internal::Arguments& arguments) {
 }
 
 void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*> inputs) {
-  auto source = open_source(uri, options_);
+  // What is taken together is dropped together: by the loop, and not by each link for itself.
+  Uri opened = uri;
+  const bool is_latest = inputs.front()->together != nullptr && keeps_latest(opened);
+  auto source = open_source(opened, options_);
   if (!source) fail(uri.text(), source.error());
   LinkedSource link;
   link.uri = uri.text();
   link.source = std::move(*source);
   link.inputs = std::move(inputs);
+  link.is_latest = is_latest;
   for (auto* input : link.inputs)
-    if (input->matcher != nullptr) input->matcher->begin(input->place);
+    if (input->together != nullptr) input->together->matcher.begin(input->place);
   for (const auto& each : sources_)
     if (each.is_same(link)) link.route = each.route;
   sources_.push_back(std::move(link));
   join_renewed();
+  choose_policies();
+}
+
+/// Whether inputs that are taken together handle every set, or the newest.
+void Module::Loop::choose_policies() {
+  for (auto& together : module_.together_)
+    together->is_latest = std::any_of(sources_.begin(), sources_.end(), [&](const auto& link) {
+      return link.is_latest && link.inputs.front()->together == together.get();
+    });
 }
 
 /// Has links that were made anew count on from those that have ended in their place; whether there
@@ -152,6 +177,7 @@ void Module::Loop::run() {
   }
   for (const auto& together : module_.together_)
     for (const auto& input : together->inputs) together->matcher.end(input->place);
+  handle_newest();
   module_.handled_ = {};
   if (module_.end_) module_.end_();
 }
@@ -204,16 +230,28 @@ MonotonicTime Module::Loop::next_timer() const {
 bool Module::Loop::take_each() {
   auto is_crowded = [](const LinkedSource& link) {
     return std::any_of(link.inputs.begin(), link.inputs.end(), [](const auto* input) {
-      return input->matcher != nullptr && input->matcher->crowded(input->place);
+      return input->together != nullptr && input->together->matcher.crowded(input->place);
     });
   };
   bool any = false;
   for (bool crowded : {false, true}) {
-    for (auto& link : sources_)
-      if (link.source != nullptr && is_crowded(link) == crowded) any = take_one(link) || any;
+    for (auto& link : sources_) {
+      // For the newest set all that has come is taken; for every set, one message.
+      const auto* together = link.inputs.front()->together;
+      const int most = together != nullptr && together->is_latest ? kMostAtOnce : 1;
+      for (int i = 0; i < most; ++i) {
+        if (link.source == nullptr || is_crowded(link) != crowded || !take_one(link)) break;
+        any = true;
+      }
+    }
     if (any) break;
   }
+  handle_newest();
   return any;
+}
+
+void Module::Loop::handle_newest() {
+  for (auto& together : module_.together_) module_.handle(*together);
 }
 
 bool Module::Loop::take_one(LinkedSource& link) {
@@ -247,7 +285,8 @@ void Module::Loop::end(LinkedSource& link) {
   link.source.reset();
   link.head.reset();
   for (auto* input : link.inputs)
-    if (input->matcher != nullptr && !is_linked(*input)) input->matcher->end(input->place);
+    if (input->together != nullptr && !is_linked(*input))
+      input->together->matcher.end(input->place);
 }
 
 /// Ends inputs that are taken together and have no link, nor can be told of one.
@@ -271,20 +310,20 @@ void Module::Loop::end_unlinked() {
 void Module::Loop::end_unneeded() {
   if (module_.together_.empty()) return;
   auto is_settled = [](const auto* input) {
-    return input->matcher != nullptr && input->matcher->done();
+    return input->together != nullptr && input->together->matcher.done();
   };
   for (auto& link : sources_)
     if (link.source != nullptr && std::all_of(link.inputs.begin(), link.inputs.end(), is_settled))
       end(link);
 }
 
-void Module::Loop::tell_left_out() {
+void Module::Loop::log_dropped() {
   for (const auto& together : module_.together_)
     for (const auto& input : together->inputs) {
-      const auto& left_out = together->matcher.left_out(input->place);
-      if (left_out.total() == 0) continue;
-      module_.log(input->name + ": dropped " + std::to_string(left_out.unmatched) + " unmatched, " +
-                  std::to_string(left_out.crowded) + " on queue overflow");
+      const auto& dropped = together->matcher.left_out(input->place);
+      if (dropped.total() == 0 || together->is_latest) continue;
+      module_.log(input->name + ": dropped " + std::to_string(dropped.unmatched) + " unmatched, " +
+                  std::to_string(dropped.crowded) + " on queue overflow");
     }
 }
 
@@ -307,7 +346,7 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
     auto plain = input->is_raw ? Result<Message>(message) : expand(message);
     if (!plain) fail(input->name, plain.error());
     if (input->wants_finite() && !finite(*plain)) {
-      ++link.left_out;
+      ++link.ignored;
       module_.log_once("not finite", input->name + ": dropped: NaN or infinity");
       return;
     }
@@ -370,7 +409,7 @@ void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
 }
 
 void Module::Loop::close() {
-  tell_left_out();
+  log_dropped();
   const LinkedSink* failed = nullptr;
   Status failure;  // the first; the other links are closed all the same
   for (auto& link : sinks_) {

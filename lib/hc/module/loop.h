@@ -26,6 +26,7 @@ struct LinkedSource {
   std::vector<InputState*> inputs;
   std::optional<Message> head;  ///< with --clock messages: taken, and to be handled in its time
   Route route;                  ///< who is at the other end
+  bool is_latest = false;       ///< keep=latest, of an input that is taken together with others
   Traffic past = {};            ///< of sources that have ended
   std::uint64_t ignored = 0;    ///< messages that no handler got: another mode has the focus
   Quantiles ages, gaps;         ///< of the messages since the last report; gaps between them
@@ -84,9 +85,11 @@ struct Module::Loop {
   void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);
   bool join_renewed();
+  void choose_policies();
   void set_route(const std::string& link, const internal::Route& route);
 
   bool take_each();
+  void handle_newest();
   bool take_one(internal::LinkedSource& link);
   Got take(internal::LinkedSource& link, Message& message);
   [[nodiscard]] bool is_linked(const internal::InputState& input) const;
@@ -94,7 +97,7 @@ struct Module::Loop {
   void end(internal::LinkedSource& link);
   void end_unlinked();
   void end_unneeded();
-  void tell_left_out();
+  void log_dropped();
   void measure(internal::LinkedSource& link, const Message& message);
   void deliver(internal::LinkedSource& link, const Message& message);
   void fire_timers();
@@ -112,8 +115,9 @@ struct Module::Loop {
 
   // loop_control.cpp
   void attend();
-  void hear_focus();
-  void heed(const Message& focus);
+  void receive_focus();
+  void set_focus(const Message& message);
+  void expire_focus();
   void obey(const std::string& command);
   Status carry_out(const std::string& row);
   Status set_parameter(const std::string& name, const std::string& value);

@@ -2,6 +2,7 @@
 // A module's loop: what it is told by who runs it, and what it reports.
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <hc/contract/command.h>
 #include <hc/module/loop.h>
@@ -35,16 +36,17 @@ Durations take_durations(internal::Quantiles& quantiles) {
 
 }  // namespace
 
-/// Hears which mode has the focus and, from time to time, what the module is to do; and reports.
+/// Receives the focus and, from time to time, commands; and reports.
 void Module::Loop::attend() {
-  hear_focus();
+  receive_focus();
+  expire_focus();
   if (now_ - attended_ < kLookPeriod) return;
   attended_ = now_;
   for (const auto& command : management_.take_commands()) obey(command);
   report();
 }
 
-void Module::Loop::hear_focus() {
+void Module::Loop::receive_focus() {
   if (module_.message_time_) return;  // in its time
   Message message;
   for (auto& link : focus_) {
@@ -52,18 +54,23 @@ void Module::Loop::hear_focus() {
       auto got = link.source->take(message);
       if (got && *got == Got::Nothing) break;
       if (!got || *got == Got::End)
-        link.source.reset();  // the module goes on in the mode it knows
+        link.source.reset();
       else
-        heed(message);
+        set_focus(message);
     }
   }
 }
 
-void Module::Loop::heed(const Message& focus) {
-  const auto before = module_.attention_.focus;
-  if (auto modes = focus.view<std::int32_t>(); modes && !modes->empty())
-    module_.attention_.focus = modes->at(0, 0);
-  if (module_.attention_.focus != before) report_state();
+void Module::Loop::set_focus(const Message& message) {
+  auto& attention = module_.attention_;
+  const auto modes = message.view<std::int32_t>();
+  if (!modes || modes->empty()) return;
+  attention.received = time();
+  if (std::exchange(attention.focus, modes->at(0, 0)) != attention.focus) report_state();
+}
+
+void Module::Loop::expire_focus() {
+  if (module_.attention_.expire(time())) report_state();
 }
 
 void Module::Loop::obey(const std::string& command) {
@@ -125,7 +132,7 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
       const auto uri = link->uri.text();
       std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
       focus_.push_back({uri, std::move(*source), {}});
-      module_.attention_.is_told = true;
+      module_.attention_.is_linked = true;
     } else if (is_input) {
       open_input(link->uri, {module_.inputs_[link->port].get()});
     } else {
@@ -213,9 +220,17 @@ void Module::Loop::report_counters() {
   reported_ = now_;
   to_wall_ = module_.clock_.wall() - module_.clock_.monotonic().count();
   std::vector<LinkCounters> links;
-  for (auto& link : sources_)
-    links.push_back(
-        {link.traffic(), link.ignored, take_durations(link.ages), take_durations(link.gaps)});
+  for (auto& link : sources_) {
+    auto& counters = links.emplace_back();
+    counters.traffic = link.traffic();
+    counters.ignored = link.ignored;
+    counters.age = take_durations(link.ages);
+    counters.gap = take_durations(link.gaps);
+    const auto& input = *link.inputs.front();
+    if (input.together != nullptr && input.together->is_latest)
+      counters.traffic.superseded +=
+          input.together->superseded + input.together->matcher.left_out(input.place).total();
+  }
   for (const auto& link : sinks_)
     links.push_back({link->sink ? link->sink->traffic() : link->traffic});
   send(Report::Counters, make_counters(links));

@@ -96,11 +96,14 @@ bool Module::Loop::take_earliest() {
     return false;
   }
   pass_to(due);
+  expire_focus();
   has_generated_ = false;
-  if (input != nullptr)
+  if (input != nullptr) {
     deliver(*input, *std::exchange(input->head, std::nullopt));
-  else if (focus != nullptr)
-    heed(*std::exchange(focus->head, std::nullopt));
+    handle_newest();
+  } else if (focus != nullptr) {
+    set_focus(*std::exchange(focus->head, std::nullopt));
+  }
   return true;
 }
 

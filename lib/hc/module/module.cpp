@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <hc/compress/compress.h>
 #include <hc/module/loop.h>
@@ -66,26 +67,20 @@ std::shared_ptr<ParameterState> Module::add_parameter(std::string name,
 
 void Module::add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
                           const Matching& how, Matcher::Take handler) {
-  auto take = [this, handler = std::move(handler)](std::span<const Message> set) {
-    const Header& latest =
-        std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
-          return a.header.time < b.header.time;
-        })->header;
-    handled_ = internal::Handled(latest);
-    if (std::any_of(set.begin(), set.end(), [&](const auto& each) {
-          return each.header.coord != latest.coord || each.header.info.type != latest.info.type;
-        }))
-      handled_.coord = 0;
-    handler(set);
-    handled_ = {};
+  const auto index = together_.size();
+  auto take = [this, index](std::span<const Message> set) {
+    internal::TogetherState& state = *together_[index];
+    if (!state.set.empty()) ++state.superseded;
+    state.set.assign(set.begin(), set.end());
+    if (!state.is_latest) handle(state);
   };
-  together_.push_back(std::make_unique<internal::TogetherState>(
-      internal::TogetherState{inputs, Matcher(inputs.size(), how, std::move(take))}));
+  together_.push_back(std::make_unique<internal::TogetherState>(internal::TogetherState{
+      inputs, std::move(handler), Matcher(inputs.size(), how, std::move(take))}));
   internal::TogetherState& state = *together_.back();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     internal::InputState& input = *inputs[i];
     HC_CHECK(!input.handler, input.name);
-    input.matcher = &state.matcher;
+    input.together = &state;
     input.place = i;
     input.handler = [this, &state, i](const Message& message) {
       state.matcher.push(i, message.keep());
@@ -94,7 +89,24 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
   }
 }
 
+void Module::handle(internal::TogetherState& together) {
+  if (together.set.empty()) return;
+  const auto set = std::exchange(together.set, {});
+  const Header& latest = std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
+                           return a.header.time < b.header.time;
+                         })->header;
+  handled_ = internal::Handled(latest);
+  if (std::any_of(set.begin(), set.end(), [&](const auto& each) {
+        return each.header.coord != latest.coord || each.header.info.type != latest.info.type;
+      }))
+    handled_.coord = 0;
+  together.handler(set);
+  handled_ = {};
+}
+
 void Module::log_unmatched(const internal::TogetherState& together) {
+  // Where sets are dropped for newer ones, that is no news.
+  if (together.is_latest && together.superseded > 0) return;
   for (const auto& input : together.inputs)
     if (!input->is_unmatched && together.matcher.left_out(input->place).total() > 0) {
       input->is_unmatched = true;

@@ -239,12 +239,12 @@ class Module {
     return message_time_ ? MonotonicTime(*message_time_) : clock_.monotonic();
   }
 
-  /// Number of the system mode in focus, as last heard; 0: none, or nobody tells it.
+  /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 200 ms.
   [[nodiscard]] std::int32_t focus() const { return attention_.focus; }
 
   /// Whether the module's mode has the focus, so that exclusive inputs take what it sends. Also
-  /// when it has no mode of its own (`--mode`), and when nobody tells the focus.
-  [[nodiscard]] bool has_focus() const { return attention_.is_heard(); }
+  /// when it has no mode of its own (`--mode`), and when it has no link from a workspace.
+  [[nodiscard]] bool has_focus() const { return attention_.has_own_focus(); }
 
   /// Runs the module as the command line says, until its inputs end, all its readers have gone, or
   /// it is told to stop (SIGINT, SIGTERM).
@@ -292,6 +292,8 @@ class Module {
                                                 ParameterOptions options);
   void add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
                     const Matching& how, Matcher::Take handler);
+  /// Handles the set that is complete, if there is one.
+  void handle(internal::TogetherState& together);
   /// Logs the first unmatched message of each input.
   void log_unmatched(const internal::TogetherState& together);
   void log_counts() const;

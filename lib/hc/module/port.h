@@ -22,6 +22,8 @@ class Module;
 
 namespace internal {
 
+struct TogetherState;
+
 /// One end of a link, at a port.
 struct LinkedSink {
   std::string uri;
@@ -34,12 +36,12 @@ struct InputState {
   std::string name, doc;
   std::vector<PortType> types;  ///< what it takes; empty: anything
   std::function<void(const Message&)> handler;
-  Matcher* matcher = nullptr;  ///< of the inputs that are taken together with this one
-  std::size_t place = 0;       ///< of this one among them
-  bool is_unmatched = false;   ///< a message was dropped for want of a partner, and it is logged
-  bool is_raw = false;         ///< the handler gets messages as they came, compressed ones too
-  bool is_actor = false;       ///< moves something: one writer at a time is to have it
-  bool is_exclusive = false;   ///< takes messages of the mode in focus alone
+  TogetherState* together = nullptr;  ///< with the inputs that are taken together with this one
+  std::size_t place = 0;              ///< of this one among them
+  bool is_unmatched = false;  ///< a message was dropped for want of a partner, and it is logged
+  bool is_raw = false;        ///< the handler gets messages as they came, compressed ones too
+  bool is_actor = false;      ///< moves something: one writer at a time is to have it
+  bool is_exclusive = false;  ///< takes messages of the mode in focus alone
 
   [[nodiscard]] bool wants_finite() const {
     return std::any_of(types.begin(), types.end(), [](const auto& type) { return type.finite; });
@@ -76,7 +78,12 @@ struct Handled {
 /// Inputs that are taken together.
 struct TogetherState {
   std::vector<std::shared_ptr<InputState>> inputs;
+  Matcher::Take handler;
   Matcher matcher;
+  /// Only the newest complete set is handled: a link of theirs has keep=latest.
+  bool is_latest = false;
+  std::vector<Message> set;      ///< complete, to be handled; empty: none
+  std::uint64_t superseded = 0;  ///< complete sets that were dropped for a newer one
 };
 
 struct OutputState {

@@ -2,5 +2,5 @@
 #include "program.h"
 
 int main(int argc, char** argv) {
-  return run_actor(argc, argv);
+  return run_actor(argc, argv, hc::SystemClock());
 }

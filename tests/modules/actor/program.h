@@ -2,5 +2,8 @@
 #pragma once
 // An actuator for tests: takes commands and reports which.
 
+#include <hc/base/clock.h>
+
 /// The program, on a process's main thread or on one of a test.
-int run_actor(int argc, char** argv);
+/// @param clock  by which the focus expires.
+int run_actor(int argc, char** argv, const hc::Clock& clock);
