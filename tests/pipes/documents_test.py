@@ -46,6 +46,9 @@ class Documents(Pipes):
     def test_modules(self):
         self.run_document("doc/modules.md")
 
+    def test_module_contract(self):
+        self.run_document("spec/module.md")
+
     def test_routing(self):
         self.run_document("doc/routing.md")
 
