@@ -239,5 +239,33 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   EXPECT_EQ(join(), 0);
 }
 
+TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
+  const std::string name = "shm:writer-" + std::to_string(::getpid());
+  Module module{"reader", "Reads."};
+  module.on(module.input("in", table<double>(), ""), [](const auto&) {});
+  ::testing::internal::CaptureStderr();
+  auto writer = sink_of(name);
+  start_managed(module, {"--in=" + name + "?reconnect=60"});
+  ASSERT_TRUE(writer->send(table({1.0})));
+  ASSERT_TRUE(writer->close());
+  writer.reset();
+  ASSERT_TRUE(tell(*control_, "finish in=" + name + "?reconnect=60"));
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {
+  const std::string nowhere = "unix:@nowhere-" + std::to_string(::getpid());
+  Module module{"reader", "Reads."};
+  module.on(module.input("in", table<double>(), ""), [](const auto&) {});
+  start_managed(module);
+  ASSERT_TRUE(tell(*control_, "link in in=" + nowhere));
+  const auto refusal = rows_of(next(*reports_, Report::Refusal)).at(0);
+  EXPECT_TRUE(refusal.starts_with("command \"link in in=" + nowhere + "\": Closed: in: "))
+      << refusal;
+  ASSERT_TRUE(control_->close());
+  EXPECT_EQ(join(), 0);
+}
+
 }  // namespace
 }  // namespace hc

@@ -12,8 +12,8 @@
 namespace hc {
 namespace {
 
+using internal::Inlet;
 using internal::LinkedSink;
-using internal::LinkedSource;
 using internal::Stopped;
 
 constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
@@ -21,7 +21,9 @@ constexpr const char* kReportsKept = "64";  // for one who does not listen for a
 /// The longest wait at a time: poll() counts in 32 bits.
 constexpr std::chrono::milliseconds kLongestWait = std::chrono::hours(1);
 constexpr const char* kSetsKept = "4";  // by links whose newest complete set is handled
-constexpr int kMostAtOnce = 16;         // messages that a link gives in one turn
+/// A line about a link waits for so long: at the end of a graph it tells nothing.
+constexpr std::chrono::milliseconds kLineDelay{200};
+constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
 
 /// What ends a module: cleanly when it was told to stop, else with the name of who failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
@@ -45,36 +47,69 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
     : module_(module) {
   options_.limits = arguments.limits;
   options_.stop = stop;
-  options_.log = [this](Severity, std::string_view line) { module_.log(line); };
   module_.attention_ = arguments.attention;
   open_outputs(arguments);
   std::unique_ptr<Sink> reports;
   if (arguments.manage) {
     Uri uri = *arguments.manage;
     if (uri.option("keep", "").empty()) uri.options.emplace_back("keep", kReportsKept);
-    auto sink = open_sink(uri, options_);
+    auto sink = open_sink(uri, options_for(uri, "reports"));
     if (!sink) fail(uri.text(), sink.error());
     reports = std::move(*sink);
   }
-  auto open = [&](const Uri& uri) {
-    auto source = open_source(uri, options_);
-    if (!source) fail(uri.text(), source.error());
-    return std::move(*source);
-  };
-  management_ = internal::Management(std::move(reports),
-                                     arguments.control ? open(*arguments.control) : nullptr);
+  management_ = internal::Management(
+      std::move(reports), arguments.control ? open(*arguments.control, "commands") : nullptr);
   open_inputs(arguments);
-  for (const auto& uri : arguments.focus) focus_.push_back({uri.text(), open(uri), {}});
-  module_.attention_.is_linked = !focus_.empty();
+  for (const auto& uri : arguments.focus) open_focus(uri);
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   module_.loop_ = this;
 }
 
-std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri) {
-  auto options = options_;
+Module::Loop::~Loop() {
+  if (!stop_requested()) log_lines(MonotonicTime::max());
+  module_.loop_ = nullptr;
+}
+
+/// What a link is called in the log: by its port where `hc run` has made it, else by its URI.
+std::string Module::Loop::name_of(const std::string& uri, const std::string& port) const {
+  const bool is_of_graph = uri.starts_with("shm:") || uri.find(":@") != std::string::npos;
+  return management_.commands() != nullptr && is_of_graph ? port : uri;
+}
+
+/// Options of a link. What those of a graph log waits in lines_.
+LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
+  LinkOptions options = options_;
+  options.log = [this, uri = uri.text(), port](Severity, std::string_view line) {
+    const std::string name = name_of(uri, port);
+    if (name == uri || !line.starts_with(uri)) return module_.log(line);
+    lines_.push_back({uri, name + std::string(line.substr(uri.size())),
+                      module_.clock_.monotonic() + kLineDelay});
+  };
+  return options;
+}
+
+/// Logs what links have had to say for a while.
+void Module::Loop::log_lines(MonotonicTime now) {
+  for (; !lines_.empty() && lines_.front().due <= now; lines_.pop_front())
+    module_.log(lines_.front().text);
+}
+
+std::unique_ptr<Source> Module::Loop::open(const Uri& uri, const std::string& port) {
+  auto source = open_source(uri, options_for(uri, port));
+  if (!source) fail(name_of(uri.text(), port), source.error());
+  return std::move(*source);
+}
+
+void Module::Loop::open_focus(const Uri& uri) {
+  focus_.push_back({.uri = uri.text(), .source = open(uri, "focus")});
+  module_.attention_.is_linked = true;
+}
+
+std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port) {
+  auto options = options_for(uri, port);
   options.awaits_reader = [this](bool awaits) { report_state(awaits); };
   auto sink = open_sink(uri, options);
-  if (!sink) fail(uri.text(), sink.error());
+  if (!sink) fail(name_of(uri.text(), port), sink.error());
   auto link = std::make_shared<LinkedSink>();
   link->uri = uri.text();
   link->sink = std::move(*sink);
@@ -84,9 +119,9 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri) {
 
 void Module::Loop::open_outputs(const internal::Arguments& arguments) {
   for (const auto& [port, uri] : arguments.outputs)
-    module_.outputs_[port]->links.push_back(open_output(uri));
+    module_.outputs_[port]->links.push_back(open_output(uri, module_.outputs_[port]->name));
   if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
-  auto standard_output = open_output({"-", "", {}});
+  auto standard_output = open_output({"-", "", {}}, "-");
   for (auto& output : module_.outputs_) output->links.push_back(standard_output);
 }
 
@@ -94,12 +129,8 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
   // What is taken together is dropped together: by the loop, and not by each link for itself.
   Uri opened = uri;
   const bool is_latest = inputs.front()->together != nullptr && keeps_latest(opened);
-  auto source = open_source(opened, options_);
-  if (!source) fail(uri.text(), source.error());
-  LinkedSource link;
-  link.uri = uri.text();
-  link.source = std::move(*source);
-  link.inputs = std::move(inputs);
+  Inlet link{
+      .uri = uri.text(), .source = open(opened, inputs.front()->name), .inputs = std::move(inputs)};
   link.is_latest = is_latest;
   for (auto* input : link.inputs)
     if (input->together != nullptr) input->together->matcher.begin(input->place);
@@ -190,7 +221,7 @@ bool Module::Loop::all_ended() const {
       (management_.commands() != nullptr || (module_.inputs_.empty() && !module_.timers_.empty())))
     return false;
   return std::all_of(sources_.begin(), sources_.end(),
-                     [](const LinkedSource& link) { return link.source == nullptr; });
+                     [](const Inlet& link) { return link.source == nullptr; });
 }
 
 void Module::Loop::fire_timers() {
@@ -228,7 +259,7 @@ MonotonicTime Module::Loop::next_timer() const {
 /// Takes a message from each link, but from those with too many that wait for others' only when
 /// nothing else has any.
 bool Module::Loop::take_each() {
-  auto is_crowded = [](const LinkedSource& link) {
+  auto is_crowded = [](const Inlet& link) {
     return std::any_of(link.inputs.begin(), link.inputs.end(), [](const auto* input) {
       return input->together != nullptr && input->together->matcher.crowded(input->place);
     });
@@ -254,33 +285,42 @@ void Module::Loop::handle_newest() {
   for (auto& together : module_.together_) module_.handle(*together);
 }
 
-bool Module::Loop::take_one(LinkedSource& link) {
+bool Module::Loop::take_one(Inlet& link) {
   Message message;
   if (take(link, message) != Got::Message) return false;
   if (management_.is_heard()) measure(link, message);
-  deliver(link, message);
+  handle(link, message);
   return true;
 }
 
+void Module::Loop::handle(Inlet& link, const Message& message) {
+  if (link.inputs.empty())
+    set_focus(message);
+  else
+    deliver(link, message);
+}
+
 /// What a link has now; one that has ended is ended here too.
-Got Module::Loop::take(LinkedSource& link, Message& message) {
+Got Module::Loop::take(Inlet& link, Message& message) {
   auto got = link.source->take(message);
+  if (!got && link.inputs.empty()) got = Got::End;  // the focus expires
   if (!got) {
     bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
-    fail(is_of_link || link.inputs.size() > 1 ? link.uri : link.inputs[0]->name, got.error());
+    const std::string& port = link.inputs[0]->name;
+    fail(is_of_link || link.inputs.size() > 1 ? name_of(link.uri, port) : port, got.error());
   }
   if (*got == Got::End) end(link);
   return *got;
 }
 
 bool Module::Loop::is_linked(const internal::InputState& input) const {
-  return std::any_of(sources_.begin(), sources_.end(), [&](const LinkedSource& link) {
+  return std::any_of(sources_.begin(), sources_.end(), [&](const Inlet& link) {
     return link.source != nullptr &&
            std::find(link.inputs.begin(), link.inputs.end(), &input) != link.inputs.end();
   });
 }
 
-void Module::Loop::end(LinkedSource& link) {
+void Module::Loop::end(Inlet& link) {
   link.past = link.traffic();
   link.source.reset();
   link.head.reset();
@@ -327,7 +367,7 @@ void Module::Loop::log_dropped() {
     }
 }
 
-void Module::Loop::deliver(LinkedSource& link, const Message& message) {
+void Module::Loop::deliver(Inlet& link, const Message& message) {
   std::string takers;
   for (auto* input : link.inputs) {
     auto fits_message = [&](const PortType& type) {
@@ -365,7 +405,7 @@ void Module::Loop::deliver(LinkedSource& link, const Message& message) {
 }
 
 /// Notes how old a message is, and how long after the one before it came.
-void Module::Loop::measure(LinkedSource& link, const Message& message) {
+void Module::Loop::measure(Inlet& link, const Message& message) {
   if (message.header.time != 0) link.ages.add(now_.count() + to_wall_ - message.header.time);
   if (link.last_come.count() != 0) link.gaps.add((now_ - link.last_come).count());
   link.last_come = now_;
@@ -387,6 +427,7 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (management_.commands() != nullptr) sources.push_back(management_.commands());
   if (module_.message_time_) until = MonotonicTime::max();  // it is messages that pass the time
   if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
+  if (!lines_.empty()) until = std::min(until, lines_.front().due);
   auto timeout = std::chrono::milliseconds(-1);
   if (until != MonotonicTime::max())
     timeout = std::clamp(std::chrono::ceil<std::chrono::milliseconds>(until - now_),

@@ -3,6 +3,7 @@
 // A module at work: takes messages from its links and hands them to the handlers, obeys commands,
 // and reports. Internal.
 
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,34 +20,28 @@ namespace internal {
 /// Thrown to end a module cleanly: nobody reads it any more, or it was told to stop.
 struct Stopped {};
 
-/// A link from which inputs are fed: one port, or all of them from standard input.
-struct LinkedSource {
+/// A link whose messages come in: to one port, to all of them from standard input, or the focus.
+struct Inlet {
   std::string uri;
-  std::unique_ptr<Source> source;  ///< null once it has ended
-  std::vector<InputState*> inputs;
-  std::optional<Message> head;  ///< with --clock messages: taken, and to be handled in its time
-  Route route;                  ///< who is at the other end
-  bool is_latest = false;       ///< keep=latest, of an input that is taken together with others
-  Traffic past = {};            ///< of sources that have ended
-  std::uint64_t ignored = 0;    ///< messages that no handler got: another mode has the focus
-  Quantiles ages, gaps;         ///< of the messages since the last report; gaps between them
-  MonotonicTime last_come{0};   ///< the message before; 0: none
+  std::unique_ptr<Source> source = {};   ///< null once it has ended
+  std::vector<InputState*> inputs = {};  ///< none: the focus
+  std::optional<Message> head =
+      {};                          ///< with --clock messages: taken, and to be handled in its time
+  Route route = {};                ///< who is at the other end
+  bool is_latest = false;          ///< keep=latest, of an input that is taken together with others
+  Traffic past = {};               ///< of sources that have ended
+  std::uint64_t ignored = 0;       ///< messages that no handler got: another mode has the focus
+  Quantiles ages = {}, gaps = {};  ///< of the messages since the last report; gaps between them
+  MonotonicTime last_come{0};      ///< the message before; 0: none
 
   [[nodiscard]] Traffic traffic() const {
     Traffic all = past;
     if (source != nullptr) all += source->traffic();
     return all;
   }
-  [[nodiscard]] bool is_same(const LinkedSource& other) const {
+  [[nodiscard]] bool is_same(const Inlet& other) const {
     return uri == other.uri && inputs == other.inputs;
   }
-};
-
-/// A link that tells the mode in focus.
-struct FocusLink {
-  std::string uri;
-  std::unique_ptr<Source> source;  ///< null once it has ended
-  std::optional<Message> head;     ///< as of a LinkedSource
 };
 
 /// A descriptor that the module reads by itself, to be waited for beside the links.
@@ -68,7 +63,7 @@ struct Module::Loop {
 
   /// Opens the links: outputs first, since those that listen must be there before anybody waits.
   Loop(Module& module, const internal::Arguments& arguments, int stop);
-  ~Loop() { module_.loop_ = nullptr; }
+  ~Loop();
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
 
@@ -80,26 +75,32 @@ struct Module::Loop {
   void close();
 
  private:
-  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri);
+  [[nodiscard]] std::string name_of(const std::string& uri, const std::string& port) const;
+  LinkOptions options_for(const Uri& uri, const std::string& port);
+  void log_lines(MonotonicTime now);
+  std::unique_ptr<Source> open(const Uri& uri, const std::string& port);
+  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri, const std::string& port);
   void open_outputs(const internal::Arguments& arguments);
   void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);
+  void open_focus(const Uri& uri);
   bool join_renewed();
   void choose_policies();
   void set_route(const std::string& link, const internal::Route& route);
 
   bool take_each();
   void handle_newest();
-  bool take_one(internal::LinkedSource& link);
-  Got take(internal::LinkedSource& link, Message& message);
+  bool take_one(internal::Inlet& link);
+  Got take(internal::Inlet& link, Message& message);
   [[nodiscard]] bool is_linked(const internal::InputState& input) const;
   [[nodiscard]] bool all_ended() const;
-  void end(internal::LinkedSource& link);
+  void end(internal::Inlet& link);
   void end_unlinked();
   void end_unneeded();
   void log_dropped();
-  void measure(internal::LinkedSource& link, const Message& message);
-  void deliver(internal::LinkedSource& link, const Message& message);
+  void measure(internal::Inlet& link, const Message& message);
+  void handle(internal::Inlet& link, const Message& message);
+  void deliver(internal::Inlet& link, const Message& message);
   void fire_timers();
   void read_watched();
   [[nodiscard]] MonotonicTime next_timer() const;
@@ -111,6 +112,7 @@ struct Module::Loop {
   void begin_clock();
   bool take_earliest();
   bool has_heads();
+  [[nodiscard]] internal::Inlet* earliest();
   void pass_to(MonotonicTime time) { module_.message_time_ = time.count(); }
 
   // loop_control.cpp
@@ -134,10 +136,15 @@ struct Module::Loop {
 
   Module& module_;
   LinkOptions options_;
-  std::vector<internal::LinkedSource> sources_;
+  std::vector<internal::Inlet> sources_;
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;  // in the order of the command line
-  std::vector<internal::FocusLink> focus_;
+  std::vector<internal::Inlet> focus_;
   internal::Management management_;
+  struct Line {
+    std::string uri, text;
+    MonotonicTime due;
+  };
+  std::deque<Line> lines_;  // about links, not logged yet
   /// By the module's clock, at the last look.
   [[nodiscard]] MonotonicTime time() const {
     return module_.message_time_ ? MonotonicTime(*module_.message_time_) : now_;

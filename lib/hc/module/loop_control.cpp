@@ -11,8 +11,8 @@
 namespace hc {
 namespace {
 
+using internal::Inlet;
 using internal::LinkedSink;
-using internal::LinkedSource;
 
 /// How often a module that is busy looks for commands; one that waits is woken by them.
 constexpr std::chrono::milliseconds kLookPeriod{10};
@@ -40,6 +40,7 @@ Durations take_durations(internal::Quantiles& quantiles) {
 void Module::Loop::attend() {
   receive_focus();
   expire_focus();
+  log_lines(now_);
   if (now_ - attended_ < kLookPeriod) return;
   attended_ = now_;
   for (const auto& command : management_.take_commands()) obey(command);
@@ -49,16 +50,8 @@ void Module::Loop::attend() {
 void Module::Loop::receive_focus() {
   if (module_.message_time_) return;  // in its time
   Message message;
-  for (auto& link : focus_) {
-    while (link.source != nullptr) {
-      auto got = link.source->take(message);
-      if (got && *got == Got::Nothing) break;
-      if (!got || *got == Got::End)
-        link.source.reset();
-      else
-        set_focus(message);
-    }
-  }
+  for (auto& link : focus_)
+    while (link.source != nullptr && take(link, message) == Got::Message) set_focus(message);
 }
 
 void Module::Loop::set_focus(const Message& message) {
@@ -127,16 +120,13 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
   // What cannot be opened is told, and leaves the module as it was.
   try {
     if (link->is_focus) {
-      auto source = open_source(link->uri, options_);
-      if (!source) return source.error();
-      const auto uri = link->uri.text();
-      std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
-      focus_.push_back({uri, std::move(*source), {}});
-      module_.attention_.is_linked = true;
+      std::erase_if(focus_, [uri = link->uri.text()](const auto& each) { return each.uri == uri; });
+      open_focus(link->uri);
     } else if (is_input) {
       open_input(link->uri, {module_.inputs_[link->port].get()});
     } else {
-      module_.outputs_[link->port]->links.push_back(open_output(link->uri));
+      module_.outputs_[link->port]->links.push_back(
+          open_output(link->uri, module_.outputs_[link->port]->name));
     }
   } catch (const ModuleError& error) {
     return Error{Code::System, error.what()};
@@ -156,9 +146,8 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   }
   auto* input = module_.inputs_[link->port].get();
   // What is taken together with this input waits for the next link, and is not ended.
-  const auto erased = std::erase_if(sources_, [&](const LinkedSource& each) {
-    return each.uri == uri && each.inputs.front() == input;
-  });
+  const auto erased = std::erase_if(
+      sources_, [&](const Inlet& each) { return each.uri == uri && each.inputs.front() == input; });
   return erased == 0 ? unknown_link() : Status();
 }
 
@@ -183,11 +172,12 @@ Status Module::Loop::unlink_output(internal::OutputState& output, const std::str
 Status Module::Loop::finish(const std::string& text) {
   auto link = internal::parse_port_link(module_, true, text);
   if (!link) return link.error();
-  for (auto& each : sources_)
+  for (auto& each : link->is_focus ? focus_ : sources_)
     if (each.uri == link->uri.text() && each.source != nullptr) each.source->finish();
-  for (auto& each : focus_)
-    if (link->is_focus && each.uri == link->uri.text() && each.source != nullptr)
-      each.source->finish();
+  // That its writer has ended is no news then.
+  std::erase_if(lines_, [&](const auto& line) {
+    return line.uri.starts_with(link->uri.scheme + ":" + link->uri.rest + "?");
+  });
   return {};
 }
 

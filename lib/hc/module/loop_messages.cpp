@@ -24,20 +24,25 @@ constexpr MonotonicTime kLongestGap = std::chrono::hours(1);
 bool Module::Loop::has_heads() {
   bool all = true;
   Message message;
-  for (auto& link : focus_) {
-    if (link.source == nullptr || link.head) continue;
-    const auto got = link.source->take(message);
-    if (got && *got == Got::Message) link.head = message.keep();
-    if (got && *got == Got::Nothing) all = false;
-    if (!got || *got == Got::End) link.source.reset();
-  }
-  for (auto& link : sources_) {
-    if (link.source == nullptr || link.head) continue;
-    const auto got = take(link, message);
-    if (got == Got::Message) link.head = message.keep();
-    if (got == Got::Nothing) all = false;
-  }
+  for (auto* links : {&focus_, &sources_})
+    for (auto& link : *links) {
+      if (link.source == nullptr || link.head) continue;
+      const auto got = take(link, message);
+      if (got == Got::Message) link.head = message.keep();
+      if (got == Got::Nothing) all = false;
+    }
   return all;
+}
+
+/// The link whose next message is the earliest; of equal times, the focus, then the first. Null:
+/// none has any.
+internal::Inlet* Module::Loop::earliest() {
+  internal::Inlet* first = nullptr;
+  for (auto* links : {&focus_, &sources_})
+    for (auto& link : *links)
+      if (link.head && (first == nullptr || link.head->header.time < first->head->header.time))
+        first = &link;
+  return first;
 }
 
 /// The clock begins with the first message that has a time.
@@ -49,12 +54,10 @@ void Module::Loop::begin_clock() {
     attend();
   }
   std::optional<std::int64_t> first;
-  auto look = [&](const auto& link) {
-    if (!link.head || link.head->header.time == 0) return;
-    first = std::min(first.value_or(link.head->header.time), link.head->header.time);
-  };
-  for (const auto& link : focus_) look(link);
-  for (const auto& link : sources_) look(link);
+  for (const auto* links : {&focus_, &sources_})
+    for (const auto& link : *links)
+      if (link.head && link.head->header.time != 0)
+        first = std::min(first.value_or(link.head->header.time), link.head->header.time);
   if (first) pass_to(MonotonicTime(*first));
 }
 
@@ -67,22 +70,10 @@ bool Module::Loop::take_earliest() {
     generates_next_ = !std::exchange(has_ended_, true);
     return false;
   }
-  internal::FocusLink* focus = nullptr;
-  internal::LinkedSource* input = nullptr;
-  std::int64_t earliest = 0;
-  auto is_first = [&](const auto& link) {
-    if (!link.head ||
-        ((focus != nullptr || input != nullptr) && link.head->header.time >= earliest))
-      return false;
-    earliest = link.head->header.time;
-    return true;
-  };
-  for (auto& link : focus_)
-    if (is_first(link)) focus = &link;
-  for (auto& link : sources_)
-    if (is_first(link)) input = &link;
+  internal::Inlet* link = earliest();
+  if (link == nullptr) return false;  // none is linked yet
   // One without a time, or that is late, comes now.
-  const auto due = std::max(MonotonicTime(earliest), time());
+  const auto due = std::max(MonotonicTime(link->head->header.time), time());
   if (due - time() > kLongestGap) {
     pass_to(due);
     return true;
@@ -98,12 +89,8 @@ bool Module::Loop::take_earliest() {
   pass_to(due);
   expire_focus();
   has_generated_ = false;
-  if (input != nullptr) {
-    deliver(*input, *std::exchange(input->head, std::nullopt));
-    handle_newest();
-  } else if (focus != nullptr) {
-    set_focus(*std::exchange(focus->head, std::nullopt));
-  }
+  handle(*link, *std::exchange(link->head, std::nullopt));
+  handle_newest();
   return true;
 }
 
