@@ -15,7 +15,10 @@ class Attention {
   void run() {
     take_modes();
     for (const auto& workspace : graph_.workspaces)
-      if (publishes_focus(workspace)) planning_.plan.workspaces.insert(workspace.value);
+      if (publishes_focus(workspace)) {
+        planning_.plan.workspaces.insert(workspace.value);
+        name_modes(workspace.value);
+      }
     for (const auto& module : graph_.modules)
       if (PlannedModule* planned = planning_.planned(module.name)) {
         if (planning_.description_of(module.name)->control) add_options(module, *planned);
@@ -58,6 +61,18 @@ class Attention {
       problems_.add(place, name + ".focus sends " + in_words(output->types) + ", not " +
                                in_words(focus_input().types));
     return output != nullptr && fits(output->types, focus_input().types);
+  }
+
+  /// Gives a workspace that has a parameter `modes` their names, for its log lines.
+  void name_modes(const std::string& workspace) {
+    constexpr const char* kModes = "modes";
+    PlannedModule* planned = planning_.planned(workspace);
+    if (find_named(planning_.description_of(workspace)->parameters, kModes) == nullptr ||
+        planned == nullptr || planned->parameters.contains(kModes))
+      return;
+    std::string& text = planned->parameters[kModes];
+    for (const auto& [name, number] : planning_.plan.modes)
+      text += (text.empty() ? "" : ",") + name + "=" + std::to_string(number);
   }
 
   static bool wants_focus(const GraphModule& module) {

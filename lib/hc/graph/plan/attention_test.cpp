@@ -35,6 +35,7 @@ TEST(Attention, ModulesAreToldTheirModes) {
   EXPECT_EQ(values_of(planned->modules[0], "--mode"), (Words{"1"}));
   EXPECT_EQ(values_of(planned->modules[1], "--modes"), (Words{"3"}));
   EXPECT_EQ(values_of(planned->modules[2], "--exclusive"), (Words{"command"}));
+  EXPECT_EQ(planned->modules[3].parameters.at("modes"), "read=3,track=1");
   EXPECT_EQ(planned->modules[0].mode, "track");
   EXPECT_EQ(planned->modules[1].modes, (Words{"read"}));
   EXPECT_EQ(planned->modules[2].exclusive, (std::set<std::string>{"command"}));

@@ -50,11 +50,14 @@ inline Result<std::string> describe(const std::string& program) {
     input.replace(input.size() - 1, 1, R"(,"actor":true})");
     return controlled(module(input, port("pose", "map", 0)));
   }
-  if (program == "workspace")
-    return controlled(
+  if (program == "workspace") {
+    std::string text = controlled(
         module(port("bids", "map", 0),
                R"({"name":"focus","types":[{"type":"table","components":1,"scalar":"i32",)"
                R"("width":1,"height":1,"coord":0}]})"));
+    return text.replace(text.find("\"parameters\":["), 14,
+                        R"("parameters":[{"name":"modes","type":"string"},)");
+  }
   if (program == "framed")
     return std::string(R"({"name":"x","inputs":[],"outputs":[],"parameters":[)"
                        R"({"name":"frames","type":"string"},)"
