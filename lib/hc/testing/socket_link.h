@@ -256,9 +256,15 @@ inline std::size_t open_descriptors() {
   return count;
 }
 
+/// Starts the thread that all links of a process share, whose descriptors stay open.
+inline void start_link_thread() {
+  sink_of("unix-listen:@hc-test-" + std::to_string(::getpid()) + "?readers=0&keep=latest");
+}
+
 constexpr int kPeersThatLeave = static_cast<int>(internal::kMaxPeers) + 20;
 
 TEST_P(SocketLink, AWriterThatLeftIsForgotten) {
+  start_link_thread();
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());
   ASSERT_TRUE(internal::Watch::make(-1, [](auto) {}));  // the thread for links has descriptors too
