@@ -82,7 +82,9 @@ TEST(FramesDocument, TheExampleIsTheOneAbove) {
   std::istringstream lines(code);
   for (std::string line; std::getline(lines, line);)
     unindented += (line.empty() ? line : line.substr(2)) + "\n";
-  EXPECT_EQ(between(text_of("doc/frames.md"), "```cpp\n", "```"), unindented);
+  EXPECT_EQ("hc::frames::Tree tree" +
+                between(text_of("doc/frames.md"), "```cpp\nhc::frames::Tree tree", "```"),
+            unindented);
 }
 
 TEST(FramesDocument, TheErrorItShowsIsTheOneThatComes) {
