@@ -23,13 +23,13 @@ Result<Eigen::Vector3d> example(const Message& report, const Message& picture,
   if (joined) joined = tree.fix("head", "left_eye", T_head_left_eye);
   if (!joined) return joined.error();
 
-  // Whenever the head tells where it is:
+  // Whenever the head reports where it is:
   auto pose = hc::pose_of(report);
   if (!pose) return pose.error();
   auto fed = tree.feed(pose->to, pose->from, pose->time, pose->T_to_from);
   if (!fed) return fed.error();
 
-  // Whenever there is a picture:
+  // Whenever there is an image:
   auto T_world_left_eye = tree.lookup("world", "left_eye", picture.header.time);
   if (!T_world_left_eye) return T_world_left_eye.error();
   Eigen::Vector3d p_world = *T_world_left_eye * p_left_eye;
