@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include <hc/module/module.h>
 
@@ -35,7 +36,7 @@ int main(int argc, char** argv) {
     std::snprintf(line, sizeof line, "left and right %s, zero off by %.3f°, camera offset by %.3f°",
                   is_right ? "identified correctly" : "MIXED UP", zero * 180 / M_PI,
                   offset * 180 / M_PI);
-    module.log(line);
+    module.log(std::string("result: ") + line);
     is_done = true;
   });
   std::int64_t looks = 0;

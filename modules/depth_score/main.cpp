@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How good a disparity map is, against ground truth.
 #include <cstdio>
+#include <string>
 
 #include <hc/module/module.h>
 #include <vision/messages.h>
@@ -38,7 +39,7 @@ int main(int argc, char** argv) {
                             "bad or hole %.2f %%, of %lld pixels with known truth",
                             100 * score.bad_share(), *threshold, 100 * score.hole_share(),
                             100 * score.wrong_share(), static_cast<long long>(score.truth));
-              module.log(line);
+              module.log(std::string("result: ") + line);
             });
   return module.run(argc, argv);
 }

@@ -2,6 +2,7 @@
 // How well a head follows another head, by the truth of a simulation.
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include <frames/messages.h>
 #include <gaze/follow_score.h>
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
     char line[120];
     std::snprintf(line, sizeof line, "error %.2f° RMS, %.2f° at most, behind by %.0f ms",
                   score.rms * kDegrees, score.max * kDegrees, score.behind * kMilliseconds);
-    module.log(line);
+    module.log(std::string("result: ") + line);
     return false;
   });
   return module.run(argc, argv);

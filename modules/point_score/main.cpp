@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <string>
 
 #include <frames/messages.h>
 #include <hc/module/module.h>
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
     std::snprintf(line, sizeof line,
                   "stick to first motion %.1f ms median, %.1f ms at most, of %zu of %d pushes",
                   1000 * median, 1000 * most, n, pusher->pushes());
-    module.log(line);
+    module.log(std::string("result: ") + line);
     return false;
   });
   return module.run(argc, argv);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a robot reads aloud what is written before it.
 #include <cstdio>
+#include <string>
 
 #include <hc/module/module.h>
 
@@ -73,7 +74,7 @@ int main(int argc, char** argv) {
     if (score.unspoken > 0)
       std::snprintf(line + used, sizeof line - static_cast<std::size_t>(used),
                     "; %zu not spoken in time", score.unspoken);
-    module.log(line);
+    module.log(std::string("result: ") + line);
   };
   module.generate([&] {
     module.keep_rate(kLook);

@@ -59,6 +59,8 @@ int main(int argc, char** argv) {
       throw hc::ModuleError("eSpeak NG gives " + std::to_string(synthesis->rate()) + " Hz, not " +
                             std::to_string(kRate));
   });
+  std::size_t said = 0;
+  std::string last;
   auto speak = [&](const WaitingText& next) {
     auto speech = synthesis->say(
         next.characters,
@@ -82,6 +84,8 @@ int main(int argc, char** argv) {
     table.header.mode = next.mode;
     spoken_until = module.monotonic() + std::chrono::nanoseconds(static_cast<std::int64_t>(frames) *
                                                                  1'000'000'000 / kRate);
+    ++said;
+    last = utf8(next.characters);
     words.send({std::move(table)});  // first, since a link may wait until the sound has been heard
     sound.send(std::move(draft));
   };
@@ -104,6 +108,9 @@ int main(int argc, char** argv) {
     while (!queue.empty()) speak(queue.pop());
   });
   const int status = module.run(argc, argv);
+  if (said > 0)
+    module.log("result: said " + std::to_string(said) + (said == 1 ? " text" : " texts") +
+               ", the last \"" + last + "\"");
   if (left_out > 0) module.log(std::to_string(left_out) + " texts were left out");
   return status;
 }

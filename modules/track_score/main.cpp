@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <utility>
 
 #include <frames/messages.h>
@@ -74,7 +75,7 @@ int main(int argc, char** argv) {
                     "after %.2f s at most, of %zu images",
                     score.rms * 180 / M_PI, *score.acquired, score.again.size(),
                     is_lost ? -1 : longest, score.samples);
-    module.log(line);
+    module.log(std::string("result: ") + line);
     return false;
   });
   return module.run(argc, argv);

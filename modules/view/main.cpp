@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
 
   bool shows = false;
   std::set<std::string> windows;
+  fs::path last;  // that was saved
   module.on_start([&] {
     if (*min > *max) throw hc::ModuleError("min is above max");
     bool wants_window = *window == "yes" || (*window == "auto" && save->empty());
@@ -94,7 +95,8 @@ int main(int argc, char** argv) {
     if (!save->empty()) {
       bool all = save->ends_with('/');
       std::string file = std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";
-      write_whole(all ? fs::path(*save) / file : fs::path(*save), bgr);
+      last = all ? fs::path(*save) / file : fs::path(*save);
+      write_whole(last, bgr);
     }
     if (shows) {
       std::string title = "hypercolumn " + std::to_string(header.src);
@@ -111,5 +113,7 @@ int main(int argc, char** argv) {
     while (*stay && !hc::stop_requested() && std::any_of(windows.begin(), windows.end(), is_open))
       if (cv::waitKey(kPause) >= 0) break;
   });
-  return module.run(argc, argv);
+  const int status = module.run(argc, argv);
+  if (!last.empty()) module.log("result: image saved to " + fs::absolute(last).string());
+  return status;
 }

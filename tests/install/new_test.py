@@ -79,7 +79,7 @@ class New(unittest.TestCase):
 
         (root / "in.mtp").write_text(IN)
         (root / "g.toml").write_text(GRAPH)
-        self.assertIn("nothing is wrong", self.shell("hc check g.toml"))
+        self.assertIn("no problems found", self.shell("hc check g.toml"))
         self.shell("hc run g.toml")
         self.assertIn('"elements":[[20,50]]', self.shell("hc cat --json out.mtp"))
 

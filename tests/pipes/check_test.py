@@ -96,11 +96,11 @@ class Check(Pipes):
         }  # wants the workspace of who includes it
         for graph in sorted(set(os.listdir(ROOT / "graphs")) - included):
             out = self.shell("hc check %s/graphs/%s" % (ROOT, graph))
-            self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: nothing is wrong\n$")
+            self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: no problems found\n$")
 
     def test_a_real_head_has_the_tasks_of_the_simulated_one(self):
         self.environment["HC_HEAD"] = "real_head.toml"
-        self.assertIn(": nothing is wrong", self.shell("hc check %s/graphs/head.toml" % ROOT))
+        self.assertIn(": no problems found", self.shell("hc check %s/graphs/head.toml" % ROOT))
 
     def test_errors_of_an_included_file_name_it_and_programs_are_sought_beside_it(self):
         os.mkdir(self.path("parts"))
@@ -108,7 +108,7 @@ class Check(Pipes):
         ring = 'version = 1\n[modules.a]\nprogram = "./relay"\n[modules.b]\nprogram = "./relay"\n'
         self.write("parts/ring.toml", ring + 'inputs.in = "a.out"\n')
         self.write("g.toml", 'version = 1\n[graphs.x]\nfile = "parts/ring.toml"\n')
-        self.assertIn("2 modules, 1 link: nothing", self.shell("hc check g.toml"))
+        self.assertIn("2 modules, 1 link: no problems", self.shell("hc check g.toml"))
         self.write("parts/ring.toml", ring + 'inputs.in = "c.out"\n')
         self.shell("hc check g.toml", 2)
         self.assertEqual(

@@ -38,14 +38,14 @@ class Doctor(Pipes):
     def test_a_graph_that_misses_nothing(self):
         self.environment["HC_DATA"] = DATA
         out = self.shell("hc doctor %s/graphs/depth.toml" % ROOT)
-        self.assertRegex(out, r"ok +graph +.*depth\.toml: nothing is wrong")
+        self.assertRegex(out, r"ok +graph +.*depth\.toml: no problems found")
         self.assertRegex(out, r"ok +camera +parameter source: .*/aloeL\.jpg\n")
 
     def test_files_that_are_not_there_or_may_not_be_read(self):
         said = self.examine(GRAPH % "./none.jpg", 1)
-        self.assertEqual(said["missing"], ["camera parameter source: ./none.jpg is not there"])
+        self.assertEqual(said["missing"], ["camera parameter source: ./none.jpg does not exist"])
         said = self.examine(GRAPH % "./none.jpg", 1, " --set camera.source=/none/a.jpg")
-        self.assertEqual(said["missing"], ["camera parameter source: /none/a.jpg is not there"])
+        self.assertEqual(said["missing"], ["camera parameter source: /none/a.jpg does not exist"])
         os.mkdir(self.path("pictures"))
         self.assertNotIn("missing", self.examine(GRAPH % "./pictures", 0))
         self.assertNotIn("missing", self.examine(GRAPH % "rtsp://robot/left", 0))

@@ -249,7 +249,7 @@ exec sleep 1000
         )
         self.assertIn("\x1b[K2 running | ", out)
         self.assertIn("messages/s", out)
-        self.assertRegex(out, r"\x1b\[Kcamera\.left -> brightness\.image")
+        self.assertRegex(out, r"\x1b\[Kg\.toml ran for ")
         plain = self.shell("hc run g.toml --set camera.count=4 2>&1")
         self.assertNotIn("\x1b", plain)
 

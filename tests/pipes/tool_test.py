@@ -15,7 +15,7 @@ class Tool(Pipes):
     def test_exit_status_and_one_line(self):
         for command, status, line in [
             ("hc cat /nowhere", 1, "hc cat: NotFound: /nowhere: open(/nowhere): No such file"),
-            ("hc nonsense", 2, 'hc: no verb and no module "nonsense"; see hc --help'),
+            ("hc nonsense", 2, 'hc: unknown command or module "nonsense"; see hc --help'),
             ("hc cat --nonsense", 2, "hc cat: The following argument was not expected: --nonsense"),
             ("hc play", 2, "hc play: file is required"),
             ("hc run missing.toml", 1, "hc run: NotFound: missing.toml: cannot be read"),
@@ -30,7 +30,12 @@ class Tool(Pipes):
                 2,
                 "hc send: Invalid: 2 numbers do not make elements of 3",
             ),
-            ("hc camra", 2, 'hc: no verb and no module "camra", did you mean "camera"?'),
+            ("hc camra", 2, 'hc: unknown command or module "camra", did you mean "camera"?'),
+            (
+                "hc rnu",
+                2,
+                'hc: unknown command or module "rnu", did you mean "run"?; see hc --help',
+            ),
             ("hc describe camra", 1, 'hc describe: NotFound: no module "camra", did you mean'),
             ("hc send", 2, "hc send: Invalid: nothing to send"),
             ("hc send --text a 1", 2, "hc send: Invalid: --text and numbers do not go together"),
@@ -72,6 +77,28 @@ class Tool(Pipes):
 
     def test_help_lists_all_links(self):
         self.assertIn("shm:NAME", self.shell("hc --help"))
+
+    def test_hc_alone_gives_an_overview(self):
+        out = self.shell("hc", 2)
+        self.assertLess(out.count("\n"), 15)
+        self.assertIn("hc run graphs/depth.toml", out)
+
+    def test_shells_and_man_know_the_commands(self):
+        self.shell("hc completion >completion")
+        complete = "source completion; COMP_WORDS=(%s) COMP_CWORD=%d; _hc; echo ${COMPREPLY[*]}"
+        self.assertEqual(self.shell(complete % ("hc reco", 1)).split(), ["record"])
+        self.assertIn("brightness", self.shell(complete % ("hc br", 1)).split())
+        self.assertEqual(self.shell(complete % ("hc cat --js", 2)).split(), ["--json"])
+        self.assertIn("unlink", self.shell(complete % ("hc graph unl", 2)).split())
+        page = self.shell("hc man | tee hc.1 | man -l - 2>/dev/null || cat hc.1")
+        for word in ("record", "MODULE.PORT", "HC_GRAPH"):
+            self.assertIn(word, page)
+
+    def test_shipped_graphs_are_found_by_name(self):
+        for name in ("depth", "depth.toml"):
+            self.assertIn("no problems found", self.shell("hc check " + name))
+        self.shell("hc check depht.toml", 1)
+        self.assertIn("depht.toml: cannot be read", self.err)
 
     def test_send_makes_what_it_is_told(self):
         out = self.shell(

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Graphs that run, seen and changed by the verbs of hc: ps, top and graph."""
 
+import json
 import os
 import pathlib
 import pty
@@ -10,7 +11,7 @@ import signal
 import unittest
 
 from graphs import GRAPH, Graphs
-from harness import ROOT, WATCHDOG, wait_until
+from harness import ROOT, WATCHDOG, free_port, wait_until
 
 
 class Watching(Graphs):
@@ -37,15 +38,18 @@ class Watching(Graphs):
         top = self.hc("top " + name)
         self.assertRegex(top, name + ": running .*, 2/2 modules up, .* messages/s")
         self.assertRegex(top, r"camera +[0-9.]+% +[0-9.]+ MB +0 +running")
+        self.assertRegex(top, "RESTARTS +MODE +STATUS\n")
+        self.assertRegex(top, "THROTTLED +DROPPED +IGNORED\n")
         self.assertRegex(top, "camera.left → brightness.image .*[0-9][kM]?B")
         for line in top.splitlines():
-            self.assertLessEqual(len(line), 80)
+            self.assertLessEqual(len(line), 120)
         text = self.hc("graph --of %s.%d" % (name, process.pid))
         self.assertRegex(
             text, r"camera  \([0-9.]+ %\)\n  left → brightness.image  [0-9.]+/s, keep latest\n"
         )
         self.assertIn(
-            '"camera" -> "brightness" [taillabel="left"', self.hc("graph --dot --of " + name)
+            '"camera":"out_left":e -> "brightness":"in_image":w [',
+            self.hc("graph --dot --of " + name),
         )
         self.hc("graph --svg g.svg --of " + name)
         picture = pathlib.Path(self.path("g.svg")).read_text()
@@ -74,22 +78,114 @@ class Watching(Graphs):
             self.hc("graph set camera.raet=50" + of, 2),
             'hc graph: Invalid: module camera has no parameter "raet", did you mean "rate"?\n',
         )
-        self.hc("graph restart camera" + of)
+        self.assertRegex(
+            self.hc("graph get camera.rate" + of),
+            r"camera.rate = 20 Hz +\(from 0 to .*default 0\)\n",
+        )
+        self.assertRegex(
+            self.hc("graph get camera" + of),
+            r"\ncamera.reopen = true +\(default true, set restarts the module\)\n",
+        )
+        self.assertIn('no parameter "rat", did you mean', self.hc("graph get camera.rat" + of, 2))
+        self.shell("hc graph set camera.reopen=false" + of)
+        self.assertIn("restarting camera", self.err)
         wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))
+        self.hc("graph restart camera" + of)
+        wait_until(lambda: re.search(r"camera .* 2 +running", self.hc("top " + name)))
         self.stop_named(name, process)
+
+    def test_a_port_is_observed_by_name_and_nothing_changes(self):
+        name, process = self.run_named("observed")
+        of, messages = " --of " + name, self.observe(process, name)
+        before = self.state(messages)
+        self.assertRegex(self.hc("cat camera.left --count 2" + of), "rgb_image 80 x 60")
+        self.assertRegex(self.hc("cat brightness.image --count 1" + of), "rgb_image 80 x 60")
+        self.assertRegex(self.hc("cat brightness.mean --json --count 3" + of), '"elements"')
+        self.hc("record r.mtp --in camera.left --in brightness.mean --count 4" + of)
+        self.assertRegex(self.hc("info r.mtp"), "80x60 rgb_image")
+        after = self.state(messages)
+        self.assertEqual(
+            [(each["from"], each["to"]) for each in before["links"]],
+            [(each["from"], each["to"]) for each in after["links"]],
+        )
+        self.assertIn(
+            'no port "camera.lef", did you mean "camera.left"?', self.hc("cat camera.lef" + of, 2)
+        )
+        self.stop_named(name, process)
+
+    def test_an_observer_that_stops_or_dies_holds_nobody_up(self):
+        name, process = self.run_named("held")
+        messages = self.observe(process, name)
+        observer = self.start("exec hc cat camera.left --raw --of %s >out" % name)
+        wait_until(
+            lambda: os.path.getsize(self.path("out")) if os.path.exists(self.path("out")) else 0
+        )
+        os.kill(observer.pid, signal.SIGSTOP)
+        sent = lambda state: state["links"][0]["messages"]
+        first = sent(self.state(messages))
+        self.state(messages, lambda state: sent(state) > first + 100)
+        os.kill(observer.pid, signal.SIGKILL)
+        first = sent(self.state(messages))
+        self.state(messages, lambda state: sent(state) > first + 100)
+        self.stop_named(name, process)
+
+    def test_a_peer_that_has_left_is_seen(self):
+        port = free_port()
+        end = "tcp:%d?reconnect=60" % port
+        text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
+        name, process = self.run_named("alone", text, "nobody|no peer|retrying|waiting")
+        top = lambda: self.hc("top " + name)
+        wait_until(
+            lambda: re.search("camera.left → tcp:%d.* nobody is there|no peer" % port, top())
+        )
+        self.stop_named(name, process)
+
+    def test_an_observer_outlives_restarts_and_ends_with_the_graph(self):
+        name, process = self.run_named("restarted")
+        observer = self.start("exec hc cat camera.left --json --of %s >out" % name)
+        lines = lambda: self.read("out").count("\n")
+        wait_until(lines)
+        self.hc("graph restart camera --of " + name)
+        numbers = lambda: [int(seq) for seq in re.findall(r'"seq":(\d+),', self.read("out"))]
+        wait_until(lambda: numbers() != sorted(numbers()))  # the new process begins at 0
+        self.stop_named(name, process)
+        self.assertEqual(observer.wait(timeout=WATCHDOG), 0)
+
+    def test_the_graph_of_this_folder_comes_first(self):
+        first, one = self.run_named("first")
+        os.mkdir(self.path("other"))
+        second = "second_%d" % os.getpid()
+        two = self.start("cd other && exec hc run ../g.toml --as " + second)
+        self.await_lines(two, "brightness: started")
+        self.assertIn(first + ": running", self.shell("hc top --once"))
+        self.assertIn(second + ": running", self.shell("cd other && hc top --once"))
+        self.assertIn(second + ": running", self.shell("HC_GRAPH=%s hc top --once" % second))
+        self.shell("cd / && hc top --once", 2)
+        self.assertIn("several graphs are running; pass --of NAME: %s." % first, self.err)
+        for line in self.hc("ps --json").splitlines():
+            state = json.loads(line)
+            self.assertEqual(len(state["modules"]), 2)
+        self.stop_named(first, one)
+        self.stop_named(second, two)
 
     def test_who_waits_for_a_reader_is_not_stalled(self):
         end = "unix-listen:@hc_%d" % os.getpid()
         text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
         name, process = self.run_named("waits", text, "camera: started")
-        wait_until(lambda: re.search("camera .* waits for a reader\n", self.hc("top " + name)))
-        self.assertIn("camera  (waits for a reader)\n", self.hc("graph --of " + name))
+        wait_until(
+            lambda: re.search(
+                "camera .* blocked: no reader on output left\n", self.hc("top " + name)
+            )
+        )
+        self.assertIn(
+            "camera  (blocked: no reader on output left)\n", self.hc("graph --of " + name)
+        )
         self.assertRegex(self.hc("ps"), name + " .* 1/1 .* running\n")
         camera = self.module(self.state(self.observe(process, name), lambda state: True), "camera")
         os.kill(camera["pid"], signal.SIGSTOP)
         wait_until(lambda: "stalled: stopped by a signal" in self.hc("top " + name))
         os.kill(camera["pid"], signal.SIGCONT)
-        wait_until(lambda: "waits for a reader" in self.hc("top " + name))
+        wait_until(lambda: "blocked: no reader on output left" in self.hc("top " + name))
         self.stop_named(name, process)
 
     def test_help_says_what_each_word_is(self):
@@ -159,11 +255,11 @@ class Watching(Graphs):
         name, process = self.run_named("contest", text, "actor: started")
         wait_until(
             lambda: re.search(
-                '"tracking" -> "actor" .*penwidth=3', self.hc("graph --dot --of " + name)
+                '"tracking":.* -> "actor":.*penwidth=3', self.hc("graph --dot --of " + name)
             )
         )
         dot = self.hc("graph --dot --of " + name)
-        self.assertNotRegex(dot, '"looking" -> "actor" .*penwidth')
+        self.assertNotRegex(dot, '"looking":.* -> "actor":.*penwidth')
         self.assertIn("focus: track", dot)
         self.assertIn("focus track", self.hc("top " + name))
         self.stop_named(name, process)

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc cat: shows what comes over a link.
+// hc cat: prints messages.
 #include <fmt/format.h>
 
 #include <hc/compress/compress.h>
 
 #include "common.h"
 #include "json.h"
+#include "observer.h"
 #include "readable.h"
 #include "verbs.h"
 
@@ -13,7 +14,7 @@ namespace tool {
 namespace {
 
 struct Options {
-  std::string uri = "-";
+  std::string uri = "-", of;
   bool json = false, raw = false, skip = false;
   std::uint64_t count = 0;
   std::uint64_t limit = kDefaultLimit;
@@ -27,7 +28,7 @@ bool take(const Options& options, hc::Source& source, hc::Message& message, hc::
 }
 
 void run(const Options& options) {
-  auto source = open_source(options.uri, options.limit);
+  auto source = open_source(source_uri(options.uri, options.of), options.limit);
   std::unique_ptr<hc::Sink> raw;
   if (options.raw) raw = open_sink("-");
   Skipper skipper("hc cat");
@@ -56,11 +57,11 @@ void run(const Options& options) {
 
 void add_cat(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("cat", "Show what comes over a link or stands in a file");
-  verb->add_option("link", options->uri, "where messages come from")->capture_default_str();
+  auto* verb = app.add_subcommand("cat", "Print messages of a port, link or file");
+  add_source(*verb, options->uri, options->of);
   auto* json = verb->add_flag("--json", options->json, "one JSON object a line");
   verb->add_flag("--raw", options->raw, "the messages themselves")->excludes(json);
-  verb->add_flag("--skip", options->skip, "go on behind what is damaged (files)");
+  verb->add_flag("--skip", options->skip, "skip corrupt messages (files only)");
   add_count(*verb, options->count);
   add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc check: says all that is wrong with a graph, without starting it.
+// hc check: reports every problem of a graph, without starting it.
 #include <fmt/format.h>
 
 #include "common.h"
@@ -17,7 +17,7 @@ void add_check(CLI::App& app) {
     auto counted = [](std::size_t count, std::string_view what) {
       return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
     };
-    print(fmt::format("{}: {}, {}: nothing is wrong\n", options->file,
+    print(fmt::format("{}: {}, {}: no problems found\n", options->file,
                       counted(plan.modules.size(), "module"), counted(plan.links.size(), "link")));
   });
 }

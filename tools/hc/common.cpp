@@ -80,18 +80,17 @@ bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri) {
 
 std::string losses_in_words(const hc::Traffic& traffic) {
   std::string reasons;
-  for (auto [count, reason] : {std::pair(traffic.superseded, "superseded"),
-                               {traffic.over_rate, "over the rate"},
-                               {traffic.over_memory, "over the memory"},
-                               {traffic.cut, "cut off"}})
+  for (auto [count, reason] : {std::pair(traffic.over_rate, "throttled"),
+                               {traffic.superseded, "dropped (newer arrived)"},
+                               {traffic.over_memory, "dropped (no memory left)"},
+                               {traffic.cut, "lost at disconnect"}})
     if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
   return reasons;
 }
 
 void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic) {
   if (traffic.lost() == 0) return;
-  say(fmt::format("{}: {}: lost {} messages: {}", verb, uri, traffic.lost(),
-                  losses_in_words(traffic)));
+  say(fmt::format("{}: {}: {}", verb, uri, losses_in_words(traffic)));
 }
 
 bool print(std::string_view text) {
@@ -124,6 +123,18 @@ std::string find_program(const std::string& name) {
     path.remove_prefix(std::min(colon + 1, path.size()));
   }
   return "";
+}
+
+std::string find_graph(const std::string& name) {
+  std::error_code missing;
+  if (name.find('/') != std::string::npos || fs::exists(name, missing)) return name;
+  const fs::path prefix = module_folder().parent_path().parent_path();
+  // Installed, or built in a folder of the project.
+  for (const auto& folder :
+       {prefix / "share" / "hypercolumn" / "graphs", prefix.parent_path() / "graphs"})
+    for (const char* suffix : {"", ".toml"})
+      if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);
+  return name;
 }
 
 std::vector<std::string> module_names() {

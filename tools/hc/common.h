@@ -16,17 +16,21 @@ namespace tool {
 
 inline constexpr std::uint64_t kDefaultLimit = std::uint64_t{256} << 20;  ///< of elements [byte]
 
-/// Ends a verb with one line on standard error and an exit status; quietly with 0 when it was told
+/// Ends a verb with one line on standard error and an exit status; quietly with 0 when it was asked
 /// to stop.
 struct Failure : std::runtime_error {
   explicit Failure(const hc::Error& error)
-      : std::runtime_error(error.text()), code(error.code), status(status_of(error.code)) {}
+      : std::runtime_error(error.text()),
+        code(error.code),
+        detail(error.detail),
+        status(status_of(error.code)) {}
   Failure(std::string_view who, const hc::Error& error)
       : Failure(hc::Error{error.code, std::string(who) + ": " + error.detail}) {}
-  /// Without a line: somebody else has said what is wrong.
+  /// Without a line: it has been logged.
   explicit Failure(int exit_status) : std::runtime_error(""), status(exit_status) {}
 
   hc::Code code = hc::Code::System;
+  std::string detail;
   int status;
 
  private:
@@ -68,9 +72,9 @@ class Skipper {
 /// Sends a message; false when nobody reads any more.
 bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri);
 
-/// "8 superseded, 4 over the memory"; empty where none were lost.
+/// "253 throttled, 8 lost at disconnect"; empty where none were.
 std::string losses_in_words(const hc::Traffic& traffic);
-/// Says how many messages a link has lost and why, if any.
+/// Logs how many messages a link has dropped and why, if any.
 void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic);
 
 /// Writes to standard output; false when nobody reads any more. Any other error is a Failure.
@@ -82,6 +86,11 @@ void say(std::string_view line);
 /// The folder of the modules, and a program by its name there or in PATH; empty when there is none.
 std::filesystem::path module_folder();
 std::string find_program(const std::string& name);
+
+/// A graph file by its name: that file, or else one of the graphs that came with hc, with or
+/// without
+/// ".toml".
+std::string find_graph(const std::string& name);
 
 /// The names of all modules there are.
 std::vector<std::string> module_names();

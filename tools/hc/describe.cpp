@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc describe: what a module says of itself.
+// hc describe: a module's ports and parameters.
 #include <nlohmann/json.hpp>
 
 #include <hc/base/suggestion.h>

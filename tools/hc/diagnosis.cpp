@@ -86,12 +86,12 @@ Finding finding_of(const NeededPath& needed, const PathState& state) {
   auto told = [&](Mark mark, std::string_view text) {
     return Finding{mark, needed.module, fmt::format("{}: {}{}", needed.what, needed.path, text)};
   };
-  if (!state.is_there) return told(Mark::Missing, " is not there");
-  if (needed.is_written && !state.is_folder) return told(Mark::Missing, " is no folder");
+  if (!state.is_there) return told(Mark::Missing, " does not exist");
+  if (needed.is_written && !state.is_folder) return told(Mark::Missing, " is not a folder");
   if (needed.is_written && !state.is_writable)
-    return told(Mark::Missing, " may not be written by this user");
+    return told(Mark::Missing, " is not writable for this user");
   if (!needed.is_written && !state.is_readable)
-    return told(Mark::Missing, " may not be read by this user");
+    return told(Mark::Missing, " is not readable for this user");
   return told(Mark::Ok, "");
 }
 
@@ -163,11 +163,11 @@ std::vector<Finding> diagnose(const Facts& facts) {
   add_devices(findings, "graphics", facts.renderers, "none (/dev/dri)");
   findings.push_back(
       facts.display.empty()
-          ? Finding{Mark::Note, "display", "none: view saves pictures only; or use xvfb-run"}
+          ? Finding{Mark::Note, "display", "none: view can only save images; or use xvfb-run"}
           : Finding{Mark::Ok, "display", facts.display});
-  findings.push_back(facts.has_graphviz
-                         ? Finding{Mark::Ok, "graphviz", "dot"}
-                         : Finding{Mark::Note, "graphviz", "no dot, which hc graph --svg wants"});
+  findings.push_back(facts.has_graphviz ? Finding{Mark::Ok, "graphviz", "dot"}
+                                        : Finding{Mark::Note, "graphviz",
+                                                  "dot is not installed; hc graph --svg needs it"});
   findings.push_back(facts.modules.empty() ? Finding{Mark::Missing, "modules", "none beside hc"}
                                            : Finding{Mark::Ok, "modules", joined(facts.modules)});
   if (!facts.broken_modules.empty())
@@ -193,9 +193,8 @@ std::vector<Finding> diagnose(const Needs& needs, const Facts& facts) {
     if (facts.display.empty())
       findings.push_back({Mark::Missing, viewer, "a display; its parameter save does without one"});
   if (needs.modules > facts.processors)
-    findings.push_back(
-        {Mark::Note, "processors",
-         fmt::format("{} for {} modules, which take turns", facts.processors, needs.modules)});
+    findings.push_back({Mark::Note, "processors",
+                        fmt::format("{} for {} modules", facts.processors, needs.modules)});
   return findings;
 }
 

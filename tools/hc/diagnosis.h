@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `hc doctor` says: from facts, and from what a graph needs, to lines. Pure.
+// From facts, and from what a graph needs, to the lines of `hc doctor`. Pure.
 
 #include <string>
 #include <string_view>
@@ -16,7 +16,7 @@ enum class Mark {
   Ok,
   Missing,  ///< hc, or the graph, needs it
   Wrong,    ///< in the graph file
-  Note,     ///< of interest, needed by nobody or perhaps
+  Note,     ///< informational
 };
 
 struct Finding {
@@ -38,7 +38,7 @@ struct NeededPort {
   std::string port;  ///< [HOST:]PORT
 };
 
-/// What a graph names outside of itself.
+/// The resources that a graph needs.
 struct Needs {
   std::size_t modules = 0;
   std::vector<std::string> viewers;  ///< modules `view` that do not save
@@ -64,7 +64,7 @@ bool path_of_parameter(std::string_view name, std::string_view value, NeededPath
 /// What this machine has.
 std::vector<Finding> diagnose(const Facts& facts);
 
-/// What the graph would miss. @param facts  with the paths and ports of `needs`.
+/// What the graph lacks here. @param facts  with the paths and ports of `needs`.
 std::vector<Finding> diagnose(const Needs& needs, const Facts& facts);
 
 /// Whether something is missing or wrong.

@@ -143,12 +143,12 @@ TEST(Doctor, WhatARunWouldMiss) {
   facts.ports["7000"] = "tcp-listen:7000: Address already in use";
   EXPECT_EQ(as_text(diagnose(needs, facts)),
             "missing  eye         parameter source: /none.jpg is not there\n"
-            "missing  eye         link file:/focus.mtp: /focus.mtp may not be read by this user\n"
-            "missing  eye         link logs/eye.mtp: logs may not be written by this user\n"
+            "missing  eye         link file:/focus.mtp: /focus.mtp is not readable for this user\n"
+            "missing  eye         link logs/eye.mtp: logs is not writable for this user\n"
             "missing  eye         link tcp-listen:7000?readers=1: tcp-listen:7000: Address already"
             " in use\n"
             "missing  window      a display; its parameter save does without one\n"
-            "note     processors  1 for 2 modules, which take turns\n");
+            "note     processors  1 for 2 modules\n");
 }
 
 TEST(Doctor, AGraphThatMissesNothing) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc doctor: what this machine has, and what a graph would miss on it.
+// hc doctor: checks this machine, and the requirements of a graph.
 #include <hc/graph/run.h>
 
 #include "common.h"
@@ -18,10 +18,10 @@ std::vector<Finding> examine(const GraphOptions& options, Needs& needs) {
   std::vector<Finding> findings;
   for (const auto& problem : planned->problems) findings.push_back({Mark::Wrong, "graph", problem});
   if (planned->plan) {
-    findings.push_back({Mark::Ok, "graph", options.file + ": nothing is wrong"});
+    findings.push_back({Mark::Ok, "graph", options.file + ": no problems found"});
     needs = needs_of(*planned->plan);
   } else {
-    findings.push_back({Mark::Note, "graph", "mend this first; the rest has not been looked at"});
+    findings.push_back({Mark::Note, "graph", "correct this first; the rest was not checked"});
   }
   return findings;
 }
@@ -45,9 +45,10 @@ void run(const GraphOptions& options) {
 
 void add_doctor(CLI::App& app) {
   auto options = std::make_shared<GraphOptions>();
-  auto* verb =
-      app.add_subcommand("doctor", "Say what this machine has, and what a graph would miss on it");
-  auto* graph = verb->add_option("graph", options->file, "a graph file (TOML)");
+  auto* verb = app.add_subcommand("doctor", "Check this machine, and the requirements of a graph");
+  auto* graph =
+      verb->add_option("graph", options->file, "a graph file (TOML), or the name of a shipped one")
+          ->transform(find_graph);
   verb->add_option("--set", options->settings, "MODULE.PARAMETER=VALUE; may be repeated")
       ->needs(graph);
   verb->callback([options] { run(*options); });

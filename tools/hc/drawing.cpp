@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "screen.h"
 
 namespace tool {
 namespace {
+
+constexpr const char *kWorking = "#e8f4e8", *kIdle = "#eeeeee", *kTrouble = "#ffc8c8";
 
 constexpr std::string_view kBold = "\x1b[1m", kNormal = "\x1b[0m";
 
@@ -31,6 +35,45 @@ std::string in_quotes(const std::string& text) {
   return result + "\"";
 }
 
+/// Text of Graphviz's HTML-like labels.
+std::string in_html(const std::string& text) {
+  std::string result;
+  for (char c : text)
+    result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return result;
+}
+
+/// A module as a table: its name, what is below it, and rows of an input and an output.
+std::string table_of(const Drawing::Box& box, const std::vector<std::string>& inputs,
+                     const std::vector<std::string>& outputs) {
+  const char* color = box.is_wrong ? kTrouble : box.is_idle ? kIdle : kWorking;
+  std::string text = fmt::format(
+      "<TABLE BORDER=\"{}\" CELLBORDER=\"0\" CELLSPACING=\"0\" CELLPADDING=\"4\" STYLE=\"ROUNDED\" "
+      "BGCOLOR=\"{}\"><TR><TD COLSPAN=\"2\"><B>{}</B></TD></TR>",
+      box.is_bold ? 4 : 1, color, in_html(box.name));
+  if (!box.words.empty())
+    text += fmt::format("<TR><TD COLSPAN=\"2\"><FONT POINT-SIZE=\"10\">{}</FONT></TD></TR>",
+                        in_html(box.words));
+  for (std::size_t i = 0; i < std::max(inputs.size(), outputs.size()); ++i) {
+    text += "<TR>";
+    for (const auto& [ports, kind, side] :
+         {std::tuple(&inputs, "in_", "LEFT"), {&outputs, "out_", "RIGHT"}})
+      text += i < ports->size() ? fmt::format(
+                                      "<TD PORT=\"{}{}\" ALIGN=\"{}\"><FONT POINT-SIZE=\"11\">"
+                                      "{}</FONT></TD>",
+                                      kind, in_html((*ports)[i]), side, in_html((*ports)[i]))
+                                : "<TD></TD>";
+    text += "</TR>";
+  }
+  return text + "</TABLE>";
+}
+
+constexpr const char* kLegend =
+    R"(  legend [shape=plain, label=<<TABLE BORDER="0" CELLBORDER="1" CELLSPACING="4">
+    <TR><TD BGCOLOR="#e8f4e8">working</TD><TD BGCOLOR="#eeeeee">idle: not in focus, or ended</TD>
+    <TD BGCOLOR="#ffc8c8">in trouble</TD><TD BORDER="4">in the global workspace</TD></TR></TABLE>>];
+)";
+
 }  // namespace
 
 Drawing drawing_of(const hc::Plan& plan, const std::string& title) {
@@ -38,8 +81,8 @@ Drawing drawing_of(const hc::Plan& plan, const std::string& title) {
   drawing.title = title;
   for (const auto& module : plan.modules) {
     auto program = std::filesystem::path(module.program).filename().string();
-    drawing.boxes.push_back({module.name, program == module.name ? "" : program});
-    if (!module.mode.empty()) drawing.boxes.back().words += " mode " + module.mode;
+    drawing.boxes.push_back({module.name, program == module.name ? "" : program, module.group});
+    if (!module.mode.empty()) drawing.boxes.back().words += " mode: " + module.mode;
   }
   for (const auto& link : plan.links) {
     std::string words = link.keep == "all" ? "" : "keep " + link.keep;
@@ -50,30 +93,28 @@ Drawing drawing_of(const hc::Plan& plan, const std::string& title) {
   return drawing;
 }
 
-Drawing drawing_of(const nlohmann::json& state) {
+Drawing drawing_of(const hc::GraphState& state) {
   Drawing drawing;
-  drawing.title = state.at("graph");
-  if (const auto& focus = state.at("focus"); !focus.is_null())
-    drawing.title += ", focus: " + focus.at("mode").get<std::string>();
-  for (const auto& module : state.at("modules")) {
+  drawing.title = state.name;
+  drawing.is_running = true;
+  if (state.focus != 0) drawing.title += ", focus: " + state.focus_name();
+  for (const auto& module : state.modules) {
     Drawing::Box box;
-    box.name = module.at("name");
-    const std::string status = module.at("status"), detail = module.at("detail");
-    box.is_bold = module.at("in_workspace");
-    box.is_wrong = status != "running" && status != "starting" && status != "ended";
-    box.is_idle = !module.at("in_focus").get<bool>() || status == "ended";
-    box.words = status != "running" ? status
-                : detail.empty()    ? fmt::format("{:.1f} %", 100 * module.at("cpu").get<double>())
-                                    : detail;
+    box.name = module.name;
+    box.group = module.group;
+    box.is_bold = module.in_workspace;
+    box.is_wrong = is_in_trouble(module);
+    box.is_idle = !module.in_focus || module.status == hc::ModuleStatus::Ended;
+    box.words = module.status == hc::ModuleStatus::Running && module.detail.empty()
+                    ? fmt::format("{:.1f} %", 100 * module.processor)
+                    : status_text(module);
     drawing.boxes.push_back(std::move(box));
   }
-  for (const auto& link : state.at("links")) {
-    auto words = short_number(link.at("per_second").get<double>()) + "/s";
-    if (const std::string keep = link.at("keep"); keep != "all") words += ", keep " + keep;
-    if (auto rate = link.at("rate").get<double>(); rate > 0)
-      words += fmt::format(", rate {}", rate);
-    drawing.arrows.push_back(
-        {link.at("from"), link.at("to"), words, link.at("in_workspace").get<bool>()});
+  for (const auto& link : state.links) {
+    auto words = short_number(link.per_second) + "/s";
+    if (link.keep != "all") words += ", keep " + link.keep;
+    if (link.rate > 0) words += fmt::format(", rate {}", link.rate);
+    drawing.arrows.push_back({link.from, link.to, words, link.in_workspace, !link.status.empty()});
   }
   return drawing;
 }
@@ -102,31 +143,48 @@ std::string as_text(const Drawing& drawing, bool is_plain) {
 }
 
 std::string as_dot(const Drawing& drawing) {
-  std::string text = fmt::format(
-      "digraph {{\n  label={};\n  labelloc=t;\n  rankdir=LR;\n  fontname=\"sans-serif\";\n"
-      "  node [shape=box, style=\"rounded,filled\", fillcolor=white, fontname=\"sans-serif\"];\n"
-      "  edge [fontname=\"sans-serif\", fontsize=10, color=\"#555555\"];\n",
-      in_quotes(drawing.title));
-  for (const auto& box : drawing.boxes) {
-    auto label = box.name + (box.words.empty() ? "" : "\n" + box.words);
-    text += fmt::format("  {} [label={}", in_quotes(box.name), in_quotes(label));
-    if (box.is_bold) text += ", penwidth=3";
-    if (box.is_wrong) text += ", fillcolor=\"#ffd0d0\"";
-    if (box.is_idle) text += ", fontcolor=\"#808080\", color=\"#808080\"";
-    text += "];\n";
+  std::map<std::string, std::vector<std::string>> inputs, outputs;  // by module
+  std::set<std::string> outside;
+  auto add = [](std::vector<std::string>& ports, const std::string& port) {
+    if (std::find(ports.begin(), ports.end(), port) == ports.end()) ports.push_back(port);
+  };
+  for (const auto& arrow : drawing.arrows) {
+    for (const auto& [end, ports] : {std::pair(&arrow.from, &outputs), {&arrow.to, &inputs}}) {
+      auto [module, port] = split(*end);
+      if (port.empty())
+        outside.insert(module);
+      else
+        add((*ports)[module], port);
+    }
   }
-  std::map<std::string, bool> outside;
+  std::string text = fmt::format(
+      "digraph {{\n  label={};\n  labelloc=t;\n  fontsize=18;\n  rankdir=LR;\n  nodesep=0.35;\n"
+      "  ranksep=1.2;\n  fontname=\"sans-serif\";\n"
+      "  node [shape=plain, fontname=\"sans-serif\"];\n"
+      "  edge [fontname=\"sans-serif\", fontsize=10, color=\"#555555\", fontcolor=\"#333333\"];\n",
+      in_quotes(drawing.title));
+  std::map<std::string, std::string> groups;  // their boxes
+  for (const auto& box : drawing.boxes)
+    groups[box.group] += fmt::format("  {} [label=<{}>];\n", in_quotes(box.name),
+                                     table_of(box, inputs[box.name], outputs[box.name]));
+  for (const auto& [group, boxes] : groups)
+    text += group.empty() ? boxes
+                          : fmt::format(
+                                "  subgraph {} {{\n  label={};\n  color=\"#999999\";\n"
+                                "  style=\"rounded,dashed\";\n{}  }}\n",
+                                in_quotes("cluster_" + group), in_quotes(group), boxes);
+  for (const auto& name : outside) text += fmt::format("  {};\n", in_quotes(name));
   for (const auto& arrow : drawing.arrows) {
     auto [from, output] = split(arrow.from);
     auto [to, input] = split(arrow.to);
-    for (const auto& [name, port] : {std::pair(from, output), std::pair(to, input)})
-      if (port.empty() && !std::exchange(outside[name], true))
-        text += fmt::format("  {} [shape=plain];\n", in_quotes(name));
-    text += fmt::format("  {} -> {} [taillabel={}, headlabel={}, label={}", in_quotes(from),
-                        in_quotes(to), in_quotes(output), in_quotes(input), in_quotes(arrow.words));
+    text += in_quotes(from) + (output.empty() ? "" : ":" + in_quotes("out_" + output) + ":e") +
+            " -> " + in_quotes(to) + (input.empty() ? "" : ":" + in_quotes("in_" + input) + ":w") +
+            fmt::format(" [label={}", in_quotes(arrow.words));
     if (arrow.is_bold) text += ", penwidth=3, color=black";
+    if (arrow.is_wrong) text += ", color=\"#cc0000\", fontcolor=\"#cc0000\"";
     text += "];\n";
   }
+  if (drawing.is_running) text += kLegend;
   return text + "}\n";
 }
 

@@ -5,37 +5,38 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <hc/graph/plan.h>
+#include <hc/graph/state.h>
 
 namespace tool {
 
 struct Drawing {
   struct Box {
     std::string name;
-    std::string words;  ///< below the name: what the program is, or how it does
+    std::string words;  ///< below the name: the program, or the status
+    std::string group;  ///< the included graph that it is of; empty: none
     bool is_bold = false, is_wrong = false, is_idle = false;
   };
   struct Arrow {
-    std::string from, to;  ///< MODULE.PORT, or a URI of the world outside
+    std::string from, to;  ///< MODULE.PORT, or a URI
     std::string words;
-    bool is_bold = false;
+    bool is_bold = false, is_wrong = false;
   };
   std::string title;
   std::vector<Box> boxes;
   std::vector<Arrow> arrows;
+  bool is_running = false;
 };
 
-/// Of a graph that is to run, and of one that runs, from what it says of itself.
+/// Of a planned graph, and of a running one.
 Drawing drawing_of(const hc::Plan& plan, const std::string& title);
-Drawing drawing_of(const nlohmann::json& state);
+Drawing drawing_of(const hc::GraphState& state);
 
-/// A paragraph for each module: its name, and a line for each link that leaves it. Bold where
-/// `is_plain` does not forbid it.
+/// A paragraph for each module: its name, and a line for each of its outgoing links.
 std::string as_text(const Drawing& drawing, bool is_plain);
 
-/// For Graphviz's dot, which makes an SVG of it. The names of ports stand at the ends of arrows.
+/// For Graphviz's dot, which makes an image of it: ports inside their modules, frames around
+/// included graphs, a legend.
 std::string as_dot(const Drawing& drawing);
 
 }  // namespace tool

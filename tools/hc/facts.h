@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `hc doctor` knows of this machine, and of what a graph names outside of itself. Facts alone:
-// diagnosis.h says what they mean.
+// Facts about this machine, and about the files and ports that a graph needs, for `hc doctor`;
+// diagnosis.h interprets them.
 
 #include <cstdint>
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace tool {
 
-/// Whether something can be used, as trying it told.
+/// Whether something works, by trial.
 struct Feature {
   std::string name;
   std::string error;  ///< empty: it can
@@ -47,7 +47,7 @@ struct Facts {
   std::map<std::string, std::string> ports;  ///< [HOST:]PORT: why nobody can listen, or empty
 };
 
-/// Looks at this machine, and at these paths and TCP ports ([HOST:]PORT).
+/// Examines this machine, these paths and these TCP ports ([HOST:]PORT).
 Facts gather_facts(const std::vector<std::string>& paths = {},
                    const std::vector<std::string>& ports = {});
 

@@ -94,7 +94,9 @@ hc::Result<std::string> describe_once(const std::string& program, int stop) {
 }  // namespace
 
 void add_graph_options(CLI::App& verb, GraphOptions& options) {
-  verb.add_option("graph", options.file, "a graph file (TOML)")->required();
+  verb.add_option("graph", options.file, "a graph file (TOML), or the name of a shipped one")
+      ->required()
+      ->transform(find_graph);
   verb.add_option("--set", options.settings, "MODULE.PARAMETER=VALUE; may be repeated");
 }
 

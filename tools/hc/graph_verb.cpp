@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc graph: draws a graph, and changes one that runs.
+// hc graph: draws a graph, and inspects and changes a running one.
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include <hc/base/suggestion.h>
 
 #include "common.h"
 #include "drawing.h"
@@ -24,7 +31,7 @@ struct Options {
 /// Has Graphviz make a picture.
 void write_svg(const std::string& dot, const std::string& path) {
   if (find_program("dot").empty())
-    throw Failure(hc::Error{hc::Code::NotFound, "dot is not there; install graphviz"});
+    throw Failure(hc::Error{hc::Code::NotFound, "dot is not installed; install graphviz"});
   // The file's name is no part of the command, whatever letters it has.
   ::setenv("HC_SVG", path.c_str(), 1);
   FILE* pipe = ::popen("dot -Tsvg -o \"$HC_SVG\"", "we");
@@ -50,6 +57,105 @@ void draw(const Options& options) {
     print(options.as_dot ? as_dot(drawing) : as_text(drawing, ::isatty(STDOUT_FILENO) == 0));
 }
 
+/// "0 to 100", "fast or slow"; empty where every value is in range.
+std::string range_text(const nlohmann::json& parameter) {
+  std::string text;
+  for (const auto& choice : parameter.value("choices", nlohmann::json::array()))
+    text += (text.empty() ? "" : " or ") + choice.get<std::string>();
+  for (const char* limit : {"min", "max"})
+    if (auto found = parameter.find(limit); found != parameter.end())
+      text += (limit == std::string_view("min") ? "from "
+               : text.empty()                   ? "to "
+                                                : " to ") +
+              (found->is_string() ? found->get<std::string>() : found->dump());
+  return text;
+}
+
+/// What a module's program says of its parameters: objects by their names.
+std::map<std::string, nlohmann::json> parameters_of(const hc::ModuleState& module) {
+  std::map<std::string, nlohmann::json> parameters;
+  auto text = value_or_fail(hc::describe_program(module.program), module.name);
+  const auto description = nlohmann::json::parse(text, nullptr, false);
+  if (!description.is_object()) return parameters;
+  const bool has_control = description.value("control", false);
+  for (auto parameter : description.value("parameters", nlohmann::json::array())) {
+    parameter["fixed"] = parameter.value("fixed", false) || !has_control;
+    parameters[parameter.at("name")] = parameter;
+  }
+  return parameters;
+}
+
+hc::GraphState state_of(const RunningGraph& graph) {
+  auto state = Observer(graph).next();
+  if (!state) throw Failure({hc::Code::Closed, graph.text() + " has ended"});
+  return *state;
+}
+
+const hc::ModuleState& find_module(const hc::GraphState& state, const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& module : state.modules) {
+    if (module.name == name) return module;
+    known.push_back(module.name);
+  }
+  throw Failure(
+      {hc::Code::Invalid, fmt::format("no module \"{}\"{}", name, hc::suggestion(name, known))});
+}
+
+/// Prints parameters with value, unit, range and default.
+/// @param what  MODULE, MODULE.PARAMETER, or empty: all.
+void get(const RunningGraph& graph, const std::string& what) {
+  const auto state = state_of(graph);
+  const auto dot = std::min(what.find('.'), what.size());
+  const std::string wanted = dot < what.size() ? what.substr(dot + 1) : "";
+  std::vector<std::array<std::string, 2>> rows;
+  std::size_t widest = 0;
+  auto add = [&](const hc::ModuleState& module) {
+    const auto parameters = parameters_of(module);
+    std::vector<std::string> known;
+    for (const auto& [name, parameter] : parameters) {
+      known.push_back(name);
+      if (!wanted.empty() && name != wanted) continue;
+      const auto& value = parameter.at("default");
+      const std::string standard = value.is_string() ? value.get<std::string>() : value.dump();
+      const auto found = module.parameters.find(name);
+      const std::string unit = parameter.value("unit", ""), range = range_text(parameter);
+      std::string words =
+          fmt::format("{}{}", found == module.parameters.end() ? standard : found->second,
+                      unit.empty() ? "" : " " + unit);
+      std::string about =
+          (range.empty() ? "" : range + ", ") + "default " + (standard.empty() ? "\"\"" : standard);
+      if (parameter.at("fixed")) about += ", set restarts the module";
+      rows.push_back({module.name + "." + name + " = " + words, about});
+      widest = std::max(widest, rows.back()[0].size());
+    }
+    if (!wanted.empty() && rows.empty())
+      throw Failure(
+          {hc::Code::Invalid, fmt::format("module {} has no parameter \"{}\"{}", module.name,
+                                          wanted, hc::suggestion(wanted, known))});
+  };
+  if (!what.empty()) add(find_module(state, what.substr(0, dot)));
+  for (const auto& module : state.modules)
+    if (what.empty()) add(module);
+  constexpr std::size_t kMaxColumn = 60;
+  std::string text;
+  for (const auto& [value, about] : rows)
+    text += fmt::format("{:<{}}  ({})\n", value, std::min(widest, kMaxColumn), about);
+  print(text);
+}
+
+/// Sets a parameter, and says so where that restarts its module.
+void set(const RunningGraph& graph, const std::string& assignment) {
+  ask(graph, {"set " + assignment});
+  const auto dot = assignment.find('.'), equals = assignment.find('=');
+  if (dot == std::string::npos || equals == std::string::npos || dot > equals) return;
+  const auto state = state_of(graph);
+  const auto& module = find_module(state, assignment.substr(0, dot));
+  const auto name = assignment.substr(dot + 1, equals - dot - 1);
+  const auto parameters = parameters_of(module);
+  if (auto found = parameters.find(name); found != parameters.end() && found->second.at("fixed"))
+    say("hc graph: restarting " + module.name + ", since " + name + " is fixed while it runs");
+}
+
 struct Word {
   std::string name, doc;
 };
@@ -71,7 +177,11 @@ void add_change(CLI::App& verb, Options& options, const std::string& name, const
       for (const auto& word : *list) command += " " + word;
     if (command.find('\n') != std::string::npos)
       throw Failure(hc::Error{hc::Code::Invalid, "a command is one line"});
-    ask(choose_running(options.running), {command});
+    const auto graph = choose_running(options.running);
+    if (name == "set")
+      set(graph, command.substr(name.size() + 1));
+    else
+      ask(graph, {command});
   });
 }
 
@@ -79,27 +189,33 @@ void add_change(CLI::App& verb, Options& options, const std::string& name, const
 
 void add_graph(CLI::App& app) {
   static Options options;  // lives as long as the verbs that refer to it
-  auto* verb = app.add_subcommand("graph", "Draw a graph, or change one that runs");
-  verb->add_option("graph", options.file.file, "a graph file; otherwise the graph that runs");
+  auto* verb = app.add_subcommand("graph", "Draw a graph, or inspect and change a running one");
+  verb->add_option("graph", options.file.file, "a graph file (default: the running graph)");
   verb->add_option("--set", options.file.settings, "MODULE.PARAMETER=VALUE; may be repeated");
-  verb->add_option("--of", options.running, "which running graph, where there are several (hc ps)");
-  verb->add_option("--svg", options.svg, "write a picture to this file, by Graphviz");
-  verb->add_flag("--dot", options.as_dot, "print the drawing in Graphviz's language");
+  verb->add_option("--of", options.running,
+                   "name of the running graph, where there are several (hc ps)");
+  verb->add_option("--svg", options.svg, "write an SVG image to this file (needs Graphviz)");
+  verb->add_flag("--dot", options.as_dot, "print the drawing in the DOT language of Graphviz");
   const Word module = {"MODULE", "its name in the graph"};
-  const Word from = {"FROM", "an output, MODULE.PORT, or a URI of the world outside"};
-  const Word to = {"TO", "an input, MODULE.PORT, or a URI of the world outside"};
-  add_change(*verb, options, "add", "Start another module",
-             {{"MODULE", "a name that no module of the graph has"},
-              {"PROGRAM", "what it runs: a module's name, or the path of a program"}},
-             {"PARAMETER=VALUE", "values of its parameters; otherwise the defaults"});
-  add_change(*verb, options, "remove", "End a module, and take its links away", {module});
-  add_change(*verb, options, "restart", "End a module, and start it again", {module});
-  add_change(*verb, options, "link", "Add a link, or give one another policy", {from, to},
-             {"KEY=VALUE", "its policy: keep, rate, burst, memory"});
-  add_change(*verb, options, "unlink", "Take a link away", {from, to});
+  const Word from = {"FROM", "an output MODULE.PORT, or a URI"};
+  const Word to = {"TO", "an input MODULE.PORT, or a URI"};
+  add_change(*verb, options, "add", "Add a module",
+             {{"MODULE", "its name, new in the graph"},
+              {"PROGRAM", "a module's program, or the path of any program"}},
+             {"PARAMETER=VALUE", "its parameters (default: its own defaults)"});
+  add_change(*verb, options, "remove", "Stop and remove a module, and its links", {module});
+  add_change(*verb, options, "restart", "Restart a module", {module});
+  add_change(*verb, options, "link", "Add a link, or change its policy", {from, to},
+             {"KEY=VALUE", "policy: keep, rate, burst, memory"});
+  add_change(*verb, options, "unlink", "Remove a link", {from, to});
   add_change(*verb, options, "set", "Set a parameter",
-             {{"MODULE.PARAMETER=VALUE", "which parameter, and its new value"}});
-  add_change(*verb, options, "stop", "End the graph", {});
+             {{"MODULE.PARAMETER=VALUE", "the parameter and its new value"}});
+  add_change(*verb, options, "stop", "Stop the graph", {});
+  auto what = std::make_shared<std::string>();
+  auto* getter = verb->add_subcommand("get", "Print parameters: value, unit, range, default");
+  getter->fallthrough();
+  getter->add_option("MODULE[.PARAMETER]", *what, "which module or parameter (default: all)");
+  getter->callback([what] { get(choose_running(options.running), *what); });
   verb->callback([verb] {
     if (verb->get_subcommands().empty()) draw(options);
   });

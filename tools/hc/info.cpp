@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc info: what a file or a stream holds.
+// hc info: summarises a recording or stream.
 #include <fmt/format.h>
 
 #include <map>
@@ -7,13 +7,14 @@
 #include <set>
 
 #include "common.h"
+#include "observer.h"
 #include "readable.h"
 #include "verbs.h"
 
 namespace tool {
 namespace {
 
-/// What is known of the messages of one src.
+/// The messages of one src.
 struct Sender {
   std::uint64_t messages = 0, bytes = 0;
   std::uint64_t lost = 0, repeated = 0, restarts = 0;
@@ -43,20 +44,20 @@ struct Sender {
 };
 
 struct Options {
-  std::string uri = "-";
+  std::string uri = "-", of;
   std::uint64_t limit = kDefaultLimit;
   bool skip = false;
 };
 
 void print_senders(const std::map<std::int32_t, Sender>& senders) {
   std::string text =
-      fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>6}  {}\n", "src", "messages", "elements",
-                  "duration", "rate", "lost", "twice", "matrices");
+      fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>10}  {}\n", "src", "messages", "elements",
+                  "duration", "rate", "lost", "duplicates", "matrices");
   for (const auto& [src, sender] : senders) {
     bool timed = sender.seconds() > 0;
     std::string types;
     for (const auto& type : sender.types) types += (types.empty() ? "" : "; ") + type;
-    text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>6}  {}\n", src, sender.messages,
+    text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>10}  {}\n", src, sender.messages,
                         bytes_in_words(static_cast<double>(sender.bytes)),
                         timed ? fmt::format("{:.3f} s", sender.seconds()) : "-",
                         timed ? fmt::format("{:.3g} Hz", static_cast<double>(sender.messages - 1) /
@@ -64,13 +65,13 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
                               : "-",
                         sender.lost, sender.repeated, types);
     if (sender.restarts > 0)
-      text += fmt::format("{:>6} its seq went back {} times\n", "", sender.restarts);
+      text += fmt::format("{:>6} seq restarted {} times\n", "", sender.restarts);
   }
   print(text);
 }
 
 void run(const Options& options) {
-  auto source = open_source(options.uri, options.limit);
+  auto source = open_source(source_uri(options.uri, options.of), options.limit);
   std::map<std::int32_t, Sender> senders;
   hc::Message message;
   Progress progress("hc info");
@@ -93,7 +94,7 @@ void run(const Options& options) {
     progress.show(-1, fmt::format("{} messages, {}", traffic.messages,
                                   bytes_in_words(static_cast<double>(traffic.bytes))));
   }
-  // What was whole is told even where the end is damaged.
+  // Also where the end is corrupt.
   print_senders(senders);
   auto traffic = source->traffic();
   print(fmt::format("{} message{}, {}\n", traffic.messages, traffic.messages == 1 ? "" : "s",
@@ -106,9 +107,9 @@ void run(const Options& options) {
 
 void add_info(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("info", "Tell what a file or a stream holds");
-  verb->add_option("link", options->uri, "where messages come from")->capture_default_str();
-  verb->add_flag("--skip", options->skip, "go on behind what is damaged (files)");
+  auto* verb = app.add_subcommand("info", "Summarise a recording, port or stream");
+  add_source(*verb, options->uri, options->of);
+  verb->add_flag("--skip", options->skip, "skip corrupt messages (files only)");
   add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }

@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
+#include <nlohmann/json.hpp>
+
 #include <hc/base/suggestion.h>
+#include <hc/graph/run.h>
 
 #include "common.h"
+#include "observer.h"
 #include "verbs.h"
 
 namespace {
@@ -23,11 +28,50 @@ std::string footer() {
          "unix-listen:PATH, shm:NAME.";
 }
 
-/// Becomes the module of that name; comes back when there is none.
+constexpr const char* kOverview =
+    "hc runs and inspects graphs of modules that send each other matrices.\n\n"
+    "  hc run graphs/depth.toml     run a graph (hc check: find its errors first)\n"
+    "  hc top                       show what the running graph does\n"
+    "  hc cat MODULE.PORT           print what a port sends (view: in a window)\n"
+    "  hc graph set MODULE.NAME=7   change it while it runs\n"
+    "  hc MODULE --help             a module's ports and parameters\n\n"
+    "All commands: hc --help. Any command: hc COMMAND --help.\n";
+
+/// The arguments of a module, where a first one MODULE.PORT becomes a link from the running graph
+/// to the module's only input, perhaps with `--of NAME` behind it.
+std::vector<std::string> module_arguments(const std::string& program,
+                                          std::vector<std::string> arguments) {
+  if (arguments.size() < 2 || arguments[1].starts_with("-") ||
+      arguments[1].find_first_of("/:=") != std::string::npos)
+    return arguments;
+  const auto text = hc::describe_program(program);
+  const auto description = nlohmann::json::parse(text ? *text : "", nullptr, false);
+  const auto inputs =
+      description.is_object() ? description.value("inputs", nlohmann::json::array()) : nullptr;
+  if (inputs.size() != 1) return arguments;
+  std::string of;
+  auto found = std::find(arguments.begin(), arguments.end(), "--of");
+  if (found != arguments.end() && found + 1 != arguments.end()) {
+    of = found[1];
+    arguments.erase(found, found + 2);
+  }
+  const auto uri = tool::source_uri(arguments[1], of);
+  if (uri == arguments[1]) return arguments;
+  arguments[1] = "--in=" + inputs[0].at("name").get<std::string>() + "=" + uri;
+  return arguments;
+}
+
+/// Becomes the module of that name; returns when there is none.
 void become_module(const std::string& name, char** argv) {
   std::string program = tool::find_program(name);
   if (program.empty()) return;
-  ::execv(program.c_str(), argv);
+  std::vector<std::string> words;
+  for (char** word = argv; *word != nullptr; ++word) words.emplace_back(*word);
+  words = module_arguments(program, std::move(words));
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(program.c_str(), arguments.data());
   tool::say(fmt::format("hc: {}: {}", program, std::strerror(errno)));
 }
 
@@ -51,16 +95,26 @@ int main(int argc, char** argv) {
   tool::add_play(app);
   tool::add_describe(app);
   tool::add_new(app);
+  tool::add_manual(app);
 
-  std::string first = argc > 1 ? argv[1] : "";
+  if (argc == 1) {
+    tool::print(kOverview);
+    return kUsage;
+  }
+  std::string first = argv[1];
   auto verbs = app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; });
   bool is_verb = !verbs.empty();
+  try {
+    if (!first.empty() && first[0] != '-' && !is_verb) become_module(first, argv + 1);
+  } catch (const tool::Failure& failure) {
+    tool::say(fmt::format("hc {}: {}", first, failure.what()));
+    return failure.status;
+  }
   if (!first.empty() && first[0] != '-' && !is_verb) {
-    become_module(first, argv + 1);
     std::vector<std::string> known = tool::module_names();
     for (const auto* verb : app.get_subcommands([](const CLI::App*) { return true; }))
       known.push_back(verb->get_name());
-    tool::say(fmt::format("hc: no verb and no module \"{}\"{}; see hc --help", first,
+    tool::say(fmt::format("hc: unknown command or module \"{}\"{}; see hc --help", first,
                           hc::suggestion(first, known)));
     return kUsage;
   }
@@ -73,8 +127,8 @@ int main(int argc, char** argv) {
     tool::say(fmt::format("hc{}: {}", is_verb ? " " + first : "", error.what()));
     return kUsage;
   } catch (const tool::Failure& failure) {
-    bool is_told = failure.status == 0 || *failure.what() == '\0';
-    if (!is_told) tool::say(fmt::format("hc {}: {}", first, failure.what()));
+    const bool is_silent = failure.status == 0 || *failure.what() == '\0';
+    if (!is_silent) tool::say(fmt::format("hc {}: {}", first, failure.what()));
     return failure.status;
   } catch (const std::exception& error) {
     tool::say(fmt::format("hc {}: {}", first, error.what()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc new: begins a module outside of this project, from templates that stand in this program.
+// hc new: creates a module outside of this project, from templates that this program contains.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -32,7 +32,7 @@ void replace_all(std::string& text, std::string_view word, std::string_view by) 
     text.replace(at, word.size(), by);
 }
 
-/// The templates are under this project's licence; what is made of them is its author's.
+/// The templates are under this project's licence; what is made from them is its author's.
 void remove_licence(std::string& text) {
   auto at = text.find("SPDX-License-Identifier");
   if (at == std::string::npos) return;
@@ -52,6 +52,15 @@ void write_file(const fs::path& path, const std::string& text) {
                     fs::perm_options::add);
 }
 
+/// How CMake finds the library that came with this command, where it does not look by itself.
+std::string prefix_option() {
+  const fs::path prefix = module_folder().parent_path().parent_path();
+  if (prefix == "/usr" || prefix == "/usr/local") return "";
+  const bool is_installed = fs::exists(prefix / "include" / "hc");
+  return " -DCMAKE_PREFIX_PATH=" +
+         (is_installed ? prefix.string() : "WHERE_HYPERCOLUMN_IS_INSTALLED");
+}
+
 void begin(const Options& options) {
   if (!is_snake_case(options.name))
     throw Failure(hc::Error{hc::Code::Invalid,
@@ -61,7 +70,7 @@ void begin(const Options& options) {
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))
-    throw Failure(hc::Error{hc::Code::Invalid, folder.string() + " is there already"});
+    throw Failure(hc::Error{hc::Code::Invalid, folder.string() + " already exists"});
   fs::create_directories(folder, error);
   if (error) throw Failure(hc::Error{hc::Code::System, folder.string() + ": " + error.message()});
   for (const auto& file : options.is_python ? python_template() : cpp_template()) {
@@ -71,22 +80,24 @@ void begin(const Options& options) {
     remove_licence(text);
     write_file(folder / path, text);
   }
-  const std::string test =
-      options.is_python ? fmt::format("python3 {}_test.py", options.name)
-                        : "cmake -S . -B build && cmake --build build && ctest --test-dir build";
-  print(fmt::format("{} is begun; next: cd {} && {}\n", folder.string(), folder.string(), test));
+  std::string test = fmt::format("python3 {}_test.py", options.name);
+  if (!options.is_python)
+    test = "cmake -S . -B build" + prefix_option() +
+           " && cmake --build build && ctest --test-dir build";
+  print(fmt::format("created {}/; next: cd {} && {}\n", folder.string(), folder.string(), test));
 }
 
 }  // namespace
 
 void add_new(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("new", "Begin a module of your own");
+  auto* verb = app.add_subcommand("new", "Create a module from a template");
   verb->require_subcommand(1);
-  auto* module = verb->add_subcommand("module", "Make a folder with a module and its test");
-  module->add_option("name", options->name, "snake_case; of the folder too")->required();
-  module->add_flag("--python", options->is_python, "in Python, without a library; else in C++");
-  module->add_option("--folder", options->folder, "where to make it; else here");
+  auto* module = verb->add_subcommand("module", "Create a folder with a module and its test");
+  module->add_option("name", options->name, "the module's name, in snake_case; also the folder's")
+      ->required();
+  module->add_flag("--python", options->is_python, "in Python, without a library (default: C++)");
+  module->add_option("--folder", options->folder, "parent folder (default: this one)");
   module->callback([options] { begin(*options); });
 }
 

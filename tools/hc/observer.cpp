@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "observer.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -28,6 +33,18 @@ constexpr std::chrono::milliseconds kSilence{5000};  // a graph speaks twice a s
 
 std::string place(const RunningGraph& graph) {
   return fmt::format("unix:@{}{}", kPrefix, graph.text());
+}
+
+constexpr char kGranted = 'u';  // begins the URI of an observation; no code of an error
+
+bool is_of_this_terminal(int process) {
+  return ::getsid(process) == ::getsid(0);
+}
+
+bool is_of_this_folder(int process) {
+  std::error_code unknown;
+  const auto folder = std::filesystem::read_symlink(fmt::format("/proc/{}/cwd", process), unknown);
+  return !unknown && folder == std::filesystem::current_path(unknown);
 }
 
 /// NAME.PROCESS, which stands behind the prefix in a socket's name. Anybody may bind any other.
@@ -78,60 +95,69 @@ std::vector<RunningGraph> find_running() {
   return find_running(text.str());
 }
 
-RunningGraph choose_running(const std::string& name) {
-  auto all = find_running();
-  std::vector<RunningGraph> meant;
+RunningGraph choose_running(const std::string& wanted) {
+  const char* variable = std::getenv("HC_GRAPH");
+  const std::string name = !wanted.empty() || variable == nullptr ? wanted : variable;
+  auto graphs = find_running();
   std::vector<std::string> names;
-  for (const auto& graph : all) {
-    names.push_back(graph.name);
-    if (name.empty() || graph.name == name || graph.text() == name) meant.push_back(graph);
-  }
-  if (meant.size() == 1) return meant.front();
-  if (meant.empty())
+  for (const auto& graph : graphs) names.push_back(graph.name);
+  std::erase_if(graphs, [&](const auto& graph) {
+    return !name.empty() && graph.name != name && graph.text() != name;
+  });
+  if (graphs.empty())
     throw Failure(hc::Error{hc::Code::NotFound,
-                            name.empty() ? "no graph runs here"
-                                         : fmt::format("no graph \"{}\" runs here{}", name,
+                            name.empty() ? "no graph is running here"
+                                         : fmt::format("no graph \"{}\" is running{}", name,
                                                        hc::suggestion(name, names))});
+  for (bool (*is_near)(int) : {is_of_this_terminal, is_of_this_folder}) {
+    if (graphs.size() == 1 || !name.empty()) break;
+    std::vector<RunningGraph> near;
+    for (const auto& graph : graphs)
+      if (is_near(graph.process)) near.push_back(graph);
+    if (near.size() == 1) return near.front();
+  }
+  if (graphs.size() == 1) return graphs.front();
   std::string list;
-  for (const auto& graph : meant) list += (list.empty() ? "" : ", ") + graph.text();
-  throw Failure(hc::Error{hc::Code::Invalid, "several graphs run: say which: " + list});
+  for (const auto& graph : graphs) list += (list.empty() ? "" : ", ") + graph.text();
+  throw Failure(
+      hc::Error{hc::Code::Invalid, "several graphs are running; pass --of NAME: " + list});
 }
 
 Observer::Observer(const RunningGraph& graph)
     : name_(graph.text()), source_(open_source(place(graph), kMostSaid)) {}
 
-std::optional<nlohmann::json> Observer::next(int input) {
-  std::optional<nlohmann::json> state;
+std::optional<hc::GraphState> Observer::next(const std::vector<int>& inputs) {
+  bool is_new = false;
   hc::Message message;
   while (true) {
     auto got = source_->take(message);
     if (!got || *got == hc::Got::End) return std::nullopt;
     if (*got == hc::Got::Message && message.header.src == kState) {
-      auto json = nlohmann::json::parse(message.characters(), nullptr, false);
-      if (json.is_object()) state = std::move(json);
+      state_ = value_or_fail(hc::parse_graph_state(message.characters()), name_);
+      is_new = true;
     }
     if (*got == hc::Got::Message) continue;
-    if (state) return state;
-    std::array<int, 2> descriptors = {source_->descriptor(), input};
-    auto ready = hc::wait_readable(std::span(descriptors).first(input >= 0 ? 2 : 1),
-                                   hc::stop_descriptor(), kSilence);
+    if (is_new) return state_;
+    std::vector<int> descriptors = {source_->descriptor()};
+    descriptors.insert(descriptors.end(), inputs.begin(), inputs.end());
+    auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kSilence);
     if (!ready && ready.error().code == hc::Code::Stopped) return std::nullopt;
     if (!ready) throw Failure(ready.error());
-    if (input >= 0 && *ready == 1) return nlohmann::json::object();
-    if (*ready == (input >= 0 ? 2U : 1U))
+    if (*ready == descriptors.size())
       throw Failure(
-          hc::Error{hc::Code::Closed, name_ + " has said nothing for 5 s; it may be stopped"});
+          hc::Error{hc::Code::Closed, name_ + " has not answered for 5 s; it may be stopped"});
+    if (*ready > 0) return state_;
   }
 }
 
-std::optional<nlohmann::json> Observer::next_measured() {
-  constexpr int kUnmeasured = 2;  // the first tells what was before, the second begins to measure
+std::optional<hc::GraphState> Observer::next_measured() {
+  constexpr int kUnmeasured = 2;  // the first is older than this observer, the second measures
   for (int i = 0; i < kUnmeasured; ++i)
     if (!next()) return std::nullopt;
   return next();
 }
 
-void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
+std::vector<std::string> ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
   const std::string answers = fmt::format("@{}{}", kAnswerPrefix, ::getpid());
   auto source = open_source("unix-listen:" + answers, kMostSaid);
   std::vector<std::string> rows = {"reply unix:" + answers};
@@ -150,14 +176,83 @@ void ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
     auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kAnswerTime);
     if (!ready) throw Failure(ready.error());
     if (*ready == 0) continue;
-    // It may be asking a program that is slow; and has others to ask before.
+    // It may be waiting for a slow program, or have others to answer first.
     if (++waits == kMostWaits || !Observer(graph).next())
       throw Failure(hc::Error{hc::Code::Closed, graph.text() + " does not answer"});
   }
   auto answer = hc::rows_of(message);
-  if (answer == std::vector<std::string>{"ok"}) return;
-  for (std::size_t i = 0; i + 1 < answer.size(); ++i) say("hc graph: " + answer[i]);
-  throw Failure(hc::Error{hc::Code::Invalid, answer.empty() ? "an empty answer" : answer.back()});
+  if (answer.empty()) answer.emplace_back("an empty answer");
+  if (answer.front() == "ok") return {answer.begin() + 1, answer.end()};
+  for (std::size_t i = 0; i + 1 < answer.size(); ++i) say("hc: " + answer[i]);
+  throw Failure(hc::Error{hc::Code::Invalid, answer.back()});
+}
+
+Observation::Observation(const RunningGraph& graph, const std::string& port)
+    : command_("observe " + port),
+      uri_(ask(graph, {command_}).at(0) + "?reconnect=86400"),
+      place_(place(graph) + ".ask"),
+      sink_(open_sink(place_)) {}
+
+bool Observation::renew() {
+  return sink_->send(hc::make_rows(std::array{command_})).has_value();
+}
+
+std::string observe(const RunningGraph& graph, const std::string& port) {
+  std::array<int, 2> ends{};
+  const pid_t parent = ::getpid();
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure({hc::Code::System, "pipe2"});
+  // Before this process has any link, and so threads.
+  const pid_t child = ::fork();
+  if (child < 0) throw Failure({hc::Code::System, "fork"});
+  if (child > 0) {
+    ::close(ends[1]);
+    std::string answer;
+    char piece[512];
+    for (ssize_t size = 0; (size = ::read(ends[0], piece, sizeof piece)) > 0;)
+      answer.append(piece, static_cast<std::size_t>(size));
+    ::close(ends[0]);
+    const auto code = static_cast<hc::Code>(answer.empty() ? '\0' : answer.front());
+    if (answer.starts_with(kGranted)) return answer.substr(1);
+    throw Failure(
+        {answer.empty() ? hc::Code::System : code, answer.empty() ? "ended" : answer.substr(1)});
+  }
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(0);
+  auto reply = [&](char kind, const std::string& text) {
+    static_cast<void>(hc::write_all(ends[1], kind + text));
+    ::close(ends[1]);
+  };
+  try {
+    Observation observation(graph, port);
+    reply(kGranted, observation.uri());
+    // Whoever reads our parent's output is not to wait for us.
+    for (int number : {STDIN_FILENO, STDOUT_FILENO}) ::close(number);
+    do {
+      ::sleep(1);
+    } while (observation.renew());
+    ::kill(parent, SIGTERM);
+  } catch (const Failure& failure) {
+    reply(static_cast<char>(failure.code), failure.detail);
+  }
+  ::_exit(0);
+}
+
+std::string source_uri(const std::string& text, const std::string& of) {
+  auto is_word = [](std::string_view word) {
+    return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+    });
+  };
+  const auto dot = std::min(text.find('.'), text.size());
+  std::error_code missing;
+  const bool is_port = is_word(text.substr(0, dot)) && dot < text.size() &&
+                       is_word(std::string_view(text).substr(dot + 1)) &&
+                       !std::filesystem::exists(text, missing);
+  if (!is_port && of.empty()) return text;
+  const bool is_known = !of.empty() || !find_running().empty();
+  if (!is_known)
+    throw Failure({hc::Code::NotFound, text + ": no such file, and no graph is running here"});
+  return observe(choose_running(of), text);
 }
 
 }  // namespace tool

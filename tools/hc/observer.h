@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Graphs that run on this host, seen from outside: which there are, what they say of themselves,
-// and what one asks them to do. spec/graph.md (G45 … G47) has their words.
+// Graphs that run on this host, seen from outside: which there are, their states, and commands to
+// them. spec/graph.md (G45 … G47) has their words.
 
 #include <chrono>
 #include <memory>
@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include <hc/graph/state.h>
 #include <hc/link/link.h>
 
 namespace tool {
@@ -31,29 +30,58 @@ struct RunningGraph {
 std::vector<RunningGraph> find_running(std::string_view sockets);
 std::vector<RunningGraph> find_running();
 
-/// The one that is meant: by its name, or NAME.PROCESS where several have that; empty: the only one
-/// there is. Fails with what there is otherwise.
+/// The graph that a person means: by its name, or NAME.PROCESS where several have that. Without a
+/// name: $HC_GRAPH; else the only one; else the only one that was started in this terminal, or in
+/// this folder. Fails with the list of them otherwise.
 RunningGraph choose_running(const std::string& name);
 
-/// Hears what a graph says.
+/// Receives the states of a running graph.
 class Observer {
  public:
   explicit Observer(const RunningGraph& graph);
 
   /// The next state; nothing when the graph has ended or we are to stop. Skips to the newest.
-  /// @param input  descriptor that ends the wait too when it is readable, with an empty object; -1.
-  std::optional<nlohmann::json> next(int input = -1);
+  /// @param inputs  descriptors that end the wait too when one is readable: the last state again.
+  std::optional<hc::GraphState> next(const std::vector<int>& inputs = {});
 
   /// A state with the load of processors and memory, which a graph measures while it is watched.
-  std::optional<nlohmann::json> next_measured();
+  std::optional<hc::GraphState> next_measured();
 
  private:
   std::string name_;
   std::unique_ptr<hc::Source> source_;
+  hc::GraphState state_;
 };
 
-/// Has a graph do what the commands say, a row each; fails with what it answers when that is not
-/// "ok".
-void ask(const RunningGraph& graph, const std::vector<std::string>& commands);
+/// Has a graph do what the commands say, a row each; gives what it answers behind "ok", and fails
+/// with any other answer.
+std::vector<std::string> ask(const RunningGraph& graph, const std::vector<std::string>& commands);
+
+/// An output that a graph holds open for observers, while it is asked so once in 5 s.
+class Observation {
+ public:
+  /// @param port  MODULE.PORT; of an input, what feeds it.
+  Observation(const RunningGraph& graph, const std::string& port);
+
+  /// What to read; the link outlives restarts of the module.
+  [[nodiscard]] const std::string& uri() const { return uri_; }
+  /// Asks for more time; false when the graph has ended.
+  bool renew();
+
+ private:
+  std::string command_, uri_, place_;
+  std::unique_ptr<hc::Sink> sink_;
+};
+
+/// An observation that lasts as long as this process; a child process renews it, and ends this one
+/// with SIGTERM when the graph ends.
+/// For a process that has no links yet.
+std::string observe(const RunningGraph& graph, const std::string& port);
+
+/// What a person names as a source: a URI, a file, or MODULE.PORT of a running graph.
+///
+/// @param of  name of the running graph; empty: as choose_running().
+/// @returns  the URI to read.
+std::string source_uri(const std::string& text, const std::string& of);
 
 }  // namespace tool

@@ -17,9 +17,9 @@ struct Outbox::Shared {
 
   const int descriptor;
   std::mutex mutex;
-  std::condition_variable changed;  // there is something to do, or something has been done
+  std::condition_variable changed;  // work has come, or was done
   std::string waiting;              // lines
-  std::size_t dropped = 0;          // lines behind those
+  std::size_t dropped = 0;          // lines after those
   std::string below;
   bool is_below_new = false, is_below_drawn = false;
   bool is_writing = false, is_ending = false;
@@ -28,7 +28,7 @@ struct Outbox::Shared {
   [[nodiscard]] bool has_work() const { return !waiting.empty() || dropped > 0 || is_below_new; }
   [[nodiscard]] bool is_done() const { return !has_work() && !is_writing; }
 
-  /// What is to be written now.
+  /// The text to write now.
   std::string take() {
     constexpr const char* kErase = "\r\033[K";
     std::string text = is_below_drawn ? kErase : "";
@@ -42,7 +42,7 @@ struct Outbox::Shared {
   }
 
   void write() {
-    // As small as what a pipe takes at once, so that it is seen whether anybody reads.
+    // No more than a pipe takes at once, so that progress of the reader is seen.
     constexpr std::size_t kPiece = 4096;
     std::unique_lock lock(mutex);
     while (true) {
@@ -54,7 +54,7 @@ struct Outbox::Shared {
         const auto piece = rest.substr(0, kPiece);
         rest.remove_prefix(piece.size());
         lock.unlock();
-        // Where nobody reads any more, lines go nowhere.
+        // After the reader has closed, lines go nowhere.
         static_cast<void>(hc::write_all(descriptor, piece));
         lock.lock();
         ++pieces;
@@ -67,7 +67,7 @@ struct Outbox::Shared {
 };
 
 Outbox::Outbox(int descriptor) : shared_(std::make_shared<Shared>(descriptor)) {
-  // Signals are for the thread that looks for them.
+  // Signals are handled on the main thread.
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Lines for a person, who may not read them: a pager shows its first page, a terminal is held by
-// Ctrl-S. Who says them does not wait.
+// Log output that never blocks its writer: the reader may be a pager at its first page, or a
+// terminal held by Ctrl-S.
 
 #include <chrono>
 #include <memory>
@@ -11,12 +11,12 @@
 
 namespace tool {
 
-/// Writes lines to a descriptor on a thread of its own, and below them one that changes. Where too
-/// many wait, more are dropped, and a line says how many when there is room again.
+/// Writes lines to a descriptor on its own thread, and a status line below them. When the queue is
+/// full, lines are dropped; one line says how many when there is room again.
 class Outbox {
  public:
   static constexpr std::size_t kMostWaiting = std::size_t{1} << 20;  ///< [byte]
-  /// How long finish() waits for who reads nothing at all.
+  /// How long finish() waits for a reader that reads nothing.
   static constexpr std::chrono::milliseconds kPatience{1000};
 
   explicit Outbox(int descriptor);
@@ -25,17 +25,17 @@ class Outbox {
   Outbox& operator=(const Outbox&) = delete;
 
   void say(std::string_view line);
-  /// Has the line below the others replaced, as it is now; empty: there is none.
+  /// Replaces the status line; empty removes it.
   void show(std::string below);
-  /// Takes the line below away, and waits until all is written, as long as somebody reads.
+  /// Removes the status line, and waits until all is written, as long as the reader makes progress.
   void finish();
 
  private:
   struct Shared;
 
-  std::shared_ptr<Shared> shared_;  // with the thread, which may be left behind in a write
+  std::shared_ptr<Shared> shared_;  // with the thread, which may stay blocked in a write
   std::thread writer_;
-  std::size_t unread_ = ~std::size_t{0};  // how many pieces were written when nobody read more
+  std::size_t unread_ = ~std::size_t{0};  // the number of pieces when the reader stopped reading
 };
 
 }  // namespace tool

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc play: sends what stands in a file, in its own time.
+// hc play: plays a recording back at its own speed.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -30,8 +30,8 @@ class Pace {
   /// @param speed  1: as recorded; infinity: without waiting.
   explicit Pace(double speed) : speed_(speed) {}
 
-  /// Waits until `seconds` of the recording have passed since the first call; false when we are
-  /// told to stop.
+  /// Waits until `seconds` of the recording have passed since the first call; false when
+  /// asked to stop.
   bool wait_for(double seconds) {
     if (speed_ == std::numeric_limits<double>::infinity()) return true;
     if (!begun_) begin_ = MonotonicClock::now() - to_clock(seconds);
@@ -65,8 +65,8 @@ double parse_speed(const std::string& text) {
   return speed;
 }
 
-/// Plays the file once; false when there is no use in doing it again: nobody to play to, nothing to
-/// play, or told to stop.
+/// Plays the file once; false when it is not to be repeated: no reader, nothing to play, or asked
+/// to stop.
 bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& progress) {
   auto source = options.file == "-" ? open_source("-", options.limit)
                                     : open_file_source(options.file, options.limit);
@@ -111,15 +111,14 @@ void run(const Options& options) {
 
 void add_play(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("play", "Send what stands in a file, in its own time");
+  auto* verb = app.add_subcommand("play", "Play a recording back at its own speed");
   verb->add_option("file", options->file, "a recording, or -")->required();
   verb->add_option("--out", options->out, "where messages go")->capture_default_str();
   verb->add_option("--speed", options->speed, "times faster than recorded, or max")
       ->capture_default_str();
-  verb->add_flag("--loop", options->loop, "begin again at the end");
-  verb->add_option("--from", options->from,
-                   "leave out what comes before [s from the first message]");
-  verb->add_option("--to", options->to, "leave out what comes after [s from the first message]");
+  verb->add_flag("--loop", options->loop, "repeat without end");
+  verb->add_option("--from", options->from, "skip what is earlier [s from the first message]");
+  verb->add_option("--to", options->to, "stop there [s from the first message]");
   add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }

@@ -1,50 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc ps: the graphs that run on this host.
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
 
 #include "common.h"
 #include "observer.h"
+#include "screen.h"
 #include "verbs.h"
 
 namespace tool {
 namespace {
 
-std::string row(const nlohmann::json& state) {
-  std::size_t running = 0, given_up = 0, stalled = 0;
-  for (const auto& module : state.at("modules")) {
-    auto status = module.at("status").get<std::string>();
-    running += status == "running" ? 1 : 0;
-    given_up += status == "given up" ? 1 : 0;
-    stalled += status == "stalled" ? 1 : 0;
+std::string row(const hc::GraphState& state, bool is_plain) {
+  auto count = [&](hc::ModuleStatus status) {
+    return std::count_if(state.modules.begin(), state.modules.end(),
+                         [&](const auto& module) { return module.status == status; });
+  };
+  std::string status = state.is_stopping ? "stopping" : "running";
+  for (auto trouble : {hc::ModuleStatus::Stalled, hc::ModuleStatus::GivenUp})
+    if (auto number = count(trouble); number > 0)
+      status += fmt::format(", {} {}", number, name(trouble));
+  const bool is_red = std::any_of(state.modules.begin(), state.modules.end(), is_in_trouble);
+  const bool is_painted = is_red && !is_plain;
+  return fmt::format("{}{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}{}\n", is_painted ? "\x1b[31m" : "",
+                     state.name, state.process, seconds_in_words(state.uptime),
+                     count(hc::ModuleStatus::Running), state.modules.size(),
+                     state.focus == 0 ? "-" : state.focus_name(), status,
+                     is_painted ? "\x1b[0m" : "");
+}
+
+void ps(bool as_json) {
+  const bool is_plain = ::isatty(STDOUT_FILENO) == 0;
+  std::string text;
+  if (!as_json)
+    text = fmt::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n", "GRAPH", "PROCESS", "RUNS FOR",
+                       "UP", "ALL", "FOCUS", "STATUS");
+  for (const auto& graph : find_running()) {
+    try {
+      if (auto state = Observer(graph).next())
+        text += as_json ? to_json(*state) + "\n" : row(*state, is_plain);
+    } catch (const Failure& failure) {
+      // It has just ended, or is another user's; the others are of interest even so.
+      if (!as_json)
+        text += fmt::format("{:<16} {:>7} {}\n", graph.name, graph.process, failure.what());
+    }
   }
-  std::string status = state.at("status");
-  if (stalled > 0) status += fmt::format(", {} stalled", stalled);
-  if (given_up > 0) status += fmt::format(", {} given up", given_up);
-  const auto& focus = state.at("focus");
-  return fmt::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n",
-                     state.at("graph").get<std::string>(), state.at("pid").get<int>(),
-                     seconds_in_words(state.at("uptime").get<double>()), running,
-                     state.at("modules").size(),
-                     focus.is_null() ? "-" : focus.at("mode").get<std::string>(), status);
+  print(text);
 }
 
 }  // namespace
 
 void add_ps(CLI::App& app) {
-  auto* verb = app.add_subcommand("ps", "List the graphs that run on this host");
-  verb->callback([] {
-    std::string text = fmt::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n", "GRAPH", "PROCESS",
-                                   "RUNS FOR", "UP", "ALL", "FOCUS", "STATUS");
-    for (const auto& graph : find_running()) {
-      try {
-        if (auto state = Observer(graph).next()) text += row(*state);
-      } catch (const Failure& failure) {
-        // One of another user, or one that has just ended; the others are of interest even so.
-        text += fmt::format("{:<16} {:>7} {}\n", graph.name, graph.process, failure.what());
-      }
-    }
-    print(text);
-  });
+  auto as_json = std::make_shared<bool>();
+  auto* verb = app.add_subcommand("ps", "List the running graphs of this host");
+  verb->add_flag("--json", *as_json, "print the state of each graph as a line of JSON");
+  verb->callback([as_json] { ps(*as_json); });
 }
 
 }  // namespace tool

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc record: keeps what comes over links in a file.
+// hc record: records ports or links to a file.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -7,19 +7,20 @@
 #include <hc/os/program.h>
 
 #include "common.h"
+#include "observer.h"
 #include "verbs.h"
 
 namespace tool {
 namespace {
 
 struct Options {
-  std::string file;
+  std::string file, of;
   std::vector<std::string> links = {"-"};
   std::uint64_t count = 0;
   std::uint64_t limit = kDefaultLimit;
 };
 
-/// Whether a link is the file that is to be written anew.
+/// Whether a link is the file that is to be written.
 bool is_file(const std::string& link, const std::string& file) {
   std::error_code missing;
   auto uri = hc::parse_uri(link);
@@ -35,16 +36,19 @@ struct Link {
 };
 
 void run(const Options& options) {
-  std::vector<Link> links;
+  std::vector<std::string> uris;  // all before the first link is opened
   for (const auto& uri : options.links) {
     if (is_file(uri, options.file))
       throw Failure(hc::Error{hc::Code::Invalid, uri + " is the file that is written"});
-    links.push_back({uri, open_source(uri, options.limit)});
+    uris.push_back(source_uri(uri, options.of));
   }
+  std::vector<Link> links;
+  for (std::size_t i = 0; i < uris.size(); ++i)
+    links.push_back({options.links[i], open_source(uris[i], options.limit)});
   auto sink = open_file_sink(options.file);
   Progress progress("hc record " + options.file);
   hc::Message message;
-  while (!hc::stop_requested()) {  // what has come is kept
+  while (!hc::stop_requested()) {  // what has arrived is kept
     bool any = false;
     std::vector<hc::Source*> open;
     for (auto& [uri, source] : links) {
@@ -75,9 +79,11 @@ void run(const Options& options) {
 
 void add_record(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("record", "Keep what comes over links in a file");
-  verb->add_option("file", options->file, "the file, written anew")->required();
-  verb->add_option("--in", options->links, "where messages come from; may be repeated");
+  auto* verb = app.add_subcommand("record", "Record ports or links to a file");
+  verb->add_option("file", options->file, "output file (overwritten)")->required();
+  verb->add_option("--in", options->links,
+                   "URIs, files or MODULE.PORT of a running graph; may be repeated");
+  add_of(*verb, options->of);
   add_count(*verb, options->count);
   add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });

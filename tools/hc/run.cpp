@@ -21,19 +21,49 @@ namespace {
 struct Options {
   GraphOptions graph;
   std::string name;
-  bool quiet = false;
+  bool quiet = false, links = false;
 };
+
+std::string counted(std::uint64_t number, std::string_view what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
+/// What a run came to, for a person: a few lines, the modules' results among them.
+void print_summary(const Options& options, const hc::RunReport& report) {
+  hc::Traffic sum;
+  std::uint64_t restarts = 0, ignored = 0;
+  for (const auto& link : report.state.links) {
+    sum += link.traffic;
+    ignored += link.left_out;
+  }
+  for (const auto& module : report.state.modules)
+    restarts += static_cast<std::uint64_t>(module.restarts);
+  std::string text = fmt::format(
+      "{} ran for {}: {}{}, {} ({})\n", options.graph.file, seconds_in_words(report.state.uptime),
+      counted(report.state.modules.size(), "module"),
+      restarts > 0 ? ", " + counted(restarts, "restart") : "", counted(sum.messages, "message"),
+      bytes_in_words(static_cast<double>(sum.bytes)));
+  for (const auto& line : report.results) text += "  " + line + "\n";
+  std::string lost;
+  for (auto [count, word] : {std::pair(sum.over_rate, "throttled"),
+                             {sum.lost() - sum.over_rate, "dropped"},
+                             {ignored, "ignored out of focus"}})
+    if (count > 0) lost += fmt::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
+  if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");
+  if (!options.graph.record.empty()) text += "  recorded into " + options.graph.record + "\n";
+  print(text);
+}
 
 void print_links(const hc::GraphState& state) {
   std::size_t widest = 0;
   for (const auto& link : state.links)
-    widest = std::max(widest, link.from.size() + link.to.size() + 4);
+    widest = std::max(widest, link.from.size() + link.to.size() + 5);
   std::string text;
   for (const auto& link : state.links) {
-    std::string name = link.from + " -> " + link.to;
+    std::string name = link.from + " → " + link.to;
     const auto& sent = link.traffic;
     std::string lost;
-    if (sent.lost() > 0) lost = fmt::format("  {} lost ({})", sent.lost(), losses_in_words(sent));
+    if (sent.lost() > 0) lost = "  " + losses_in_words(sent);
     text += fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
                         sent.messages == 1 ? " " : "s",
                         bytes_in_words(static_cast<double>(sent.bytes)), lost);
@@ -62,7 +92,7 @@ void allow_descriptors() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-/// Says why it fails as all else was said: nobody may read that.
+/// Logs the reason as everything else was logged: its reader may be gone.
 [[noreturn]] void fail(StatusLine& status, const hc::Error& error) {
   status.say("hc run: " + error.text());
   throw Failure(Failure(error).status);
@@ -101,7 +131,8 @@ void run(const Options& options) {
   auto report = hc::run_graph(std::move(*plan.plan), run_options);
   status.finish();
   if (!report) fail(status, report.error());
-  print_links(report->state);
+  print_summary(options, *report);
+  if (options.links) print_links(report->state);
   std::string given_up;
   for (const auto& module : report->state.modules)
     if (module.status == hc::ModuleStatus::GivenUp)
@@ -115,10 +146,11 @@ void add_run(CLI::App& app) {
   auto options = std::make_shared<Options>();
   auto* verb = app.add_subcommand("run", "Run a graph of modules");
   add_graph_options(*verb, options->graph);
-  verb->add_option("--as", options->name, "name that others find the graph by; else the file's");
+  verb->add_option("--as", options->name, "name of the running graph (default: the file's)");
   verb->add_option("--record", options->graph.record,
-                   "folder where what each linked output sends is kept, as MODULE.PORT.mtp");
-  verb->add_flag("--quiet", options->quiet, "tell only what goes wrong");
+                   "record every linked output into this folder, as MODULE.PORT.mtp");
+  verb->add_flag("--quiet", options->quiet, "log errors only");
+  verb->add_flag("--links", options->links, "at the end, print what went over each link");
   verb->callback([options] { run(*options); });
 }
 

@@ -6,178 +6,242 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <set>
 
 #include "common.h"
 
 namespace tool {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::string_view kBold = "\x1b[1m", kRed = "\x1b[31m", kDim = "\x1b[2m",
                            kNormal = "\x1b[0m";
-
-constexpr std::size_t kName = 18;     // of a module [character]
-constexpr std::size_t kNumbers = 42;  // of a link: the width of all columns but the first
 
 struct Line {
   std::string text;
   bool is_bold = false, is_red = false, is_dim = false;
 };
 
-/// Cuts text to so many characters, counting those of UTF-8, with a mark where some are left out.
+bool begins_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // UTF-8
+}
+
+std::size_t length(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
+}
+
+/// Text in so many characters, with a mark where some are missing, and without what a terminal
+/// would obey.
 std::string fitted(const std::string& text, std::size_t width) {
-  auto is_begin = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
-  auto count = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), is_begin));
-  if (count <= width) return text + std::string(width - count, ' ');
+  const auto count = length(text);
   std::string cut;
   std::size_t taken = 0;
   for (char c : text) {
-    if (is_begin(c) && ++taken >= width) break;
-    cut += c;
+    if (count > width && begins_character(c) && ++taken >= width) break;
+    cut += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   }
-  return cut + "…";
+  return count > width ? cut + "…" : cut + std::string(width - count, ' ');
 }
 
-/// A time in five characters.
-std::string short_time(double seconds) {
-  return seconds < 0 ? "-" : short_number(seconds) + "s";
-}
-
-std::string quantile(const json& times, std::size_t index) {
-  return times.is_null() ? "-" : short_time(times.at(index).get<double>());
+std::string in_front(const std::string& text, std::size_t width) {
+  return std::string(width - std::min(width, length(text)), ' ') + text;
 }
 
 std::string short_count(std::uint64_t count) {
   return count == 0 ? "-" : short_number(static_cast<double>(count));
 }
 
-bool is_wrong(const std::string& status) {
-  return status == "given up" || status == "stalled" || status == "waiting";
-}
-
-std::string heading(const json& state) {
-  std::size_t up = 0;
+std::string heading(const hc::GraphState& state) {
   double rate = 0, load = 0;
-  for (const auto& module : state.at("modules")) {
-    up += module.at("status") == "running" ? 1 : 0;
-    load += module.at("cpu").get<double>();
+  std::size_t up = 0;
+  for (const auto& module : state.modules) {
+    up += module.status == hc::ModuleStatus::Running ? 1 : 0;
+    load += module.processor;
   }
-  for (const auto& link : state.at("links")) rate += link.at("per_second").get<double>();
-  const auto& focus = state.at("focus");
-  return fmt::format("{}: {} {}, {}/{} modules up, {} messages/s, {:.0f} % CPU{}",
-                     state.at("graph").get<std::string>(), state.at("status").get<std::string>(),
-                     seconds_in_words(state.at("uptime").get<double>()), up,
-                     state.at("modules").size(), short_number(rate), 100 * load,
-                     focus.is_null() ? "" : ", focus " + focus.at("mode").get<std::string>());
+  for (const auto& link : state.links) rate += link.per_second;
+  return fmt::format("{}: {} {}, {}/{} modules up, {} messages/s, {:.0f} % CPU{}", state.name,
+                     state.is_stopping ? "stopping" : "running", seconds_in_words(state.uptime), up,
+                     state.modules.size(), short_number(rate), 100 * load,
+                     state.focus == 0 ? "" : ", focus " + state.focus_name());
 }
 
-Line module_line(const json& module, std::size_t width) {
-  Line line;
-  auto status = module.at("status").get<std::string>();
-  auto detail = module.at("detail").get<std::string>();
-  const bool is_running = status == "running";
-  if (is_running && !module.at("in_focus").get<bool>()) status = "idle";
-  if (!detail.empty()) status = is_running ? detail : status + ": " + detail;
-  line.is_red = is_wrong(module.at("status"));
-  line.is_bold = module.at("in_workspace").get<bool>();
-  line.is_dim = !module.at("in_focus").get<bool>();
-  auto fixed = fmt::format(
-      " {:>6} {:>8} {:>3} {:<7} ", fmt::format("{:.1f}%", 100 * module.at("cpu").get<double>()),
-      bytes_in_words(module.at("memory").get<double>()), module.at("restarts").get<int>(),
-      fitted(module.at("mode").get<std::string>(), 7));
-  const std::size_t name = kName;
-  auto rest = width > name + fixed.size() ? width - name - fixed.size() : 1;
-  line.text = fitted(module.at("name"), name) + fixed + fitted(status, rest);
-  return line;
+std::string bids_line(const std::vector<Bid>& bids) {
+  std::string text;
+  for (const auto& bid : bids)
+    text += fmt::format("{}{} {:.2f}{}{}", text.empty() ? "bids: " : ", ", bid.mode, bid.salience,
+                        bid.is_person ? " (person)" : "", bid.in_focus ? " *" : "");
+  return text;
 }
 
-Line link_line(const json& link, std::size_t width) {
-  Line line;
-  std::uint64_t lost = 0;
-  for (const auto& count : link.at("lost")) lost += count.get<std::uint64_t>();
-  line.is_bold = link.at("in_workspace").get<bool>();
-  auto fixed = fmt::format(
-      " {:>5} {:>6} {:>6} {:>6} {:>5} {:>8}", short_number(link.at("per_second").get<double>()),
-      short_number(link.at("bytes_per_second").get<double>()) + "B", quantile(link.at("age"), 0),
-      quantile(link.at("age"), 1), short_count(lost),
-      short_count(link.at("left_out").get<std::uint64_t>()));
-  auto name = width > kNumbers + 10 ? width - kNumbers : 10;
-  auto rate = link.at("rate").get<double>();  // that the link does not exceed
-  auto limit = rate > 0 ? " ≤" + short_number(rate) + "/s" : "";
-  line.text =
-      fitted(link.at("from").get<std::string>() + " → " + link.at("to").get<std::string>() + limit,
-             name) +
-      fixed;
-  return line;
+/// A column: its heading, width and a cell's text.
+template <typename Row>
+struct Column {
+  std::string name;
+  std::size_t width;
+  std::string (*cell)(const Row& row);
+};
+
+template <typename Row>
+std::string cells(const std::vector<Column<Row>>& columns, const Row& row) {
+  std::string text;
+  for (const auto& column : columns) text += in_front(column.cell(row), column.width);
+  return text;
 }
 
-/// As many of the lines as there is room for, those that are wrong before the others, and how many
-/// are left out.
-void add_some(std::vector<Line> lines, std::size_t room, std::vector<Line>& all) {
-  if (lines.size() > room)
-    std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
-      return std::pair(!a.is_red, !a.is_bold) < std::pair(!b.is_red, !b.is_bold);
-    });
-  const bool some = lines.size() > room;
-  const std::size_t count = some ? (room > 0 ? room - 1 : 0) : lines.size();
-  for (std::size_t i = 0; i < count; ++i) all.push_back(lines[i]);
-  if (some && room > 0)
-    all.push_back({fmt::format("… and {} more", lines.size() - count), false, false, true});
+template <typename Row>
+std::string names(const std::vector<Column<Row>>& columns) {
+  std::string text;
+  for (const auto& column : columns) text += in_front(column.name, column.width);
+  return text;
+}
+
+void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Line>& lines) {
+  const std::vector<Column<hc::ModuleState>> columns = {
+      {"CPU", 7, [](const auto& m) { return fmt::format("{:.1f}%", 100 * m.processor); }},
+      {"MEMORY", 9, [](const auto& m) { return bytes_in_words(static_cast<double>(m.memory)); }},
+      {"RESTARTS", 9, [](const auto& m) { return std::to_string(m.restarts); }},
+  };
+  constexpr std::size_t kMaxName = 24, kMaxMode = 12;
+  std::size_t name = 6, mode = 4;
+  for (const auto& module : state.modules) {
+    name = std::max(name, std::min(kMaxName, length(module.name)));
+    mode = std::max(mode, std::min(kMaxMode, length(module.mode)));
+  }
+  lines.push_back(
+      {fitted("MODULE", name) + names(columns) + "  " + fitted("MODE", mode) + " STATUS", false,
+       false, true});
+  for (const auto& module : state.modules) {
+    auto status = status_text(module);
+    if (!module.last_line.empty())
+      status += fmt::format(" | {} ({} ago)", module.last_line,
+                            seconds_in_words(std::max(0.0, module.last_line_age)));
+    const auto text = fitted(module.name, name) + cells(columns, module) + "  " +
+                      fitted(module.mode, mode) + " " + status;
+    lines.push_back({fitted(text, width), module.in_workspace, is_in_trouble(module),
+                     !module.in_focus && !is_in_trouble(module)});
+  }
+}
+
+void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>& lines) {
+  std::vector<Column<hc::LinkState>> columns = {
+      {"1/s", 6, [](const auto& l) { return short_number(l.per_second); }},
+      {"B/s", 7, [](const auto& l) { return short_number(l.bytes_per_second) + "B"; }},
+      {"AGE", 7, [](const auto& l) { return l.age ? short_time(l.age->at(0)) : "-"; }},
+      {"p99", 7, [](const auto& l) { return l.age ? short_time(l.age->at(1)) : "-"; }},
+      {"THROTTLED", 10, [](const auto& l) { return short_count(l.traffic.over_rate); }},
+      {"DROPPED", 8,
+       [](const auto& l) { return short_count(l.traffic.lost() - l.traffic.over_rate); }},
+      {"IGNORED", 8, [](const auto& l) { return short_count(l.left_out); }},
+  };
+  constexpr std::size_t kWide = 100;
+  if (width < kWide) columns.erase(columns.begin() + 3);
+  std::size_t numbers = 0, name = 4;
+  for (const auto& column : columns) numbers += column.width;
+  for (const auto& link : state.links) name = std::max(name, length(link.from + " → " + link.to));
+  name = std::max<std::size_t>(10, std::min(name, width - std::min(width, numbers)));
+  std::set<std::string> down;
+  for (const auto& module : state.modules)
+    if (module.status != hc::ModuleStatus::Running) down.insert(module.name);
+  lines.push_back({fitted("LINK", name) + names(columns), false, false, true});
+  for (const auto& link : state.links) {
+    std::string notes;
+    auto note = [&](const std::string& text) {
+      if (!text.empty()) notes += (notes.empty() ? "  " : ", ") + text;
+    };
+    note(link.status);
+    if (link.rate > 0) note("at most " + short_number(link.rate) + "/s");
+    note(losses_in_words(link.traffic));
+    if (link.left_out > 0) note("ignored: not in focus");
+    const auto text = fitted(link.from + " → " + link.to, name) + cells(columns, link) + notes;
+    lines.push_back({fitted(text, width), link.in_workspace, !link.status.empty()});
+  }
+}
+
+/// What is in trouble first.
+void sort(std::vector<Line>::iterator begin, std::vector<Line>::iterator end) {
+  std::stable_sort(begin, end, [](const Line& a, const Line& b) { return a.is_red && !b.is_red; });
+}
+
+std::string painted(Line line, const Screen& screen) {
+  line.text = fitted(line.text, screen.width);
+  line.text.erase(line.text.find_last_not_of(' ') + 1);
+  std::string begin;
+  if (line.is_bold) begin += kBold;
+  if (line.is_red) begin += kRed;
+  if (line.is_dim && !line.is_bold) begin += kDim;
+  if (screen.is_plain || begin.empty()) return line.text + "\n";
+  return begin + line.text + std::string(kNormal) + "\n";
 }
 
 }  // namespace
 
+bool is_in_trouble(const hc::ModuleState& module) {
+  using enum hc::ModuleStatus;
+  if (module.status == GivenUp || module.status == Stalled || module.status == Waiting) return true;
+  if (module.status == Running && !module.detail.empty()) return true;
+  if (module.status == Ended) return false;
+  constexpr std::array kWords = {"disconnect",   "reconnecting", "retrying",  "trying again",
+                                 "unresponsive", "cannot be",    "failed",    "refused",
+                                 "is lost",      "timed out",    "not found", "Closed:",
+                                 "System:",      "Malformed:",   "NotFound:", "Truncated:"};
+  return std::any_of(kWords.begin(), kWords.end(), [&](const char* word) {
+    return module.last_line.find(word) != std::string::npos;
+  });
+}
+
+std::string status_text(const hc::ModuleState& module) {
+  std::string status{name(module.status)};
+  const bool is_running = module.status == hc::ModuleStatus::Running;
+  if (is_running && !module.in_focus) status = "idle (not in focus)";
+  if (module.detail.empty()) return status;
+  return is_running ? module.detail : status + ": " + module.detail;
+}
+
 std::string short_number(double number) {
-  constexpr std::array<const char*, 9> kPrefixes = {"n", "µ", "m", "", "k", "M", "G", "T", "P"};
+  constexpr std::array<const char*, 6> kPrefixes = {"", "k", "M", "G", "T", "P"};
   if (number == 0 || !std::isfinite(number)) return "0";
-  std::size_t prefix = 3;
+  std::size_t prefix = 0;
   double size = std::abs(number);
   while (size >= 999.5 && prefix + 1 < kPrefixes.size()) size /= 1000, ++prefix;
-  while (size < 0.9995 && prefix > 0) size *= 1000, --prefix;
   int digits = size < 9.995 ? 2 : size < 99.95 ? 1 : 0;
-  if (prefix == 3 && size == std::floor(size)) digits = 0;
+  if (prefix == 0 && size == std::floor(size)) digits = 0;
   return fmt::format("{}{:.{}f}{}", number < 0 ? "-" : "", size, digits, kPrefixes.at(prefix));
 }
 
-std::string draw(const json& state, const Screen& screen) {
-  std::vector<Line> lines, modules, links;
-  for (const auto& module : state.at("modules"))
-    modules.push_back(module_line(module, screen.width));
-  for (const auto& link : state.at("links")) links.push_back(link_line(link, screen.width));
-  lines.push_back({heading(state), true});
-  const std::size_t headings = links.empty() ? 3 : 5;
-  std::size_t room = screen.height == 0         ? modules.size() + links.size()
-                     : screen.height > headings ? screen.height - headings
-                                                : 0;
-  // Modules and links share the room; who needs less than half leaves the rest to the other.
-  std::size_t for_modules =
-      std::min(modules.size(), std::max(room - std::min(room, links.size()), room / 2));
-  lines.push_back({});
-  lines.push_back(
-      {fitted("MODULE", kName) + "    CPU   MEMORY NEW MODE    STATUS", false, false, true});
-  add_some(std::move(modules), for_modules, lines);
-  if (!links.empty()) {
+std::string short_time(double seconds) {
+  if (seconds < 0) return "-";
+  for (auto [unit, name] : {std::pair(1.0, "s"), {1e-3, "ms"}, {1e-6, "µs"}})
+    if (seconds >= 0.9995 * unit) return short_number(seconds / unit) + name;
+  return short_number(seconds * 1e9) + "ns";
+}
+
+std::string draw(const hc::GraphState& state, const std::vector<Bid>& bids, const Screen& screen) {
+  std::vector<Line> fixed = {{heading(state), true}}, lines;
+  if (!bids.empty()) fixed.push_back({bids_line(bids)});
+  fixed.push_back({});
+  add_modules(state, screen.width, lines);
+  sort(lines.begin() + 1, lines.end());
+  if (!state.links.empty()) {
     lines.push_back({});
-    auto column = screen.width > kNumbers + 10 ? screen.width - kNumbers : 10;
-    lines.push_back({fitted("LINK", column) + "   1/s    B/s    AGE    p99  LOST LEFT OUT", false,
-                     false, true});
-    add_some(std::move(links), room - for_modules, lines);
+    const auto begin = static_cast<std::ptrdiff_t>(lines.size()) + 1;
+    add_links(state, screen.width, lines);
+    sort(lines.begin() + begin, lines.end());
+  }
+  if (screen.height > 0) {
+    fixed.resize(std::min(fixed.size(), screen.height));
+    const std::size_t room = screen.height - fixed.size();
+    if (lines.size() > room && room > 1) {
+      const std::size_t shown = room - 1, first = std::min(screen.first, lines.size() - shown);
+      const auto more = fmt::format("lines {} to {} of {}; arrow keys scroll, q quits", first + 1,
+                                    first + shown, lines.size());
+      lines = {lines.begin() + static_cast<std::ptrdiff_t>(first),
+               lines.begin() + static_cast<std::ptrdiff_t>(first + shown)};
+      lines.push_back({more, false, false, true});
+    }
+    lines.resize(std::min(lines.size(), room));
   }
   std::string text;
-  for (const auto& line : lines) {
-    auto fit = fitted(line.text, screen.width);
-    fit.erase(fit.find_last_not_of(' ') + 1);
-    if (!screen.is_plain) {
-      if (line.is_bold) text += kBold;
-      if (line.is_red) text += kRed;
-      if (line.is_dim && !line.is_bold) text += kDim;
-    }
-    text += fit;
-    if (!screen.is_plain && (line.is_bold || line.is_red || line.is_dim)) text += kNormal;
-    text += '\n';
-  }
+  for (const auto* some : {&fixed, &lines})
+    for (const auto& line : *some) text += painted(line, screen);
   return text;
 }
 

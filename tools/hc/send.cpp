@@ -100,8 +100,8 @@ hc::Message message_of_npy(const Options& options) {
   return message;
 }
 
-/// The camera module reads pictures, with libraries that hc need not carry: its one message, over a
-/// pipe that takes the place of our standard input.
+/// The camera module reads images, with libraries that hc does not link: its one message, over a
+/// pipe that becomes our standard input.
 hc::Message message_of_picture(const Options& options) {
   std::string program = find_program("camera");
   std::vector<std::string> words = {program, "--count=1", "--source=" + options.picture,
@@ -125,7 +125,7 @@ hc::Message message_of_picture(const Options& options) {
   }
   ::posix_spawn_file_actions_destroy(&actions);
   if (failed != 0)
-    throw Failure(hc::Error{hc::Code::NotFound, "module camera, which reads pictures: " +
+    throw Failure(hc::Error{hc::Code::NotFound, "module camera, which reads images: " +
                                                     std::generic_category().message(failed)});
   auto source = open_source("-", kDefaultLimit);
   hc::Message message;
@@ -136,7 +136,7 @@ hc::Message message_of_picture(const Options& options) {
   return message.keep();
 }
 
-/// What does not go together, said before anything is done with half of it.
+/// Refuses options that exclude each other, before anything is sent.
 void check(const Options& options) {
   std::vector<std::string> given;
   if (options.has_text) given.emplace_back("--text");
@@ -184,11 +184,10 @@ void run(const Options& options) {
 
 void add_send(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  auto* verb =
-      app.add_subcommand("send", "Send one message: numbers, text, a picture, a .npy file");
+  auto* verb = app.add_subcommand("send", "Send one message: numbers, text, an image, a .npy file");
   verb->add_option("--out", options->out, "where it goes")->capture_default_str();
   verb->add_option("--text", options->text, "send this as a string");
-  verb->add_option("--picture", options->picture, "send a picture file");
+  verb->add_option("--picture", options->picture, "send an image file");
   verb->add_option("--npy", options->npy, "send a NumPy array");
   verb->add_option("--type", options->type, "matrix type of the numbers or the array")
       ->capture_default_str();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The last line of a terminal, where a graph that runs tells what it does.
+// The last line of a terminal, which shows the status of the running graph.
 
 #include <string>
 #include <string_view>
@@ -11,19 +11,19 @@
 
 namespace tool {
 
-/// What a graph does, in one line: "5 running, 1 given up | 1230 messages/s | focus: track".
+/// The status of a graph in one line: "5 running, 1 given up | 1230 messages/s | focus: track".
 std::string summary_of(const hc::GraphState& state);
 
-/// Lines on standard error, and where that is a terminal, one below them that changes. Nothing but
-/// finish() waits for who reads them.
+/// Log lines on standard error, and on a terminal a status line below them. Only finish() waits for
+/// the reader.
 class StatusLine {
  public:
-  /// @param wanted  false: there is none.
+  /// @param wanted  false: no status line.
   explicit StatusLine(bool wanted);
 
   void say(std::string_view line) { outbox_.say(line); }
   void show(const hc::GraphState& state);
-  /// Waits until the lines are written, as long as somebody reads, and takes the last one away.
+  /// Waits until the lines are written, as long as the reader makes progress.
   void finish() { outbox_.finish(); }
 
  private:

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc top: what a running graph does, live.
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include "common.h"
 #include "observer.h"
@@ -12,7 +15,9 @@
 namespace tool {
 namespace {
 
-/// A terminal that shows one page and gives keys one by one, until this goes.
+constexpr std::size_t kPlainWidth = 120;  // without a terminal [character]
+
+/// A terminal that shows one page and reads keys one by one, until this is destroyed.
 class Page {
  public:
   Page() {
@@ -30,7 +35,9 @@ class Page {
   Page(const Page&) = delete;
   Page& operator=(const Page&) = delete;
 
-  [[nodiscard]] int keys() const { return has_keys_ ? STDIN_FILENO : -1; }
+  [[nodiscard]] std::vector<int> keys() const {
+    return has_keys_ ? std::vector{STDIN_FILENO} : std::vector<int>();
+  }
 
   static Screen screen() {
     winsize size{};
@@ -53,38 +60,112 @@ class Page {
   bool has_keys_ = false;
 };
 
-void top(const std::string& name, bool once) {
-  auto graph = choose_running(name);
+/// The bids of a graph's workspaces, as far as their modules publish them.
+class Bids {
+ public:
+  Bids(const RunningGraph& graph, const hc::GraphState& state) {
+    for (const auto& workspace : state.workspaces) try {
+        Observation observation(graph, workspace + ".standings");
+        auto source = open_source(observation.uri(), kDefaultLimit);
+        all_.push_back({std::move(observation), std::move(source), {}});
+      } catch (const Failure&) {
+        continue;  // it has no such output
+      }
+  }
+
+  std::vector<Bid> take(const hc::GraphState& state) {
+    std::vector<Bid> all;
+    hc::Message message;
+    for (auto& [observation, source, bids] : all_) {
+      static_cast<void>(observation.renew());
+      for (auto got = source->take(message); got && *got == hc::Got::Message;
+           got = source->take(message))
+        if (auto rows = message.view<double>(); rows && rows->width() == 5)
+          bids = bids_of(*rows, state);
+      all.insert(all.end(), bids.begin(), bids.end());
+    }
+    return all;
+  }
+
+ private:
+  struct Workspace {
+    Observation observation;
+    std::unique_ptr<hc::Source> source;
+    std::vector<Bid> bids;
+  };
+
+  static std::vector<Bid> bids_of(const hc::MatrixView<const double>& rows,
+                                  const hc::GraphState& state) {
+    std::vector<Bid> bids;
+    for (std::size_t i = 0; i < rows.height(); ++i) {
+      const auto row = rows.row(i);
+      bids.push_back({state.mode_name(static_cast<std::int64_t>(row[0])), row[1], row[2],
+                      row[3] != 0, row[4] != 0});
+    }
+    return bids;
+  }
+
+  std::vector<Workspace> all_;
+};
+
+struct Options {
+  std::string graph;
+  bool once = false, json = false;
+};
+
+/// How far a key scrolls; the arrows come as three bytes, PageUp and PageDown as four.
+int lines_of(std::string_view keys, int page) {
+  if (keys == "k" || keys == "\x1b[A") return -1;
+  if (keys == "j" || keys == "\x1b[B") return 1;
+  if (keys == "\x1b[5~") return -page;
+  return keys == "\x1b[6~" || keys == " " ? page : 0;
+}
+
+void show(Observer& observer, Bids& bids) {
+  Page page;
+  int first = 0;
+  while (auto state = observer.next(page.keys())) {
+    pollfd keys{page.keys().empty() ? -1 : STDIN_FILENO, POLLIN, 0};
+    if (::poll(&keys, 1, 0) > 0) {
+      char typed[16];
+      const auto size = ::read(STDIN_FILENO, typed, sizeof typed);
+      if (size <= 0 || typed[0] == 'q') return;
+      const int height = static_cast<int>(Page::screen().height);
+      first = std::max(0, first + lines_of({typed, static_cast<std::size_t>(size)}, height / 2));
+    }
+    auto screen = Page::screen();
+    first = std::min(first, static_cast<int>(state->modules.size() + state->links.size()));
+    screen.first = static_cast<std::size_t>(first);
+    Page::show(draw(*state, bids.take(*state), screen));
+  }
+}
+
+void top(const Options& options) {
+  const auto graph = choose_running(options.graph);
   Observer observer(graph);
-  if (once || ::isatty(STDOUT_FILENO) == 0) {
-    auto state = observer.next_measured();
-    if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});
-    print(draw(*state, {80, 0, true}));
+  auto state = observer.next_measured();
+  if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});
+  const bool is_live = !options.once && ::isatty(STDOUT_FILENO) == 1;
+  if (options.json) {
+    while (state && print(to_json(*state) + "\n") && !options.once) state = observer.next();
     return;
   }
-  Page page;
-  while (auto state = observer.next(page.keys())) {
-    if (!state->empty()) {
-      Page::show(draw(*state, Page::screen()));
-      continue;
-    }
-    char key = 0;
-    if (::read(STDIN_FILENO, &key, 1) != 1 || key == 'q') return;
-  }
+  Bids bids(graph, *state);
+  if (is_live) return show(observer, bids);
+  if (auto later = observer.next()) state = later;  // meanwhile bids come
+  print(draw(*state, bids.take(*state), {kPlainWidth, 0, true}));
 }
 
 }  // namespace
 
 void add_top(CLI::App& app) {
-  struct Options {
-    std::string graph;
-    bool once = false;
-  };
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("top", "Show what a running graph does, live; q ends it");
-  verb->add_option("graph", options->graph, "its name, where several run (hc ps)");
-  verb->add_flag("--once", options->once, "print it once, as without a terminal");
-  verb->callback([options] { top(options->graph, options->once); });
+  auto* verb = app.add_subcommand("top", "Show a running graph live: modules, links, focus");
+  verb->add_option("graph,--of", options->graph,
+                   "name of the running graph, where there are several");
+  verb->add_flag("--once", options->once, "print once, as without a terminal");
+  verb->add_flag("--json", options->json, "print states as lines of JSON, twice a second");
+  verb->callback([options] { top(*options); });
 }
 
 }  // namespace tool

@@ -22,13 +22,22 @@ inline CLI::Validator whole_number() {
           },
           "", "whole_number"};
 }
+inline constexpr const char* kHidden = "";  ///< the group of verbs that help does not list
+
 /// Options that several verbs have.
 inline void add_limit(CLI::App& verb, std::uint64_t& limit) {
-  verb.add_option("--limit", limit, "largest elements that are taken [byte]")
-      ->check(whole_number());
+  verb.add_option("--limit", limit, "maximum message size [byte]")->check(whole_number());
 }
 inline void add_count(CLI::App& verb, std::uint64_t& count) {
   verb.add_option("--count", count, "end after so many messages, 0: never")->check(whole_number());
+}
+inline void add_of(CLI::App& verb, std::string& of) {
+  verb.add_option("--of", of, "name of the running graph, where there are several (hc ps)");
+}
+inline void add_source(CLI::App& verb, std::string& uri, std::string& of) {
+  verb.add_option("source", uri, "URI, file, or MODULE.PORT of a running graph")
+      ->capture_default_str();
+  add_of(verb, of);
 }
 
 void add_cat(CLI::App& app);
@@ -37,6 +46,7 @@ void add_describe(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_graph(CLI::App& app);
 void add_info(CLI::App& app);
+void add_manual(CLI::App& app);
 void add_new(CLI::App& app);
 void add_play(CLI::App& app);
 void add_ps(CLI::App& app);

@@ -95,7 +95,7 @@ std::map<std::string, std::string> read_parameters(const Message& message, std::
 
 Message make_state(const StateReport& state) {
   const std::array<std::int64_t, 4> row = {state.mode, state.focus, state.in_focus ? 1 : 0,
-                                           state.awaits_reader ? 1 : 0};
+                                           state.blocked_row};
   return make_table<row.size()>(std::span(&row, 1));
 }
 
@@ -104,8 +104,7 @@ std::optional<StateReport> read_state(const Message& message) {
   if (!table || table->empty()) return std::nullopt;
   const auto numbers = table->numbers();
   if (numbers.size() < 3) return std::nullopt;
-  return StateReport{numbers[0], numbers[1], numbers[2] != 0,
-                     numbers.size() > 3 && numbers[3] != 0};
+  return StateReport{numbers[0], numbers[1], numbers[2] != 0, numbers.size() > 3 ? numbers[3] : 0};
 }
 
 }  // namespace hc

@@ -99,6 +99,14 @@ void add_policy(GraphLink& link, const Command& command, Problems& problems) {
   if (auto valid = internal::parse_policy(policy); !valid) problems.add({}, valid.error().detail);
 }
 
+/// A link to where readers come and go by hand makes no module wait, unless that was asked for.
+void add_observer_policy(GraphLink& link) {
+  auto uri = parse_uri(link.to.uri);
+  if (!uri || !(uri->scheme == "shm" || uri->scheme.ends_with("-listen"))) return;
+  for (auto [key, value] : {std::pair("keep", "latest"), {"readers", "0"}})
+    if (uri->option(key, "").empty()) link.policy.try_emplace(key, Lined<std::string>{value, {}});
+}
+
 void add_link(Graph& graph, const Command& command, Problems& problems) {
   auto from = internal::parse_port(command.words[0], true);
   auto to = internal::parse_port(command.words[1], true);
@@ -111,6 +119,7 @@ void add_link(Graph& graph, const Command& command, Problems& problems) {
   link.from = *from;
   link.to = *to;
   add_policy(link, command, problems);
+  add_observer_policy(link);
   // The same link with another policy takes the place of the one before.
   auto is_same = [&](const GraphLink& each) {
     return each.from.text() == from->text() && each.to.text() == to->text();

@@ -70,6 +70,17 @@ TEST_F(CommandsTest, TheWorldOutsideIsLinkedByItsUri) {
   EXPECT_EQ(apply("unlink camera.left tcp:robot:7000"), "");
 }
 
+TEST_F(CommandsTest, ALinkToObserversWaitsForNone) {
+  EXPECT_EQ(apply("link camera.left shm:s"), "");
+  EXPECT_EQ(graph_.links.at(1).policy.at("keep").value, "latest");
+  EXPECT_EQ(graph_.links.at(1).policy.at("readers").value, "0");
+  EXPECT_EQ(apply("link camera.left tcp-listen:7000?readers=1 keep=all"), "");
+  EXPECT_EQ(graph_.links.at(2).policy.at("keep").value, "all");
+  EXPECT_FALSE(graph_.links.at(2).policy.contains("readers"));
+  EXPECT_EQ(apply("link camera.left file:a.mtp"), "");
+  EXPECT_TRUE(graph_.links.at(3).policy.empty());
+}
+
 TEST_F(CommandsTest, AValueMayHoldAnything) {
   EXPECT_EQ(apply("set camera.set=a = b  c"), "");
   EXPECT_EQ(graph_.modules[0].parameters.at("set").value, "a = b  c");

@@ -41,6 +41,7 @@ struct Addressee {
 struct GraphModule {
   std::string name;                                      ///< snake_case
   Lined<std::string> program;                            ///< a module's name, or a path
+  std::string group;                                     ///< the [graphs.NAME] that it is of
   std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
   std::map<std::string, Lined<std::int64_t>> addresses;  ///< of ports
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports

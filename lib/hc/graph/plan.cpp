@@ -28,6 +28,7 @@ class ModulePlanner {
   void plan(const Description& description) {
     planned_.name = module_.name;
     planned_.program = module_.program.value;
+    planned_.group = module_.group;
     planned_.workspace = module_.workspace;
     planned_.options = {"--name", module_.name};
     planned_.restart = module_.restart;

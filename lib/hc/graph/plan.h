@@ -26,6 +26,7 @@ struct PlannedEnd {
 struct PlannedModule {
   std::string name;
   std::string program;                            ///< a path, or a name that PATH has
+  std::string group;                              ///< the graph that includes it; empty: none
   std::vector<std::string> options;               ///< what is said neither below nor by links
   std::map<std::string, std::string> parameters;  ///< as text
   std::set<std::string> fixed;                    ///< parameters that cannot be set while it runs

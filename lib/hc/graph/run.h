@@ -18,8 +18,9 @@ namespace hc {
 
 /// What a graph has done.
 struct RunReport {
-  GraphState state;      ///< at its end
-  bool stopped = false;  ///< ended because it was told to
+  GraphState state;                  ///< at its end
+  std::vector<std::string> results;  ///< "MODULE: …", from lines `result: …` of modules
+  bool stopped = false;              ///< ended because it was told to
 };
 
 /// What came of planning a graph anew.

@@ -2,6 +2,7 @@
 #include <hc/graph/state.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include <nlohmann/json.hpp>
 
@@ -10,80 +11,144 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const ModuleState& module) {
-  return {{"name", module.name},
-          {"program", module.program},
-          {"pid", module.process},
-          {"status", name(module.status)},
-          {"detail", module.detail},
-          {"restarts", module.restarts},
-          {"exit", module.exit ? Json(*module.exit) : Json(nullptr)},
-          {"cpu", module.processor},
-          {"memory", module.memory},
-          {"mode", module.mode},
-          {"modes", module.modes},
-          {"in_focus", module.in_focus},
-          {"in_workspace", module.in_workspace},
-          {"parameters", Json(module.parameters)}};
+constexpr std::array<std::string_view, 7> kStatusNames = {
+    "starting", "running", "stalled", "waiting", "stopping", "ended", "given up"};
+
+/// Writes the fields of a struct into a JSON object.
+struct Writer {
+  Json& json;
+
+  template <typename T>
+  void operator()(const char* key, const T& value) {
+    json[key] = value;
+  }
+  template <typename T>
+  void operator()(const char* key, const std::optional<T>& value) {
+    json[key] = value ? Json(*value) : Json(nullptr);
+  }
+  void operator()(const char* key, ModuleStatus value) { json[key] = name(value); }
+};
+
+/// Reads them; throws what Json throws. A key that is absent leaves its field as it is, so that a
+/// newer tool reads an older graph.
+struct Reader {
+  const Json& json;
+
+  template <typename T>
+  void operator()(const char* key, T& value) {
+    if (auto found = json.find(key); found != json.end()) found->get_to(value);
+  }
+  template <typename T>
+  void operator()(const char* key, std::optional<T>& value) {
+    if (auto found = json.find(key); found != json.end() && !found->is_null())
+      value = found->get<T>();
+  }
+  void operator()(const char* key, ModuleStatus& value) {
+    const auto text = json.value(key, std::string());
+    const auto found = std::find(kStatusNames.begin(), kStatusNames.end(), text);
+    if (found != kStatusNames.end())
+      value = static_cast<ModuleStatus>(found - kStatusNames.begin());
+  }
+};
+
+template <typename Module, typename Visit>
+void visit_module(Module& module, Visit visit) {
+  visit("name", module.name);
+  visit("program", module.program);
+  visit("group", module.group);
+  visit("pid", module.process);
+  visit("status", module.status);
+  visit("detail", module.detail);
+  visit("restarts", module.restarts);
+  visit("exit", module.exit);
+  visit("cpu", module.processor);
+  visit("memory", module.memory);
+  visit("mode", module.mode);
+  visit("modes", module.modes);
+  visit("in_focus", module.in_focus);
+  visit("in_workspace", module.in_workspace);
+  visit("last_line", module.last_line);
+  visit("last_line_age", module.last_line_age);
+  visit("parameters", module.parameters);
 }
 
-Json json_of(const LinkState& link) {
-  Json lost = Json::object();
-  for (auto [count, reason] : {std::pair(link.traffic.superseded, "superseded"),
-                               {link.traffic.over_rate, "over the rate"},
-                               {link.traffic.over_memory, "over the memory"},
-                               {link.traffic.cut, "cut off"}})
-    if (count > 0) lost[reason] = count;
-  double rate = 0;
-  if (!link.rate.empty()) rate = std::atof(link.rate.c_str());
-  return {{"from", link.from},
-          {"to", link.to},
-          {"transport", link.transport},
-          {"keep", link.keep},
-          {"rate", rate},
-          {"messages", link.traffic.messages},
-          {"bytes", link.traffic.bytes},
-          {"per_second", link.per_second},
-          {"bytes_per_second", link.bytes_per_second},
-          {"kept_back", link.traffic.kept_back},
-          {"lost", lost},
-          {"left_out", link.left_out},
-          {"age", link.age ? Json(*link.age) : Json(nullptr)},
-          {"gap", link.gap ? Json(*link.gap) : Json(nullptr)},
-          {"in_workspace", link.in_workspace}};
+template <typename Link, typename Visit>
+void visit_link(Link& link, Visit visit) {
+  visit("from", link.from);
+  visit("to", link.to);
+  visit("transport", link.transport);
+  visit("status", link.status);
+  visit("keep", link.keep);
+  visit("rate", link.rate);
+  visit("messages", link.traffic.messages);
+  visit("bytes", link.traffic.bytes);
+  visit("per_second", link.per_second);
+  visit("bytes_per_second", link.bytes_per_second);
+  visit("delayed", link.traffic.kept_back);
+  visit("throttled", link.traffic.over_rate);
+  visit("dropped_newer", link.traffic.superseded);
+  visit("dropped_memory", link.traffic.over_memory);
+  visit("dropped_disconnect", link.traffic.cut);
+  visit("ignored", link.left_out);
+  visit("age", link.age);
+  visit("gap", link.gap);
+  visit("in_workspace", link.in_workspace);
+}
+
+template <typename Graph, typename Visit>
+void visit_graph(Graph& graph, Visit visit) {
+  visit("graph", graph.name);
+  visit("file", graph.file);
+  visit("pid", graph.process);
+  visit("uptime", graph.uptime);
+  visit("workspaces", graph.workspaces);
+  visit("modes", graph.modes);
+  visit("addresses", graph.addresses);
 }
 
 }  // namespace
 
 std::string_view name(ModuleStatus status) {
-  constexpr std::array<std::string_view, 7> kNames = {"starting", "running", "stalled", "waiting",
-                                                      "stopping", "ended",   "given up"};
-  return kNames.at(static_cast<std::size_t>(status));
+  return kStatusNames.at(static_cast<std::size_t>(status));
 }
 
-std::string GraphState::focus_name() const {
+std::string GraphState::mode_name(std::int64_t number) const {
   auto found = std::find_if(modes.begin(), modes.end(),
-                            [&](const auto& mode) { return mode.second == focus; });
+                            [&](const auto& mode) { return mode.second == number; });
   if (found != modes.end()) return found->first;
-  return focus == 0 ? "" : std::to_string(focus);
+  return number == 0 ? "" : std::to_string(number);
 }
 
 std::string to_json(const GraphState& state) {
-  Json json = {{"graph", state.name},
-               {"file", state.file},
-               {"pid", state.process},
-               {"uptime", state.uptime},
-               {"status", state.is_stopping ? "stopping" : "running"},
-               {"focus", nullptr},
-               {"modules", Json::array()},
-               {"links", Json::array()},
-               {"modes", Json(state.modes)},
-               {"addresses", Json(state.addresses)}};
+  Json json = Json::object();
+  visit_graph(state, Writer{json});
+  json["status"] = state.is_stopping ? "stopping" : "running";
+  json["focus"] = nullptr;
   if (state.focus != 0) json["focus"] = {{"mode", state.focus_name()}, {"number", state.focus}};
-  for (const auto& module : state.modules) json["modules"].push_back(json_of(module));
-  for (const auto& link : state.links) json["links"].push_back(json_of(link));
-  // What modules and files say may be no UTF-8.
+  for (const char* list : {"modules", "links"}) json[list] = Json::array();
+  for (const auto& module : state.modules)
+    visit_module(module, Writer{json["modules"].emplace_back(Json::object())});
+  for (const auto& link : state.links)
+    visit_link(link, Writer{json["links"].emplace_back(Json::object())});
+  // Texts of modules and files may be no UTF-8.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<GraphState> parse_graph_state(std::string_view text) {
+  try {
+    const auto json = Json::parse(text);
+    GraphState state;
+    visit_graph(state, Reader{json});
+    state.is_stopping = json.at("status") == "stopping";
+    if (const auto& focus = json.at("focus"); !focus.is_null())
+      focus.at("number").get_to(state.focus);
+    for (const auto& module : json.at("modules"))
+      visit_module(state.modules.emplace_back(), Reader{module});
+    for (const auto& link : json.at("links")) visit_link(state.links.emplace_back(), Reader{link});
+    return state;
+  } catch (const Json::exception& error) {
+    return Error{Code::Malformed, std::string("the state of a graph: ") + error.what()};
+  }
 }
 
 }  // namespace hc

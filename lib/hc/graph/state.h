@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a graph that runs is doing, at one moment, and that as JSON.
+// What a running graph does, at one moment, as a struct and as JSON.
 
 #include <sys/types.h>
 
@@ -13,48 +13,54 @@
 #include <utility>
 #include <vector>
 
+#include <hc/base/result.h>
 #include <hc/link/link.h>
 
 namespace hc {
 
 enum class ModuleStatus {
-  Starting,  ///< has a process, of which nothing has been heard yet
+  Starting,  ///< has a process that has not reported yet
   Running,
-  Stalled,   ///< has stopped to report
-  Waiting,   ///< to be started again
+  Stalled,   ///< does not report any more
+  Waiting,   ///< for its restart
   Stopping,  ///< has been asked to end
   Ended,     ///< for good: its work is done, or it was asked to
-  GivenUp,   ///< for good, though its work is not done
+  GivenUp,   ///< failed too often
 };
 /// "running", "given up" and so on.
 std::string_view name(ModuleStatus status);
 
 struct ModuleState {
   std::string name, program;
+  std::string group;  ///< the included graph that it is of; empty: none
   pid_t process = 0;  ///< 0: none
   ModuleStatus status = ModuleStatus::Starting;
-  std::string detail;  ///< why, where the status alone does not tell
+  std::string detail;  ///< the reason, where the status alone does not say it
   int restarts = 0;
-  std::optional<int> exit;         ///< status of the process that ended last
-  double processor = 0;            ///< part of one processor, in the last period
+  std::optional<int> exit;         ///< exit status of its last process
+  double processor = 0;            ///< share of one processor, in the last period
   std::uint64_t memory = 0;        ///< PSS [byte]
   std::string mode;                ///< of a task; empty: none
-  std::vector<std::string> modes;  ///< it works in; empty: all
+  std::vector<std::string> modes;  ///< in which it is active; empty: all
+  std::string last_line;           ///< of its log
+  double last_line_age = 0;        ///< [s]
   bool in_focus = true;
   bool in_workspace = false;
   std::map<std::string, std::string> parameters;
 };
 
 struct LinkState {
-  std::string from, to;    ///< "MODULE.PORT", or a URI
-  std::string transport;   ///< "shm", "unix", …
-  std::string keep, rate;  ///< as the graph gives them; rate empty: none
-  Traffic traffic;         ///< of its sender, with what its reader has lost
-  /// Of what its reader has taken, where that tells.
+  std::string from, to;   ///< "MODULE.PORT", or a URI
+  std::string transport;  ///< "shm", "unix", …
+  std::string status;     ///< why nothing can go over it: "camera: waiting"; else empty
+  std::string keep;       ///< as the graph says
+  double rate = 0;        ///< limit [message/s]; 0: none
+  Traffic traffic;        ///< of its sender, and what was dropped at its reader
+  /// At its reader, or at its sender where the reader reports nothing.
   double per_second = 0, bytes_per_second = 0;
-  std::uint64_t left_out = 0;                ///< not handled by its reader: out of focus
-  std::optional<std::array<double, 3>> age;  ///< p50, p99, greatest [s]
-  std::optional<std::array<double, 3>> gap;  ///< between messages, the same [s]
+  std::uint64_t left_out = 0;                ///< ignored by its reader: out of focus
+  std::optional<std::array<double, 3>> age;  ///< latency: median, p99, maximum [s]
+  std::optional<std::array<double, 3>> gap;  ///< inter-arrival time, the same [s]
   bool in_workspace = false;
 };
 
@@ -66,14 +72,19 @@ struct GraphState {
   std::int64_t focus = 0;  ///< number of the mode in focus; 0: none
   std::vector<ModuleState> modules;
   std::vector<LinkState> links;
+  std::vector<std::string> workspaces;            ///< modules that arbitrate a focus
   std::map<std::string, std::int64_t> modes;      ///< their numbers
   std::map<std::string, std::int64_t> addresses;  ///< of inputs, "MODULE.PORT"
 
-  /// Name of the mode in focus, its number where it has none; empty: none.
-  [[nodiscard]] std::string focus_name() const;
+  /// Name of a mode, its number where it has none; empty for 0.
+  [[nodiscard]] std::string mode_name(std::int64_t number) const;
+  [[nodiscard]] std::string focus_name() const { return mode_name(focus); }
 };
 
 /// The state as one line of JSON, as spec/graph.md describes it.
 std::string to_json(const GraphState& state);
+
+/// Errors: Malformed.
+Result<GraphState> parse_graph_state(std::string_view json);
 
 }  // namespace hc

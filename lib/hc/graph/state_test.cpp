@@ -6,7 +6,7 @@
 namespace hc {
 namespace {
 
-TEST(State, IsOneLineOfJson) {
+GraphState some_state() {
   GraphState state;
   state.name = "head";
   state.file = "graphs/head.toml";
@@ -21,6 +21,8 @@ TEST(State, IsOneLineOfJson) {
   module.status = ModuleStatus::GivenUp;
   module.detail = "failed with status 1";
   module.exit = 1;
+  module.last_line = "no device";
+  module.last_line_age = 2;
   module.parameters = {{"source", "a \"b\"\n"}};
   state.modules = {module};
   LinkState link;
@@ -28,22 +30,50 @@ TEST(State, IsOneLineOfJson) {
   link.to = "view.image";
   link.transport = "shm";
   link.keep = "latest";
-  link.rate = "5";
+  link.rate = 5;
   link.traffic.messages = 7;
   link.traffic.superseded = 3;
+  link.traffic.over_rate = 4;
   link.age = {0.5, 1, 2};
   state.links = {link};
+  return state;
+}
+
+TEST(State, IsOneLineOfJson) {
   EXPECT_EQ(
-      to_json(state),
-      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,"status":"running",)"
-      R"("focus":{"mode":"track","number":1},"modules":[{"name":"camera","program":"camera",)"
+      to_json(some_state()),
+      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,)"
+      R"("workspaces":[],"modes":{"read":2,"track":1},"addresses":{"eyes.command":21},)"
+      R"("status":"running","focus":{"mode":"track","number":1},)"
+      R"("modules":[{"name":"camera","program":"camera","group":"",)"
       R"("pid":0,"status":"given up","detail":"failed with status 1","restarts":0,"exit":1,)"
       R"("cpu":0.0,"memory":0,"mode":"","modes":[],"in_focus":true,"in_workspace":false,)"
+      R"("last_line":"no device","last_line_age":2.0,)"
       R"("parameters":{"source":"a \"b\"\n"}}],"links":[{"from":"camera.left",)"
-      R"("to":"view.image","transport":"shm","keep":"latest","rate":5.0,"messages":7,"bytes":0,)"
-      R"("per_second":0.0,"bytes_per_second":0.0,"kept_back":0,"lost":{"superseded":3},)"
-      R"("left_out":0,"age":[0.5,1.0,2.0],"gap":null,"in_workspace":false}],)"
-      R"("modes":{"read":2,"track":1},"addresses":{"eyes.command":21}})");
+      R"("to":"view.image","transport":"shm","status":"","keep":"latest","rate":5.0,"messages":7,"bytes":0,)"
+      R"("per_second":0.0,"bytes_per_second":0.0,"delayed":0,"throttled":4,"dropped_newer":3,)"
+      R"("dropped_memory":0,"dropped_disconnect":0,"ignored":0,"age":[0.5,1.0,2.0],"gap":null,)"
+      R"("in_workspace":false}]})");
+}
+
+TEST(State, IsReadAsItWasWritten) {
+  const auto json = to_json(some_state());
+  auto state = parse_graph_state(json);
+  ASSERT_TRUE(state);
+  EXPECT_EQ(to_json(*state), json);
+  EXPECT_EQ(state->modules.at(0).status, ModuleStatus::GivenUp);
+  EXPECT_EQ(state->links.at(0).age->at(2), 2);
+}
+
+TEST(State, AnythingElseIsMalformed) {
+  for (const char* text : {"", "7", "{}", "[1]", R"({"graph":7})",
+                           R"({"status":"running","focus":null,"modules":[1],"links":[]})",
+                           R"({"status":"running","focus":null,"modules":[{"cpu":""}],"links":[]})",
+                           R"({"status":"running","focus":{},"modules":[],"links":[]})"}) {
+    auto state = parse_graph_state(text);
+    ASSERT_FALSE(state) << text;
+    EXPECT_EQ(state.error().code, Code::Malformed);
+  }
 }
 
 TEST(State, AFocusWithoutANameIsItsNumber) {

@@ -107,10 +107,12 @@ void Module::Loop::open_focus(const Uri& uri) {
 
 std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port) {
   auto options = options_for(uri, port);
-  options.awaits_reader = [this](bool awaits) { report_state(awaits); };
+  auto link = std::make_shared<LinkedSink>();
+  options.awaits_reader = [this, sender = link.get()](bool awaits) {
+    report_state(awaits ? sender : nullptr);
+  };
   auto sink = open_sink(uri, options);
   if (!sink) fail(name_of(uri.text(), port), sink.error());
-  auto link = std::make_shared<LinkedSink>();
   link->uri = uri.text();
   link->sink = std::move(*sink);
   sinks_.push_back(link);

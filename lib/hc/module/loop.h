@@ -132,7 +132,8 @@ struct Module::Loop {
   void report_counters();
   void report_links();
   void report_parameters();
-  void report_state(bool awaits_reader = false);
+  /// @param blocked  the link whose reader the module waits for; null: none.
+  void report_state(const internal::LinkedSink* blocked = nullptr);
 
   Module& module_;
   LinkOptions options_;

@@ -27,6 +27,7 @@ Graph with_prefix(Graph graph, const std::string& name) {
   };
   for (auto& module : graph.modules) {
     rename(module.name);
+    module.group = name;
     rename(module.workspace);
     for (auto& [port, to] : module.to)
       if (to.value.name != "all") rename(to.value.name);

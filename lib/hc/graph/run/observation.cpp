@@ -63,20 +63,26 @@ void Observation::log(const std::string& line) {
 }
 
 void Observation::take_commands(const Message& message) const {
-  constexpr std::string_view kReply = "reply ";
+  constexpr std::string_view kReply = "reply ", kObserve = "observe ";
   auto commands = rows_of(message);
   std::string reply;
   if (!commands.empty() && commands.front().starts_with(kReply)) {
     reply = commands.front().substr(kReply.size());
     commands.erase(commands.begin());
   }
-  auto answer = [reply](const std::vector<std::string>& wrong) {
-    // Who has gone meanwhile does not want to know.
-    if (!reply.empty())
-      static_cast<void>(
-          say_at_once(reply, make_rows(wrong.empty() ? std::vector<std::string>{"ok"} : wrong)));
+  auto say = [reply](const std::vector<std::string>& rows) {
+    // Whoever has left meanwhile needs no answer.
+    if (!reply.empty()) static_cast<void>(say_at_once(reply, make_rows(rows)));
+  };
+  auto answer = [say](const std::vector<std::string>& wrong) {
+    say(wrong.empty() ? std::vector<std::string>{"ok"} : wrong);
   };
   if (commands.empty()) return answer({"there is no command"});
+  if (commands.size() == 1 && commands.front().starts_with(kObserve)) {
+    auto uri = asked_.observe(commands.front().substr(kObserve.size()));
+    return say(uri ? std::vector<std::string>{"ok", *uri}
+                   : std::vector<std::string>{uri.error().detail});
+  }
   asked_.obey(commands, answer);
 }
 

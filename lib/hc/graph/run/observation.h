@@ -22,6 +22,8 @@ class Observation {
     /// Does what commands say, all of them or none; then or later it tells what is wrong with them,
     /// if anything.
     std::function<void(const std::vector<std::string>& commands, Answer answer)> obey;
+    /// Gives the URI of an observation of "MODULE.PORT". Errors: Invalid.
+    std::function<Result<std::string>(const std::string& port)> observe;
   };
 
   /// @param name  of the graph. Errors: System (another graph of this process has the name).

@@ -36,6 +36,7 @@ void add(const LinkCounters& row, LinkCounters& sum) {
 void Reports::Counted::end() {
   add(std::exchange(now, {}), past);
   report.per_second = report.bytes_per_second = 0;
+  arrived = MonotonicTime(0);
   past.age = past.gap = report.age = report.gap = {-1, -1, -1};
 }
 
@@ -77,25 +78,42 @@ bool Reports::take(const Message& message, MonotonicTime now) {
 
 void Reports::take_counters(const std::vector<LinkCounters>& rows, MonotonicTime now) {
   if (rows.empty()) return;
-  const double seconds =
-      counted_ == MonotonicTime(0) ? 0 : std::chrono::duration<double>(now - counted_).count();
-  counted_ = now;
   std::map<std::string, LinkCounters> sums;
   for (std::size_t i = 0; i < std::min(rows.size(), order_.size()); ++i)
     add(rows[i], sums[order_[i]]);
-  for (const auto& [key, sum] : sums)
-    if (auto found = ends_.find(key); found != ends_.end()) count(found->second, sum, seconds);
+  for (auto& [key, counted] : ends_)
+    if (auto sum = sums.find(key); sum != sums.end())
+      count(counted, sum->second, key.starts_with("in "), now);
+    else
+      counted.report.per_second = counted.report.bytes_per_second = 0;
 }
 
-void Reports::count(Counted& counted, const LinkCounters& row, double seconds) {
-  const Traffic &now = row.traffic, &before = counted.now.traffic;
-  if (now.messages < before.messages) counted.end();  // the link was replaced
-  auto per_second = [&](std::uint64_t after, std::uint64_t from) {
-    return seconds > 0 ? static_cast<double>(after - std::min(after, from)) / seconds : 0;
-  };
+void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, MonotonicTime now) {
+  constexpr double kSilent = 5;  // after which nothing comes any more [s]
+  const Traffic& traffic = row.traffic;
+  if (traffic.messages < counted.now.traffic.messages) counted.end();  // the link was replaced
+  const Traffic& before = counted.now.traffic;
   EndReport report;
-  report.per_second = per_second(now.messages, before.messages);
-  report.bytes_per_second = per_second(now.bytes, before.bytes);
+  report.per_second = counted.report.per_second;
+  report.bytes_per_second = counted.report.bytes_per_second;
+  const double seconds = std::chrono::duration<double>(now - counted.arrived).count();
+  // A sender also counts messages that it drops.
+  auto carried = [&](const Traffic& all) {
+    return all.messages - (is_input ? 0 : std::min(all.messages, all.lost()));
+  };
+  const auto carried_now = carried(traffic);
+  const auto messages = static_cast<double>(carried_now - std::min(carried_now, carried(before)));
+  const auto bytes = static_cast<double>(traffic.bytes - std::min(traffic.bytes, before.bytes));
+  if (counted.arrived == MonotonicTime(0) || messages > 0) {
+    const bool is_measured = counted.arrived != MonotonicTime(0);
+    report.per_second = is_measured ? messages / seconds : 0;
+    report.bytes_per_second = is_measured ? bytes / seconds : 0;
+    counted.arrived = now;
+  } else if (report.per_second * seconds > 1) {  // less than one in the time since the last
+    const double slower = seconds > kSilent ? 0 : 1 / (seconds * report.per_second);
+    report.per_second *= slower;
+    report.bytes_per_second *= slower;
+  }
   counted.now = row;
   counted.has_row = true;
   add(counted.past, report);
@@ -119,14 +137,21 @@ bool Reports::take_links(const Message& message) {
 
 bool Reports::take_state(const StateReport& state) {
   StateReport before = std::exchange(state_, state);
-  before.awaits_reader = state.awaits_reader;  // tells only when it lasts
+  before.blocked_row = state.blocked_row;  // no change yet: it may be short
   return before != state;
+}
+
+std::string Reports::blocked_output() const {
+  const auto row = static_cast<std::size_t>(state_.blocked_row);
+  if (state_.blocked_row <= 0 || row > order_.size()) return "";
+  const auto& key = order_[row - 1];  // "out PORT URI"
+  return key.starts_with("out ") ? key.substr(4, key.find(' ', 4) - 4) : "";
 }
 
 void Reports::end() {
   for (auto& [key, counted] : ends_) counted.end();
-  has_links_ = state_.awaits_reader = false;
-  counted_ = MonotonicTime(0);
+  has_links_ = false;
+  state_.blocked_row = 0;
 }
 
 const EndReport* Reports::find(const PlannedEnd& end) const {

@@ -16,7 +16,8 @@ namespace hc::internal {
 
 /// What is known of one end of a link, over all processes that the module has been.
 struct EndReport : LinkCounters {
-  double per_second = 0;  ///< messages, between the last two reports
+  /// Messages between the last two reports with any; falls when none come, and is 0 after 5 s.
+  double per_second = 0;
   double bytes_per_second = 0;
 };
 
@@ -41,18 +42,21 @@ class Reports {
   [[nodiscard]] const EndReport* find(const PlannedEnd& end) const;
   [[nodiscard]] const std::map<std::string, std::string>& parameters() const { return parameters_; }
   [[nodiscard]] const StateReport& state() const { return state_; }
+  /// The output for whose reader the module waits, where it says which.
+  [[nodiscard]] std::string blocked_output() const;
 
  private:
   struct Counted {
     EndReport report;
-    LinkCounters past, now;  // of processes that have ended and links that were replaced; of this
+    LinkCounters past, now;    // of processes that have ended and links that were replaced; of this
+    MonotonicTime arrived{0};  // when messages came last
     bool has_row = false;
 
     void end();
   };
 
   void take_counters(const std::vector<LinkCounters>& rows, MonotonicTime now);
-  static void count(Counted& counted, const LinkCounters& row, double seconds);
+  static void count(Counted& counted, const LinkCounters& row, bool is_input, MonotonicTime now);
   bool take_links(const Message& message);
   bool take_state(const StateReport& state);
 
@@ -61,7 +65,6 @@ class Reports {
   std::map<std::string, Counted> ends_;  // of the plan, by key
   std::map<std::string, std::string> parameters_;
   StateReport state_;
-  MonotonicTime counted_{0};  // of the last counters; 0: this process has sent none
 };
 
 }  // namespace hc::internal

@@ -61,6 +61,42 @@ TEST_F(ReportsTest, RatesAreBetweenTwoReports) {
   EXPECT_DOUBLE_EQ(reports_.find(out_)->bytes_per_second, 2000);
 }
 
+TEST_F(ReportsTest, RatesFallWhenNothingComes) {
+  count({{0, 0}, {0, 0}});
+  count({{0, 0}, {10, 100}});
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 20);
+  count({{0, 0}, {10, 100}});
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 2);
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->bytes_per_second, 20);
+  for (int i = 0; i < 10; ++i) count({{0, 0}, {10, 100}});
+  EXPECT_EQ(reports_.find(out_)->per_second, 0);
+}
+
+TEST_F(ReportsTest, WhatASenderDropsHasNoRate) {
+  count({{0, 0}, {0, 0}});
+  count({{0, 0, 0, 0}, {10, 100, 0, 6}});
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 8);
+  count({{0, 0, 0, 0}, {20, 200, 0, 16}});
+  EXPECT_LT(reports_.find(out_)->per_second, 8);
+}
+
+TEST_F(ReportsTest, ASlowLinkKeepsItsRateBetweenMessages) {
+  count({{0, 0}, {0, 0}});
+  for (std::int64_t i = 1; i <= 40; ++i) count({{0, 0}, {i / 4, i}});  // one in 2 s
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 0.5);
+  for (int i = 0; i < 3; ++i) count({{0, 0}, {10, 40}});
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 0.5);
+}
+
+TEST_F(ReportsTest, ALinkThatIsReportedNoMoreHasNoRate) {
+  reports_.take(rows(2, {"out out shm:t.a.out", "in in unix:@t"}), now_);
+  count({{0, 0}, {0, 0}});
+  count({{0, 0}, {10, 100}});
+  EXPECT_GT(reports_.find(in_)->per_second, 0);
+  count({{0, 0}});
+  EXPECT_EQ(reports_.find(in_)->per_second, 0);
+}
+
 TEST_F(ReportsTest, CountsGoOnWhenItIsStartedAnew) {
   count({{1, 1}, {100, 1000}});
   reports_.end();
@@ -126,9 +162,10 @@ TEST_F(ReportsTest, ParametersAndModeTellOfChangesAlone) {
   EXPECT_EQ(reports_.parameters().at("text"), "a = b");
   EXPECT_TRUE(reports_.take(table(4, {{2, 1, 0}}), now_));
   EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0}}), now_));
-  EXPECT_FALSE(reports_.state().awaits_reader);
-  EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0, 1}}), now_));  // told only when it lasts
-  EXPECT_TRUE(reports_.state().awaits_reader);
+  EXPECT_EQ(reports_.state().blocked_row, 0);
+  EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0, 2}}), now_));  // no change yet: it may be short
+  EXPECT_EQ(reports_.state().blocked_row, 2);
+  EXPECT_EQ(reports_.blocked_output(), "out");
   EXPECT_EQ(reports_.state().mode, 2);
   EXPECT_EQ(reports_.state().focus, 1);
   EXPECT_FALSE(reports_.state().in_focus);

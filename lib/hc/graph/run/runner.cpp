@@ -33,7 +33,7 @@ Result<RunReport> Runner::run() {
   }
   refuse_changes();
   if (!outcome_) return outcome_.error();
-  return RunReport{state(), is_stopped_};
+  return RunReport{state(), std::move(results_), is_stopped_};
 }
 
 Status Runner::begin() {
@@ -45,7 +45,8 @@ Status Runner::begin() {
     auto observation = Observation::make(
         *loop_, options_.name,
         {[this] { return state(); },
-         [this](const auto& lines, auto answer) { obey(lines, std::move(answer)); }});
+         [this](const auto& lines, auto answer) { obey(lines, std::move(answer)); },
+         [this](const auto& port) { return observe(port); }});
     if (!observation) return observation.error();
     observation_ = std::move(*observation);
   }
@@ -121,9 +122,32 @@ void Runner::say(const std::string& line) {
   if (observation_) observation_->log(line);
 }
 
-void Runner::hear(const std::string& line) {
+/// Takes a line of a module's log, with its name before it.
+void Runner::hear(std::string line) {
+  constexpr std::string_view kResult = ": result: ";
+  // Its peers are stopping too.
+  if (is_stopping_ && (line.ends_with("reconnecting") || line.ends_with("connecting again")))
+    return;
+  line = with_link_names(std::move(line));
+  if (auto found = line.find(kResult); found != std::string::npos) {
+    line.erase(found, kResult.size() - 2);
+    if (results_.size() < kMaxResults) results_.push_back(line);
+  }
   if (options_.tells_lines) tell(line);
   if (observation_) observation_->log(line);
+}
+
+/// Puts "MODULE.PORT → MODULE.PORT" in the place of a link's URI.
+std::string Runner::with_link_names(std::string line) const {
+  if (plan_.token.empty() || line.find(plan_.token) == std::string::npos) return line;
+  for (const auto& link : plan_.links)
+    for (const auto* uri : {&link.reader_uri, &link.sender_uri}) {
+      const bool is_inside = uri->find(plan_.token) != std::string::npos;
+      const auto found = is_inside ? line.find(*uri) : std::string::npos;
+      if (found != std::string::npos)
+        return line.replace(found, uri->size(), link.from + " → " + link.to);
+    }
+  return line;
 }
 
 void Runner::tick() {

@@ -51,7 +51,8 @@ class Runner {
 
   void tell(const std::string& line) const;
   void say(const std::string& line);
-  void hear(const std::string& line);
+  void hear(std::string line);
+  [[nodiscard]] std::string with_link_names(std::string line) const;
 
   void tick();
   void settle();
@@ -63,6 +64,7 @@ class Runner {
 
   void read_anew();
   void obey(const std::vector<std::string>& lines, Observation::Answer answer);
+  Result<std::string> observe(const std::string& port);
   void carry_out(const std::vector<std::string>& lines);
   void plan_next();
   void take_planned(Planned& planned);
@@ -75,6 +77,8 @@ class Runner {
   [[nodiscard]] GraphState state() const;
   [[nodiscard]] LinkState state_of(const PlannedLink& link) const;
 
+  static constexpr std::size_t kMaxResults = 100;
+
   const RunOptions& options_;
   Plan plan_;
   MonotonicTime begun_{0};
@@ -83,9 +87,11 @@ class Runner {
   bool is_file_gone_ = false;  // the graph's own
   bool is_unsettled_ = false;  // a module has started or ended, or links have changed
   std::vector<Failure> failures_;
+  std::vector<std::string> results_;  // lines
   Status outcome_;
-  std::vector<std::string> commands_;  // that have changed the graph
-  std::deque<Change> changes_;         // the first of them is being planned
+  std::vector<std::string> commands_;    // that have changed the graph
+  std::deque<Change> changes_;           // the first of them is being planned
+  std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<Observation> observation_;
   std::unique_ptr<FileWatch> files_;

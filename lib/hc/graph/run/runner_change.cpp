@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a graph that runs is changed: by its files, and by commands.
+#include <hc/base/suggestion.h>
 #include <hc/graph/commands.h>
 #include <hc/graph/run/runner.h>
 
@@ -56,6 +57,35 @@ void Runner::obey(const std::vector<std::string>& lines, Observation::Answer ans
   }
   changes_.push_back({lines, std::move(answer)});
   plan_next();
+}
+
+/// Opens an output to observers; of an input, the output that it is linked to.
+Result<std::string> Runner::observe(const std::string& port) {
+  std::vector<std::string> known, writers;
+  for (const auto& [output, address] : plan_.sources) known.push_back(output);
+  for (const auto& link : plan_.links) {
+    if (at(link.to) != nullptr) known.push_back(link.to);
+    if (link.to == port) writers.push_back(link.from);
+  }
+  if (writers.size() > 1) {
+    std::string list;
+    for (const auto& writer : writers) list += (list.empty() ? "" : ", ") + writer;
+    return Error{Code::Invalid, port + " has several writers; observe one of them: " + list};
+  }
+  const std::string& output = writers.empty() ? port : writers.front();
+  Supervised* module = plan_.sources.contains(output) ? at(output) : nullptr;
+  if (module == nullptr && !writers.empty())
+    return Error{Code::Invalid,
+                 port + " is fed by " + output + ", which no module of the graph is"};
+  if (module == nullptr)
+    return Error{Code::Invalid, "no port \"" + port + "\"" + suggestion(port, known)};
+  if (module->plan().control_uri.empty())
+    return Error{Code::Invalid,
+                 module->plan().name + " cannot be observed: its program takes no commands"};
+  const int number =
+      observed_.try_emplace(output, static_cast<int>(observed_.size())).first->second;
+  return module->observe(output.substr(output.find('.') + 1),
+                         plan_.token + ".watch." + std::to_string(number));
 }
 
 /// Does what commands say that change nothing in the plan.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 
 #include <hc/graph/global_workspace.h>
 #include <hc/graph/run/runner.h>
@@ -17,6 +18,7 @@ GraphState Runner::state() const {
   state.process = ::getpid();
   state.uptime = std::chrono::duration<double>(SystemClock().monotonic() - begun_).count();
   state.is_stopping = is_stopping_;
+  state.workspaces = {plan_.workspaces.begin(), plan_.workspaces.end()};
   state.modes = plan_.modes;
   state.addresses = plan_.addresses;
   for (const auto& planned : plan_.modules) {
@@ -41,7 +43,14 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   state.keep = link.keep;
   const std::string& inside = link.reader_uri.empty() ? link.sender_uri : link.reader_uri;
   state.transport = inside.substr(0, inside.find_first_of("-:"));
-  if (auto rate = link.policy.find("rate"); rate != link.policy.end()) state.rate = rate->second;
+  if (auto rate = link.policy.find("rate"); rate != link.policy.end())
+    state.rate = std::atof(rate->second.c_str());
+  for (const auto* module : {at(link.from), at(link.to)}) {
+    const auto status = module == nullptr ? ModuleStatus::Running : module->status();
+    const bool is_up = status == ModuleStatus::Running || status == ModuleStatus::Ended;
+    if (!is_up && !is_stopping_)
+      state.status = module->plan().name + ": " + std::string(name(status));
+  }
   auto report_of = [&](const std::string& end, bool is_input, const std::string& uri) {
     const auto* module = at(end);
     return module == nullptr
@@ -57,6 +66,11 @@ LinkState Runner::state_of(const PlannedLink& link) const {
     state.per_second = gone->per_second;
     state.bytes_per_second = gone->bytes_per_second;
   }
+  // The log has only problems of links. Of one inside, its modules' states tell whether it has any.
+  const bool is_outside = link.reader_uri.empty() || link.sender_uri.empty();
+  if (is_outside && state.status.empty() && state.per_second == 0)
+    if (const auto* module = at(link.reader_uri.empty() ? link.from : link.to))
+      state.status = module->said_of(link.reader_uri + link.sender_uri);
   if (reader == nullptr) return state;
   if (counts != reader) {
     Traffic lost = reader->traffic;

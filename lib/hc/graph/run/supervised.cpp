@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -19,6 +20,8 @@ constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;      // a pipe can be made to hold a MiB; source: man 7 pipe
 constexpr int kCannotExecute = 127;  // as shells say it
 constexpr int kSignal = 128;         // the status of who was killed by one is above
+// Observers never make a module wait: with or without one, it keeps a few messages for them.
+constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
 
 MonotonicTime now() {
@@ -91,6 +94,7 @@ std::vector<std::string> Supervised::catch_up() {
     commands.insert(commands.end(), some->begin(), some->end());
   for (const auto& input : finished_)
     commands.push_back(text({ModuleCommand::Verb::Finish, true, input, {}}));
+  for (const auto& [port, observed] : observed_) commands.push_back(observed.command());
   set_told();
   return commands;
 }
@@ -233,6 +237,28 @@ void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
   if (!is_finished && finished_.erase(what) != 0) tell("link in " + what);
 }
 
+std::string Supervised::observe(const std::string& port, const std::string& name) {
+  const bool has_memory = std::any_of(plan_.ends.begin(), plan_.ends.end(),
+                                      [](const auto& end) { return end.uri.starts_with("shm:"); });
+  auto [found, is_new] = observed_.try_emplace(port);
+  auto& observed = found->second;
+  if (is_new) {
+    observed.text = port + (has_memory ? "=shm:" : "=unix-listen:@") + name + kObserverPolicy;
+    observed.uri = (has_memory ? "shm:" : "unix:@") + name;
+    tell(observed.command());
+  }
+  observed.until = now() + kObserved;
+  return observed.uri;
+}
+
+void Supervised::end_observations(MonotonicTime time) {
+  std::erase_if(observed_, [&](const auto& entry) {
+    const bool is_over = time >= entry.second.until;
+    if (is_over) tell("unlink out " + entry.second.text);
+    return is_over;
+  });
+}
+
 void Supervised::read_lines() {
   if (!read_piece()) said_.reset();
 }
@@ -244,6 +270,7 @@ bool Supervised::read_piece() {
   ssize_t size = ::read(process_->output(), piece.data(), piece.size());
   if (size < 0) return true;
   lines_.add({piece.data(), static_cast<std::size_t>(size)}, hear_.said);
+  if (size > 0) said_at_ = now();
   return size > 0;
 }
 
@@ -261,13 +288,17 @@ void Supervised::take_report(const Message& message) {
 }
 
 void Supervised::look(MonotonicTime time) {
-  const bool is_stalled = status_ == ModuleStatus::Stalled, awaits = reports_.state().awaits_reader;
-  if (status_ != ModuleStatus::Running && !(is_stalled && awaits)) return;
+  end_observations(time);
+  const bool is_stalled = status_ == ModuleStatus::Stalled;
+  const bool is_blocked = reports_.state().blocked_row != 0;
+  if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
   if (heard_ == MonotonicTime(0) || time - heard_ < limits_.stall) return;
   const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
-  if (awaits && !is_stopped) {
+  if (is_blocked && !is_stopped) {
     if (is_stalled) hear_.event("resumed");
-    return change(ModuleStatus::Running, "waits for a reader");
+    const auto output = reports_.blocked_output();
+    return change(ModuleStatus::Running,
+                  "blocked: no reader" + (output.empty() ? "" : " on output " + output));
   }
   if (is_stalled) return;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
@@ -350,10 +381,22 @@ void Supervised::go_on(int status) {
   hear_.ended();
 }
 
+std::string Supervised::said_of(const std::string& uri) const {
+  const auto name = uri.substr(0, uri.find('?'));
+  for (auto line = lines_.last().rbegin(); !name.empty() && line != lines_.last().rend(); ++line) {
+    const auto found = line->find(name);
+    if (found == std::string::npos) continue;
+    const auto why = line->find(": ", found + name.size());
+    return why == std::string::npos ? "" : line->substr(why + 2);
+  }
+  return "";
+}
+
 ModuleState Supervised::state() const {
   ModuleState state;
   state.name = plan_.name;
   state.program = plan_.program;
+  state.group = plan_.group;
   state.process = program_;
   state.status = status_;
   state.detail = detail_;
@@ -364,6 +407,10 @@ ModuleState Supervised::state() const {
   state.mode = plan_.mode;
   state.modes = plan_.modes;
   state.in_focus = reports_.state().in_focus;
+  if (!lines_.last().empty()) {
+    state.last_line = lines_.last().back();
+    state.last_line_age = std::chrono::duration<double>(now() - said_at_).count();
+  }
   state.parameters = plan_.parameters;
   for (const auto& [key, value] : reports_.parameters()) state.parameters[key] = value;
   return state;

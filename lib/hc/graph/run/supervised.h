@@ -4,6 +4,7 @@
 // reports; and what it is told. Internal to graph.
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -59,6 +60,13 @@ class Supervised {
 
   /// Tells it that an input's writer has ended for good, or that it is there again.
   void finish_input(const PlannedEnd& end, bool is_finished);
+  /// Has it open an output for observers, under a name that no other link has, until it was not
+  /// asked for so long.
+  ///
+  /// @returns  the URI that observers read.
+  std::string observe(const std::string& port, const std::string& name);
+  static constexpr std::chrono::seconds kObserved{5};
+
   /// Looks whether it still reports.
   void look(MonotonicTime now);
   /// Takes stock of what its processes use.
@@ -76,10 +84,21 @@ class Supervised {
   [[nodiscard]] std::optional<int> exit() const { return exit_; }
   [[nodiscard]] const Reports& reports() const { return reports_; }
   [[nodiscard]] ModuleState state() const;
+  /// What the log said last of a link: "sender closed; reconnecting"; empty: nothing, lately.
+  [[nodiscard]] std::string said_of(const std::string& uri) const;
 
  private:
   Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
 
+  struct Observed {
+    std::string text;  // PORT=URI, as the module is told
+    std::string uri;   // as observers are
+    MonotonicTime until{0};
+
+    [[nodiscard]] std::string command() const { return "link out " + text; }
+  };
+
+  void end_observations(MonotonicTime time);
   Status open_control();
   std::vector<std::string> catch_up();
   void set_told();
@@ -107,6 +126,7 @@ class Supervised {
   int starts_ = 0;
   Restarts restarts_;
   Lines lines_;
+  MonotonicTime said_at_{0};  // the last of them
   Reports reports_;
   MonotonicTime heard_{0};  // when this process reported last; 0: it has not
   pid_t program_ = 0;
@@ -114,7 +134,8 @@ class Supervised {
   MonotonicTime measured_{0};
   double processor_ = 0;
   std::vector<pid_t> processes_;
-  std::set<std::string> finished_;  // inputs it has to finish
+  std::set<std::string> finished_;            // inputs it has to finish
+  std::map<std::string, Observed> observed_;  // by output
   std::unique_ptr<Intake> manage_;
   std::unique_ptr<Announcer> control_;
   std::optional<Process> process_;

@@ -179,8 +179,8 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
   };
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_EQ(seen, (std::vector<std::string>{"waits for a reader", "stopped by a signal",
-                                            "waits for a reader"}));
+  EXPECT_EQ(seen, (std::vector<std::string>{"blocked: no reader", "stopped by a signal",
+                                            "blocked: no reader"}));
 }
 
 TEST_F(Supervision, CountsAreThoseOfAllProcesses) {

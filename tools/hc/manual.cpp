@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc completion, hc man: what a shell and man(1) know of hc, generated from its options.
+#include <fmt/format.h>
+
+#include "common.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* verb) { return verb->get_group() != kHidden; });
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// Options and verbs behind a verb.
+std::string words_of(const CLI::App& verb) {
+  std::vector<std::string> words;
+  for (const auto* each : verbs_of(verb)) words.push_back(each->get_name());
+  for (const auto* option : verb.get_options())
+    for (const auto& name : option->get_lnames()) words.push_back("--" + name);
+  return joined(words);
+}
+
+std::string bash_completion(const CLI::App& app) {
+  std::string text =
+      "# bash completion for hc; source it, or put it into /etc/bash_completion.d\n"
+      "_hc() {\n"
+      "  local word=${COMP_WORDS[COMP_CWORD]} words=\n"
+      "  case ${COMP_WORDS[1]} in\n";
+  for (const auto* verb : verbs_of(app))
+    text += fmt::format("    {}) words='{}' ;;\n", verb->get_name(), words_of(*verb));
+  return text +
+         "  esac\n"
+         "  [ \"$COMP_CWORD\" = 1 ] && words=\"" +
+         words_of(app) +
+         " $(ls \"$(dirname \"$(command -v hc)\")/../libexec/hypercolumn\" 2>/dev/null)\"\n"
+         "  # shellcheck disable=SC2207 # words have no spaces\n"
+         "  COMPREPLY=($(compgen -W \"$words\" -- \"$word\") $(compgen -f -- \"$word\"))\n"
+         "}\n"
+         "complete -o filenames -F _hc hc\n";
+}
+
+/// Text as roff takes it.
+std::string roff(const std::string& text) {
+  std::string result;
+  for (char c : text) {
+    if (c == '\\' || c == '-') result += '\\';
+    result += c == '\n' ? ' ' : c;
+  }
+  return result.starts_with('.') || result.starts_with('\'') ? "\\&" + result : result;
+}
+
+std::string options_text(const CLI::App& verb) {
+  std::string text;
+  for (const auto* option : verb.get_options())
+    text += fmt::format(".TP\n.B {}\n{}\n", roff(option->get_name(true)),
+                        roff(option->get_description()));
+  return text;
+}
+
+std::string man_page(const CLI::App& app) {
+  std::string text = fmt::format(".TH HC 1 \"\" \"hc " HC_VERSION
+                                 "\"\n.SH NAME\nhc \\- {}\n.SH SYNOPSIS\n.B hc\n.I command\n"
+                                 "[options]\n.br\n.B hc\n.I module\n[options]\n.SH COMMANDS\n",
+                                 roff(app.get_description()));
+  for (const auto* verb : verbs_of(app)) {
+    text += fmt::format(".SS hc {}\n{}\n{}", roff(verb->get_name()), roff(verb->get_description()),
+                        options_text(*verb));
+    for (const auto* each : verbs_of(*verb))
+      text += fmt::format(".TP\n.B hc {} {}\n{}\n", roff(verb->get_name()), roff(each->get_name()),
+                          roff(each->get_description()));
+  }
+  return text +
+         ".SH ENVIRONMENT\n.TP\n.B HC_GRAPH\nthe running graph that commands mean, where there are "
+         "several\n.SH EXIT STATUS\n0 done, 1 failed, 2 wrong arguments or graph\n";
+}
+
+}  // namespace
+
+void add_manual(CLI::App& app) {
+  auto* completion = app.add_subcommand("completion", "Print a completion script for bash");
+  completion->callback([&app] { print(bash_completion(app)); });
+  auto* man = app.add_subcommand("man", "Print the manual page of hc");
+  man->callback([&app] { print(man_page(app)); });
+  for (auto* verb : {completion, man}) verb->group(kHidden);
+}
+
+}  // namespace tool
