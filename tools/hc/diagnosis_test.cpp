@@ -142,7 +142,7 @@ TEST(Doctor, WhatARunWouldMiss) {
   facts.paths["logs"] = {.is_there = true, .is_readable = true, .is_folder = true};
   facts.ports["7000"] = "tcp-listen:7000: Address already in use";
   EXPECT_EQ(as_text(diagnose(needs, facts)),
-            "missing  eye         parameter source: /none.jpg is not there\n"
+            "missing  eye         parameter source: /none.jpg does not exist\n"
             "missing  eye         link file:/focus.mtp: /focus.mtp is not readable for this user\n"
             "missing  eye         link logs/eye.mtp: logs is not writable for this user\n"
             "missing  eye         link tcp-listen:7000?readers=1: tcp-listen:7000: Address already"
