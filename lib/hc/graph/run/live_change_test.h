@@ -4,6 +4,7 @@
 
 #include <poll.h>
 
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -52,7 +53,10 @@ class LiveChange : public Run {
 
   /// Asks the graph that runs; gives its answer.
   static Lines ask(const Lines& commands, const std::string& who = "answer") {
-    const std::string place = "@live-" + who + "-" + std::to_string(::getpid());
+    // A process that is being forked beside this may hold the socket of the last call for a moment.
+    static std::atomic<int> calls = 0;
+    const std::string place =
+        "@live-" + who + "-" + std::to_string(::getpid()) + "-" + std::to_string(++calls);
     auto answers = open_source({"unix-listen", place, {}});
     HC_CHECK(answers, answers.error().detail);
     Lines rows = {"reply unix:" + place};
