@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The frames of a graph file, as a module is told them (spec/graph.md, G31), as a tree. Pure.
+// The frames of a graph file, as `hc run` passes them to a module (spec/graph.md, G31), as a tree.
+// Pure.
 
 #include <cstdint>
 #include <string>

@@ -17,7 +17,7 @@ TrackScore score_track(const std::vector<TrackSample>& samples, double within) {
     if (!is_first) score.again.push_back(took);
     is_first = false;
   };
-  /// The ball has gone, or time has: a failure if there was time to acquire it.
+  /// The ball has disappeared, or the run has ended: a miss if there was time to acquire it.
   auto give_up = [&] {
     if (ball == Ball::Sought && !is_first && now - since > kGrace) settle(-1);
   };

@@ -64,7 +64,7 @@ struct LinkEnd {
   std::string port, uri;
 };
 Message make_links(std::span<const LinkEnd> links);
-/// Rows that are none are left out.
+/// Malformed rows are ignored.
 std::vector<LinkEnd> read_links(const Message& message);
 
 /// Report::Parameters: their values as text, by name. At most `max` are read.
