@@ -2,6 +2,7 @@
 // Who answers at a shared memory link's socket with what it should not: one clear error, and those
 // who keep the rules go on.
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/syscall.h>
 
 #include <cstdio>
@@ -38,21 +39,21 @@ Descriptor reopen(const Descriptor& descriptor, int flags) {
 
 const std::vector<Case>& memories() {
   static const std::vector<Case> kMemories = {
-      {"none", [](auto) { return std::vector<Descriptor>(); }, "is none that can be sealed"},
-      {"two",
+      {"none", [](auto) { return std::vector<Descriptor>(); }, " descriptors were handed over"},
+      {"three",
        [](auto bytes) {
-         auto both = one(make_memfd(bytes, kSealed));
-         both.push_back(make_memfd(bytes, kSealed));
-         return both;
+         std::vector<Descriptor> all(3);
+         for (auto& each : all) each = make_memfd(bytes, kSealed);
+         return all;
        },
-       "more was handed over than one memory"},
+       " descriptors were handed over"},
       {"many",
        [](auto bytes) {
          std::vector<Descriptor> all(12);
          for (auto& each : all) each = make_memfd(bytes, kSealed);
          return all;
        },
-       "more was handed over than one memory"},
+       " descriptors were handed over"},
       {"file",
        [](auto bytes) {
          Descriptor file(::open("/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
@@ -77,14 +78,7 @@ const std::vector<Case>& memories() {
       {"zero", [](auto) { return one(open_file("/dev/zero", O_RDWR)); },
        "is none that can be sealed"},
       {"folder", [](auto) { return one(open_file("/", O_RDONLY)); }, "is none that can be sealed"},
-      {"pipe",
-       [](auto) {
-         std::array<int, 2> ends{};
-         EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
-         Descriptor other(ends[1]);
-         return one(Descriptor(ends[0]));
-       },
-       "is none that can be sealed"},
+      {"pipe", [](auto) { return one(make_pipe()); }, "is none that can be sealed"},
       {"socket", [](auto) { return one(Descriptor(::socket(AF_UNIX, SOCK_STREAM, 0))); },
        "is none that can be sealed"},
       {"path", [](auto bytes) { return one(reopen(make_memfd(bytes, kSealed), O_PATH)); },
@@ -126,30 +120,25 @@ TEST(HostilePublisher, MayHandOverMemoryThatCanOnlyBeRead) {
 }
 
 TEST(HostilePublisher, SaysWhatIsNoOffer) {
-  const std::string stranger = "no end of a shared memory link", none = "no offer: ";
+  const std::string stranger = "no end of a shared memory link",
+                    none = "no offer: ", no_text = "a refusal that is no text";
+  const auto whole = offer(kLeastMemory);
   const std::vector<Text> texts = {
       {"HTTP/1.1 400 Bad Request\r\n\r\n", stranger},
-      {"MTP-SHM/2 bytes=1 begin=0 keep=0\n", stranger},
-      {"MTP-SHM/1 bytes=", stranger},
-      {"MTP-SHM/1 bytes=2000000 begin=0 keep=0", stranger},
-      {"MTP-SHM/1 x\nMTP-SHM/1 y\n", stranger},
-      {"MTP-SHM/1 refused: \x1b[2J\n", stranger},
-      {std::string("MTP-SHM/1 refused: \0\n", 21), stranger},
+      {std::string(whole.size(), '\0'), stranger},
+      {whole.substr(0, 8), stranger},
+      {whole.substr(0, whole.size() - 1), stranger},
+      {greeting([](auto& words) { words.magic[6] = '1'; }), stranger},
       {std::string(100'000, 'x'), stranger},
       {"\n", stranger},
-      {"MTP-SHM/1 " + std::string(1000, 'x') + "\n", stranger},
-      {"MTP-SHM/1 \n", none},
+      {refusal("\x1b[2J"), no_text},
+      {refusal("\xff"), no_text},
+      {refusal(std::string(128, 'x')), no_text},
       {offer(0), none},
       {offer(kLeastMemory - kPageBytes), none},
       {offer((std::uint64_t{1} << 40) + 1), none},
       {offer(std::numeric_limits<std::uint64_t>::max()), none},
-      {"MTP-SHM/1 bytes=18446744073709551616 begin=0 keep=0\n", none},
-      {"MTP-SHM/1 bytes=-1 begin=0 keep=0\n", none},
-      {"MTP-SHM/1 bytes=2000000x begin=0 keep=0\n", none},
-      {"MTP-SHM/1 bytes=2000000 begin= keep=0\n", none},
-      {"MTP-SHM/1 bytes=2000000 keep=0\n", none},
-      {"MTP-SHM/1 bytes=2000000 begin=0\n", none},
-      {"MTP-SHM/1 refused: it is Sunday\n", "the publisher refuses: it is Sunday"},
+      {refusal("it is Sunday"), "1 descriptors were handed over, not 0"},
   };
   for (const auto& each : texts) {
     auto name = fresh_name();
@@ -161,6 +150,14 @@ TEST(HostilePublisher, SaysWhatIsNoOffer) {
         << each.text << ": " << source.error().detail;
     for (char letter : source.error().detail) EXPECT_GE(letter, ' ') << source.error().detail;
   }
+}
+
+TEST(HostilePublisher, Refuses) {
+  auto name = fresh_name();
+  FakePublisher publisher(name);
+  auto source = publisher.open(name, refusal("it is Sunday"), {});
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().text(), "Closed: the publisher refuses: it is Sunday");
 }
 
 TEST(HostilePublisher, GoesOrSaysNothing) {
@@ -214,7 +211,7 @@ class HostileReader : public ::testing::Test {
     EXPECT_NE(line.find(error), std::string::npos) << text << ": " << line;
     for (char letter : line) EXPECT_GE(letter, ' ') << line;
     auto answer = rest_of(socket.get());
-    EXPECT_TRUE(answer.empty() || answer.starts_with("MTP-SHM/1 refused: ")) << answer;
+    EXPECT_TRUE(answer.empty() || answer.starts_with("HCSHM/2\n")) << answer;
     expect_to_go_on();
   }
 
@@ -228,23 +225,37 @@ class HostileReader : public ::testing::Test {
 TEST_F(HostileReader, HandsOverWhatIsNoSealedPage) {
   for (const auto& each : memories()) {
     SCOPED_TRACE(each.name);
-    expect_refused("MTP-SHM/1 reader\n", each.make(kPageBytes), each.error);
+    auto all = each.make(kPageBytes);
+    if (all.size() == 1) all.push_back(make_pipe());
+    expect_refused(hello(), all, each.error);
+  }
+}
+
+TEST_F(HostileReader, HandsOverWhatIsNoPipe) {
+  for (const auto& each : memories()) {
+    if (each.name == "pipe") continue;
+    SCOPED_TRACE(each.name);
+    auto all = each.make(kPageBytes);
+    if (all.size() == 1) all.insert(all.begin(), make_memfd(kPageBytes, kSealed));
+    expect_refused(hello(), all, all.size() == 2 ? "is no pipe" : " descriptors were handed over");
   }
 }
 
 TEST_F(HostileReader, SaysWhatIsNoHello) {
-  const std::string stranger = "no end of a shared memory link", keep = "keep is \"all\"";
-  const std::vector<Text> texts = {{"GET / HTTP/1.1\r\n\r\n", stranger},
-                                   {"MTP-SHM/1 keep=all", stranger},
-                                   {"MTP-SHM/1 keep=a\nb\n", stranger},
-                                   {"MTP-SHM/1 keep=\x1b[2J\n", stranger},
-                                   {"MTP-SHM/1 " + std::string(5000, 'x') + "\n", stranger},
-                                   {"MTP-SHM/1 keep=0\n", keep},
-                                   {"MTP-SHM/1 keep=-1\n", keep},
-                                   {"MTP-SHM/1 keep=\n", keep},
-                                   {"MTP-SHM/1 keep=18446744073709551616\n", keep}};
-  for (const auto& each : texts)
-    expect_refused(each.text, one(make_memfd(kPageBytes, kSealed)), each.error);
+  const std::string stranger = "no end of a shared memory link";
+  const std::vector<Text> texts = {
+      {"GET / HTTP/1.1\r\n\r\n", stranger},
+      {hello().substr(1), stranger},
+      {hello().substr(0, 8), stranger},
+      {std::string(5000, 'x'), stranger},
+      {refusal("it is Sunday"), "2 descriptors were handed over, not 0"},
+      {refusal("\x1b[2J"), "a refusal that is no text"},
+  };
+  for (const auto& each : texts) {
+    auto both = one(make_memfd(kPageBytes, kSealed));
+    both.push_back(make_pipe());
+    expect_refused(each.text, both, each.error);
+  }
 }
 
 TEST_F(HostileReader, SaysNothing) {
@@ -261,22 +272,45 @@ TEST_F(HostileReader, GoesAtOnce) {
   for (int i = 0; i < 200; ++i) {
     auto socket = connect_to_publisher(name_);
     auto page = make_memfd(kPageBytes, kSealed);
-    if (i % 3 > 0) hand_over(socket.get(), "MTP-SHM/1 reader\n", {page.get()});
+    auto pipe = make_pipe();
+    if (i % 3 > 0) hand_over(socket.get(), hello(), {page.get(), pipe.get()});
     if (i % 3 > 1) ::shutdown(socket.get(), SHUT_WR);
   }
   expect_to_go_on();
 }
 
+/// Neither a pipe that is full nor one whose open file is set to wait keeps the publisher.
 TEST_F(HostileReader, NeverTakesWhatWakesIt) {
   auto socket = connect_to_publisher(name_);
   Writable page(kPageBytes);
   page.page().armed.store(1);
-  hand_over(socket.get(), "MTP-SHM/1 keep=latest\n", {page.descriptor()});
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);  // writing to it waits
+  Descriptor reader(ends[0]), writer(ends[1]);
+  ::fcntl(reader.get(), F_SETPIPE_SZ, 4096);
+  hand_over(socket.get(), hello(1), {page.descriptor(), writer.get()});
   pollfd polled{socket.get(), POLLIN, 0};
   ASSERT_EQ(::poll(&polled, 1, -1), 1);
-  for (std::uint32_t i = 0; i < 3000; ++i) {  // more than the socket takes
+  for (std::uint32_t i = 0; i < 5000; ++i) {  // more than the pipe takes
     page.page().armed.store(2 * i + 3);
     expect_to_go_on();
+  }
+  int unread = 0;
+  ASSERT_EQ(::ioctl(reader.get(), FIONREAD, &unread), 0);
+  EXPECT_EQ(unread, 4096);
+}
+
+TEST_F(HostileReader, ClosesThePipeThatWakesIt) {
+  auto socket = connect_to_publisher(name_);
+  Writable page(kPageBytes);
+  auto pipe = make_pipe();
+  hand_over(socket.get(), hello(1), {page.descriptor(), pipe.get()});
+  pollfd polled{socket.get(), POLLIN, 0};
+  ASSERT_EQ(::poll(&polled, 1, -1), 1);
+  pipe.reset();
+  for (std::uint32_t i = 1; i < 10; ++i) {
+    page.page().armed.store(i);
+    expect_to_go_on();  // without a signal
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <thread>
 #include <vector>
@@ -64,6 +65,13 @@ class Writable {
   std::uint64_t bytes_;
   void* data_ = nullptr;
 };
+
+inline internal::Descriptor make_pipe() {
+  std::array<int, 2> ends{};
+  EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+  internal::Descriptor other(ends[1]);
+  return internal::Descriptor(ends[0]);
+}
 
 inline void hand_over(int socket, std::string text, const std::vector<int>& descriptors) {
   iovec part{text.data(), text.size()};
@@ -136,9 +144,29 @@ class FakePublisher {
   internal::SharedMemory page_;
 };
 
+/// The bytes of a greeting, in which `change` has changed what it wants.
+template <typename Change>
+std::string greeting(const Change& change) {
+  internal::Greeting greeting{};
+  std::memcpy(greeting.magic.data(), "HCSHM/2\n", greeting.magic.size());
+  change(greeting);
+  return {reinterpret_cast<const char*>(&greeting), sizeof greeting};
+}
+
+inline std::string hello(std::uint64_t keep = internal::kPublishersKeep) {
+  return greeting([&](auto& words) { words.keep = keep; });
+}
+
 inline std::string offer(std::uint64_t bytes, std::uint64_t begin = 0, std::uint64_t keep = 0) {
-  return "MTP-SHM/1 bytes=" + std::to_string(bytes) + " begin=" + std::to_string(begin) +
-         " keep=" + std::to_string(keep) + "\n";
+  return greeting([&](auto& words) {
+    words.bytes = bytes;
+    words.begin = begin;
+    words.keep = keep;
+  });
+}
+
+inline std::string refusal(std::string_view why) {
+  return greeting([&](auto& words) { why.copy(words.refusal.data(), words.refusal.size()); });
 }
 
 /// A small generator that keeps up with what it is to disturb.

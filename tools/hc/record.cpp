@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include <hc/link/wait_set.h>
 #include <hc/os/program.h>
 
 #include "common.h"
@@ -48,6 +49,7 @@ void run(const Options& options) {
   auto sink = open_file_sink(options.file);
   Progress progress("hc record " + options.file);
   hc::Message message;
+  hc::WaitSet waits(hc::stop_descriptor());
   while (!hc::stop_requested()) {  // what has arrived is kept
     bool any = false;
     std::vector<hc::Source*> open;
@@ -69,7 +71,7 @@ void run(const Options& options) {
       if (traffic.messages == options.count) return;
     }
     if (open.empty()) return;
-    if (!any) static_cast<void>(hc::wait_any(open, hc::stop_descriptor()));
+    if (!any) static_cast<void>(waits.wait(open));
   }
   for (const auto& [uri, source] : links)
     if (source != nullptr) say_losses("hc record", uri, source->traffic());

@@ -162,28 +162,6 @@ Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,
   return static_cast<std::size_t>(first - polled.begin());
 }
 
-Result<bool> Source::wait(int stop, std::chrono::milliseconds timeout) {
-  std::array<int, 1> descriptors = {descriptor()};
-  auto ready = wait_readable(descriptors, stop, timeout);
-  if (!ready) return ready.error();
-  return *ready < descriptors.size();
-}
-
-Result<bool> wait_any(std::span<Source* const> sources, int stop,
-                      std::chrono::milliseconds timeout) {
-  if (sources.size() == 1) return sources[0]->wait(stop, timeout);
-  std::vector<int> descriptors;
-  bool ready_now = false;
-  for (Source* source : sources) {
-    ready_now = !source->prepare_wait() || ready_now;
-    descriptors.push_back(source->descriptor());
-  }
-  if (ready_now) timeout = std::chrono::milliseconds(0);  // but a wish to stop comes first
-  auto ready = wait_readable(descriptors, stop, timeout);
-  if (!ready) return ready.error();
-  return ready_now || *ready < descriptors.size();
-}
-
 Result<bool> receive(Source& source, Message& message, int stop) {
   while (true) {
     auto got = source.take(message);
@@ -195,6 +173,26 @@ Result<bool> receive(Source& source, Message& message, int stop) {
 }
 
 namespace internal {
+
+Result<bool> wait_to_send(int descriptor, short events, LinkOptions& options, Deadline deadline) {
+  auto& [interrupter, call] = options.interrupt;
+  std::array<pollfd, 3> polled = {
+      {{descriptor, events, 0}, {options.stop, POLLIN, 0}, {interrupter, POLLIN, 0}}};
+  auto ready = system_call("ppoll", "", [&] {
+    const auto left = std::max<std::chrono::nanoseconds>(
+        std::chrono::nanoseconds(0), deadline == Deadline::min()
+                                         ? std::chrono::nanoseconds(0)
+                                         : deadline - std::chrono::steady_clock::now());
+    const timespec time{left.count() / std::nano::den, left.count() % std::nano::den};
+    return ::ppoll(polled.data(), polled.size(), deadline == Deadline::max() ? nullptr : &time,
+                   nullptr);
+  });
+  if (!ready) return ready.error();
+  if (polled[0].revents == 0 && polled[1].revents != 0)
+    return Error{Code::Stopped, "asked to stop"};
+  if (polled[2].revents != 0 && !call()) interrupter = -1;
+  return *ready > 0;
+}
 
 Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,
                                    std::int64_t most) {

@@ -4,6 +4,7 @@
 // carries them; link.cpp has the one table of schemes, and each transport is a file of its own.
 // An object is used from one thread; different objects from different threads.
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -20,17 +21,22 @@
 
 namespace hc {
 
+class WaitSet;
+
 /// What came of asking a source.
 enum class Got {
   Message,  ///< a message
-  Nothing,  ///< none now; wait() or wait_any() tell when to ask again
+  Nothing,  ///< none now; WaitSet waits for the next
   End,      ///< none any more: the other side has closed, or the file is at its end
 };
 
 /// The end of a link where messages come out.
 class Source {
  public:
-  virtual ~Source() = default;
+  Source();
+  virtual ~Source();
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
 
   /// Takes the next message; never waits. `message` keeps its elements alive by itself; what it
   /// held before is let go of, whatever comes.
@@ -40,20 +46,32 @@ class Source {
   /// listening source closes the connection at fault, tells the log, and goes on with the others.
   virtual Result<Got> take(Message& message) = 0;
 
-  /// A descriptor for poll(): readable when take() may have something, if prepare_wait() has said
-  /// so since take() gave Nothing. The same for life.
+  // How to wait. WaitSet does it for any number of sources; an event loop may do the same.
+
+  /// A descriptor for poll(): readable when take() has something to do, if prepare_wait() was true
+  /// since take() gave Nothing. The same for life.
   [[nodiscard]] virtual int descriptor() const = 0;
 
-  /// Has descriptor() tell of the next message; false when there is something to take already.
-  /// wait_any() is this with poll() behind it.
+  /// A second descriptor, to be watched edge-triggered (EPOLLET) and never read: it announces
+  /// messages that come in memory. The same for life; -1: descriptor() announces them all.
+  [[nodiscard]] virtual int wake_descriptor() const { return -1; }
+
+  /// Asks for the next message to be announced; false when there is something to take already.
   virtual bool prepare_wait() { return true; }
 
-  /// Waits until take() may have something, in the way that is fastest for this one source; false
-  /// when `timeout` has passed.
+  /// What to look at before sleeping, until the next take().
+  struct Spin {
+    const std::atomic<std::uint64_t>* word = nullptr;  ///< null: there is nothing to see
+    std::uint64_t value = 0;            ///< a message is there when the word is at least that
+    std::chrono::microseconds time{0};  ///< how long
+  };
+  [[nodiscard]] virtual Spin spin() const { return {}; }
+
+  /// Waits for this source alone, as WaitSet does; false when `timeout` has passed.
   ///
   /// Errors: Stopped (`stop` is readable), System.
-  virtual Result<bool> wait(int stop = -1,
-                            std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
+  Result<bool> wait(int stop = -1,
+                    std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
 
   /// What take() has given so far.
   [[nodiscard]] virtual Traffic traffic() const = 0;
@@ -66,6 +84,11 @@ class Source {
   ///
   /// Errors: Unsupported for everything that cannot be read once more; files can.
   virtual Status resume();
+
+ private:
+  friend class WaitSet;
+  const std::uint64_t number_;      // no other source of this process has or had it
+  std::unique_ptr<WaitSet> alone_;  // for wait()
 };
 
 /// The end of a link where messages go in.
@@ -76,9 +99,10 @@ class Sink {
   /// Puts a message in, whole. Waits as long as the link is full or has no reader yet; with another
   /// `keep` than all it does not wait for a reader that is slow.
   ///
-  /// Errors: Closed (the reader has gone), NotFound (it never was there), Stopped
-  /// (LinkOptions::stop became readable before the first byte went), Truncated (it became so later,
-  /// and the reader did not take the rest within 2 s; the link is of no use afterwards), System.
+  /// Errors: Closed (the reader has gone, or abandon() was called meanwhile), NotFound (it never
+  /// was there), Stopped (LinkOptions::stop became readable before the first byte went), Truncated
+  /// (it became so later, and the reader did not take the rest within 2 s; the link is of no use
+  /// afterwards), System.
   virtual Status send(const Message& message) = 0;
 
   /// A message to be filled in place and sent: in the memory that readers will see where the
@@ -104,6 +128,12 @@ struct LinkOptions {
   /// that use the link's end; may be empty.
   LogSink log;
   int stop = -1;  ///< descriptor that is readable when waiting is to end; -1: none
+  /// What a sink that waits for a reader, or for room, does besides.
+  struct Interrupt {
+    int descriptor = -1;  ///< when it is readable, `call` is made; -1: never
+    /// On the thread that sends; it may abandon() the sink. False: not to be called any more.
+    std::function<bool()> call;
+  } interrupt = {};
   /// Hears when a sink that readers come to begins to wait for one, and has waited, on the thread
   /// that sends; may be empty.
   std::function<void(bool awaits)> awaits_reader = {};
@@ -133,7 +163,8 @@ struct LinkOptions {
 ///   those who observe it.
 /// - `stay=1` (the same): who has left may come back, so the link is not closed then. With keep=all
 ///   send() waits for the next reader; else what is sent meanwhile is lost (Traffic::cut).
-/// - `spin=MICROSECONDS` (shm source; default 20): how long wait() looks before it sleeps.
+/// - `spin=MICROSECONDS` (shm source; default 20): how long a reader that waits looks for the next
+///   message before it sleeps. It does so only while messages follow one another closely.
 ///
 /// And of every sink; one that listens has them for each reader:
 /// - `keep=all|latest|N`: what to do while the reader is slow: wait for it (default), or keep the
@@ -159,12 +190,6 @@ Status check_sink(const Uri& uri);
 
 /// The schemes that open_source() and open_sink() know.
 std::vector<std::string_view> transports();
-
-/// Waits until one of `sources` may have something to take; false when `timeout` has passed.
-///
-/// Errors: Stopped (`stop` is readable), System.
-Result<bool> wait_any(std::span<Source* const> sources, int stop = -1,
-                      std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
 
 /// Waits until one of `descriptors` is readable; gives its index.
 ///

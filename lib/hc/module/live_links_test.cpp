@@ -54,6 +54,60 @@ TEST_F(RunningModule, TellsThatItWaitsForAReader) {
   }
 }
 
+TEST_F(RunningModule, ObeysWhileItWaitsForAReader) {
+  const std::string link = "shm:unread." + std::to_string(::getpid());
+  Module module{"unread", "Sends at once."};
+  auto out = module.output("out", table<double>(), "");
+  auto factor = module.parameter("factor", 2.0, "", "");
+  module.generate([&] {
+    out.send(table({*factor}));
+    out.send(table({*factor}));
+    return false;
+  });
+  start_managed(module, {"--out=" + link});
+  while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) == 0) {
+  }
+  ASSERT_TRUE(tell(*control_, "set factor=4"));
+  EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)).front(), "factor=4");
+  ASSERT_TRUE(tell(*control_, "unlink out out=" + link));
+  EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
+  const std::string name = "slow." + std::to_string(::getpid());
+  const std::string link = "shm:" + name + "?readers=1", other = uri("other");
+  Module module{"fast", "Sends much."};
+  auto out = module.output("out", table<double>(), "");
+  constexpr int kCount = 5000;  // more than wait for a reader
+  int sent = 0;
+  module.generate([&] {
+    out.send(table({static_cast<double>(sent)}));
+    return ++sent < kCount;
+  });
+  start_managed(module, {"--out=" + link, "--out=" + other});
+  auto slow = source_of("shm:" + name + "?wait=10");  // and is not read
+  auto quick = source_of(other);
+  Message message;
+  int received = 0;
+  auto take_all = [&] {
+    while (*quick->take(message) == Got::Message) {
+      // Every message, also the one that was being sent when the other link went.
+      EXPECT_EQ(message.view<double>()->at(0, 0), received);
+      ++received;
+    }
+  };
+  while (received < 2000) {
+    ASSERT_TRUE(quick->wait());
+    take_all();
+  }
+  ASSERT_TRUE(tell(*control_, "unlink out out=" + link));
+  while (received < kCount) {
+    ASSERT_TRUE(quick->wait());
+    take_all();
+  }
+  EXPECT_EQ(join(), 0);
+}
+
 TEST_F(RunningModule, ReportsAgesAndGaps) {
   Module module{"counted", "Counts."};
   auto in = module.input("in", table<double>(), "");

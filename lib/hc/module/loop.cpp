@@ -17,10 +17,7 @@ using internal::LinkedSink;
 using internal::Stopped;
 
 constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
-
-/// The longest wait at a time: poll() counts in 32 bits.
-constexpr std::chrono::milliseconds kLongestWait = std::chrono::hours(1);
-constexpr const char* kSetsKept = "4";  // by links whose newest complete set is handled
+constexpr const char* kSetsKept = "4";      // by links whose newest complete set is handled
 /// A line about a link waits for so long: at the end of a graph it tells nothing.
 constexpr std::chrono::milliseconds kLineDelay{200};
 constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
@@ -44,11 +41,10 @@ bool keeps_latest(Uri& uri) {
 }  // namespace
 
 Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
-    : module_(module) {
+    : module_(module), waits_(stop), pauses_(stop) {
   options_.limits = arguments.limits;
   options_.stop = stop;
   module_.attention_ = arguments.attention;
-  open_outputs(arguments);
   std::unique_ptr<Sink> reports;
   if (arguments.manage) {
     Uri uri = *arguments.manage;
@@ -59,6 +55,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   }
   management_ = internal::Management(
       std::move(reports), arguments.control ? open(*arguments.control, "commands") : nullptr);
+  open_outputs(arguments);
   open_inputs(arguments);
   for (const auto& uri : arguments.focus) open_focus(uri);
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
@@ -111,6 +108,8 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   options.awaits_reader = [this, sender = link.get()](bool awaits) {
     report_state(awaits ? sender : nullptr);
   };
+  if (const auto* commands = management_.commands())
+    options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
   auto sink = open_sink(uri, options);
   if (!sink) fail(name_of(uri.text(), port), sink.error());
   link->uri = uri.text();
@@ -416,26 +415,23 @@ void Module::Loop::measure(Inlet& link, const Message& message) {
 /// Waits for a command, a report that is due, or a time; and, perhaps, for messages and what else
 /// the module reads.
 void Module::Loop::wait(bool for_messages, MonotonicTime until) {
-  std::vector<Source*> sources;
-  std::vector<internal::WatchedDescriptor> watched;
+  waited_for_.clear();
+  watched_.clear();
   if (for_messages) {
     for (const auto& link : sources_)
-      if (link.source != nullptr && !link.head) sources.push_back(link.source.get());
-    for (const auto& watch : module_.watches_) watched.emplace_back(watch.descriptor());
-    for (auto& each : watched) sources.push_back(&each);
+      if (link.source != nullptr && !link.head) waited_for_.push_back(link.source.get());
+    for (const auto& watch : module_.watches_) watched_.push_back(watch.descriptor());
   }
   for (const auto& link : focus_)
-    if (link.source != nullptr && !link.head) sources.push_back(link.source.get());
-  if (management_.commands() != nullptr) sources.push_back(management_.commands());
+    if (link.source != nullptr && !link.head) waited_for_.push_back(link.source.get());
+  if (management_.commands() != nullptr) waited_for_.push_back(management_.commands());
   if (module_.message_time_) until = MonotonicTime::max();  // it is messages that pass the time
   if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
   if (!lines_.empty()) until = std::min(until, lines_.front().due);
-  auto timeout = std::chrono::milliseconds(-1);
-  if (until != MonotonicTime::max())
-    timeout = std::clamp(std::chrono::ceil<std::chrono::milliseconds>(until - now_),
-                         std::chrono::milliseconds(0), kLongestWait);
-  auto ready = wait_any(sources, options_.stop, timeout);
-  if (!ready) fail("poll", ready.error());
+  auto timeout = std::chrono::nanoseconds(-1);
+  if (until != MonotonicTime::max()) timeout = std::max(until - now_, std::chrono::nanoseconds(0));
+  auto ready = (for_messages ? waits_ : pauses_).wait(waited_for_, watched_, timeout);
+  if (!ready) fail("wait", ready.error());
   attended_ = {};  // so that one looks what woke us
 }
 

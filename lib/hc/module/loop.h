@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <hc/link/wait_set.h>
 #include <hc/module/arguments.h>
 #include <hc/module/management.h>
 #include <hc/module/module.h>
@@ -42,18 +43,6 @@ struct Inlet {
   [[nodiscard]] bool is_same(const Inlet& other) const {
     return uri == other.uri && inputs == other.inputs;
   }
-};
-
-/// A descriptor that the module reads by itself, to be waited for beside the links.
-class WatchedDescriptor final : public Source {
- public:
-  explicit WatchedDescriptor(int number) : number_(number) {}
-  Result<Got> take(Message&) override { return Got::Nothing; }
-  [[nodiscard]] int descriptor() const override { return number_; }
-  [[nodiscard]] Traffic traffic() const override { return {}; }
-
- private:
-  int number_;
 };
 
 }  // namespace internal
@@ -121,6 +110,7 @@ struct Module::Loop {
   void set_focus(const Message& message);
   void expire_focus();
   void obey(const std::string& command);
+  bool obey_while_sending();
   Status carry_out(const std::string& row);
   Status set_parameter(const std::string& name, const std::string& value);
   Status link(bool is_input, const std::string& text);
@@ -141,6 +131,10 @@ struct Module::Loop {
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;  // in the order of the command line
   std::vector<internal::Inlet> focus_;
   internal::Management management_;
+  WaitSet waits_, pauses_;  // for all there is; between two calls of the generator
+  std::vector<Source*> waited_for_;
+  std::vector<int> watched_;
+  std::vector<std::string> deferred_;  // commands for when nothing is being handled or sent
   struct Line {
     std::string uri, text;
     MonotonicTime due;

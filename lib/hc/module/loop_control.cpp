@@ -43,6 +43,7 @@ void Module::Loop::attend() {
   log_lines(now_);
   if (now_ - attended_ < kLookPeriod) return;
   attended_ = now_;
+  for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);
   report();
 }
@@ -75,6 +76,26 @@ void Module::Loop::obey(const std::string& command) {
     send(Report::Refusal, make_rows(std::array{line}));
   else
     module_.log(line);
+}
+
+/// Obeys commands while a sink waits within send(), as far as the handler that sends cannot notice:
+/// what changes inputs, of which one may be in use, waits. False when no command comes any more.
+bool Module::Loop::obey_while_sending() {
+  using Verb = ModuleCommand::Verb;
+  for (auto& row : management_.take_commands()) {
+    const auto command = parse_module_command(row);
+    bool is_deferred = false;
+    if (command && command->verb == Verb::Route)  // of a link that is still to be opened
+      is_deferred = std::find(deferred_.begin(), deferred_.end(),
+                              text({Verb::Link, true, command->target, {}})) != deferred_.end();
+    else if (command && command->verb != Verb::Set)
+      is_deferred = command->is_input;
+    if (is_deferred)
+      deferred_.push_back(std::move(row));
+    else
+      obey(row);
+  }
+  return management_.commands() != nullptr;
 }
 
 Status Module::Loop::carry_out(const std::string& row) {

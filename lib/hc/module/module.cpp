@@ -177,6 +177,21 @@ bool send_to(internal::LinkedSink& link, const std::string& port, const Message&
   return false;
 }
 
+/// Calls `send_one` with each link of an output, which may lose links meanwhile.
+/// @returns  whether one of them has ended by itself.
+template <typename SendOne>
+bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
+  bool any_ended = false;
+  for (std::size_t i = 0; i < output.links.size();) {
+    const auto link = output.links[i];
+    const bool ended = link->sink != nullptr && !send_one(*link);
+    if (i >= output.links.size() || output.links[i] != link) continue;  // it was unlinked
+    any_ended = any_ended || ended;
+    ++i;
+  }
+  return any_ended;
+}
+
 }  // namespace
 
 void internal::send(OutputState& output, Message message) {
@@ -194,27 +209,24 @@ void internal::send(OutputState& output, Message message) {
     header.info.encoding = wanted;  // the same in memory
   else
     message = value_or_end(compress(message, wanted));
-  bool any_left = false;
-  for (auto& link : output.links)
-    if (link->sink != nullptr && link->route.takes(header.dst))
-      any_left = !send_to(*link, output.name, message) || any_left;
-  if (any_left && !module.is_read()) throw Stopped();
+  const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
+    return !link.route.takes(header.dst) || send_to(link, output.name, message);
+  });
+  if (any_ended && !module.is_read()) throw Stopped();
 }
 
 std::size_t internal::forward(OutputState& output, const Message& message) {
   Module& module = *output.module;
   const std::string* from = module.handled_.peer;
   std::size_t taken = 0;
-  bool any_left = false;
-  for (auto& link : output.links) {
-    if (link->sink == nullptr || !link->route.takes(message.header.dst)) continue;
-    if (from != nullptr && !from->empty() && *from == link->route.peer) continue;
-    if (send_to(*link, output.name, message))
-      ++taken;
-    else
-      any_left = true;
-  }
-  if (any_left && !module.is_read()) throw Stopped();
+  const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
+    if (!link.route.takes(message.header.dst)) return true;
+    if (from != nullptr && !from->empty() && *from == link.route.peer) return true;
+    if (!send_to(link, output.name, message)) return false;
+    ++taken;
+    return true;
+  });
+  if (any_ended && !module.is_read()) throw Stopped();
   return taken;
 }
 

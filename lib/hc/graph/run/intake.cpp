@@ -14,6 +14,12 @@ Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri,
                             [self = intake.get()](auto) { self->take(); });
   if (!watched) return watched.error();
   intake->watch_ = std::move(*watched);
+  if (const int wakes = intake->source_->wake_descriptor(); wakes >= 0) {
+    auto woken =
+        loop.watch(wakes, EPOLLIN | EPOLLET, [self = intake.get()](auto) { self->take(); });
+    if (!woken) return woken.error();
+    intake->woken_ = std::move(*woken);
+  }
   // A source may have something before its descriptor has ever been asked to tell.
   intake->again_ = loop.call_at({}, [self = intake.get()] { self->take(); });
   return intake;
@@ -26,6 +32,7 @@ void Intake::take() {
     if (!got || *got == Got::End) {
       is_over_ = true;
       watch_.reset();
+      woken_.reset();
       again_.reset();
       return;
     }

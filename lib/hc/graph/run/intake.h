@@ -35,7 +35,7 @@ class Intake {
   std::unique_ptr<Source> source_;
   Take take_;
   bool is_over_ = false;
-  Loop::Handle watch_, again_;
+  Loop::Handle watch_, woken_, again_;
 };
 
 /// For how long there is a reader in another's place.

@@ -57,7 +57,6 @@ static_assert(sizeof(Cell) == kCellBytes);
 /// The start of the publisher's memory; the rest of its first page is unused.
 struct Head {
   alignas(kLine) SharedWord<std::uint64_t> published;  ///< positions below have been published
-  SharedWord<std::uint32_t> signal;  ///< futex: differs after each message and after the end
   /// Positions below have been withdrawn: their cells and slots may be used again.
   alignas(kLine) SharedWord<std::uint64_t> oldest;
   /// What the publisher waits for: 0 nothing, a reader's cursor at least here, or kAnyRoom: a slot
@@ -80,8 +79,7 @@ constexpr std::uint64_t kLeastMemory = kSlotsBegin + (std::uint64_t{1} << 20);  
 struct ReaderPage {
   /// The position that is taken next; kLeft: the reader takes no more, but may hold slots still.
   alignas(kLine) SharedWord<std::uint64_t> cursor;
-  /// 0: awake; else a number, another each time, of one who waits on the futex `signal` (even) or
-  /// for a byte on its socket (odd).
+  /// 0: awake; else a number, another each time the reader waits for a byte in its pipe.
   alignas(kLine) SharedWord<std::uint32_t> armed;
   alignas(kLine) SharedWord<std::uint32_t> progress;  ///< futex: changes when wanted room is given
   alignas(kLine) std::array<SharedWord<std::uint64_t>, kMostHeld> held;  ///< slots; 0: none

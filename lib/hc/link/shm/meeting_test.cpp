@@ -38,6 +38,54 @@ TEST(ShmMeeting, WhoDropsWaitsForTheFirstReaderAlone) {
   EXPECT_TRUE(sink->close());
 }
 
+TEST(ShmMeeting, NobodyIsWaitedForWhereReadersIsNone) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?readers=0");
+  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 2 ? kSmall : kLarge)));
+  EXPECT_EQ(sink->traffic().cut, 3000U);
+  auto source = source_of(name);
+  ASSERT_TRUE(sink->send(numbered(3000, kLarge)));
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 3000);
+  source.reset();
+  ASSERT_TRUE(sink->send(numbered(3001, kSmall)));
+  EXPECT_TRUE(sink->close());
+}
+
+TEST(ShmMeeting, AReaderOfTheLatestNeverStallsAPublisherThatLosesNothing) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?readers=2&memory=2M");
+  auto all = source_of(name);
+  auto latest = source_of(name + "?keep=latest");  // and does not take
+  Message message;
+  for (int i = 0; i < 5000; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, i % 2 ? kSmall : kLarge)));
+    ASSERT_TRUE(*receive(*all, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  message = {};
+  ASSERT_TRUE(*receive(*latest, message));
+  EXPECT_EQ(message.header.seq, 4999);
+}
+
+/// What is called while send() waits may abandon the sink.
+TEST(ShmMeeting, ASinkThatWaitsCanBeAbandoned) {
+  auto name = fresh_name();
+  Stop interrupt;
+  std::unique_ptr<Sink> sink;
+  LinkOptions options;
+  options.interrupt = {interrupt.options().stop, [&] {
+                         sink->abandon();
+                         return true;
+                       }};
+  interrupt.raise();
+  sink = sink_of(name, options);
+  EXPECT_EQ(sink->send(numbered(1, kSmall)).error().code, Code::Closed);
+  EXPECT_EQ(sink->send(numbered(2, kSmall)).error().code, Code::Closed);
+  EXPECT_TRUE(sink_of(name));
+}
+
 TEST(ShmMeeting, ANameIsFreeAgainAsSoonAsItsPublisherHasGone) {
   auto name = fresh_name();
   auto sink = sink_of(name);

@@ -122,6 +122,7 @@ void ShmReaders::hear(ShmReader& reader) {
       auto owner = take_from(strangers_, reader);
       if (owner == nullptr) return;
       reader.memory = std::move(hello->page);
+      reader.wakes = std::move(hello->wakes);
       reader.keep = hello->keep;
       reader.orders = hello->orders;
       // First: a publisher that has published more than what is read here sees this when it looks
@@ -233,19 +234,15 @@ std::shared_ptr<const ShmReader> ShmReaders::blocker(std::uint64_t published) co
   return slowest != nullptr ? slowest : holder;
 }
 
-bool ShmReaders::wake(const SharedWord<std::uint32_t>& signal) {
-  bool any = false, on_futex = false;
+bool ShmReaders::wake() {
+  bool any = false;
   for (const auto& reader : current_) {
     auto armed = reader->page().armed.load(std::memory_order_relaxed);
     if (armed == 0 || armed == reader->woken) continue;
     reader->woken = armed;
     any = true;
-    if (armed % 2 == 0)
-      on_futex = true;
-    else
-      ::send(reader->socket.get(), "!", 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+    static_cast<void>(::write(reader->wakes.get(), "!", 1));
   }
-  if (on_futex) futex_wake(signal);
   return any;
 }
 

@@ -20,6 +20,7 @@ namespace hc::internal {
 /// One reader, as its publisher sees it.
 struct ShmReader {
   Descriptor socket;
+  Descriptor wakes;         ///< a pipe: a byte wakes the reader
   SharedMemory memory;      ///< a ReaderPage
   std::uint64_t keep = 0;   ///< newest messages that wait for it at most; 0: all of them
   bool orders = false;      ///< it can order the stores of both sides
@@ -75,8 +76,8 @@ class ShmReaders {
   /// Whom a publisher waits for: the slowest of those that lose nothing, if it has not taken all,
   /// else anybody who holds something; null when it is nobody.
   [[nodiscard]] std::shared_ptr<const ShmReader> blocker(std::uint64_t published) const;
-  /// Wakes those who sleep, on `signal` or their sockets; whether there were any.
-  bool wake(const SharedWord<std::uint32_t>& signal);
+  /// Wakes those who sleep; whether there were any.
+  bool wake();
 
   /// Readable when some have come or gone, or something is to be told, since refresh().
   [[nodiscard]] int event() const { return event_.get(); }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // `shm:NAME`: how either end is opened; sink.h and source.h are what is opened.
+#include <algorithm>
+#include <charconv>
+
 #include <hc/link/paced_sink.h>
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/shm/sink.h>
 #include <hc/link/shm/source.h>
-#include <hc/link/stream/awaiting_source.h>
 #include <hc/link/stream/dialing.h>
 #include <hc/link/stream/unix.h>
 #include <hc/link/transports.h>
@@ -12,15 +14,29 @@
 namespace hc::internal {
 namespace {
 
-/// About as long as it takes to sleep and wake: who spins so long never loses more than that.
+/// About as long as it takes to sleep and wake: a reader that spins so long never loses more.
 constexpr std::int64_t kDefaultSpin = 20;  // [µs]
 
 /// How a reader attaches.
 struct Wishes {
-  std::string keep;  ///< empty: as the publisher wants it
+  std::uint64_t keep;  ///< kPublishersKeep: as the publisher wants it
   std::chrono::microseconds spin;
   bool waits;  ///< for the publisher's answer, or else take() does without
+  std::shared_ptr<const Descriptor> wakes;
 };
+
+/// How many messages wait: nothing, "all", "latest" or a number from 1 on. Errors: Invalid.
+Result<std::uint64_t> parse_keep(std::string_view text) {
+  if (text.empty()) return kPublishersKeep;
+  if (text == "all") return std::uint64_t{0};
+  if (text == "latest") return std::uint64_t{1};
+  std::uint64_t count = 0;
+  auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (status != std::errc() || end != text.data() + text.size() || count == 0)
+    return Error{Code::Invalid, R"(keep is "all", "latest" or a number from 1 on, not ")" +
+                                    std::string(text) + "\""};
+  return std::min(count, kPublishersKeep - 1);
+}
 
 /// Makes the reader of a publisher that has been connected to. Errors: as await_offer().
 Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
@@ -32,22 +48,15 @@ Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
   attachment->page = std::move(*page);
   HC_CRASH_POINT("reader made page");
   const int connection = attachment->socket.get();
-  if (auto sent = send_hello(connection, wishes.keep, attachment->page); !sent) return sent.error();
-  auto begin = [attachment, spin = wishes.spin, options](Offer offer) -> std::unique_ptr<Source> {
-    attachment->memory = std::move(offer.memory);
-    attachment->own().cursor.store(offer.begin, std::memory_order_release);
-    return std::make_unique<ShmSource>(attachment, offer, spin, options);
-  };
-  if (!wishes.waits)
-    return std::unique_ptr<Source>(std::make_unique<AwaitingSource>(
-        connection, [connection, begin]() -> Result<std::unique_ptr<Source>> {
-          auto offer = take_offer(connection);
-          if (!offer) return offer.error();
-          return offer->has_value() ? begin(std::move(**offer)) : nullptr;
-        }));
-  auto offer = await_offer(connection, options.stop);
-  if (!offer) return offer.error();
-  return begin(std::move(*offer));
+  auto sent = send_hello(connection, wishes.keep, attachment->page, wishes.wakes->get());
+  if (!sent) return sent.error();
+  auto source = std::make_unique<ShmSource>(attachment, wishes.wakes, wishes.spin, options);
+  if (wishes.waits) {
+    auto offer = await_offer(connection, options.stop);
+    if (!offer) return offer.error();
+    source->attach(std::move(*offer));
+  }
+  return std::unique_ptr<Source>(std::move(source));
 }
 
 }  // namespace
@@ -63,7 +72,7 @@ Status check_shm_memory(const Uri& uri) {
 
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
   if (auto named = check_name(uri); !named) return named.error();
-  auto counted = number_option(uri, "readers", 0, kMostReaders);
+  auto counted = number_option(uri, "readers", -1, kMostReaders);
   if (!counted) return counted.error();
   auto stays = number_option(uri, "stay", 0, 1);
   if (!stays) return stays.error();
@@ -90,17 +99,19 @@ Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOption
   if (!spin) return spin.error();
   auto reconnect = number_option(uri, "reconnect", 0);
   if (!reconnect) return reconnect.error();
-  Wishes wishes{std::string(uri.option("keep", "")), std::chrono::microseconds(*spin),
-                *reconnect == 0};
-  if (!wishes.keep.empty())
-    if (auto valid = parse_keep(wishes.keep); !valid) return valid.error();
+  auto keep = parse_keep(uri.option("keep", ""));
+  if (!keep) return keep.error();
+  auto wakes = make_wake_pipe();
+  if (!wakes) return wakes.error();
+  const Wishes wishes{*keep, std::chrono::microseconds(*spin), *reconnect == 0, std::move(*wakes)};
   Uri place = meeting_place(uri);
   auto peer = unix_peer(place);
   if (!peer) return peer.error();
   peer->name = uri.rest;
-  return dial_source(*peer, uri, options, [wishes, options](Descriptor socket) {
-    return attach(std::move(socket), wishes, options);
-  });
+  auto open = [wishes, options](Descriptor connection) {
+    return attach(std::move(connection), wishes, options);
+  };
+  return dial_source(*peer, uri, options, {open, wishes.wakes->get()});
 }
 
 }  // namespace hc::internal

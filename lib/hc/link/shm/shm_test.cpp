@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // That messages arrive, of any size and in place, and that who waits can be stopped.
 #include <hc/link/shm/shm_test.h>
+#include <hc/link/wait_set.h>
 
 #include <array>
 #include <numeric>
@@ -103,6 +104,7 @@ TEST(Shm, SeveralSourcesAreWaitedForTogether) {
   });
   const std::array<Source*, 2> both = {first.get(), second.get()};
   Message message;
+  WaitSet waits;
   int count = 0, ends = 0;
   while (ends < 2) {
     ends = 0;
@@ -115,7 +117,7 @@ TEST(Shm, SeveralSourcesAreWaitedForTogether) {
       any = any || *got == Got::Message;
     }
     if (!any && ends < 2) {
-      ASSERT_TRUE(*wait_any(both));
+      ASSERT_TRUE(*waits.wait(both));
     }
   }
   EXPECT_EQ(count, kCount);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 
 #include <hc/link/shm/crash_point.h>
@@ -37,13 +38,17 @@ void copy_words(std::span<const std::byte> bytes, char* to) {
 }  // namespace
 
 Status ShmSink::send(const Message& message) {
+  if (ended_) return abandoned();
   refresh();
-  if (!begun_) {
-    auto came = await_readers(static_cast<std::size_t>(std::max<std::int64_t>(counted_, 1)));
-    if (!came) return came;
-  }
+  if (!begun_)
+    if (auto came = await_readers(static_cast<std::size_t>(std::abs(counted_))); !came) return came;
   begun_ = true;
   if (present_ == 0) {
+    if (counted_ == 0) {
+      ++traffic_.messages;
+      ++traffic_.cut;
+      return {};
+    }
     if (counted_ > 0 && !stays_) return Error{Code::Closed, "the readers have gone"};
     if (keep_ == 0) {
       if (auto came = await_readers(1); !came) return came;
@@ -105,7 +110,6 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
   cell.stamp.store(published_, memory_order_release);
   HC_CRASH_POINT("publisher stamped");
   head_.published.store(published_, memory_order_release);
-  head_.signal.store(static_cast<std::uint32_t>(published_), memory_order_release);
   HC_CRASH_POINT("publisher published");
   if (waker_.must_fence()) std::atomic_thread_fence(memory_order_seq_cst);  // wake
   std::atomic_signal_fence(memory_order_seq_cst);
@@ -116,6 +120,7 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
 
 Draft ShmSink::loan(const Header& header) {
   auto bytes = header.element_bytes();
+  if (ended_) return Sink::loan(header);
   refresh();
   // What will be copied into a cell, behind a header line as most are, needs no slot.
   if (bytes <= Cell::kTextBytes - kLine) return Sink::loan(header);
@@ -132,7 +137,7 @@ Draft ShmSink::loan(const Header& header) {
 Status ShmSink::close() {
   Status awaited;
   if (!begun_ && counted_ > 0) awaited = await_readers(static_cast<std::size_t>(counted_));
-  if (readers_ != nullptr) refresh();  // which tells the log
+  if (readers_ != nullptr) refresh();  // which writes to the log
   end();
   return awaited;
 }
@@ -143,9 +148,7 @@ void ShmSink::end() {
   ended_ = true;
   head_.closed.store(1, memory_order_release);
   HC_CRASH_POINT("publisher closed");
-  head_.signal.store(static_cast<std::uint32_t>(published_) + 1, memory_order_release);
-  futex_wake(head_.signal);
-  readers_.reset();
+  readers_.reset();  // which ends the connections, and so wakes those who sleep
 }
 
 }  // namespace hc::internal

@@ -18,8 +18,9 @@ namespace hc::internal {
 
 class ShmSink final : public Sink {
  public:
-  /// @param counted  readers that the first message waits for, which are all; 0: one, and others
-  ///     may come. @param stays  goes on when all of those have left.
+  /// @param counted  readers that the first message waits for, which are all; below 0: one, and
+  ///     others may come; 0: nobody is ever waited for. @param stays  goes on when all of those
+  ///     have left.
   /// @param keep  newest messages that wait for a reader that does not say; 0: all, it is waited
   ///     for.
   ShmSink(SharedMemory memory, std::int64_t counted, bool stays, std::uint64_t keep,
@@ -31,9 +32,7 @@ class ShmSink final : public Sink {
         counted_(counted),
         stays_(stays),
         keep_(keep),
-        log_(std::move(options.log)),
-        stop_(options.stop),
-        awaits_reader_(std::move(options.awaits_reader)) {}
+        options_(std::move(options)) {}
   ~ShmSink() override { end(); }
 
   /// Lets readers in; before all else. Errors: System.
@@ -47,6 +46,7 @@ class ShmSink final : public Sink {
   Status send(const Message& message) override;
   Draft loan(const Header& header) override;
   Status close() override;
+  void abandon() override { end(); }
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
 
  private:
@@ -61,6 +61,7 @@ class ShmSink final : public Sink {
   void meet_readers();
   void refresh_for_sure();
   Status await_readers(std::size_t count);
+  static Error abandoned() { return {Code::Closed, "the link was abandoned"}; }
 
   // Where there is room for a message (sink_room.cpp).
   [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes);
@@ -83,9 +84,7 @@ class ShmSink final : public Sink {
   std::int64_t counted_;
   bool stays_;  // when all of them have left
   std::uint64_t keep_;
-  LogSink log_;
-  int stop_;
-  std::function<void(bool)> awaits_reader_;
+  LinkOptions options_;
 
   std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
   std::array<Slot*, kCells> slot_of_cell_{};

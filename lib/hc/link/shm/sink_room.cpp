@@ -30,7 +30,7 @@ constexpr std::chrono::milliseconds kLookPeriod{20};
 
 void ShmSink::meet_readers() {
   readers_->refresh();
-  readers_->remarks().tell(log_);
+  readers_->remarks().tell(options_.log);
   const auto& readers = readers_->current();
   present_ = static_cast<std::size_t>(std::count_if(
       readers.begin(), readers.end(), [](const auto& reader) { return !reader->left(); }));
@@ -46,14 +46,16 @@ void ShmSink::refresh_for_sure() {
 
 Status ShmSink::await_readers(std::size_t count) {
   refresh();
-  const bool awaits = present_ < count && awaits_reader_;
-  if (awaits) awaits_reader_(true);
-  for (; present_ < count; refresh()) {
-    auto changed = wait_for(readers_->event(), POLLIN, stop_);
-    if (!changed) return changed.error();
+  if (present_ >= count) return {};
+  if (options_.awaits_reader) options_.awaits_reader(true);
+  Status outcome;
+  while (outcome && present_ < count) {
+    auto changed = wait_to_send(readers_->event(), POLLIN, options_);
+    outcome = ended_ ? abandoned() : changed ? Status() : changed.error();
+    if (outcome) refresh();
   }
-  if (awaits) awaits_reader_(false);
-  return {};
+  if (options_.awaits_reader) options_.awaits_reader(false);
+  return outcome;
 }
 
 /// Whether `bytes` more in slots are too many for the slowest of those that lose nothing. Cost: a
@@ -100,8 +102,9 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
       return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
     HC_CRASH_POINT("publisher waits for room");
     futex_wait(reader->page().progress, progress, kLookPeriod);
-    auto stop = wait_readable({}, stop_, std::chrono::milliseconds(0));
-    if (!stop) return stop.error();
+    auto waited = wait_to_send(-1, 0, options_, Deadline::min());
+    if (ended_) return abandoned();
+    if (!waited) return waited.error();
   }
 }
 

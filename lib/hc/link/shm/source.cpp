@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Taking a message out of the publisher's memory, which may be written over meanwhile.
 #include <hc/link/shm/source.h>
 
+#include <fcntl.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstring>
 
 #include <hc/link/shm/crash_point.h>
@@ -21,6 +23,8 @@ using std::memory_order_seq_cst;
 constexpr std::uint64_t kLookEvery = 64;  // messages
 constexpr std::size_t kCopyHold = kMostHeld - 1;
 constexpr std::size_t kNoHold = kMostHeld;
+constexpr unsigned kDrainEvery = 1024;  // waits; each leaves one byte in the pipe at most
+constexpr unsigned kLookSeldom = 8;     // vain waits, until a silent link's connection is looked at
 constexpr int kMostSkips = 64;  // until who is overtaken again and again looks after other things
 
 Error damaged(const std::string& what) {
@@ -28,6 +32,15 @@ Error damaged(const std::string& what) {
 }
 
 }  // namespace
+
+Result<std::shared_ptr<const Descriptor>> make_wake_pipe() {
+  std::array<int, 2> ends;
+  auto made =
+      system_call("pipe2", "", [&] { return ::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC); });
+  if (!made) return made.error();
+  Descriptor writer(ends[1]);  // a publisher opens its own
+  return std::make_shared<const Descriptor>(ends[0]);
+}
 
 ShmSource::~ShmSource() {
   attachment_->own().cursor.store(ReaderPage::kLeft, memory_order_release);
@@ -118,6 +131,12 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
 Result<Got> ShmSource::take(Message& message) {
   message.owner.reset();
   message.elements = {};
+  if (!attached()) {
+    auto offer = take_offer(attachment_->socket.get());
+    if (!offer) return Error{Code::Closed, offer.error().detail};
+    if (!offer->has_value()) return Got::Nothing;
+    attach(std::move(**offer));
+  }
   const Head& head = attachment_->head();
   for (int tries = 0; tries < kMostSkips; ++tries) {
     if (keep_ > 0) {
@@ -180,6 +199,50 @@ void ShmSource::finish_cell(bool has_slot) {
   if (keep_ > 0 || !(has_slot || cursor_ % kLookEvery == 0)) return;
   std::atomic_thread_fence(memory_order_seq_cst);  // room
   attachment_->offer_cells();
+}
+
+void ShmSource::attach(Offer offer) {
+  attachment_->memory = std::move(offer.memory);
+  attachment_->own().cursor.store(offer.begin, memory_order_release);
+  cursor_ = offer.begin;
+  keep_ = offer.keep;
+}
+
+Source::Spin ShmSource::spin() const {
+  if (!attached()) return {};
+  return {&attachment_->cell(cursor_).stamp, cursor_ + 1, spin_};
+}
+
+bool ShmSource::is_ready() const {
+  return attachment_->cell(cursor_).stamp.load(memory_order_acquire) > cursor_ || has_ended();
+}
+
+/// Notices that the publisher has gone.
+void ShmSource::look_at_socket() {
+  char byte;
+  auto size = ::recv(attachment_->socket.get(), &byte, 1, MSG_DONTWAIT);
+  if (size >= 0 || (errno != EAGAIN && errno != EINTR)) publisher_gone_ = true;
+}
+
+void ShmSource::drain_pipe() const {
+  std::array<char, 2 * kDrainEvery> bytes;
+  static_cast<void>(::read(wake_descriptor(), bytes.data(), bytes.size()));
+}
+
+bool ShmSource::prepare_wait() {
+  if (!attached()) return true;
+  // Who is armed still has been woken by another link, or by the end of this one's connection.
+  if (armed_ && ++vain_waits_ % kLookSeldom == 0) look_at_socket();
+  if (++arming_ % kDrainEvery == 0) drain_pipe();
+  if (arming_ == 0) ++arming_;
+  attachment_->own().armed.store(arming_, memory_order_relaxed);
+  armed_ = true;
+  HC_CRASH_POINT("reader armed");
+  std::atomic_thread_fence(memory_order_seq_cst);  // wake
+  if (attachment_->head().unfenced.load(memory_order_acquire) != 0) order_everywhere();
+  if (!is_ready()) return true;
+  disarm();
+  return false;
 }
 
 }  // namespace hc::internal

@@ -1,34 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A reader of `shm:NAME`: source.cpp takes messages, source_wait.cpp waits for them. Internal.
+// A reader of `shm:NAME`: takes messages out of the publisher's memory, which may be written over
+// meanwhile. Internal.
 
 #include <array>
 #include <chrono>
 #include <memory>
 
-#include <hc/link/shm/attachment.h>
+#include <hc/link/shm/crash_point.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/transports.h>
 #include <hc/mtp/header_memo.h>
 
 namespace hc::internal {
 
+/// A connection to a publisher. Messages that view its memory keep it, also when the source is
+/// gone.
+struct Attachment {
+  Descriptor socket;
+  SharedMemory page, memory;
+
+  [[nodiscard]] ReaderPage& own() { return *reinterpret_cast<ReaderPage*>(page.data()); }
+  [[nodiscard]] const Head& head() const { return *reinterpret_cast<const Head*>(memory.data()); }
+  [[nodiscard]] const Cell& cell(std::uint64_t position) const {
+    return reinterpret_cast<const Cell*>(memory.data() + kRingBegin)[position % kCells];
+  }
+
+  /// Wakes the publisher if it waits for what this reader has just taken. A fence stands before.
+  void offer_cells() {
+    auto wanted = head().wanted.load(std::memory_order_relaxed);
+    if (wanted != 0 && own().cursor.load(std::memory_order_relaxed) >= wanted) wake_publisher();
+  }
+
+  void let_go(std::size_t index) {
+    own().held[index].store(0, std::memory_order_release);
+    HC_CRASH_POINT("reader let go");
+    std::atomic_thread_fence(std::memory_order_seq_cst);  // room
+    if (head().wanted.load(std::memory_order_relaxed) == Head::kAnyRoom) wake_publisher();
+  }
+
+ private:
+  void wake_publisher() {
+    own().progress.fetch_add(1, std::memory_order_release);
+    futex_wake(own().progress);
+    HC_CRASH_POINT("reader woke publisher");
+  }
+};
+
+/// A pipe by which publishers wake a reader: one for all connections of a link. Errors: System.
+Result<std::shared_ptr<const Descriptor>> make_wake_pipe();
+
 class ShmSource final : public Source {
  public:
-  ShmSource(std::shared_ptr<Attachment> attachment, const Offer& offer,
+  /// The reader of a publisher that has been greeted, but has perhaps not answered.
+  ShmSource(std::shared_ptr<Attachment> attachment, std::shared_ptr<const Descriptor> wakes,
             std::chrono::microseconds spin, LinkOptions options)
       : attachment_(std::move(attachment)),
-        cursor_(offer.begin),
-        keep_(offer.keep),
+        wakes_(std::move(wakes)),
         spin_(spin),
         options_(std::move(options)) {}
+  /// Takes the publisher's answer.
+  void attach(Offer offer);
 
   ~ShmSource() override;
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return attachment_->socket.get(); }
+  [[nodiscard]] int wake_descriptor() const override { return wakes_->get(); }
   bool prepare_wait() override;
-  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override;
+  [[nodiscard]] Spin spin() const override;
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
 
  private:
@@ -39,7 +79,6 @@ class ShmSource final : public Source {
     [[nodiscard]] const char* text() const { return reinterpret_cast<const char*>(words.data()); }
   };
 
-  // Taking (source.cpp).
   /// Nothing comes where there was nothing a moment ago: the publisher has gone, or has closed and
   /// all that it published has been taken.
   [[nodiscard]] bool has_ended() const {
@@ -56,24 +95,25 @@ class ShmSource final : public Source {
   [[nodiscard]] bool is_withdrawn() const;
   void finish_cell(bool has_slot);
 
-  // Waiting (source_wait.cpp).
+  [[nodiscard]] bool attached() const { return attachment_->memory.data() != nullptr; }
   [[nodiscard]] bool is_ready() const;
   void look_at_socket();
-  void arm(bool on_socket);
+  void drain_pipe() const;
   void disarm() {
     attachment_->own().armed.store(0, std::memory_order_relaxed);
     armed_ = false;
   }
 
   std::shared_ptr<Attachment> attachment_;
-  std::uint64_t cursor_;
-  std::uint64_t keep_;
+  std::shared_ptr<const Descriptor> wakes_;
+  std::uint64_t cursor_ = 0;
+  std::uint64_t keep_ = 0;
   std::uint64_t known_ = 0;  // positions below are known to be published
   std::chrono::microseconds spin_;
   LinkOptions options_;
   std::uint32_t arming_ = 0;
   bool armed_ = false;
-  unsigned unlooked_ = 0;  // waits that began without a look at the socket
+  unsigned vain_waits_ = 0;
   bool publisher_gone_ = false;
   bool told_ = false;  // that too many are held
   HeaderMemo memo_;

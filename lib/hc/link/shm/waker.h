@@ -29,14 +29,14 @@ class Waker {
 
   /// Wakes those who sleep, after a message has been published.
   void wake(ShmReaders& readers) {
-    if (readers.wake(head_.signal)) {
+    if (readers.wake()) {
       fence_again();
     } else if (fencing_ && may_leave_fence_ && ++undisturbed_ >= kUndisturbed) {
       fencing_ = false;
       head_.unfenced.store(1, std::memory_order_relaxed);
       // Who has not seen that yet is seen here.
       std::atomic_thread_fence(std::memory_order_seq_cst);
-      if (readers.wake(head_.signal)) fence_again();
+      if (readers.wake()) fence_again();
     }
   }
 

@@ -36,21 +36,22 @@ Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptio
 
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options) {
-  return dial_source(peer, uri, options, [options](Descriptor connection) {
+  auto open = [options](Descriptor connection) {
     set_up_reader(connection.get());
     return Result<std::unique_ptr<Source>>(
         std::make_unique<StreamSource>(std::move(connection), options));
-  });
+  };
+  return dial_source(peer, uri, options, {open});
 }
 
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
-                                            const LinkOptions& options, DialingSource::Open open) {
+                                            const LinkOptions& options, DialingSource::Made made) {
   auto dialer = dialer_for(peer, uri);
   if (!dialer) return dialer.error();
-  if (*dialer != nullptr) return DialingSource::make(std::move(*dialer), std::move(open), options);
+  if (*dialer != nullptr) return DialingSource::make(std::move(*dialer), std::move(made), options);
   auto connected = connect_now(peer, uri, options);
   if (!connected) return connected.error();
-  return open(std::move(*connected));
+  return made.open(std::move(*connected));
 }
 
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,

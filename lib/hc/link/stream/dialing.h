@@ -19,9 +19,9 @@ Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptio
 /// connection when it can be had; else they have it from connect_now(). Errors: the same.
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options);
-/// The same, of what `open` makes of a connection.
+/// The same, of what is made of each connection.
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
-                                            const LinkOptions& options, DialingSource::Open open);
+                                            const LinkOptions& options, DialingSource::Made made);
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
                                         const LinkOptions& options);
 

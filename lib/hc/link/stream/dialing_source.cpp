@@ -12,12 +12,12 @@ constexpr std::chrono::milliseconds kTellAfter{200};
 
 }  // namespace
 
-Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer, Open open,
+Result<std::unique_ptr<Source>> DialingSource::make(std::unique_ptr<Dialer> dialer, Made made,
                                                     const LinkOptions& options) {
   auto loop = Loop::make();
   if (!loop) return loop.error();
   std::unique_ptr<DialingSource> source(
-      new DialingSource(std::move(dialer), std::move(open), std::move(*loop), options));
+      new DialingSource(std::move(dialer), std::move(made), std::move(*loop), options));
   static_cast<void>(source->dial());  // the first take() tells if it is in vain
   return std::unique_ptr<Source>(std::move(source));
 }
@@ -59,7 +59,7 @@ Status DialingSource::dial() {
     tell_at_ = TimePoint::max();
   }
   if (*connected) {
-    auto source = open_(std::move(*connected));
+    auto source = made_.open(std::move(*connected));
     if (!source) {
       if (source.error().code == Code::Stopped) return source.error();
       log(in_words(source.error()) + "; connecting again");

@@ -22,24 +22,28 @@ class DialingSource final : public Source {
   /// Makes the source of a connection; one that it cannot be made of counts as lost.
   using Open = std::function<Result<std::unique_ptr<Source>>(Descriptor connection)>;
 
+  struct Made {
+    Open open;
+    int wake_descriptor = -1;  ///< of all sources that come of it
+  };
+
   /// Errors: System.
-  static Result<std::unique_ptr<Source>> make(std::unique_ptr<Dialer> dialer, Open open,
+  static Result<std::unique_ptr<Source>> make(std::unique_ptr<Dialer> dialer, Made made,
                                               const LinkOptions& options);
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
   bool prepare_wait() override { return source_ == nullptr || source_->prepare_wait(); }
-  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override {
-    return source_ == nullptr ? Source::wait(stop, timeout) : source_->wait(stop, timeout);
-  }
+  [[nodiscard]] int wake_descriptor() const override { return made_.wake_descriptor; }
+  [[nodiscard]] Spin spin() const override { return source_ == nullptr ? Spin() : source_->spin(); }
   [[nodiscard]] Traffic traffic() const override;
   void finish() override { finishing_ = true; }
 
  private:
-  DialingSource(std::unique_ptr<Dialer> dialer, Open open, std::unique_ptr<Loop> loop,
+  DialingSource(std::unique_ptr<Dialer> dialer, Made made, std::unique_ptr<Loop> loop,
                 LinkOptions options)
       : dialer_(std::move(dialer)),
-        open_(std::move(open)),
+        made_(std::move(made)),
         loop_(std::move(loop)),
         options_(std::move(options)) {}
 
@@ -50,7 +54,7 @@ class DialingSource final : public Source {
   void log(std::string_view line) const;
 
   std::unique_ptr<Dialer> dialer_;
-  Open open_;
+  Made made_;
   std::unique_ptr<Loop> loop_;  // of what follows; calls nothing, but its descriptor tells
   Loop::Handle watch_;          // of the connection, or the attempt at one
   Loop::Handle retry_;

@@ -34,12 +34,6 @@ Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
   return std::unique_ptr<Source>(std::move(source));
 }
 
-Result<bool> ListeningSource::wait(int stop, std::chrono::milliseconds timeout) {
-  auto deadline =
-      timeout.count() < 0 ? Deadline::max() : std::chrono::steady_clock::now() + timeout;
-  return wait_for(loop_->descriptor(), POLLIN, stop, deadline);
-}
-
 /// Lets in who waits, as far as there is room.
 void ListeningSource::accept_all() {
   while (true) {

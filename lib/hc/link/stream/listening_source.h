@@ -27,7 +27,6 @@ class ListeningSource final : public Source {
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
-  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override;
   [[nodiscard]] Traffic traffic() const override;
 
  private:

@@ -62,12 +62,6 @@ Got StreamSource::nothing() {
   return Got::Nothing;
 }
 
-Result<bool> StreamSource::wait(int stop, std::chrono::milliseconds timeout) {
-  auto deadline =
-      timeout.count() < 0 ? Deadline::max() : std::chrono::steady_clock::now() + timeout;
-  return wait_for(descriptor_.get(), POLLIN, stop, deadline);
-}
-
 bool StreamSource::awaits_writer() const {
   // Reading gives 0 before a writer has come as it does when all have left; only poll tells.
   pollfd polled{descriptor_.get(), POLLIN, 0};

@@ -24,7 +24,6 @@ class StreamSource final : public Source {
 
   Result<Got> take(Message& message) override;
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
-  Result<bool> wait(int stop, std::chrono::milliseconds timeout) override;
   [[nodiscard]] Traffic traffic() const override { return {reader_.messages(), reader_.bytes()}; }
   Status resume() override;
   /// Whether nothing has come yet of the next message.
