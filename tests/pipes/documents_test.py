@@ -10,8 +10,84 @@ import unittest
 from harness import DATA, Pipes, ROOT, free_port
 
 
+# What a document shows of figures that differ from run to run, and the bounds of what it shows and
+# of what is measured.
+BOUNDS = [
+    (r"RMS error ([\d.]+)°", 0, 10),
+    (r"acquired after ([\d.]+) s", 0, 4),
+    (r"came back ([\d.]+) times", 0, 5),
+    (r"bad pixels ([\d.]+) %", 0, 15),
+    (r"character error rate ([\d.]+) %", 0, 0),
+    (r"spoken ([\d.]+) s median", 0, 8),
+    (r", ([\d.]+) s at most", 0, 8),
+]
+SEPARATOR = "---- end of a session"
+
+
+def shown_sessions(block):
+    """The commands of a block up to each piece of shown output, and that output: [(str, [str])]."""
+    sessions = [([], [])]
+    for line in block.splitlines():
+        if line.startswith("# "):
+            sessions[-1][1].append(line[2:])
+        else:
+            if sessions[-1][1]:
+                sessions.append(([], []))
+            sessions[-1][0].append(line)
+    return [("\n".join(commands) + "\n", shown) for commands, shown in sessions]
+
+
+def is_like(shown, line):
+    """Whether a line is the one that is shown, in which "…" stands for any text."""
+    for pattern, low, high in BOUNDS:
+        if figure := re.search(pattern, shown):
+            measured = re.search(pattern, line)
+            if not measured or not all(
+                low <= float(each[1]) <= high for each in (figure, measured)
+            ):
+                return False
+            shown = shown.replace(figure[0], "…")
+    return re.fullmatch(re.escape(shown).replace("…", ".*"), line)
+
+
+def are_like(shown, lines):
+    """Whether the lines are those that are shown, in their order; a line "…" stands for any lines."""
+    if not shown:
+        return not lines
+    if shown[0] == "…":
+        return any(are_like(shown[1:], lines[i:]) for i in range(len(lines) + 1))
+    return bool(lines) and bool(is_like(shown[0], lines[0])) and are_like(shown[1:], lines[1:])
+
+
+class Comparison(unittest.TestCase):
+    """What counts as shown."""
+
+    def test_lines_are_whole_and_in_order(self):
+        self.assertTrue(are_like(["a 1", "b …"], ["a 1", "b 2"]))
+        self.assertFalse(are_like(["b …", "a 1"], ["a 1", "b 2"]))
+        self.assertFalse(are_like(["a"], ["a 1"]))
+        self.assertFalse(are_like(["a 1"], ["a 1", "b 2"]))
+        self.assertFalse(are_like(["a 1", "b 2"], ["a 1"]))
+
+    def test_omitted_lines_are_marked(self):
+        self.assertTrue(are_like(["…", "b"], ["a", "a", "b"]))
+        self.assertTrue(are_like(["a", "…"], ["a"]))
+        self.assertFalse(are_like(["a", "…", "c"], ["a", "b"]))
+
+    def test_figures_are_within_bounds(self):
+        shown = "track_score: RMS error 0.5°, acquired after 0.6 s, …"
+        self.assertTrue(is_like(shown, "track_score: RMS error 2°, acquired after 0 s, came"))
+        self.assertFalse(is_like(shown, "track_score: RMS error 20°, acquired after 0 s, came"))
+        self.assertFalse(is_like(shown, "track_score: RMS error nan°, acquired after 0 s, came"))
+
+    def test_output_belongs_to_the_commands_before_it(self):
+        self.assertEqual(
+            shown_sessions("a\n# 1\n# 2\nb\nc\n"), [("a\n", ["1", "2"]), ("b\nc\n", [])]
+        )
+
+
 class Documents(Pipes):
-    """Every command of the README and the documents, as it stands there."""
+    """Every command of the README and the documents, as it is written there, and what it prints."""
 
     def commands(self, name):
         text = (ROOT / name).read_text()
@@ -26,16 +102,17 @@ class Documents(Pipes):
         pathlib.Path(self.path("data")).symlink_to(DATA)
         for block in self.commands(name):
             with self.subTest(block):
-                expected = "".join(
-                    line[2:] + "\n" for line in block.splitlines() if line.startswith("# ")
-                )
-                command = "".join(
-                    line + "\n" for line in block.splitlines() if not line.startswith("# ")
-                )
-                out = self.shell("set -e\n" + command)
-                for line in expected.splitlines():
-                    pattern = re.escape(line).replace("…", ".*").replace(r"\.\.\.", ".*")
-                    self.assertRegex(out + self.err, pattern)
+                sessions = shown_sessions(block)
+                separate = "echo %s; echo %s >&2\n" % (SEPARATOR, SEPARATOR)
+                script = separate.join(commands for commands, _ in sessions)
+                outputs = self.shell("set -e\n" + script).split(SEPARATOR + "\n")
+                errors = self.err.split(SEPARATOR + "\n")
+                for (commands, shown), out, err in zip(sessions, outputs, errors, strict=True):
+                    # The two come at the same time, when several programs write them.
+                    if shown and not any(
+                        are_like(shown, both.splitlines()) for both in (out + err, err + out)
+                    ):
+                        self.fail("\n".join([commands, "shown:", *shown, "printed:", out, err]))
 
     def test_readme(self):
         self.run_document("README.md")
@@ -48,6 +125,9 @@ class Documents(Pipes):
 
     def test_module_contract(self):
         self.run_document("spec/module.md")
+
+    def test_coming_from_ros2(self):
+        self.run_document("doc/coming_from_ros2.md")
 
     def test_routing(self):
         self.run_document("doc/routing.md")
