@@ -46,8 +46,8 @@ class Follower {
  private:
   /// One angle and its rate.
   struct Axis {
-    Eigen::Vector2d state;
-    Eigen::Matrix2d covariance;
+    Eigen::Vector2d state = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
     void begin(double angle, const FollowerOptions& options);
     void step(double dt, const FollowerOptions& options);
     [[nodiscard]] bool can_be(double angle, const FollowerOptions& options) const;
@@ -56,7 +56,7 @@ class Follower {
 
   FollowerOptions options_;
   std::optional<double> last_;
-  Axis pan_{}, tilt_{};
+  Axis pan_, tilt_;
 };
 
 /// How a unit stops: with `base` at once, and faster than that only with an even acceleration.

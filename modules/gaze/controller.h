@@ -12,8 +12,8 @@
 class Controller {
  public:
   /// @param parameters  must outlive it.
-  Controller(const Parameters& parameters, Targets targets)
-      : targets(std::move(targets)), parameters_(parameters) {}
+  Controller(const Parameters& parameters, Targets empty)
+      : targets(std::move(empty)), parameters_(parameters) {}
 
   /// The command that follows the target: to where it will be when the head gets there. Nothing:
   /// there is no target, or it is near enough to where the head looks, `measured`.
