@@ -44,9 +44,9 @@ class Recording(Pipes):
         self.assertTrue(lines, self.err)
         return lines[-1]
 
-    def replay(self, name, inputs=(), before="", **parameters):
+    def replay(self, name, inputs=(), before="", after="", **parameters):
         self.fed.add(name)
-        self.shell(before + self.task.replay_command(name, inputs, **parameters))
+        self.shell(before + self.task.replay_command(name, inputs, **parameters) + " " + after)
         return self.err
 
     def assert_all_were_fed(self):
@@ -125,6 +125,18 @@ class Recording(Pipes):
             for a, b in zip(one, other):
                 self.assertAlmostEqual(a, b, delta=0.05 * DEGREE)
 
+    def replay_hearing(self):
+        """What the ears hear of the room's loudspeaker: from the right, while it sounds."""
+        outputs = "--out level=again/level.mtp --out direction=again/direction.mtp"
+        self.replay("head_hearing", after=outputs)
+        levels = [numbers(each)[0] for each in self.messages("again", "level")]
+        self.assertEqual(len(levels), len(self.messages("kept", "head_eyes.sound")))
+        self.assertGreater(max(levels), 0.01)
+        self.assertEqual(min(levels), 0)  # between its sounds
+        pans = sorted(numbers(each)[2] for each in self.messages("again", "direction"))
+        self.assertGreater(len(pans), len(levels) // 10)
+        self.assertLess(pans[len(pans) // 2], -30 * DEGREE)
+
     def device(self):
         path = pathlib.Path(self.path("device.mtp"))
         lines = path.read_text().splitlines() if path.exists() else []
@@ -156,27 +168,28 @@ class Recording(Pipes):
             self.assertAlmostEqual(a, b, delta=0.02 * DEGREE)
         self.assertIn(line, self.replay("calibrate_score"))
         self.replay_neck("calibrate.command", 3)
+        self.fed.add("head_hearing")  # test_read
         self.assert_all_were_fed()
 
     def test_point(self):
-        line = self.record("point", "point_score.count=2")
+        line = self.record("point", "point_score.count=4")
         self.replay_workspace()
-        self.replay_gaze("point", 0.05, 0.1)
+        self.replay_gaze("point", 0.1, 0.1)
         # It pushes by what it sees of the head: to the same side and as far, but the first time as
         # soon as the head has stood, which it may have seen later then; so its delay is another.
         again = self.replay("point_score")
-        self.assertIn(re.search("of 2 of . pushes", line)[0], again)
+        self.assertIn(re.search("of 4 of . pushes", line)[0], again)
         pushes = []
         for folder in ("kept", "again"):
             told = self.messages(folder, "point_score.stick")
             told = [(each.time, numbers(each)) for each in told]
             pushes.append([b for a, b in zip([(0, None)] + told, told) if a[1] != b[1]])
-        self.assertEqual(len(pushes[0]), 4)  # and let go
+        self.assertEqual(len(pushes[0]), 8)  # and let go
         for (kept, stick), (replayed, other) in zip(*pushes):
             self.assertEqual(stick, other)
             self.assertAlmostEqual(kept, replayed, delta=0.3e9)
-        self.fed.add("head_neck")  # test_calibrate
-        self.fed.add("head_eyes")  # without a picture that anybody takes
+        self.fed.update(["head_neck", "head_hearing"])  # test_calibrate, test_read
+        self.fed.add("head_eyes")  # without an image that any module takes
         self.assert_all_were_fed()
 
     def test_telepresence(self):
@@ -190,7 +203,7 @@ class Recording(Pipes):
         self.replay_workspace()
         self.replay_gaze("telepresence", 0.01, 0.1)
         self.assertIn(line, self.replay("follow_score"))
-        self.fed.update(["head_neck", "head_eyes"])
+        self.fed.update(["head_neck", "head_eyes", "head_hearing"])
         self.assert_all_were_fed()
 
     def test_track(self):
@@ -202,7 +215,7 @@ class Recording(Pipes):
             self.assert_same(side + "_ball.target", 10)
         self.replay_gaze("track", 0.05, 0.6)
         self.assertIn(line, self.replay("track_score"))
-        self.fed.add("head_neck")
+        self.fed.update(["head_neck", "head_hearing"])
         self.assert_all_were_fed()
 
     def test_read(self):
@@ -230,6 +243,7 @@ class Recording(Pipes):
         self.assertIn(line.split(",")[0] + ",", self.replay("read_score"))
         writings = [self.messages(f, "read_score.writing") for f in ("kept", "again")]
         self.assertEqual(*[[m.elements for m in each] for each in writings])
+        self.replay_hearing()
         self.fed.add("head_neck")
         self.assert_all_were_fed()
 

@@ -87,6 +87,7 @@ class Task:
                 module["inputs"][port] = ["head_" + each for each in writers(end)]
             for key, given in included.get("modules", {}).get(name, {}).items():
                 module.setdefault(key, {}).update(given)
+            module.setdefault("program", name)
             self.modules["head_" + name] = module
         self.links = [
             (writer, "%s.%s" % (name, port))
