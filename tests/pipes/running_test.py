@@ -81,8 +81,8 @@ class Running(Graphs):
         self.write_graph("[modules.camera\n")
         self.await_lines(process, "graph: keeping the running version")
         self.assertEqual(self.ask(process, "set camera.rate=20"), ["ok"])
-        self.write_graph(GRAPH)
-        self.await_lines(process, "graph: unchanged")
+        self.write_graph(GRAPH)  # where nothing is set
+        self.await_lines(process, "graph: changed")
         os.mkdir(self.path("elsewhere"))
         os.link(self.path("g.toml"), self.path("elsewhere/same.toml"))
         with open(self.path("elsewhere/same.toml"), "a") as same:  # where nobody looks
@@ -91,9 +91,48 @@ class Running(Graphs):
         rate = lambda state: self.module(state, "camera")["parameters"]["rate"]
         state = self.state(observed, lambda state: rate(state) == "30")
         self.assertIsNone(self.module(state, "more"))
+        # An edited file counts alone.
         self.write_graph(GRAPH + "[modules.more]\nprogram = 'brightness'\n")
-        state = self.state(observed, lambda state: self.module(state, "more"))
-        self.assertEqual(rate(state), "30")
+        self.state(observed, lambda state: self.module(state, "more") and rate(state) == "50")
+        self.stop(process)
+
+    FILTER = """#!/bin/bash
+[ "$1" = --describe ] && exec echo '{"inputs":[{"name":"in","types":[]}],
+  "outputs":[{"name":"out","types":[]}],
+  "parameters":[{"name":"factor","type":"number","default":1,"min":0,"max":9}]}'
+for word; do case $word in in=*) in=${word#in=};; out=*) out=${word#out=};; esac; done
+hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
+"""
+
+    def test_a_module_without_control_ends_no_neighbour(self):
+        self.write("filter", self.FILTER, 0o755)
+        links = "[modules.filter]\nprogram = './filter'\ninputs.in = 'camera.left'\n"
+        self.write_graph(GRAPH.replace("camera.left", "filter.out") + links)
+        process = self.run_graph(last="filter: started")
+        observed = self.observe(process)
+
+        def flows(state):
+            counts = [
+                link["messages"] for link in state["links"] if link["to"] == "brightness.image"
+            ]
+            return counts and counts[0]
+
+        def await_more():
+            count = flows(self.state(observed, flows))
+            return self.state(observed, lambda state: flows(state) > count + 20)
+
+        await_more()
+        restarts = lambda state: [each["restarts"] for each in state["modules"]]
+        self.assertEqual(self.ask(process, "set filter.factor=3"), ["ok"])
+        self.assertEqual(restarts(await_more()), [0, 0, 1])
+        pid = self.module(self.state(observed), "filter")["pid"]
+        os.kill(pid, signal.SIGKILL)
+        self.state(observed, lambda state: restarts(state) == [0, 0, 2])
+        await_more()
+        # What it takes for the end of its input is none.
+        self.assertEqual(self.ask(process, "restart camera"), ["ok"])
+        self.state(observed, lambda state: restarts(state) == [1, 0, 3])
+        await_more()
         self.stop(process)
 
     def test_wrong_commands_are_answered(self):

@@ -9,11 +9,11 @@
 namespace tool {
 
 void add_check(CLI::App& app) {
-  auto options = std::make_shared<GraphOptions>();
+  auto options = std::make_shared<hc::LoadOptions>();
   auto* verb = app.add_subcommand("check", "Check a graph file, without starting anything");
   add_graph_options(*verb, *options);
   verb->callback([options] {
-    auto plan = *make_plan("check", *options, hc::graph_token()).plan;
+    auto plan = load_plan("check", *options);
     auto counted = [](std::size_t count, std::string_view what) {
       return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
     };

@@ -23,11 +23,6 @@ hc::LinkOptions link_options(std::uint64_t limit = kDefaultLimit) {
   return options;
 }
 
-bool is_program(const fs::path& path) {
-  std::error_code missing;
-  return fs::is_regular_file(path, missing) && ::access(path.c_str(), X_OK) == 0;
-}
-
 hc::Uri parse(const std::string& uri) {
   auto parsed = value_or_fail(hc::parse_uri(uri), uri);
   if (parsed.scheme == "inproc")
@@ -104,27 +99,6 @@ void say(std::string_view line) {
   fmt::print(stderr, "{}\n", line);
 }
 
-fs::path module_folder() {
-  std::error_code unknown;
-  fs::path self = fs::read_symlink("/proc/self/exe", unknown);
-  return self.parent_path().parent_path() / "libexec" / "hypercolumn";
-}
-
-std::string find_program(const std::string& name) {
-  if (name.find('/') != std::string::npos) return is_program(name) ? name : "";
-  fs::path own = module_folder() / name;
-  if (is_program(own)) return own.string();
-  const char* variable = std::getenv("PATH");
-  std::string_view path = variable == nullptr ? "" : variable;
-  while (!path.empty()) {
-    auto colon = std::min(path.find(':'), path.size());
-    fs::path candidate = fs::path(path.substr(0, colon)) / name;
-    if (is_program(candidate)) return candidate.string();
-    path.remove_prefix(std::min(colon + 1, path.size()));
-  }
-  return "";
-}
-
 std::string find_graph(const std::string& name) {
   std::error_code missing;
   if (name.find('/') != std::string::npos || fs::exists(name, missing)) return name;
@@ -135,15 +109,6 @@ std::string find_graph(const std::string& name) {
     for (const char* suffix : {"", ".toml"})
       if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);
   return name;
-}
-
-std::vector<std::string> module_names() {
-  std::vector<std::string> names;
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(module_folder(), missing))
-    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
 }
 
 std::string seconds_in_words(double seconds) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include <hc/graph/programs.h>
 #include <hc/link/link.h>
 
 namespace tool {
@@ -83,17 +84,13 @@ bool print(std::string_view text);
 /// One line to the person, on standard error.
 void say(std::string_view line);
 
-/// The folder of the modules, and a program by its name there or in PATH; empty when there is none.
-std::filesystem::path module_folder();
-std::string find_program(const std::string& name);
+using hc::find_program;
+using hc::module_folder;
+using hc::module_names;
 
 /// A graph file by its name: that file, or else one of the graphs that came with hc, with or
-/// without
-/// ".toml".
+/// without ".toml".
 std::string find_graph(const std::string& name);
-
-/// The names of all modules there are.
-std::vector<std::string> module_names();
 
 /// "1.44 MB"
 std::string bytes_in_words(double bytes);

@@ -11,9 +11,8 @@ namespace tool {
 namespace {
 
 /// A graph that is wrong has no plan, and so nothing that could be looked for.
-std::vector<Finding> examine(const GraphOptions& options, Needs& needs) {
-  Texts texts;
-  auto planned = plan_graph(options, hc::graph_token(), texts);
+std::vector<Finding> examine(const hc::LoadOptions& options, Needs& needs) {
+  auto planned = hc::make_loader(options)->load(nullptr, -1);
   if (!planned) throw Failure(planned.error());
   std::vector<Finding> findings;
   for (const auto& problem : planned->problems) findings.push_back({Mark::Wrong, "graph", problem});
@@ -26,7 +25,7 @@ std::vector<Finding> examine(const GraphOptions& options, Needs& needs) {
   return findings;
 }
 
-void run(const GraphOptions& options) {
+void run(const hc::LoadOptions& options) {
   Needs needs;
   std::vector<Finding> findings;
   if (!options.file.empty()) findings = examine(options, needs);
@@ -44,7 +43,7 @@ void run(const GraphOptions& options) {
 }  // namespace
 
 void add_doctor(CLI::App& app) {
-  auto options = std::make_shared<GraphOptions>();
+  auto options = std::make_shared<hc::LoadOptions>();
   auto* verb = app.add_subcommand("doctor", "Check this machine, and the requirements of a graph");
   auto* graph =
       verb->add_option("graph", options->file, "a graph file (TOML), or the name of a shipped one")

@@ -22,7 +22,7 @@ namespace tool {
 namespace {
 
 struct Options {
-  GraphOptions file;
+  hc::LoadOptions file;
   std::string running;  ///< --of
   std::string svg;
   bool as_dot = false;
@@ -44,8 +44,7 @@ void write_svg(const std::string& dot, const std::string& path) {
 void draw(const Options& options) {
   auto drawing = [&] {
     if (!options.file.file.empty())
-      return drawing_of(*make_plan("graph", options.file, hc::graph_token()).plan,
-                        options.file.file);
+      return drawing_of(load_plan("graph", options.file), options.file.file);
     auto graph = choose_running(options.running);
     auto state = Observer(graph).next_measured();
     if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});

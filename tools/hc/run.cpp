@@ -19,7 +19,7 @@ namespace tool {
 namespace {
 
 struct Options {
-  GraphOptions graph;
+  hc::LoadOptions graph;
   std::string name;
   bool quiet = false, links = false;
 };
@@ -105,9 +105,8 @@ void run(const Options& options) {
     std::filesystem::create_directories(folder, failed);
     if (failed) throw Failure({hc::Code::System, folder + ": " + failed.message()});
   }
-  const std::string token = hc::graph_token();
-  Texts texts;  // of the plan that runs
-  auto plan = make_plan("run", options.graph, token, texts);
+  auto loader = hc::make_loader(options.graph);
+  auto graph = load_graph("run", *loader);
   StatusLine status(!options.quiet);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
@@ -119,16 +118,8 @@ void run(const Options& options) {
   run_options.state = [&](const hc::GraphState& state) { status.show(state); };
   run_options.name = name_of(options);
   run_options.file = options.graph.file;
-  run_options.files = plan.files;
-  run_options.replan = [&](hc::Reading reading, const std::vector<std::string>& commands,
-                           const hc::Plan& running, int stop) {
-    Texts read = reading == hc::Reading::Anew ? Texts() : texts;
-    auto planned = plan_graph(options.graph, running.token, read, commands, &running, stop);
-    if (!planned) return hc::Replanned{{}, {planned.error().detail}, {}};
-    if (planned->plan) texts = std::move(read);
-    return std::move(*planned);
-  };
-  auto report = hc::run_graph(std::move(*plan.plan), run_options);
+  run_options.loader = loader.get();
+  auto report = hc::run_graph(std::move(graph), run_options);
   status.finish();
   if (!report) fail(status, report.error());
   print_summary(options, *report);

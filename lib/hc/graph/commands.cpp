@@ -138,43 +138,6 @@ void remove_link(Graph& graph, const Command& command, Problems& problems) {
   if (count == 0) problems.add({}, "no link from " + command.words[0] + " to " + command.words[1]);
 }
 
-/// Whether a command is about a module, or a link of it.
-bool is_of(const Command& command, const std::string& module) {
-  auto is_in = [&](const std::string& end) { return end.starts_with(module + "."); };
-  switch (command.verb) {
-    case Verb::Set:
-      return is_in(command.words[0]);
-    case Verb::Link:
-    case Verb::Unlink:
-      return is_in(command.words[0]) || is_in(command.words[1]);
-    default:
-      return command.words[0] == module;
-  }
-}
-
-/// Whether two commands set the same parameter, or are about the same link.
-bool is_same_thing(const Command& a, const Command& b) {
-  auto is_link = [](const Command& each) {
-    return each.verb == Verb::Link || each.verb == Verb::Unlink;
-  };
-  auto key = [](const Command& each) { return each.words[0].substr(0, each.words[0].find('=')); };
-  if (a.verb == Verb::Set) return b.verb == Verb::Set && key(a) == key(b);
-  return is_link(a) && is_link(b) && a.words[0] == b.words[0] && a.words[1] == b.words[1];
-}
-
-/// Takes out what was said of a module since it went last; whether it was added then.
-bool take_out(std::vector<std::string>& commands, const std::string& module) {
-  bool was_added = false;
-  for (auto i = commands.size(); i-- > 0;) {
-    const Command each = *parse_command(commands[i]);
-    if (!is_of(each, module)) continue;
-    if (each.verb == Verb::Remove) break;
-    was_added = was_added || each.verb == Verb::Add;
-    commands.erase(commands.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-  return was_added;
-}
-
 }  // namespace
 
 Result<Command> parse_command(std::string_view line) {
@@ -212,28 +175,6 @@ void apply_command(Graph& graph, const Command& command, Problems& problems) {
     case Verb::Stop:
       return;
   }
-}
-
-void add_command(std::vector<std::string>& commands, const std::string& line) {
-  const Command command = *parse_command(line);
-  if (command.verb == Verb::Remove && take_out(commands, command.words[0])) return;
-  std::optional<std::size_t> last;  // of the same thing, and what it does
-  Verb done = Verb::Stop;
-  bool is_made_here = false;  // a link that was not there before these commands
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const Command each = *parse_command(commands[i]);
-    if (each.verb == Verb::Add && is_of(command, each.words[0])) is_made_here = true;
-    if (!is_same_thing(command, each)) continue;
-    if (each.verb == Verb::Unlink) is_made_here = true;
-    last = i;
-    done = each.verb;
-  }
-  if (last && command.verb == done)
-    commands[*last] = line;
-  else if (command.verb == Verb::Unlink && done == Verb::Link && is_made_here)
-    commands.erase(commands.begin() + static_cast<std::ptrdiff_t>(*last));
-  else
-    commands.push_back(line);
 }
 
 }  // namespace hc

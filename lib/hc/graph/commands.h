@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Commands that change a graph: what they say, and a graph that they have changed. Pure.
+// Commands to a running graph, and how they change a graph. Pure.
 
 #include <optional>
 #include <string>
@@ -25,12 +25,7 @@ struct Command {
 /// Errors: Invalid.
 Result<Command> parse_command(std::string_view line);
 
-/// Changes a graph as an edit says. Problems: what it names is not there, or is there already.
+/// Changes a graph as an edit says. Problems: what it names does not exist, or exists already.
 void apply_command(Graph& graph, const Command& command, Problems& problems);
-
-/// Adds an edit to those before it, each of them one that can be parsed: in the place of one that
-/// it repeats, and without those that it undoes. Whatever graph they are applied to, they do the
-/// same; so a slider, or a link that comes and goes, can be moved for ever.
-void add_command(std::vector<std::string>& commands, const std::string& line);
 
 }  // namespace hc

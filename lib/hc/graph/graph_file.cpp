@@ -174,7 +174,9 @@ GraphModule* Graph::find(std::string_view name) {
 
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
                   const ReadFile& read_file) {
-  return GraphReader(environment, problems, read_file).read(text, 0);
+  Graph graph = GraphReader(environment, problems, read_file).read(text, 0);
+  graph.files = problems.files();
+  return graph;
 }
 
 void record_outputs(Graph& graph, const std::string& folder) {

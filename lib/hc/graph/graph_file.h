@@ -92,7 +92,8 @@ struct GraphFrame {
 };
 
 struct Graph {
-  std::string file;  ///< as it was given, for error lines
+  std::string file;                ///< as it was given, for error lines
+  std::vector<std::string> files;  ///< that it is made of, the first is `file`; see Place::file
   std::vector<GraphModule> modules;
   std::vector<GraphLink> links;
   std::vector<GraphMode> modes;

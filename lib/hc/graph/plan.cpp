@@ -47,20 +47,15 @@ class ModulePlanner {
 
  private:
   void add_parameters(const Description& description) {
+    for (const auto& parameter : description.parameters) {
+      planned_.known.emplace(parameter.name, parameter);
+      if (parameter.options.fixed) planned_.fixed.insert(parameter.name);
+    }
     for (const auto& [name, value] : module_.parameters) {
-      const auto* parameter = find_named(description.parameters, name);
-      if (parameter == nullptr) {
-        problems_.add(value.place, "module " + module_.name + " has no parameter \"" + name + "\"" +
-                                       suggest(planning_, name, names_of(description.parameters)));
-        continue;
-      }
-      ParameterState state = *parameter;
-      if (auto set = state.set(value.value); !set)
-        problems_.add(value.place, "module " + module_.name + ": " + set.error().detail);
+      if (auto checked = planned_.check_parameter(name, value.value); !checked)
+        problems_.add(value.place, checked.error().detail);
       planned_.parameters[name] = value.value;
     }
-    for (const auto& parameter : description.parameters)
-      if (parameter.options.fixed) planned_.fixed.insert(parameter.name);
   }
 
   void add_encodings(const Description& description) {
@@ -139,6 +134,21 @@ void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
 }
 
 }  // namespace internal
+
+Status PlannedModule::check_parameter(const std::string& parameter,
+                                      const std::string& value) const {
+  auto found = known.find(parameter);
+  if (found == known.end()) {
+    std::vector<std::string> names;
+    for (const auto& [each, state] : known) names.push_back(each);
+    return Error{Code::Invalid, "module " + name + " has no parameter \"" + parameter + "\"" +
+                                    suggestion(parameter, names)};
+  }
+  ParameterState state = found->second;
+  if (auto set = state.set(value); !set)
+    return Error{Code::Invalid, "module " + name + ": " + set.error().detail};
+  return {};
+}
 
 std::vector<std::string> PlannedModule::command() const {
   std::vector<std::string> words = {program};

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include <hc/base/parameter.h>
 #include <hc/graph/graph_file.h>
 
 namespace hc {
@@ -29,6 +30,7 @@ struct PlannedModule {
   std::string group;                              ///< the graph that includes it; empty: none
   std::vector<std::string> options;               ///< what is said neither below nor by links
   std::map<std::string, std::string> parameters;  ///< as text
+  std::map<std::string, ParameterState> known;    ///< all that it has, to check values with
   std::set<std::string> fixed;                    ///< parameters that cannot be set while it runs
   std::vector<PlannedEnd> ends;                   ///< in the order of the file's links
   std::string manage_uri;                         ///< where the runner listens to it
@@ -40,6 +42,10 @@ struct PlannedModule {
   std::string workspace;            ///< the module that publishes its focus; empty: none
   bool ends_graph = false;          ///< when it has ended with status 0
 
+  /// Whether a parameter can have a value. Errors: Invalid.
+  [[nodiscard]] Status check_parameter(const std::string& parameter,
+                                       const std::string& value) const;
+
   /// Program and arguments, as it is started.
   [[nodiscard]] std::vector<std::string> command() const;
 };
@@ -50,7 +56,7 @@ struct PlannedLink {
   std::string sender_uri, reader_uri;         ///< empty: the end is outside
   std::string keep;                           ///< what it does when its reader is slow
   std::map<std::string, std::string> policy;  ///< the rest of it: `rate` and so on
-  bool lasts = false;                         ///< outlives the processes at its ends
+  bool lasts = false;                         ///< its reader waits for its writer's next process
 };
 
 struct Plan {

@@ -27,12 +27,12 @@ from = "a.out"
   EXPECT_EQ(text_of(planned->modules[0].command()),
             "source --name source --encoding left=zstd --address left=11 --address right=1 "
             "--rate=3 --manage unix:@t.source.manage?wait=10 "
-            "--out left=unix-listen:@t.source.left.a.in?readers=1 "
-            "--out right=unix-listen:@t.source.right.sink.in?readers=1");
+            "--out left=unix-listen:@t.source.left.a.in?readers=1&stay=1 "
+            "--out right=unix-listen:@t.source.right.sink.in?readers=1&stay=1");
   EXPECT_EQ(text_of(planned->modules[1].command()),
             "filter --name a --address out=2 --manage unix:@t.a.manage?wait=10 "
             "--in in=unix:@t.source.left.a.in?wait=60 "
-            "--out out=unix-listen:@t.a.out.sink.in?readers=1");
+            "--out out=unix-listen:@t.a.out.sink.in?readers=1&stay=1");
   EXPECT_EQ(planned->modules[1].manage_uri, "unix-listen:@t.a.manage");
   const PlannedLink& link = planned->links[2];
   EXPECT_EQ(link.from, "a.out");
@@ -48,7 +48,8 @@ TEST(Plan, NamesOfLinksThatAreTooLongBecomeShort) {
   ASSERT_TRUE(planned) << planned.error().detail;
   const std::string& uri = planned->links[0].sender_uri;
   EXPECT_TRUE(uri.starts_with("unix-listen:@t.")) << uri;
-  EXPECT_EQ(uri.size(), std::string("unix-listen:@t.0123456789abcdef?readers=1").size()) << uri;
+  EXPECT_EQ(uri.size(), std::string("unix-listen:@t.0123456789abcdef?readers=1&stay=1").size())
+      << uri;
   EXPECT_TRUE(planned->links[0].reader_uri.starts_with("unix:@" + uri.substr(13, 18)));
 }
 
@@ -67,9 +68,9 @@ program = "seer"
   ASSERT_TRUE(planned) << planned.error().detail;
   using Words = std::vector<std::string>;
   EXPECT_EQ(values_of(planned->modules[0], "--out"),
-            (Words{"image=shm:t.eye.image?readers=2",
-                   "image=shm:t.eye.image.a.more?readers=1&keep=3&memory=8M&rate=10",
-                   "image=unix-listen:@t.eye.image.any.in?readers=1&keep=latest"}));
+            (Words{"image=shm:t.eye.image?readers=2&stay=1",
+                   "image=shm:t.eye.image.a.more?readers=1&stay=1&keep=3&memory=8M&rate=10",
+                   "image=unix-listen:@t.eye.image.any.in?readers=1&stay=1&keep=latest"}));
   EXPECT_EQ(values_of(planned->modules[1], "--in"),
             (Words{"in=shm:t.eye.image?wait=60&keep=latest",
                    "more=shm:t.eye.image.a.more?wait=60&keep=3"}));

@@ -23,6 +23,10 @@ class Problems {
  public:
   /// @param file  as it was given, for the lines.
   explicit Problems(std::string file) : files_{std::move(file)} {}
+  /// @param files  as files() gives them.
+  /// @param beside  what is said before problems that are in none of them.
+  Problems(std::vector<std::string> files, std::string beside)
+      : files_(std::move(files)), beside_(std::move(beside)) {}
 
   /// Makes a file that is included known. Gives its number, for places in it.
   int add_file(std::string file) {
@@ -49,7 +53,7 @@ class Problems {
     std::vector<std::string> lines;
     lines.reserve(sorted.size());
     for (const auto& [place, what] : sorted)
-      lines.push_back(visible(place.line == 0 ? "--set: " + what
+      lines.push_back(visible(place.line == 0 ? beside_ + what
                                               : file(place.file) + ":" +
                                                     std::to_string(place.line) + ": " + what));
     return lines;
@@ -75,6 +79,7 @@ class Problems {
   };
 
   std::vector<std::string> files_;
+  std::string beside_ = "--set: ";
   std::vector<Problem> found_;
 };
 

@@ -75,7 +75,7 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
     if (!state.is_latest) handle(state);
   };
   together_.push_back(std::make_unique<internal::TogetherState>(internal::TogetherState{
-      inputs, std::move(handler), Matcher(inputs.size(), how, std::move(take))}));
+      inputs, std::move(handler), Matcher(inputs.size(), how, std::move(take)), false, {}}));
   internal::TogetherState& state = *together_.back();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     internal::InputState& input = *inputs[i];

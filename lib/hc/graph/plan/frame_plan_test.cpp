@@ -98,7 +98,7 @@ TEST(Frames, WhatMovesThemIsLinkedToWhoAsksForThem) {
             "head 3 robot neck.pose 1; gripper 100 robot seeker.pose 3; "
             "finger 101 gripper neck.pose 1");
   EXPECT_EQ(values_of(planned->modules[0], "--out"),
-            (std::vector<std::string>{"pose=shm:t.neck.pose?readers=1"}));
+            (std::vector<std::string>{"pose=shm:t.neck.pose?readers=1&stay=1"}));
   EXPECT_EQ(values_of(planned->modules[1], "--in"),
             (std::vector<std::string>{"frames=shm:t.neck.pose?wait=60&keep=1024"}));
 }

@@ -40,9 +40,7 @@ class LinkPlanner {
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
       const GraphLink& link = graph_.links[i];
       if (!is_inside(link)) continue;
-      Sender& sender = senders_[name_of(i)];
-      ++sender.readers;
-      sender.lasts = sender.lasts || lasts(link);
+      ++senders_[name_of(i)].readers;
     }
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
       PlannedLink planned = is_inside(graph_.links[i]) ? plan_inside(i) : plan_outside(i);
@@ -56,7 +54,6 @@ class LinkPlanner {
   /// The sending end of a link, or of several that share its memory.
   struct Sender {
     std::size_t readers = 0;
-    bool lasts = false;
     std::string uri;
   };
 
@@ -114,8 +111,8 @@ class LinkPlanner {
     return planning_.plan.token + "." + digest(name);
   }
 
-  /// Whether a link outlives the processes at its ends, and its policy. A reader that does not
-  /// listen to who runs it could not be told that nothing comes any more.
+  /// Whether a reader waits for the next process of its writer. One without `control` could not be
+  /// told that none will come.
   bool lasts(const GraphLink& link) const {
     return !planning_.planned(link.to.module)->control_uri.empty();
   }
@@ -162,15 +159,15 @@ class LinkPlanner {
     Sender& sender = senders_[name];
     if (sender.uri.empty()) {
       sender.uri = (by_memory ? "shm:" : "unix-listen:@") + name +
-                   "?readers=" + std::to_string(sender.readers) + (sender.lasts ? "&stay=1" : "") +
+                   "?readers=" + std::to_string(sender.readers) + "&stay=1" +
                    (is_common(number) ? "" : and_keep) + pace_of(link);
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }
     const std::string reader_uri = (by_memory ? "shm:" : "unix:@") + name +
-                                   (sender.lasts ? "?reconnect=86400" : "?wait=60") +
+                                   (lasts(link) ? "?reconnect=86400" : "?wait=60") +
                                    (by_memory ? and_keep : "");
     add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
-    return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, sender.lasts};
+    return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
   }
 
   /// A link with the world outside is as the file says.

@@ -30,8 +30,8 @@ std::string place(const PlannedEnd& end) {
   return end.port + "=" + end.uri;
 }
 
-/// Sets what is new or has another value. Of what is given no more, the module alone knows what it
-/// was otherwise.
+/// Sets what is new or has another value. The default of what is not given any more is known to the
+/// module alone.
 void add_settings(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
   for (const auto& [key, value] : before.parameters)
     if (!after.parameters.contains(key)) change.needs_restart = true;
@@ -39,7 +39,7 @@ void add_settings(const PlannedModule& before, const PlannedModule& after, Modul
     auto found = before.parameters.find(key);
     if (found != before.parameters.end() && found->second == value) continue;
     if (after.fixed.contains(key)) change.needs_restart = true;
-    change.settings.push_back(text({Verb::Set, true, key, value}));
+    change.outputs.push_back(text({Verb::Set, true, key, value}));
   }
 }
 
@@ -72,6 +72,7 @@ ModuleChange change_between(const PlannedModule& before, const PlannedModule& af
   if (before.program != after.program || before.options != after.options ||
       before.control_uri != after.control_uri)
     change.needs_restart = true;
+  if (change.needs_restart) change.unlinks = change.outputs = change.inputs = {};
   return change;
 }
 

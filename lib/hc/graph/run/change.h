@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a module that runs is told so that it becomes as another plan wants it. Pure. Internal to
-// graph.
+// The commands that make a running module as another plan says. Pure. Internal to graph.
 
 #include <string>
 #include <vector>
@@ -11,18 +10,17 @@
 namespace hc::internal {
 
 struct ModuleChange {
-  bool needs_restart = false;        ///< it cannot be told; the commands play no part then
-  std::vector<std::string> unlinks;  ///< commands that are told before all modules' others
-  std::vector<std::string> settings, outputs, inputs;
+  bool needs_restart = false;  ///< commands cannot make it so, and there are none
+  /// Commands: those of all modules that remove links come first; then those that set parameters
+  /// and add outputs; then those that add inputs.
+  std::vector<std::string> unlinks, outputs, inputs;
 
   [[nodiscard]] bool is_empty() const {
-    return !needs_restart && unlinks.empty() && settings.empty() && outputs.empty() &&
-           inputs.empty();
+    return !needs_restart && unlinks.empty() && outputs.empty() && inputs.empty();
   }
 };
 
-/// Whether two ends are the same link's: how many readers a writer waits for at its start plays no
-/// part.
+/// Whether two ends are of the same link, whatever number of readers a writer waits for at first.
 bool is_same_end(const PlannedEnd& one, const PlannedEnd& other);
 
 /// @param before  with the ends as the process has been told them.

@@ -37,7 +37,7 @@ TEST_F(ChangeTest, MoreReadersAreNoOtherLink) {
 
 TEST_F(ChangeTest, AParameterIsSet) {
   after_.parameters["rate"] = "10";
-  EXPECT_EQ(change().settings, Commands{"set rate=10"});
+  EXPECT_EQ(change().outputs, Commands{"set rate=10"});
   EXPECT_FALSE(change().needs_restart);
 }
 

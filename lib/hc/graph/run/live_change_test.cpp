@@ -2,21 +2,27 @@
 // What is asked of a graph that runs.
 #include <hc/graph/run/live_change_test.h>
 
+#include <atomic>
+
 namespace hc {
 namespace {
 
 TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
-  add("camera");
+  add("camera").known = rate();
   beside([&] {
     EXPECT_EQ(ask({"remov camera"}), Lines{"no command \"remov\", did you mean \"remove\"?"});
     EXPECT_EQ(ask({"stop it", "restart camra"}),
               (Lines{"the command is: stop", "no module \"camra\""}));
     EXPECT_EQ(ask({}), Lines{"there is no command"});
     EXPECT_EQ(ask({"remove camera"}), (Lines{"one problem", "another"}));
+    EXPECT_EQ(ask({"remove camra"}), Lines{"no module \"camra\", did you mean \"camera\"?"});
+    EXPECT_EQ(ask({"set camera.rat=3"}),
+              Lines{"module camera has no parameter \"rat\", did you mean \"rate\"?"});
+    EXPECT_EQ(ask({"set camera.rate=3", "set camera.rate=x"}),
+              Lines{"module camera: parameter rate: \"x\" is not a number"});
     plan_next(plan_);
-    EXPECT_EQ(ask({"set camera.rate=3"}), Lines{"ok"});
-    EXPECT_EQ(commands(), Lines{"set camera.rate=3"});
-    EXPECT_EQ(reading(), Reading::AsBefore);
+    EXPECT_EQ(ask({"add more camera"}), Lines{"ok"});
+    EXPECT_FALSE(was_reloaded());
   });
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
@@ -26,31 +32,32 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
 TEST_F(LiveChange, TheGraphGoesOnWhileAChangeIsPlanned) {
   add("a");
   internal::Descriptor again{::eventfd(0, EFD_CLOEXEC)};
-  plans_ = [&](const Lines& commands, int) {
-    if (commands == Lines{"set a.b=1"}) await(again.get());
+  std::atomic<int> plans = 0;
+  plans_ = [&](int) {
+    if (++plans == 1) await(again.get());
   };
   heard_ = [&](std::string_view) {
     if (count("a: started") == 2) ::eventfd_write(again.get(), 1);
   };
   beside([&] {
     plan_next(plan_);
-    std::thread slow([&] { EXPECT_EQ(ask({"set a.b=1"}, "slow"), Lines{"ok"}); });
-    std::thread next([&] { EXPECT_EQ(ask({"set a.c=1", "restart a"}, "next"), Lines{"ok"}); });
+    std::thread slow([&] { EXPECT_EQ(ask({"add b p"}, "slow"), Lines{"ok"}); });
+    std::thread next([&] { EXPECT_EQ(ask({"add c p", "restart a"}, "next"), Lines{"ok"}); });
     EXPECT_EQ(ask({"restart a"}), Lines{"ok"});
     slow.join();
     next.join();
-    EXPECT_EQ(commands().size(), 2U);
+    EXPECT_EQ(plans, 2);
   });
   ASSERT_TRUE(run());
 }
 
 TEST_F(LiveChange, AGraphEndsAtOnceWhileAChangeIsPlanned) {
   add("a");
-  plans_ = [&](const Lines&, int stop) {
+  plans_ = [&](int stop) {
     Run::stop();
     await(stop);
   };
-  thread_ = std::thread([&] { EXPECT_EQ(ask({"set a.b=1"}), Lines{"the graph is stopping"}); });
+  thread_ = std::thread([&] { EXPECT_EQ(ask({"add b p"}), Lines{"the graph is stopping"}); });
   auto report = run();
   ASSERT_TRUE(report);
   EXPECT_TRUE(report->stopped);
@@ -87,10 +94,29 @@ TEST_F(LiveChange, AnotherProgramIsStartedInThePlaceOfTheFirst) {
     Plan other = plan_;
     other.modules[0].options = {"-c", "echo other >&2; exec sleep 1000"};
     plan_next(other);
-    EXPECT_EQ(ask({"set a.b=1"}), Lines{"ok"});
+    EXPECT_EQ(ask({"add b p"}), Lines{"ok"});
   });
   ASSERT_TRUE(run());
   EXPECT_EQ(count("a: started"), 2);
+}
+
+TEST_F(LiveChange, AParameterIsSetWithoutPlanning) {
+  auto& a = add("a");
+  a.known = rate();
+  a.fixed = {"fixed"};
+  a.known.emplace("fixed", a.known.at("rate"));
+  plans_ = [](int) { HC_CHECK(false, "planned"); };
+  heard_ = [this](std::string_view) {
+    if (count("a: started") == 2) stop();
+  };
+  thread_ = std::thread([&] {
+    EXPECT_EQ(ask({"set a.rate=3"}), Lines{"ok"});
+    EXPECT_EQ(ask({"set a.fixed=3"}), Lines{"ok"}) << "which needs a restart";
+  });
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(report->state.modules[0].parameters,
+            (std::map<std::string, std::string>{{"fixed", "3"}, {"rate", "3"}}));
 }
 
 TEST_F(LiveChange, StopIsACommand) {
@@ -111,7 +137,7 @@ TEST_F(LiveChange, WhoHasEndedRestsUntilThereIsMoreToRead) {
       Plan other = plan_;
       other.modules[0].ends.pop_back();
       plan_next(other);
-      EXPECT_EQ(ask({"unlink x.out reader.in"}), Lines{"ok"});
+      EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
       other.modules[0].ends.push_back({true, "in", "unix:@three?wait=1", ""});
       plan_next(other);
       EXPECT_EQ(ask({"link x.out reader.in"}), Lines{"ok"});

@@ -24,23 +24,12 @@ inline std::string peer_of(const std::string& listening) {
   return "unix" + listening.substr(listening.find(':'));
 }
 
-/// A graph that is planned anew when it is asked to be, by the name that a test gave it.
-class LiveChange : public Run {
+/// A graph that is loaded again when it is asked to be, as the plan that a test gave it.
+class LiveChange : public Run, private GraphLoader {
  protected:
   LiveChange() {
     options_.name = "live";
-    options_.replan = [this](Reading reading, const Lines& commands, const Plan&, int stop) {
-      if (plans_) plans_(commands, stop);
-      std::lock_guard lock(mutex_);
-      commands_ = commands;
-      reading_ = reading;
-      Replanned planned;
-      if (next_)
-        planned.plan = *next_;
-      else
-        planned.problems = {"one problem", "another"};
-      return planned;
-    };
+    options_.loader = this;
   }
 
   PlannedModule& add(const std::string& name, const std::string& script = "exec sleep 1000") {
@@ -49,6 +38,13 @@ class LiveChange : public Run {
     module.control_uri = "unix-listen:@" + token_ + "." + name + ".control";
     module.options = {"-c", script + "; # "};
     return module;
+  }
+
+  static std::map<std::string, ParameterState> rate() {
+    ParameterState state;
+    state.name = "rate";
+    state.value = 30.0;
+    return {{"rate", state}};
   }
 
   /// Asks the graph that runs; gives its answer.
@@ -88,23 +84,36 @@ class LiveChange : public Run {
     std::lock_guard lock(mutex_);
     next_ = std::move(plan);
   }
-  Lines commands() {
+  bool was_reloaded() {
     std::lock_guard lock(mutex_);
-    return commands_;
-  }
-  Reading reading() {
-    std::lock_guard lock(mutex_);
-    return reading_;
+    return was_reloaded_;
   }
 
-  std::function<void(const Lines& commands, int stop)> plans_;  // hears that it is planned
-  std::thread thread_;                                          // reads what the graph is made of
+  std::function<void(int stop)> plans_;  // hears that it is planned
+  std::thread thread_;
 
  private:
+  Result<LoadedGraph> load(const Plan*, int stop) override {
+    auto next = plan({}, {}, stop);
+    std::lock_guard lock(mutex_);
+    was_reloaded_ = true;
+    return next;
+  }
+  LoadedGraph plan(Graph, const Plan&, int stop) override {
+    if (plans_) plans_(stop);
+    std::lock_guard lock(mutex_);
+    was_reloaded_ = false;
+    LoadedGraph next = loaded(next_.value_or(Plan()));
+    if (!next_) {
+      next.plan.reset();
+      next.problems = {"one problem", "another"};
+    }
+    return next;
+  }
+
   std::mutex mutex_;
   std::optional<Plan> next_;
-  Lines commands_;
-  Reading reading_ = Reading::Anew;
+  bool was_reloaded_ = false;
 };
 
 /// Waits until somebody does not want to wait any more.

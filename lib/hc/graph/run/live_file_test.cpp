@@ -13,7 +13,7 @@ class LiveFile : public LiveChange {
  protected:
   LiveFile() {
     write();
-    options_.files = {file_};
+    files_ = {file_};
   }
   ~LiveFile() override { remove(); }
 
@@ -28,7 +28,7 @@ TEST_F(LiveFile, AnEditedFileIsReadAnew) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") write();
     if (line == "graph: keeping the running version") {
-      EXPECT_EQ(reading(), Reading::Anew);
+      EXPECT_TRUE(was_reloaded());
       plan_next(plan_);
       write();
     }
@@ -52,7 +52,7 @@ TEST_F(LiveFile, AnEditedFileIsReadAnew) {
 TEST_F(LiveFile, AnotherEditTakesThePlaceOfTheOneThatIsRead) {
   add("a");
   int plans = 0;
-  plans_ = [&](const Lines&, int stop) {
+  plans_ = [&](int stop) {
     if (++plans > 1) return plan_next(plan_);
     write();
     await(stop);

@@ -59,16 +59,16 @@ Status Runner::begin() {
     if (!watched) return watched.error();
     stop_ = std::move(*watched);
   }
-  if (options_.replan) {
+  if (options_.loader != nullptr) {
     auto planning = Aside::make(*loop_);
     if (!planning) return planning.error();
     planning_ = std::move(*planning);
   }
-  if (options_.replan && !options_.files.empty()) {
-    auto files = FileWatch::make(*loop_, [this] { read_anew(); });
+  if (options_.loader != nullptr && !graph_.files.empty()) {
+    auto files = FileWatch::make(*loop_, [this] { reload(); });
     if (!files) return files.error();
     files_ = std::move(*files);
-    files_->set_files(options_.files);
+    files_->set_files(graph_.files);
   }
   // All listen before one starts: who comes early finds its peers.
   for (const auto& planned : plan_.modules) {
@@ -101,6 +101,20 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
     const bool is_failure = ended->plan().restart == Restart::Never;
     if (is_failure) failures_.push_back({name, ended->exit().value_or(0)});
   };
+  hear.interrupted = [this, name] {
+    for (auto* neighbour : neighbours_of(name)) neighbour->note_interruption();
+  };
+  hear.has_work = [this, name] {
+    bool has_writers = false, is_written_to = false, is_read = false;
+    for (const auto& link : plan_.links) {
+      const Supervised *from = at(link.from), *to = at(link.to);
+      if (from == nullptr || to == nullptr || from == to) continue;
+      has_writers = has_writers || to->plan().name == name;
+      is_written_to = is_written_to || (to->plan().name == name && !from->is_over());
+      is_read = is_read || (from->plan().name == name && !to->is_over());
+    }
+    return !is_stopping_ && (has_writers ? is_written_to : is_read);
+  };
   return Supervised::make(*loop_, module, options_.limits, std::move(hear));
 }
 
@@ -111,6 +125,18 @@ Supervised* Runner::find(const std::string& name) const {
 
 Supervised* Runner::at(const std::string& end) const {
   return find(end.substr(0, end.find('.')));
+}
+
+/// The modules that a module is linked to, but for itself.
+std::set<Supervised*> Runner::neighbours_of(const std::string& name) const {
+  std::set<Supervised*> neighbours;
+  for (const auto& link : plan_.links) {
+    Supervised *from = at(link.from), *to = at(link.to);
+    if (from == nullptr || to == nullptr || from == to) continue;
+    if (from->plan().name == name) neighbours.insert(to);
+    if (to->plan().name == name) neighbours.insert(from);
+  }
+  return neighbours;
 }
 
 void Runner::tell(const std::string& line) const {
@@ -246,8 +272,8 @@ void Runner::end_unneeded() {
 
 namespace hc {
 
-Result<RunReport> run_graph(Plan plan, const RunOptions& options) {
-  return internal::Runner(std::move(plan), options).run();
+Result<RunReport> run_graph(LoadedGraph graph, const RunOptions& options) {
+  return internal::Runner(std::move(graph), options).run();
 }
 
 }  // namespace hc

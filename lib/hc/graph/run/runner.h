@@ -8,10 +8,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <hc/graph/commands.h>
 #include <hc/graph/run.h>
 #include <hc/graph/run/aside.h>
 #include <hc/graph/run/observation.h>
@@ -23,7 +25,8 @@ namespace hc::internal {
 
 class Runner {
  public:
-  Runner(Plan plan, const RunOptions& options) : options_(options), plan_(std::move(plan)) {}
+  Runner(LoadedGraph graph, const RunOptions& options)
+      : options_(options), graph_(std::move(graph.graph)), plan_(std::move(graph.plan.value())) {}
 
   Result<RunReport> run();
 
@@ -33,14 +36,9 @@ class Runner {
     std::string module;
     int status;
   };
-  struct Change {                       // that is wanted
-    std::vector<std::string> commands;  // none: a file was edited
+  struct Change {                   // that is wanted
+    std::vector<Command> commands;  // none: a file was edited
     Observation::Answer answer;
-  };
-  struct Planned {
-    std::vector<std::string> edits;
-    Replanned changed;
-    std::optional<Replanned> alone;  // without the edits, where the files may be right
   };
 
   Status begin();
@@ -48,6 +46,8 @@ class Runner {
   [[nodiscard]] Supervised* find(const std::string& name) const;
   /// The module of "MODULE.PORT"; null where it is the world outside.
   [[nodiscard]] Supervised* at(const std::string& end) const;
+
+  [[nodiscard]] std::set<Supervised*> neighbours_of(const std::string& name) const;
 
   void tell(const std::string& line) const;
   void say(const std::string& line);
@@ -62,15 +62,17 @@ class Runner {
   void end_all();
   [[nodiscard]] bool is_over() const;
 
-  void read_anew();
+  void reload();
   void obey(const std::vector<std::string>& lines, Observation::Answer answer);
   Result<std::string> observe(const std::string& port);
-  void carry_out(const std::vector<std::string>& lines);
-  void plan_next();
-  void take_planned(Planned& planned);
-  void take_edit(Planned& planned);
+  void carry_out(const std::vector<Command>& commands);
+  void begin_changes();
+  void begin_planning(std::function<Result<LoadedGraph>(int stop)> plan);
+  void take_planned(Result<LoadedGraph>& loaded);
+  void end_change(const std::vector<std::string>& wrong);
   void refuse_changes();
-  void read_what_ends(const Plan& next);
+  std::vector<std::string> set_parameters(const std::vector<Command>& commands);
+  void drain_removed_links(const Plan& next);
   void change_to(Plan plan);
   void add(const PlannedModule& module);
 
@@ -80,6 +82,7 @@ class Runner {
   static constexpr std::size_t kMaxResults = 100;
 
   const RunOptions& options_;
+  Graph graph_;  // as `plan_` was made of it
   Plan plan_;
   MonotonicTime begun_{0};
   int ticks_ = 0;
@@ -89,8 +92,7 @@ class Runner {
   std::vector<Failure> failures_;
   std::vector<std::string> results_;  // lines
   Status outcome_;
-  std::vector<std::string> commands_;    // that have changed the graph
-  std::deque<Change> changes_;           // the first of them is being planned
+  std::deque<Change> changes_;           // the first of them may be being planned
   std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<Observation> observation_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a graph that runs is changed: by its files, and by commands.
+// How a running graph is changed: by its files, and by commands.
 #include <hc/base/suggestion.h>
 #include <hc/graph/commands.h>
 #include <hc/graph/run/runner.h>
@@ -14,49 +14,61 @@ namespace fs = std::filesystem;
 
 constexpr const char* kIsStopping = "the graph is stopping";
 
+using Commands = std::vector<Command>;
+
+bool has_edits(const Commands& commands) {
+  return std::any_of(commands.begin(), commands.end(),
+                     [](const Command& command) { return command.is_edit(); });
+}
+
+/// Whether commands leave modules and links as they are.
+bool only_set(const Commands& commands) {
+  return std::all_of(commands.begin(), commands.end(), [](const Command& command) {
+    return !command.is_edit() || command.verb == Command::Verb::Set;
+  });
+}
+
 }  // namespace
 
-void Runner::read_anew() {
+/// Loads the graph again, as its files have changed.
+void Runner::reload() {
   if (is_stopping_) return;
-  const auto& file = options_.files.front();
+  const auto& file = graph_.files.front();
   std::error_code failed;
   const bool is_gone = fs::status(file, failed).type() == fs::file_type::not_found;
   if (is_gone && !is_file_gone_)
     say("graph: " + file + " has been removed; keeping the running version");
   is_file_gone_ = is_gone;
   if (is_gone) return;
-  auto is_edit = [](const Change& change) { return change.commands.empty(); };
-  // One that waits reads what is there then; what is being read is not what is there any more.
-  if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_edit)) return;
-  if (!changes_.empty() && is_edit(changes_.front())) planning_->stop();
+  auto is_reload = [](const Change& change) { return change.commands.empty(); };
+  // One that waits will read what is there then; what is being read is out of date.
+  if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_reload)) return;
+  if (!changes_.empty() && is_reload(changes_.front())) planning_->stop();
   changes_.push_back({});
-  plan_next();
+  begin_changes();
 }
 
-/// Does what all of some commands say, or nothing.
+/// Does all of some commands, or none.
 void Runner::obey(const std::vector<std::string>& lines, Observation::Answer answer) {
   std::vector<std::string> wrong;
-  bool has_edits = false;
+  Commands commands;
   for (const auto& line : lines) {
     auto command = parse_command(line);
-    if (!command) {
+    if (!command)
       wrong.push_back(command.error().detail);
-      continue;
-    }
-    has_edits = has_edits || command->is_edit();
-    if (command->verb == Command::Verb::Restart && find(command->words[0]) == nullptr)
+    else if (command->verb == Command::Verb::Restart && find(command->words[0]) == nullptr)
       wrong.push_back("no module \"" + command->words[0] + "\"");
+    else
+      commands.push_back(std::move(*command));
   }
   if (is_stopping_) wrong.emplace_back(kIsStopping);
-  if (wrong.empty() && has_edits && !options_.replan)
-    wrong.emplace_back("this graph cannot be changed");
   if (!wrong.empty()) return answer(wrong);
-  if (!has_edits) {
-    carry_out(lines);
+  if (!has_edits(commands)) {
+    carry_out(commands);
     return answer({});
   }
-  changes_.push_back({lines, std::move(answer)});
-  plan_next();
+  changes_.push_back({std::move(commands), std::move(answer)});
+  begin_changes();
 }
 
 /// Opens an output to observers; of an input, the output that it is linked to.
@@ -89,67 +101,74 @@ Result<std::string> Runner::observe(const std::string& port) {
 }
 
 /// Does what commands say that change nothing in the plan.
-void Runner::carry_out(const std::vector<std::string>& lines) {
-  for (const auto& line : lines) {
-    const auto command = parse_command(line);
-    if (command->verb == Command::Verb::Restart) {
-      if (auto* module = find(command->words[0])) module->restart();
-    } else if (command->verb == Command::Verb::Stop) {
+void Runner::carry_out(const Commands& commands) {
+  for (const auto& command : commands) {
+    if (command.verb == Command::Verb::Restart) {
+      if (auto* module = find(command.words[0])) module->restart();
+    } else if (command.verb == Command::Verb::Stop) {
       is_stopped_ = true;
       end_all();
     }
   }
 }
 
-/// Begins to plan the first change, beside the loop: a program that is not known yet is asked for
-/// its --describe, and may be slow to answer.
-void Runner::plan_next() {
-  if (changes_.empty() || planning_->is_busy()) return;
-  const auto& lines = changes_.front().commands;
-  auto planned = std::make_shared<Planned>();
-  planned->edits = commands_;
-  for (const auto& line : lines)
-    if (parse_command(line)->is_edit()) add_command(planned->edits, line);
-  const auto reading = lines.empty() ? Reading::Anew : Reading::AsBefore;
-  auto work = [this, planned, reading](int stop) {
-    planned->changed = options_.replan(reading, planned->edits, plan_, stop);
-    // Perhaps the file is right, and what was asked beside it does not go with it any more.
-    if (!planned->changed.plan && reading == Reading::Anew && !planned->edits.empty())
-      planned->alone = options_.replan(reading, {}, plan_, stop);
-  };
-  planning_->begin(std::move(work), [this, planned] { take_planned(*planned); });
+/// Does the changes that are wanted, up to the first that has to be planned: that is done on
+/// another thread, as a new program may be slow to describe itself.
+void Runner::begin_changes() {
+  while (!changes_.empty() && !is_stopping_ && !(planning_ && planning_->is_busy())) {
+    const Commands& commands = changes_.front().commands;
+    if (commands.empty())
+      return begin_planning([this](int stop) { return options_.loader->load(&plan_, stop); });
+    Graph graph = graph_;
+    Problems problems(graph.files, "");
+    for (const auto& command : commands) apply_command(graph, command, problems);
+    std::vector<std::string> wrong = problems.lines();
+    if (wrong.empty() && only_set(commands))
+      wrong = set_parameters(commands);
+    else if (wrong.empty() && options_.loader != nullptr)
+      return begin_planning([this, graph = std::move(graph)](int stop) {
+        return options_.loader->plan(graph, plan_, stop);
+      });
+    else if (wrong.empty())
+      wrong.emplace_back("this graph cannot be changed");
+    if (wrong.empty()) graph_ = std::move(graph);
+    end_change(wrong);
+  }
 }
 
-void Runner::take_planned(Planned& planned) {
+void Runner::begin_planning(std::function<Result<LoadedGraph>(int stop)> plan) {
+  auto loaded = std::make_shared<Result<LoadedGraph>>(Error{});
+  planning_->begin([loaded, plan = std::move(plan)](int stop) { *loaded = plan(stop); },
+                   [this, loaded] { take_planned(*loaded); });
+}
+
+void Runner::take_planned(Result<LoadedGraph>& loaded) {
   if (is_stopping_) return;
-  const auto change = std::move(changes_.front());
-  changes_.pop_front();
-  if (change.commands.empty()) {
-    take_edit(planned);
-  } else if (planned.changed.plan) {
-    commands_ = std::move(planned.edits);
-    change_to(std::move(*planned.changed.plan));
-    carry_out(change.commands);
-    change.answer({});
-  } else {
-    change.answer(planned.changed.problems);
+  const bool is_reload = changes_.front().commands.empty();
+  std::vector<std::string> wrong;
+  if (!loaded)
+    wrong.push_back(loaded.error().detail);
+  else if (!loaded->plan)
+    wrong = loaded->problems;
+  if (wrong.empty()) {
+    graph_ = std::move(loaded->graph);
+    change_to(std::move(*loaded->plan));
+  } else if (is_reload && !planning_->is_stopped()) {  // else there is a newer edit
+    for (const auto& line : wrong) say("graph: " + line);
+    say("graph: keeping the running version");
   }
-  plan_next();
+  if (is_reload && loaded)
+    files_->set_files(loaded->graph.files.empty() ? graph_.files : loaded->graph.files);
+  end_change(wrong);
+  begin_changes();
 }
 
-void Runner::take_edit(Planned& planned) {
-  auto& [edits, changed, alone] = planned;
-  if (!changed.plan && planning_->is_stopped()) return;  // there is another edit
-  if (alone && alone->plan) {
-    for (const auto& line : changed.problems) say("graph: " + line);
-    say("graph: the commands so far are forgotten");
-    commands_.clear();
-    changed = std::move(*alone);
-  }
-  files_->set_files(changed.files.empty() ? options_.files : changed.files);
-  if (changed.plan) return change_to(std::move(*changed.plan));
-  for (const auto& line : changed.problems) say("graph: " + line);
-  say("graph: keeping the running version");
+/// Does the rest of the first change, and answers who asked for it.
+void Runner::end_change(const std::vector<std::string>& wrong) {
+  const Change change = std::move(changes_.front());
+  changes_.pop_front();
+  if (wrong.empty()) carry_out(change.commands);
+  if (change.answer) change.answer(wrong);
 }
 
 /// Answers who has asked for changes that will not be made.
@@ -159,9 +178,35 @@ void Runner::refuse_changes() {
     if (change.answer) change.answer({kIsStopping});
 }
 
-/// Reads links that the next plan has no more until their writers have been told so: one that waits
-/// for a reader that has left hears no commands.
-void Runner::read_what_ends(const Plan& next) {
+/// Sets all parameters that commands name, or none. @returns  what is wrong.
+std::vector<std::string> Runner::set_parameters(const Commands& commands) {
+  std::vector<std::string> wrong;
+  std::map<std::string, PlannedModule> changed;
+  for (const auto& command : commands) {
+    if (command.verb != Command::Verb::Set) continue;
+    const std::string& word = command.words[0];  // MODULE.PARAMETER=VALUE, as apply_command() found
+    const auto dot = word.find('.'), equals = word.find('=');
+    const std::string name = word.substr(0, dot), value = word.substr(equals + 1);
+    const std::string parameter = word.substr(dot + 1, equals - dot - 1);
+    auto& module = changed.emplace(name, find(name)->plan()).first->second;
+    if (auto checked = module.check_parameter(parameter, value); !checked)
+      wrong.push_back(checked.error().detail);
+    module.parameters[parameter] = value;
+  }
+  if (!wrong.empty()) return wrong;
+  for (auto& planned : plan_.modules) {
+    auto module = changed.find(planned.name);
+    if (module == changed.end()) continue;
+    planned = module->second;
+    auto* supervised = find(planned.name);
+    supervised->tell(supervised->adopt(planned).outputs);
+  }
+  return {};
+}
+
+/// Reads links that the next plan does not have until their writers know that: one that waits for a
+/// reader that has left takes no commands.
+void Runner::drain_removed_links(const Plan& next) {
   auto is_there = [&](const PlannedLink& link) {
     return std::any_of(next.links.begin(), next.links.end(), [&](const PlannedLink& other) {
       return other.from == link.from && other.to == link.to && other.sender_uri == link.sender_uri;
@@ -171,42 +216,49 @@ void Runner::read_what_ends(const Plan& next) {
     const Supervised* writer = at(link.from);
     if (writer == nullptr || writer->is_over() || at(link.to) == nullptr || is_there(link))
       continue;
-    if (auto stand_in = make_stand_in(*loop_, link.reader_uri, StandIn::UntilTheLinkEnds))
-      ending_.push_back(std::move(*stand_in));
+    if (auto drain = make_stand_in(*loop_, link.reader_uri, StandIn::UntilTheLinkEnds))
+      ending_.push_back(std::move(*drain));
   }
 }
 
-/// Makes the graph that runs as another plan says.
+/// Makes the running graph as another plan says: links are removed before any are added, and
+/// outputs are there before inputs.
 void Runner::change_to(Plan plan) {
-  read_what_ends(plan);
+  drain_removed_links(plan);
   plan_ = std::move(plan);
   is_unsettled_ = true;
-  bool has_changed = false;
-  std::map<std::string, const PlannedModule*> planned;
-  for (const auto& module : plan_.modules) planned[module.name] = &module;
-  for (auto& [name, module] : modules_)
-    if (auto found = planned.find(name); found != planned.end())
-      module->change_plan(*found->second);
+  std::vector<std::pair<Supervised*, ModuleChange>> changes;
+  std::vector<const PlannedModule*> added;
+  std::set<std::string> names;
+  for (const auto& module : plan_.modules) {
+    names.insert(module.name);
+    if (auto* there = find(module.name))
+      changes.emplace_back(there, there->adopt(module));
+    else
+      added.push_back(&module);
+  }
+  bool has_changed = !added.empty();
+  for (auto& [module, change] : changes) {
+    has_changed = has_changed || !change.is_empty();
+    module->tell(change.unlinks);
+  }
   for (auto entry = modules_.begin(); entry != modules_.end();) {
     auto module = entry++;
-    if (planned.contains(module->first)) continue;
+    if (names.contains(module->first)) continue;
     has_changed = true;
     module->second->end();
     leaving_.insert(modules_.extract(module));
   }
-  for (const auto& module : plan_.modules) {
-    auto* there = find(module.name);
-    has_changed = there == nullptr || there->start_change() || has_changed;
-    if (there == nullptr) add(module);
-  }
-  for (auto& [name, module] : modules_) module->end_change();
+  for (auto& [module, change] : changes) module->tell(change.outputs);
+  for (const auto* module : added) add(*module);
+  for (auto& [module, change] : changes) module->tell(change.inputs);
   say(has_changed ? "graph: changed" : "graph: unchanged");
 }
 
 void Runner::add(const PlannedModule& module) {
   if (auto back = leaving_.extract(module.name)) {
     auto& there = *modules_.insert(std::move(back)).position->second;
-    there.change_plan(module);
+    there.adopt(module);
     return there.restart();
   }
   auto made = make(module);

@@ -59,7 +59,7 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   };
   const auto* sender = report_of(link.from, false, link.sender_uri);
   const auto* reader = report_of(link.to, true, link.reader_uri);
-  const auto* counts = sender != nullptr || at(link.from) != nullptr ? sender : reader;
+  const auto* counts = sender != nullptr ? sender : reader;
   if (counts != nullptr) state.traffic = counts->traffic;
   // What has gone over it is what its reader has taken; a sender may count what waits or is lost.
   if (const auto* gone = reader != nullptr ? reader : counts; gone != nullptr) {

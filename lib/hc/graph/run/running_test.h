@@ -36,7 +36,19 @@ class Run : public ::testing::Test {
       if (line == stop_at_) stop();
       if (heard_) heard_(line);
     };
-    return run_graph(plan_, options_);
+    return run_graph(loaded(plan_), options_);
+  }
+
+  /// A plan as if it had been loaded from `files_`.
+  LoadedGraph loaded(const Plan& plan) const {
+    LoadedGraph loaded{{}, plan, {}};
+    loaded.graph.files = files_;
+    for (const auto& module : plan.modules) {
+      loaded.graph.modules.emplace_back().name = module.name;
+      for (const auto& [key, value] : module.parameters)
+        loaded.graph.modules.back().parameters[key] = {value, {}};
+    }
+    return loaded;
   }
 
   void stop() const { ::eventfd_write(stop_.get(), 1); }
@@ -48,6 +60,7 @@ class Run : public ::testing::Test {
 
   std::string token_ = graph_token();
   Plan plan_;
+  std::vector<std::string> files_;
   RunOptions options_;
   std::function<void(std::string_view line)> heard_;
   std::string stop_at_;  // the line at which the graph is told to end

@@ -19,7 +19,9 @@ using MonotonicClock = std::chrono::steady_clock;
 constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;      // a pipe can be made to hold a MiB; source: man 7 pipe
 constexpr int kCannotExecute = 127;  // as shells say it
+constexpr int kCutOff = 1;           // a failure, as far as restarts go
 constexpr int kSignal = 128;         // the status of who was killed by one is above
+constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
 // Observers never make a module wait: with or without one, it keeps a few messages for them.
 constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
@@ -90,7 +92,7 @@ Status Supervised::open_control() {
 std::vector<std::string> Supervised::catch_up() {
   const auto change = change_between(told_, plan_);
   std::vector<std::string> commands;
-  for (const auto* some : {&change.unlinks, &change.settings, &change.outputs, &change.inputs})
+  for (const auto* some : {&change.unlinks, &change.outputs, &change.inputs})
     commands.insert(commands.end(), some->begin(), some->end());
   for (const auto& input : finished_)
     commands.push_back(text({ModuleCommand::Verb::Finish, true, input, {}}));
@@ -117,7 +119,7 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
 
 Status Supervised::start() {
   timer_.reset();
-  is_to_end_ = is_to_restart_ = is_dismissed_ = false;
+  is_to_end_ = is_to_restart_ = is_dismissed_ = is_interrupted_ = awaits_cause_ = false;
   finished_.clear();
   lines_.forget();
   if (auto opened = open_control(); !opened) return opened;
@@ -165,6 +167,7 @@ void Supervised::restart() {
   is_to_end_ = false;
   if (!process_) return start_again();
   is_to_restart_ = true;
+  hear_.interrupted();
   ask_to_end();
 }
 
@@ -172,6 +175,7 @@ void Supervised::restart() {
 void Supervised::ask_to_end() {
   if (!process_) {
     timer_.reset();
+    awaits_cause_ = false;
     change(ModuleStatus::Ended);
     hear_.ended();
     return;
@@ -182,59 +186,46 @@ void Supervised::ask_to_end() {
   timer_ = loop_.call_at(MonotonicClock::now() + limits_.grace, [this] { process_->kill(); });
 }
 
-void Supervised::change_plan(PlannedModule plan) {
-  // One that listens has been told all so far; another catches up, and only this plan's part is
-  // new.
-  change_ = change_between(is_heard() ? told_ : plan_, plan);
-  change_.needs_restart = change_between(told_, plan).needs_restart;
+ModuleChange Supervised::adopt(PlannedModule plan) {
+  // A connected one has been told all so far; another catches up, and only this plan's part is new.
+  auto change = change_between(is_heard() ? told_ : plan_, plan);
+  const bool needs_restart = change_between(told_, plan).needs_restart;
   plan_ = std::move(plan);
-  if (!change_.needs_restart && is_heard()) {
-    for (const auto& command : change_.unlinks) tell(command);
-    set_told();
-  }
   reports_.set_ends(plan_.ends);
   restarts_.set_policy(plan_.restart);
-}
-
-bool Supervised::start_change() {
-  if (change_.is_empty()) return false;
+  if (change.is_empty() && !needs_restart) return {};
   // One that has done its work has more to do when it has something else to read.
-  const bool is_at_rest = status_ == ModuleStatus::Ended && change_.inputs.empty();
-  if (change_.needs_restart || (!process_ && !is_at_rest)) {
-    change_ = {};
+  const bool is_at_rest = status_ == ModuleStatus::Ended && change.inputs.empty();
+  if (needs_restart || change.needs_restart || (!process_ && !is_at_rest)) {
     restart();
-    return true;
+    ModuleChange restarted;
+    restarted.needs_restart = true;
+    return restarted;
   }
-  for (const auto& command : change_.settings) {
-    hear_.event(command);
-    tell(command);
-  }
-  for (const auto& command : change_.outputs) tell(command);
-  return true;
-}
-
-void Supervised::end_change() {
-  for (const auto& command : change_.inputs) tell(command);
-  change_ = {};
+  if (is_heard()) set_told();
+  for (const auto& command : change.outputs)
+    if (command.starts_with("set ")) hear_.event(command);
+  return change;
 }
 
 bool Supervised::is_heard() const {
   return process_ && control_ && control_->is_heard();
 }
 
-/// One that does not listen yet catches up when it does; one that never takes what it is told has
-/// to begin anew.
-void Supervised::tell(const std::string& command) {
-  if (!is_heard() || control_->say(command_message(command)) || is_to_restart_) return;
-  hear_.event("does not accept commands; restarting");
-  restart();
+void Supervised::tell(const std::vector<std::string>& commands) {
+  for (const auto& command : commands) {
+    if (!is_heard() || is_to_restart_ || control_->say(command_message(command))) continue;
+    hear_.event("does not accept commands; restarting");
+    restart();
+  }
 }
 
 void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
   std::string what = end.port + "=" + end.uri;
   if (is_finished && finished_.insert(what).second)
-    tell(text({ModuleCommand::Verb::Finish, true, what, {}}));
-  if (!is_finished && finished_.erase(what) != 0) tell("link in " + what);
+    tell({text({ModuleCommand::Verb::Finish, true, what, {}})});
+  if (!is_finished && finished_.erase(what) != 0)
+    tell({text({ModuleCommand::Verb::Link, true, what, {}})});
 }
 
 std::string Supervised::observe(const std::string& port, const std::string& name) {
@@ -245,7 +236,7 @@ std::string Supervised::observe(const std::string& port, const std::string& name
   if (is_new) {
     observed.text = port + (has_memory ? "=shm:" : "=unix-listen:@") + name + kObserverPolicy;
     observed.uri = (has_memory ? "shm:" : "unix:@") + name;
-    tell(observed.command());
+    tell({observed.command()});
   }
   observed.until = now() + kObserved;
   return observed.uri;
@@ -254,7 +245,7 @@ std::string Supervised::observe(const std::string& port, const std::string& name
 void Supervised::end_observations(MonotonicTime time) {
   std::erase_if(observed_, [&](const auto& entry) {
     const bool is_over = time >= entry.second.until;
-    if (is_over) tell("unlink out " + entry.second.text);
+    if (is_over) tell({"unlink out " + entry.second.text});
     return is_over;
   });
 }
@@ -355,13 +346,31 @@ void Supervised::go_on(int status) {
   const bool is_as_told = is_told_to && (status == 0 || status == kSignal + SIGTERM);
   if (is_to_end_ || is_to_restart_ || is_as_told) {
     hear_.event(is_as_told ? end_in_words(0) : words);
-    if (is_to_restart_) return start_again();
+    if (is_to_restart_) {
+      hear_.interrupted();
+      return start_again();
+    }
     change(ModuleStatus::Ended);
     return hear_.ended();
   }
   if (status != 0) hear_.failed(lines_.last());
-  auto decision = restarts_.ended(status, now());
+  if (status == 0 && can_be_cut_off() && hear_.has_work()) {
+    awaits_cause_ = true;
+    change(ModuleStatus::Waiting, words);
+    timer_ = loop_.call_at(MonotonicClock::now() + kCauseDelay, [this] { decide(0); });
+    return;
+  }
+  decide(status);
+}
+
+/// Restarts a process that has ended by itself, or gives it up.
+void Supervised::decide(int status) {
+  awaits_cause_ = false;
+  const auto words = end_in_words(status);
+  const bool is_cut_off = status == 0 && is_interrupted_ && hear_.has_work();
+  auto decision = restarts_.ended(is_cut_off ? kCutOff : status, now());
   using Next = Restarts::Next;
+  if (decision.next == Next::Again) hear_.interrupted();
   if (decision.next == Next::Again && decision.delay.count() == 0) {
     hear_.event(words + "; restarting");
     return start_again();
@@ -379,6 +388,16 @@ void Supervised::go_on(int status) {
                   : words);
   change(is_given_up ? ModuleStatus::GivenUp : ModuleStatus::Ended, is_given_up ? words : "");
   hear_.ended();
+}
+
+bool Supervised::can_be_cut_off() const {
+  return plan_.control_uri.empty() && plan_.restart != Restart::Never;
+}
+
+void Supervised::note_interruption() {
+  if (!can_be_cut_off()) return;
+  is_interrupted_ = true;
+  if (awaits_cause_) decide(0);
 }
 
 std::string Supervised::said_of(const std::string& uri) const {

@@ -34,8 +34,11 @@ class Supervised {
     std::function<void(const std::string& line)> event;  ///< "started"
     std::function<void(const std::string& line)> said;   ///< by the module itself
     std::function<void(const std::deque<std::string>& last_words)> failed;
-    std::function<void()> changed;  ///< its state, other than in numbers
-    std::function<void()> ended;    ///< for good
+    std::function<void()> changed;      ///< its state, other than in numbers
+    std::function<void()> ended;        ///< for good
+    std::function<void()> interrupted;  ///< its process ends, and another will follow
+    std::function<bool()> has_work;     ///< a writer of its inputs is not over; of one without,
+                                        ///< a reader
   };
 
   /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
@@ -51,15 +54,18 @@ class Supervised {
   /// Ends it where it runs, and starts it; also one that has ended for good.
   void restart();
 
-  /// Makes it as another plan says: told where it can be, else started anew. In three steps, so
-  /// that those of all modules may go together: it leaves links; has new outputs (whether there is
-  /// anything to change); has new inputs.
-  void change_plan(PlannedModule plan);
-  bool start_change();
-  void end_change();
+  /// Takes another plan, and restarts where commands cannot make it so. @returns  what to tell()
+  /// it.
+  ModuleChange adopt(PlannedModule plan);
+  /// Sends commands. One that is not connected yet gets what has changed when it is; one that never
+  /// takes them is restarted.
+  void tell(const std::vector<std::string>& commands);
 
   /// Tells it that an input's writer has ended for good, or that it is there again.
   void finish_input(const PlannedEnd& end, bool is_finished);
+  /// A module that it is linked to is interrupted. One without `control` takes that for the end of
+  /// its work, and is restarted when it ends.
+  void note_interruption();
   /// Has it open an output for observers, under a name that no other link has, until it was not
   /// asked for so long.
   ///
@@ -103,7 +109,6 @@ class Supervised {
   std::vector<std::string> catch_up();
   void set_told();
   [[nodiscard]] bool is_heard() const;
-  void tell(const std::string& command);
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
   void read_lines();
@@ -111,17 +116,20 @@ class Supervised {
   void take_report(const Message& message);
   void forget_process();
   void go_on(int status);
+  void decide(int status);
+  [[nodiscard]] bool can_be_cut_off() const;
   void start_again();
 
   Loop& loop_;
   PlannedModule plan_;
-  PlannedModule told_;   // as its process has been told, which may know links by their older URIs
-  ModuleChange change_;  // that is under way
+  PlannedModule told_;  // as its process has been told, which may know links by their older URIs
   SupervisionLimits limits_;
   Hear hear_;
   ModuleStatus status_ = ModuleStatus::Waiting;
   std::string detail_;
   bool is_to_end_ = false, is_to_restart_ = false, is_dismissed_ = false;
+  bool is_interrupted_ = false;  // a link has been cut that this process cannot mend
+  bool awaits_cause_ = false;    // it has ended, perhaps since a link was cut
   std::optional<int> exit_;
   int starts_ = 0;
   Restarts restarts_;

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/programs.h>
+
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 
-#include <hc/graph/run.h>
 #include <hc/graph/run/process.h>
 #include <hc/link/link.h>
 
 namespace hc {
 
+namespace fs = std::filesystem;
 using internal::Process;
 using std::chrono::milliseconds;
 using MonotonicClock = std::chrono::steady_clock;
@@ -20,7 +23,42 @@ namespace {
 constexpr std::chrono::seconds kDescribeTime{10};
 constexpr std::size_t kMaxDescription = std::size_t{1} << 20;
 
+bool is_program(const fs::path& path) {
+  std::error_code missing;
+  return fs::is_regular_file(path, missing) && ::access(path.c_str(), X_OK) == 0;
+}
+
 }  // namespace
+
+fs::path module_folder() {
+  std::error_code unknown;
+  fs::path self = fs::read_symlink("/proc/self/exe", unknown);
+  return self.parent_path().parent_path() / "libexec" / "hypercolumn";
+}
+
+std::vector<std::string> module_names() {
+  std::vector<std::string> names;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(module_folder(), missing))
+    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string find_program(const std::string& name) {
+  if (name.find('/') != std::string::npos) return is_program(name) ? name : "";
+  fs::path own = module_folder() / name;
+  if (is_program(own)) return own.string();
+  const char* variable = std::getenv("PATH");
+  std::string_view path = variable == nullptr ? "" : variable;
+  while (!path.empty()) {
+    auto colon = std::min(path.find(':'), path.size());
+    fs::path candidate = fs::path(path.substr(0, colon)) / name;
+    if (is_program(candidate)) return candidate.string();
+    path.remove_prefix(std::min(colon + 1, path.size()));
+  }
+  return "";
+}
 
 Result<std::string> describe_program(const std::string& program, int stop) {
   auto process = Process::start({program, "--describe"}, Process::Capture::Output);
@@ -48,12 +86,6 @@ Result<std::string> describe_program(const std::string& program, int stop) {
                  program + " --describe failed with status " + std::to_string(status)};
   }
   return Error{Code::System, program + " --describe prints more than a MiB"};
-}
-
-std::string graph_token() {
-  // Two graphs of one process may run side by side, and process numbers come back.
-  return "hc-" + std::to_string(::getpid()) + "-" +
-         std::to_string(MonotonicClock::now().time_since_epoch().count());
 }
 
 }  // namespace hc

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/graph/load.h>
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include <hc/base/suggestion.h>
+#include <hc/graph/programs.h>
+
+namespace hc {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<std::string> read_text(const std::string& name) {
+  std::error_code missing;
+  if (fs::is_directory(name, missing))
+    return Error{Code::NotFound, name + ": is a folder, not a file"};
+  std::ifstream file(name, std::ios::binary);
+  if (!file) return Error{Code::NotFound, name + ": cannot be read"};
+  std::string text(kMaxGraphBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+/// Only files, so that nothing is waited for, as a pipe would be.
+Result<std::string> read_file(const std::string& name) {
+  std::error_code missing;
+  if (!fs::is_regular_file(name, missing) && !fs::is_directory(name, missing))
+    return Error{Code::NotFound, name + ": cannot be read"};
+  return read_text(name);
+}
+
+/// @param path  what `program` stands for, where it has a slash.
+std::string why_no_program(const std::string& program, const std::string& path) {
+  std::error_code missing;
+  if (path.find('/') == std::string::npos)
+    return "no program \"" + program + "\"" + suggestion(program, module_names());
+  if (fs::is_directory(path, missing)) return path + " is a folder, not a program";
+  if (fs::exists(path, missing)) return path + " is not executable";
+  return "no program \"" + program + "\"";
+}
+
+/// Replaces names of programs by paths; one with a slash is relative to the file that names it.
+void find_programs(Graph& graph, Problems& problems) {
+  for (auto& module : graph.modules) {
+    auto& [given, place] = module.program;
+    if (given.empty()) continue;  // what is wrong has been reported
+    std::string name = given;
+    if (name.find('/') != std::string::npos && !name.starts_with('/'))
+      name = (fs::path(problems.file(place.file)).parent_path() / name).string();
+    std::string program = find_program(name);
+    if (program.empty()) problems.add(place, why_no_program(given, name));
+    given = program;
+  }
+}
+
+class FileLoader : public GraphLoader {
+ public:
+  explicit FileLoader(LoadOptions options) : options_(std::move(options)) {}
+
+  Result<LoadedGraph> load(const Plan* running, int stop) override {
+    // A graph that runs is read from files again: nobody writes into a pipe once more.
+    auto text = running == nullptr ? read_text(options_.file) : read_file(options_.file);
+    if (!text) return text.error();
+    Problems problems(options_.file);
+    auto environment = [](const char* name) -> const char* { return std::getenv(name); };
+    Graph graph = parse_graph(*text, environment, problems, read_file);
+    for (const auto& setting : options_.settings) set_parameter(graph, setting, problems);
+    return planned(std::move(graph), problems, running, stop);
+  }
+
+  LoadedGraph plan(Graph graph, const Plan& running, int stop) override {
+    Problems problems(graph.files, "");
+    return planned(std::move(graph), problems, &running, stop);
+  }
+
+ private:
+  LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
+    find_programs(graph, problems);
+    LoadedGraph loaded{graph, {}, {}};
+    if (!options_.record.empty()) record_outputs(graph, options_.record);
+    std::map<std::string, Result<std::string>> described;  // also those that failed
+    auto describe = [&](const std::string& program) {
+      auto known = described.find(program);
+      if (known == described.end())
+        known = described.emplace(program, describe_once(program, stop)).first;
+      return known->second;
+    };
+    Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running);
+    loaded.problems = problems.lines();
+    if (problems.empty()) loaded.plan = std::move(plan);
+    return loaded;
+  }
+
+  Result<std::string> describe_once(const std::string& program, int stop) {
+    std::error_code missing;
+    const auto time = fs::last_write_time(program, missing);
+    const auto size = fs::file_size(program, missing);
+    auto known = described_.find(program);
+    if (!missing && known != described_.end() && known->second.time == time &&
+        known->second.size == size)
+      return known->second.description;
+    auto description = describe_program(program, stop);
+    if (!missing && description) described_[program] = {time, size, *description};
+    return description;
+  }
+
+  struct Described {
+    fs::file_time_type time;
+    std::uintmax_t size;
+    std::string description;
+  };
+
+  LoadOptions options_;
+  std::map<std::string, Described> described_;  // by program
+};
+
+}  // namespace
+
+std::string graph_token() {
+  // Two graphs of one process may run side by side, and process numbers come back.
+  return "hc-" + std::to_string(::getpid()) + "-" +
+         std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
+}
+
+std::unique_ptr<GraphLoader> make_loader(LoadOptions options) {
+  return std::make_unique<FileLoader>(std::move(options));
+}
+
+}  // namespace hc
