@@ -50,6 +50,10 @@ def problems():
     readme = len((ROOT / "README.md").read_text().splitlines())
     if readme > budget["readme_lines"]:
         yield "README.md: %d lines, at most %d" % (readme, budget["readme_lines"])
+    core = (ROOT / "scripts/packages/core.txt").read_text().splitlines()
+    packages = sum(not line.startswith("#") for line in core)
+    if packages > budget["core_packages"]:
+        yield "the core needs %d packages, at most %d" % (packages, budget["core_packages"])
 
 
 if __name__ == "__main__":

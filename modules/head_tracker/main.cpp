@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include <fmt/core.h>
 #include <frames/messages.h>
 #include <hc/base/backoff.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 
 namespace {
@@ -66,9 +66,8 @@ int main(int argc, char** argv) {
     if (!std::exchange(receives, true)) module.log("receiving from the tracker");
     if (is_first && *centre_first) {
       const Eigen::Vector3d angles = pose->pose.angles().array() + 0.0;  // not -0
-      module.log(
-          fmt::format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad",
-                      angles.x(), angles.y(), angles.z()));
+      module.log(hc::format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad",
+                            angles.x(), angles.y(), angles.z()));
       centre_next = true;
     }
     if (centre_next) zero = pose->pose;

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <drivers/pan_tilt/neck.h>
-#include <fmt/core.h>
 #include <frames/messages.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 
 namespace {
@@ -72,8 +72,8 @@ int main(int argc, char** argv) {
       return module.log_once("without a time", "command dropped: it has no time");
     const double old = module.seconds_since(message.header.time);
     if (std::abs(old) > *age)
-      return module.log_once("stale", fmt::format("command dropped: {:.3f} s {}", std::abs(old),
-                                                  old > 0 ? "old" : "in the future"));
+      return module.log_once("stale", hc::format("command dropped: {:.3f} s {}", std::abs(old),
+                                                 old > 0 ? "old" : "in the future"));
     const auto angles = message.numbers();
     if (!neck.command(clock.monotonic(), angles[2], angles[1],
                       hc::duration(*age - std::max(old, 0.0))))

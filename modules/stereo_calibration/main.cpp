@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <fmt/core.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
 #include <vision/messages.h>
@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
         hc::table({calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,
                    calibration.baseline(), static_cast<double>(calibrated.views)})
             .at(time));
-    module.log(fmt::format(
+    module.log(hc::format(
         "rms {:.3f} px (left {:.3f}, right {:.3f}), rows differ by {:.3f} px, baseline {:.4f} m, "
         "{} of {} views: {}",
         calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc cat: prints messages.
-#include <fmt/format.h>
 
 #include <hc/compress/compress.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc check: reports every problem of a graph, without starting it.
-#include <fmt/format.h>
+
+#include <hc/base/format.h>
 
 #include "common.h"
 #include "graph.h"
@@ -15,10 +16,10 @@ void add_check(CLI::App& app) {
   verb->callback([options] {
     auto plan = load_plan("check", *options);
     auto counted = [](std::size_t count, std::string_view what) {
-      return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+      return hc::format("{} {}{}", count, what, count == 1 ? "" : "s");
     };
-    print(fmt::format("{}: {}, {}: no problems found\n", options->file,
-                      counted(plan.modules.size(), "module"), counted(plan.links.size(), "link")));
+    print(hc::format("{}: {}, {}: no problems found\n", options->file,
+                     counted(plan.modules.size(), "module"), counted(plan.links.size(), "link")));
   });
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 
+#include <hc/base/format.h>
 #include <hc/os/program.h>
 
 namespace tool {
@@ -28,6 +28,11 @@ hc::Uri parse(const std::string& uri) {
   if (parsed.scheme == "inproc")
     throw Failure(uri, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
   return parsed;
+}
+
+/// Text to the person; it does not matter whether it arrives.
+void write_error(const std::string& text) {
+  static_cast<void>(hc::write_all(STDERR_FILENO, text));
 }
 
 }  // namespace
@@ -62,7 +67,7 @@ void Skipper::skip(hc::Source& source, const Failure& failure, const std::string
   bool is_damage = failure.code == Code::Malformed || failure.code == Code::TooLarge ||
                    failure.code == Code::Unsupported || failure.code == Code::Truncated;
   if (!is_damage || ++in_a_row_ > kMostInARow) throw Failure(failure);
-  say(fmt::format("{}: {}", verb_, failure.what()));
+  say(hc::format("{}: {}", verb_, failure.what()));
   if (auto resumed = source.resume(); !resumed) throw Failure(uri, resumed.error());
 }
 
@@ -79,13 +84,13 @@ std::string losses_in_words(const hc::Traffic& traffic) {
                                {traffic.superseded, "dropped (newer arrived)"},
                                {traffic.over_memory, "dropped (no memory left)"},
                                {traffic.cut, "lost at disconnect"}})
-    if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+    if (count > 0) reasons += hc::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
   return reasons;
 }
 
 void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic) {
   if (traffic.lost() == 0) return;
-  say(fmt::format("{}: {}: {}", verb, uri, losses_in_words(traffic)));
+  say(hc::format("{}: {}: {}", verb, uri, losses_in_words(traffic)));
 }
 
 bool print(std::string_view text) {
@@ -96,7 +101,7 @@ bool print(std::string_view text) {
 }
 
 void say(std::string_view line) {
-  fmt::print(stderr, "{}\n", line);
+  write_error(std::string(line) + "\n");
 }
 
 std::string find_graph(const std::string& name) {
@@ -113,10 +118,10 @@ std::string find_graph(const std::string& name) {
 
 std::string seconds_in_words(double seconds) {
   auto whole = static_cast<std::int64_t>(seconds);
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{}:{:02} min", whole / 60, whole % 60);
-  if (whole < 48 * 3600) return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
-  return fmt::format("{} d", whole / (24 * 3600));
+  if (whole < 60) return hc::format("{} s", whole);
+  if (whole < 3600) return hc::format("{}:{:02} min", whole / 60, whole % 60);
+  if (whole < 48 * 3600) return hc::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
+  return hc::format("{} d", whole / (24 * 3600));
 }
 
 std::string bytes_in_words(double bytes) {
@@ -126,14 +131,14 @@ std::string bytes_in_words(double bytes) {
     bytes /= 1000;
     ++unit;
   }
-  return unit == 0 ? fmt::format("{} B", bytes) : fmt::format("{:.3g} {}", bytes, kUnits[unit]);
+  return unit == 0 ? hc::format("{} B", bytes) : hc::format("{:.3g} {}", bytes, kUnits[unit]);
 }
 
 Progress::Progress(std::string what)
     : what_(std::move(what)), on_terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
-  if (shown_ != 0) fmt::print(stderr, "\r\033[K");
+  if (shown_ != 0) write_error("\r\033[K");
 }
 
 void Progress::show(double share, std::string_view words) {
@@ -147,10 +152,10 @@ void Progress::show(double share, std::string_view words) {
   std::string bar;
   if (share >= 0) {
     int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kCells);
-    bar = fmt::format("[{}{}] {:3.0f} % ", std::string(static_cast<std::size_t>(full), '#'),
-                      std::string(static_cast<std::size_t>(kCells - full), '.'), share * 100);
+    bar = hc::format("[{}{}] {:3.0f} % ", std::string(static_cast<std::size_t>(full), '#'),
+                     std::string(static_cast<std::size_t>(kCells - full), '.'), share * 100);
   }
-  fmt::print(stderr, "\r\033[K{} {}{}", what_, bar, words);
+  write_error(hc::format("\r\033[K{} {}{}", what_, bar, words));
 }
 
 }  // namespace tool

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diagnosis.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
 
+#include <hc/base/format.h>
 #include <hc/base/uri.h>
 
 namespace tool {
@@ -57,7 +56,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 std::string gigabytes(std::uint64_t bytes) {
-  return fmt::format("{:.1f} GB", static_cast<double>(bytes) / 1e9);
+  return hc::format("{:.1f} GB", static_cast<double>(bytes) / 1e9);
 }
 
 void add_devices(std::vector<Finding>& findings, const std::string& what,
@@ -73,18 +72,18 @@ void add_devices(std::vector<Finding>& findings, const std::string& what,
 void add_limits(std::vector<Finding>& findings, const Facts& facts) {
   constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
   auto in_words = [](std::uint64_t limit) {
-    return limit == kAny ? std::string("any number of") : fmt::format("{}", limit);
+    return limit == kAny ? std::string("any number of") : hc::format("{}", limit);
   };
   bool is_low = facts.descriptors < kFewDescriptors || facts.processes < kFewProcesses;
   findings.push_back(
       {is_low ? Mark::Note : Mark::Ok, "limits",
-       fmt::format("{} descriptors a process, {} processes a user{}", in_words(facts.descriptors),
-                   in_words(facts.processes), is_low ? ": few for a large graph (ulimit)" : "")});
+       hc::format("{} descriptors a process, {} processes a user{}", in_words(facts.descriptors),
+                  in_words(facts.processes), is_low ? ": few for a large graph (ulimit)" : "")});
 }
 
 Finding finding_of(const NeededPath& needed, const PathState& state) {
   auto told = [&](Mark mark, std::string_view text) {
-    return Finding{mark, needed.module, fmt::format("{}: {}{}", needed.what, needed.path, text)};
+    return Finding{mark, needed.module, hc::format("{}: {}{}", needed.what, needed.path, text)};
   };
   if (!state.is_there) return told(Mark::Missing, " does not exist");
   if (needed.is_written && !state.is_folder) return told(Mark::Missing, " is not a folder");
@@ -151,7 +150,7 @@ std::vector<Finding> diagnose(const Facts& facts) {
     if (!feature.error.empty())
       findings.push_back({Mark::Missing, "kernel", feature.name + ": " + feature.error});
   add_limits(findings, facts);
-  findings.push_back({Mark::Ok, "processors", fmt::format("{}", facts.processors)});
+  findings.push_back({Mark::Ok, "processors", hc::format("{}", facts.processors)});
   findings.push_back({facts.free_memory < kLittleMemory ? Mark::Note : Mark::Ok, "memory",
                       gigabytes(facts.memory) + ", " + gigabytes(facts.free_memory) + " free"});
   add_devices(findings, "camera", facts.cameras, "none (/dev/video*)");
@@ -194,7 +193,7 @@ std::vector<Finding> diagnose(const Needs& needs, const Facts& facts) {
       findings.push_back({Mark::Missing, viewer, "a display; its parameter save does without one"});
   if (needs.modules > facts.processors)
     findings.push_back({Mark::Note, "processors",
-                        fmt::format("{} for {} modules", facts.processors, needs.modules)});
+                        hc::format("{} for {} modules", facts.processors, needs.modules)});
   return findings;
 }
 
@@ -210,7 +209,7 @@ std::string as_text(const std::vector<Finding>& findings) {
   std::string text;
   for (const auto& finding : findings)
     text +=
-        fmt::format("{:<7}  {:<{}}  {}\n", name(finding.mark), finding.what, widest, finding.text);
+        hc::format("{:<7}  {:<{}}  {}\n", name(finding.mark), finding.what, widest, finding.text);
   return text;
 }
 

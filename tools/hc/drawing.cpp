@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drawing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <tuple>
+
+#include <hc/base/format.h>
 
 #include "screen.h"
 
@@ -47,18 +47,18 @@ std::string in_html(const std::string& text) {
 std::string table_of(const Drawing::Box& box, const std::vector<std::string>& inputs,
                      const std::vector<std::string>& outputs) {
   const char* color = box.is_wrong ? kTrouble : box.is_idle ? kIdle : kWorking;
-  std::string text = fmt::format(
+  std::string text = hc::format(
       "<TABLE BORDER=\"{}\" CELLBORDER=\"0\" CELLSPACING=\"0\" CELLPADDING=\"4\" STYLE=\"ROUNDED\" "
       "BGCOLOR=\"{}\"><TR><TD COLSPAN=\"2\"><B>{}</B></TD></TR>",
       box.is_bold ? 4 : 1, color, in_html(box.name));
   if (!box.words.empty())
-    text += fmt::format("<TR><TD COLSPAN=\"2\"><FONT POINT-SIZE=\"10\">{}</FONT></TD></TR>",
-                        in_html(box.words));
+    text += hc::format("<TR><TD COLSPAN=\"2\"><FONT POINT-SIZE=\"10\">{}</FONT></TD></TR>",
+                       in_html(box.words));
   for (std::size_t i = 0; i < std::max(inputs.size(), outputs.size()); ++i) {
     text += "<TR>";
     for (const auto& [ports, kind, side] :
          {std::tuple(&inputs, "in_", "LEFT"), {&outputs, "out_", "RIGHT"}})
-      text += i < ports->size() ? fmt::format(
+      text += i < ports->size() ? hc::format(
                                       "<TD PORT=\"{}{}\" ALIGN=\"{}\"><FONT POINT-SIZE=\"11\">"
                                       "{}</FONT></TD>",
                                       kind, in_html((*ports)[i]), side, in_html((*ports)[i]))
@@ -106,14 +106,14 @@ Drawing drawing_of(const hc::GraphState& state) {
     box.is_wrong = is_in_trouble(module);
     box.is_idle = !module.in_focus || module.status == hc::ModuleStatus::Ended;
     box.words = module.status == hc::ModuleStatus::Running && module.detail.empty()
-                    ? fmt::format("{:.1f} %", 100 * module.processor)
+                    ? hc::format("{:.1f} %", 100 * module.processor)
                     : status_text(module);
     drawing.boxes.push_back(std::move(box));
   }
   for (const auto& link : state.links) {
     auto words = short_number(link.per_second) + "/s";
     if (link.keep != "all") words += ", keep " + link.keep;
-    if (link.rate > 0) words += fmt::format(", rate {}", link.rate);
+    if (link.rate > 0) words += hc::format(", rate {}", link.rate);
     drawing.arrows.push_back({link.from, link.to, words, link.in_workspace, !link.status.empty()});
   }
   return drawing;
@@ -121,7 +121,7 @@ Drawing drawing_of(const hc::GraphState& state) {
 
 std::string as_text(const Drawing& drawing, bool is_plain) {
   auto bold = [&](const std::string& text, bool is_bold) {
-    return is_bold && !is_plain ? fmt::format("{}{}{}", kBold, text, kNormal) : text;
+    return is_bold && !is_plain ? hc::format("{}{}{}", kBold, text, kNormal) : text;
   };
   std::string text = drawing.title + "\n";
   for (const auto& box : drawing.boxes) {
@@ -131,14 +131,14 @@ std::string as_text(const Drawing& drawing, bool is_plain) {
     for (const auto& arrow : drawing.arrows) {
       auto [module, port] = split(arrow.from);
       if (module != box.name) continue;
-      auto line = fmt::format("  {} → {}", port, arrow.to);
+      auto line = hc::format("  {} → {}", port, arrow.to);
       text += bold(line, arrow.is_bold) + (arrow.words.empty() ? "" : "  " + arrow.words) + "\n";
     }
   }
   std::string outside;
   for (const auto& arrow : drawing.arrows)
     if (split(arrow.from).second.empty())
-      outside += fmt::format("  {} → {}  {}\n", arrow.from, arrow.to, arrow.words);
+      outside += hc::format("  {} → {}  {}\n", arrow.from, arrow.to, arrow.words);
   return text + (outside.empty() ? "" : "\noutside\n" + outside);
 }
 
@@ -157,7 +157,7 @@ std::string as_dot(const Drawing& drawing) {
         add((*ports)[module], port);
     }
   }
-  std::string text = fmt::format(
+  std::string text = hc::format(
       "digraph {{\n  label={};\n  labelloc=t;\n  fontsize=18;\n  rankdir=LR;\n  nodesep=0.35;\n"
       "  ranksep=1.2;\n  fontname=\"sans-serif\";\n"
       "  node [shape=plain, fontname=\"sans-serif\"];\n"
@@ -165,21 +165,21 @@ std::string as_dot(const Drawing& drawing) {
       in_quotes(drawing.title));
   std::map<std::string, std::string> groups;  // their boxes
   for (const auto& box : drawing.boxes)
-    groups[box.group] += fmt::format("  {} [label=<{}>];\n", in_quotes(box.name),
-                                     table_of(box, inputs[box.name], outputs[box.name]));
+    groups[box.group] += hc::format("  {} [label=<{}>];\n", in_quotes(box.name),
+                                    table_of(box, inputs[box.name], outputs[box.name]));
   for (const auto& [group, boxes] : groups)
     text += group.empty() ? boxes
-                          : fmt::format(
+                          : hc::format(
                                 "  subgraph {} {{\n  label={};\n  color=\"#999999\";\n"
                                 "  style=\"rounded,dashed\";\n{}  }}\n",
                                 in_quotes("cluster_" + group), in_quotes(group), boxes);
-  for (const auto& name : outside) text += fmt::format("  {};\n", in_quotes(name));
+  for (const auto& name : outside) text += hc::format("  {};\n", in_quotes(name));
   for (const auto& arrow : drawing.arrows) {
     auto [from, output] = split(arrow.from);
     auto [to, input] = split(arrow.to);
     text += in_quotes(from) + (output.empty() ? "" : ":" + in_quotes("out_" + output) + ":e") +
             " -> " + in_quotes(to) + (input.empty() ? "" : ":" + in_quotes("in_" + input) + ":w") +
-            fmt::format(" [label={}", in_quotes(arrow.words));
+            hc::format(" [label={}", in_quotes(arrow.words));
     if (arrow.is_bold) text += ", penwidth=3, color=black";
     if (arrow.is_wrong) text += ", color=\"#cc0000\", fontcolor=\"#cc0000\"";
     text += "];\n";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph.h"
 
-#include <fmt/format.h>
+#include <hc/base/format.h>
 
 #include "common.h"
 
@@ -19,7 +19,7 @@ hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader) {
   auto loaded = loader.load(nullptr, -1);
   if (!loaded) throw Failure(loaded.error());
   if (loaded->plan) return std::move(*loaded);
-  for (const auto& line : loaded->problems) say(fmt::format("hc {}: error: {}", verb, line));
+  for (const auto& line : loaded->problems) say(hc::format("hc {}: error: {}", verb, line));
   throw Failure(2);
 }
 

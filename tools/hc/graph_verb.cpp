@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc graph: draws a graph, and inspects and changes a running one.
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 
 #include "common.h"
@@ -38,7 +38,7 @@ void write_svg(const std::string& dot, const std::string& path) {
   if (pipe == nullptr) throw Failure(hc::Error{hc::Code::System, "dot cannot be started"});
   std::fwrite(dot.data(), 1, dot.size(), pipe);
   if (int status = ::pclose(pipe); status != 0)
-    throw Failure(hc::Error{hc::Code::System, fmt::format("dot failed: {} not written", path)});
+    throw Failure(hc::Error{hc::Code::System, hc::format("dot failed: {} not written", path)});
 }
 
 void draw(const Options& options) {
@@ -97,7 +97,7 @@ const hc::ModuleState& find_module(const hc::GraphState& state, const std::strin
     known.push_back(module.name);
   }
   throw Failure(
-      {hc::Code::Invalid, fmt::format("no module \"{}\"{}", name, hc::suggestion(name, known))});
+      {hc::Code::Invalid, hc::format("no module \"{}\"{}", name, hc::suggestion(name, known))});
 }
 
 /// Prints parameters with value, unit, range and default.
@@ -119,8 +119,8 @@ void get(const RunningGraph& graph, const std::string& what) {
       const auto found = module.parameters.find(name);
       const std::string unit = parameter.value("unit", ""), range = range_text(parameter);
       std::string words =
-          fmt::format("{}{}", found == module.parameters.end() ? standard : found->second,
-                      unit.empty() ? "" : " " + unit);
+          hc::format("{}{}", found == module.parameters.end() ? standard : found->second,
+                     unit.empty() ? "" : " " + unit);
       std::string about =
           (range.empty() ? "" : range + ", ") + "default " + (standard.empty() ? "\"\"" : standard);
       if (parameter.at("fixed")) about += ", set restarts the module";
@@ -129,8 +129,8 @@ void get(const RunningGraph& graph, const std::string& what) {
     }
     if (!wanted.empty() && rows.empty())
       throw Failure(
-          {hc::Code::Invalid, fmt::format("module {} has no parameter \"{}\"{}", module.name,
-                                          wanted, hc::suggestion(wanted, known))});
+          {hc::Code::Invalid, hc::format("module {} has no parameter \"{}\"{}", module.name, wanted,
+                                         hc::suggestion(wanted, known))});
   };
   if (!what.empty()) add(find_module(state, what.substr(0, dot)));
   for (const auto& module : state.modules)
@@ -138,7 +138,7 @@ void get(const RunningGraph& graph, const std::string& what) {
   constexpr std::size_t kMaxColumn = 60;
   std::string text;
   for (const auto& [value, about] : rows)
-    text += fmt::format("{:<{}}  ({})\n", value, std::min(widest, kMaxColumn), about);
+    text += hc::format("{:<{}}  ({})\n", value, std::min(widest, kMaxColumn), about);
   print(text);
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc info: summarises a recording or stream.
-#include <fmt/format.h>
 
 #include <map>
 #include <optional>
 #include <set>
+
+#include <hc/base/format.h>
 
 #include "common.h"
 #include "observer.h"
@@ -25,7 +26,7 @@ struct Sender {
     const hc::Header& header = message.header;
     constexpr std::size_t kMostTypes = 8;
     if (types.size() < kMostTypes)
-      types.insert(fmt::format("{}x{} {}", header.width, header.height, text(header.info)));
+      types.insert(hc::format("{}x{} {}", header.width, header.height, text(header.info)));
     if (last_seq >= 0) {  // R41
       if (header.seq > last_seq + 1) lost += static_cast<std::uint64_t>(header.seq - last_seq - 1);
       if (header.seq == last_seq) ++repeated;
@@ -51,21 +52,21 @@ struct Options {
 
 void print_senders(const std::map<std::int32_t, Sender>& senders) {
   std::string text =
-      fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>10}  {}\n", "src", "messages", "elements",
-                  "duration", "rate", "lost", "duplicates", "matrices");
+      hc::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>10}  {}\n", "src", "messages", "elements",
+                 "duration", "rate", "lost", "duplicates", "matrices");
   for (const auto& [src, sender] : senders) {
     bool timed = sender.seconds() > 0;
     std::string types;
     for (const auto& type : sender.types) types += (types.empty() ? "" : "; ") + type;
-    text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>10}  {}\n", src, sender.messages,
-                        bytes_in_words(static_cast<double>(sender.bytes)),
-                        timed ? fmt::format("{:.3f} s", sender.seconds()) : "-",
-                        timed ? fmt::format("{:.3g} Hz", static_cast<double>(sender.messages - 1) /
-                                                             sender.seconds())
-                              : "-",
-                        sender.lost, sender.repeated, types);
+    text += hc::format(
+        "{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>10}  {}\n", src, sender.messages,
+        bytes_in_words(static_cast<double>(sender.bytes)),
+        timed ? hc::format("{:.3f} s", sender.seconds()) : "-",
+        timed ? hc::format("{:.3g} Hz", static_cast<double>(sender.messages - 1) / sender.seconds())
+              : "-",
+        sender.lost, sender.repeated, types);
     if (sender.restarts > 0)
-      text += fmt::format("{:>6} seq restarted {} times\n", "", sender.restarts);
+      text += hc::format("{:>6} seq restarted {} times\n", "", sender.restarts);
   }
   print(text);
 }
@@ -91,14 +92,14 @@ void run(const Options& options) {
     skipper.whole_message();
     senders[message.header.src].add(message);
     auto traffic = source->traffic();
-    progress.show(-1, fmt::format("{} messages, {}", traffic.messages,
-                                  bytes_in_words(static_cast<double>(traffic.bytes))));
+    progress.show(-1, hc::format("{} messages, {}", traffic.messages,
+                                 bytes_in_words(static_cast<double>(traffic.bytes))));
   }
   // Also where the end is corrupt.
   print_senders(senders);
   auto traffic = source->traffic();
-  print(fmt::format("{} message{}, {}\n", traffic.messages, traffic.messages == 1 ? "" : "s",
-                    bytes_in_words(static_cast<double>(traffic.bytes))));
+  print(hc::format("{} message{}, {}\n", traffic.messages, traffic.messages == 1 ? "" : "s",
+                   bytes_in_words(static_cast<double>(traffic.bytes))));
   say_losses("hc info", options.uri, traffic);
   if (fault) throw Failure(*fault);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc: runs and inspects graphs of modules. `hc NAME …` starts a module.
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/graph/run.h>
 
@@ -72,7 +72,7 @@ void become_module(const std::string& name, char** argv) {
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   ::execv(program.c_str(), arguments.data());
-  tool::say(fmt::format("hc: {}: {}", program, std::strerror(errno)));
+  tool::say(hc::format("hc: {}: {}", program, std::strerror(errno)));
 }
 
 }  // namespace
@@ -107,15 +107,15 @@ int main(int argc, char** argv) {
   try {
     if (!first.empty() && first[0] != '-' && !is_verb) become_module(first, argv + 1);
   } catch (const tool::Failure& failure) {
-    tool::say(fmt::format("hc {}: {}", first, failure.what()));
+    tool::say(hc::format("hc {}: {}", first, failure.what()));
     return failure.status;
   }
   if (!first.empty() && first[0] != '-' && !is_verb) {
     std::vector<std::string> known = tool::module_names();
     for (const auto* verb : app.get_subcommands([](const CLI::App*) { return true; }))
       known.push_back(verb->get_name());
-    tool::say(fmt::format("hc: unknown command or module \"{}\"{}; see hc --help", first,
-                          hc::suggestion(first, known)));
+    tool::say(hc::format("hc: unknown command or module \"{}\"{}; see hc --help", first,
+                         hc::suggestion(first, known)));
     return kUsage;
   }
   try {
@@ -124,14 +124,14 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too.
     if (error.get_exit_code() == 0) return app.exit(error);
-    tool::say(fmt::format("hc{}: {}", is_verb ? " " + first : "", error.what()));
+    tool::say(hc::format("hc{}: {}", is_verb ? " " + first : "", error.what()));
     return kUsage;
   } catch (const tool::Failure& failure) {
     const bool is_silent = failure.status == 0 || *failure.what() == '\0';
-    if (!is_silent) tool::say(fmt::format("hc {}: {}", first, failure.what()));
+    if (!is_silent) tool::say(hc::format("hc {}: {}", first, failure.what()));
     return failure.status;
   } catch (const std::exception& error) {
-    tool::say(fmt::format("hc {}: {}", first, error.what()));
+    tool::say(hc::format("hc {}: {}", first, error.what()));
     return 1;
   }
 }

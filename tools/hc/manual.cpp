@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc completion, hc man: what a shell and man(1) know of hc, generated from its options.
-#include <fmt/format.h>
+
+#include <hc/base/format.h>
 
 #include "common.h"
 #include "verbs.h"
@@ -34,7 +35,7 @@ std::string bash_completion(const CLI::App& app) {
       "  local word=${COMP_WORDS[COMP_CWORD]} words=\n"
       "  case ${COMP_WORDS[1]} in\n";
   for (const auto* verb : verbs_of(app))
-    text += fmt::format("    {}) words='{}' ;;\n", verb->get_name(), words_of(*verb));
+    text += hc::format("    {}) words='{}' ;;\n", verb->get_name(), words_of(*verb));
   return text +
          "  esac\n"
          "  [ \"$COMP_CWORD\" = 1 ] && words=\"" +
@@ -59,22 +60,22 @@ std::string roff(const std::string& text) {
 std::string options_text(const CLI::App& verb) {
   std::string text;
   for (const auto* option : verb.get_options())
-    text += fmt::format(".TP\n.B {}\n{}\n", roff(option->get_name(true)),
-                        roff(option->get_description()));
+    text += hc::format(".TP\n.B {}\n{}\n", roff(option->get_name(true)),
+                       roff(option->get_description()));
   return text;
 }
 
 std::string man_page(const CLI::App& app) {
-  std::string text = fmt::format(".TH HC 1 \"\" \"hc " HC_VERSION
-                                 "\"\n.SH NAME\nhc \\- {}\n.SH SYNOPSIS\n.B hc\n.I command\n"
-                                 "[options]\n.br\n.B hc\n.I module\n[options]\n.SH COMMANDS\n",
-                                 roff(app.get_description()));
+  std::string text = hc::format(".TH HC 1 \"\" \"hc " HC_VERSION
+                                "\"\n.SH NAME\nhc \\- {}\n.SH SYNOPSIS\n.B hc\n.I command\n"
+                                "[options]\n.br\n.B hc\n.I module\n[options]\n.SH COMMANDS\n",
+                                roff(app.get_description()));
   for (const auto* verb : verbs_of(app)) {
-    text += fmt::format(".SS hc {}\n{}\n{}", roff(verb->get_name()), roff(verb->get_description()),
-                        options_text(*verb));
+    text += hc::format(".SS hc {}\n{}\n{}", roff(verb->get_name()), roff(verb->get_description()),
+                       options_text(*verb));
     for (const auto* each : verbs_of(*verb))
-      text += fmt::format(".TP\n.B hc {} {}\n{}\n", roff(verb->get_name()), roff(each->get_name()),
-                          roff(each->get_description()));
+      text += hc::format(".TP\n.B hc {} {}\n{}\n", roff(verb->get_name()), roff(each->get_name()),
+                         roff(each->get_description()));
   }
   return text +
          ".SH ENVIRONMENT\n.TP\n.B HC_GRAPH\nthe running graph that commands mean, where there are "

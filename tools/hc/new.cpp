@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc new: creates a module outside of this project, from templates that this program contains.
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include <hc/base/format.h>
 
 #include "common.h"
 #include "templates.h"
@@ -64,9 +65,9 @@ std::string prefix_option() {
 void begin(const Options& options) {
   if (!is_snake_case(options.name))
     throw Failure(hc::Error{hc::Code::Invalid,
-                            fmt::format("a module's name is snake_case, of at most {} letters, "
-                                        "not \"{}\"",
-                                        kMaxName, options.name)});
+                            hc::format("a module's name is snake_case, of at most {} letters, "
+                                       "not \"{}\"",
+                                       kMaxName, options.name)});
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))
@@ -80,11 +81,11 @@ void begin(const Options& options) {
     remove_licence(text);
     write_file(folder / path, text);
   }
-  std::string test = fmt::format("python3 {}_test.py", options.name);
+  std::string test = hc::format("python3 {}_test.py", options.name);
   if (!options.is_python)
     test = "cmake -S . -B build" + prefix_option() +
            " && cmake --build build && ctest --test-dir build";
-  print(fmt::format("created {}/; next: cd {} && {}\n", folder.string(), folder.string(), test));
+  print(hc::format("created {}/; next: cd {} && {}\n", folder.string(), folder.string(), test));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "observer.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include <fstream>
 #include <sstream>
 
+#include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/mtp/rows.h>
 #include <hc/os/program.h>
@@ -32,7 +32,7 @@ constexpr int kMostWaits = 12;                       // so long
 constexpr std::chrono::milliseconds kSilence{5000};  // a graph speaks twice a second
 
 std::string place(const RunningGraph& graph) {
-  return fmt::format("unix:@{}{}", kPrefix, graph.text());
+  return hc::format("unix:@{}{}", kPrefix, graph.text());
 }
 
 constexpr char kGranted = 'u';  // begins the URI of an observation; no code of an error
@@ -43,7 +43,7 @@ bool is_of_this_terminal(int process) {
 
 bool is_of_this_folder(int process) {
   std::error_code unknown;
-  const auto folder = std::filesystem::read_symlink(fmt::format("/proc/{}/cwd", process), unknown);
+  const auto folder = std::filesystem::read_symlink(hc::format("/proc/{}/cwd", process), unknown);
   return !unknown && folder == std::filesystem::current_path(unknown);
 }
 
@@ -107,8 +107,8 @@ RunningGraph choose_running(const std::string& wanted) {
   if (graphs.empty())
     throw Failure(hc::Error{hc::Code::NotFound,
                             name.empty() ? "no graph is running here"
-                                         : fmt::format("no graph \"{}\" is running{}", name,
-                                                       hc::suggestion(name, names))});
+                                         : hc::format("no graph \"{}\" is running{}", name,
+                                                      hc::suggestion(name, names))});
   for (bool (*is_near)(int) : {is_of_this_terminal, is_of_this_folder}) {
     if (graphs.size() == 1 || !name.empty()) break;
     std::vector<RunningGraph> near;
@@ -158,7 +158,7 @@ std::optional<hc::GraphState> Observer::next_measured() {
 }
 
 std::vector<std::string> ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
-  const std::string answers = fmt::format("@{}{}", kAnswerPrefix, ::getpid());
+  const std::string answers = hc::format("@{}{}", kAnswerPrefix, ::getpid());
   auto source = open_source("unix-listen:" + answers, kMostSaid);
   std::vector<std::string> rows = {"reply unix:" + answers};
   rows.insert(rows.end(), commands.begin(), commands.end());

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "outbox.h"
 
-#include <fmt/format.h>
-
 #include <condition_variable>
 #include <csignal>
 #include <mutex>
 #include <utility>
 
+#include <hc/base/format.h>
 #include <hc/os/program.h>
 
 namespace tool {
@@ -33,7 +32,7 @@ struct Outbox::Shared {
     constexpr const char* kErase = "\r\033[K";
     std::string text = is_below_drawn ? kErase : "";
     text += std::exchange(waiting, {});
-    if (dropped > 0) text += fmt::format("hc run: {} lines are not shown\n", dropped);
+    if (dropped > 0) text += hc::format("hc run: {} lines are not shown\n", dropped);
     dropped = 0;
     text += below;
     is_below_drawn = !below.empty();

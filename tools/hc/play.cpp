@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc play: plays a recording back at its own speed.
-#include <fmt/format.h>
 
 #include <charconv>
 #include <chrono>
 #include <limits>
 
+#include <hc/base/format.h>
 #include <hc/os/program.h>
 
 #include "common.h"
@@ -90,7 +90,7 @@ bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& p
     any = true;
     auto traffic = source->traffic();
     double share = size > 0 && !unknown ? static_cast<double>(traffic.bytes) / size : -1;
-    progress.show(share, fmt::format("{} messages", traffic.messages));
+    progress.show(share, hc::format("{} messages", traffic.messages));
   }
   return any && !hc::stop_requested();
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc ps: the graphs that run on this host.
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+
+#include <hc/base/format.h>
 
 #include "common.h"
 #include "observer.h"
@@ -21,22 +22,22 @@ std::string row(const hc::GraphState& state, bool is_plain) {
   std::string status = state.is_stopping ? "stopping" : "running";
   for (auto trouble : {hc::ModuleStatus::Stalled, hc::ModuleStatus::GivenUp})
     if (auto number = count(trouble); number > 0)
-      status += fmt::format(", {} {}", number, name(trouble));
+      status += hc::format(", {} {}", number, name(trouble));
   const bool is_red = std::any_of(state.modules.begin(), state.modules.end(), is_in_trouble);
   const bool is_painted = is_red && !is_plain;
-  return fmt::format("{}{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}{}\n", is_painted ? "\x1b[31m" : "",
-                     state.name, state.process, seconds_in_words(state.uptime),
-                     count(hc::ModuleStatus::Running), state.modules.size(),
-                     state.focus == 0 ? "-" : state.focus_name(), status,
-                     is_painted ? "\x1b[0m" : "");
+  return hc::format("{}{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}{}\n", is_painted ? "\x1b[31m" : "",
+                    state.name, state.process, seconds_in_words(state.uptime),
+                    count(hc::ModuleStatus::Running), state.modules.size(),
+                    state.focus == 0 ? "-" : state.focus_name(), status,
+                    is_painted ? "\x1b[0m" : "");
 }
 
 void ps(bool as_json) {
   const bool is_plain = ::isatty(STDOUT_FILENO) == 0;
   std::string text;
   if (!as_json)
-    text = fmt::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n", "GRAPH", "PROCESS", "RUNS FOR",
-                       "UP", "ALL", "FOCUS", "STATUS");
+    text = hc::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n", "GRAPH", "PROCESS", "RUNS FOR",
+                      "UP", "ALL", "FOCUS", "STATUS");
   for (const auto& graph : find_running()) {
     try {
       if (auto state = Observer(graph).next())
@@ -44,7 +45,7 @@ void ps(bool as_json) {
     } catch (const Failure& failure) {
       // It has just ended, or is another user's; the others are of interest even so.
       if (!as_json)
-        text += fmt::format("{:<16} {:>7} {}\n", graph.name, graph.process, failure.what());
+        text += hc::format("{:<16} {:>7} {}\n", graph.name, graph.process, failure.what());
     }
   }
   print(text);

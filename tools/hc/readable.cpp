@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "readable.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <limits>
 
+#include <hc/base/format.h>
 #include <hc/mtp/coords.h>
 #include <hc/mtp/text.h>
 
@@ -45,8 +44,7 @@ std::string rows_of(const hc::MatrixView<const T>& matrix) {
     ++known;
   }
   if (known > 0)
-    text +=
-        fmt::format("  {:g} … {:g}, mean {:g}\n", least, most, sum / static_cast<double>(known));
+    text += hc::format("  {:g} … {:g}, mean {:g}\n", least, most, sum / static_cast<double>(known));
   return text;
 }
 
@@ -56,7 +54,7 @@ std::string harmless(std::string_view text) {
   for (char c : text) {
     bool control = (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f;
     if (control)
-      result += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      result += hc::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
     else
       result += c;
   }
@@ -70,24 +68,24 @@ std::string time_in_words(std::int64_t time) {
   std::time_t seconds = time / kSecond;
   std::tm parts{};
   ::gmtime_r(&seconds, &parts);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:09}", parts.tm_year + 1900,
-                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
-                     time % kSecond);
+  return hc::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:09}", parts.tm_year + 1900,
+                    parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
+                    time % kSecond);
 }
 
 std::string to_readable(const hc::Message& message) {
   const hc::Header& header = message.header;
-  std::string text = fmt::format("{} {} x {} of {} {}, src {} seq {}", name(header.info.type),
-                                 header.width, header.height, header.info.components,
-                                 name(header.info.scalar), header.src, header.seq);
-  if (header.dst != 0) text += fmt::format(" dst {}", header.dst);
-  if (header.mode != 0) text += fmt::format(" mode {}", header.mode);
+  std::string text = hc::format("{} {} x {} of {} {}, src {} seq {}", name(header.info.type),
+                                header.width, header.height, header.info.components,
+                                name(header.info.scalar), header.src, header.seq);
+  if (header.dst != 0) text += hc::format(" dst {}", header.dst);
+  if (header.mode != 0) text += hc::format(" mode {}", header.mode);
   if (header.coord != 0) text += " in " + hc::coord_text(header.coord);
   if (header.time != 0) text += " at " + time_in_words(header.time);
   text += "\n";
   if (!message.plain())
     return text +
-           fmt::format("  {} bytes of {}\n", message.elements.size(), name(header.info.encoding));
+           hc::format("  {} bytes of {}\n", message.elements.size(), name(header.info.encoding));
   if (header.empty()) return text;
   if (header.info.type == hc::MatrixType::String)
     return text + "  " + harmless(message.characters()) + "\n";

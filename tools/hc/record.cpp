@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc record: records ports or links to a file.
-#include <fmt/format.h>
 
 #include <filesystem>
 
+#include <hc/base/format.h>
 #include <hc/link/wait_set.h>
 #include <hc/os/program.h>
 
@@ -66,8 +66,8 @@ void run(const Options& options) {
       any = true;
       if (auto sent = sink->send(message); !sent) throw Failure(options.file, sent.error());
       auto traffic = sink->traffic();
-      progress.show(-1, fmt::format("{} messages, {}", traffic.messages,
-                                    bytes_in_words(static_cast<double>(traffic.bytes))));
+      progress.show(-1, hc::format("{} messages, {}", traffic.messages,
+                                   bytes_in_words(static_cast<double>(traffic.bytes))));
       if (traffic.messages == options.count) return;
     }
     if (open.empty()) return;

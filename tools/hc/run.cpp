@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc run: runs a graph.
-#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include <hc/base/format.h>
 #include <hc/graph/run.h>
 #include <hc/os/program.h>
 
@@ -25,7 +25,7 @@ struct Options {
 };
 
 std::string counted(std::uint64_t number, std::string_view what) {
-  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+  return hc::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
 
 /// What a run came to, for a person: a few lines, the modules' results among them.
@@ -38,7 +38,7 @@ void print_summary(const Options& options, const hc::RunReport& report) {
   }
   for (const auto& module : report.state.modules)
     restarts += static_cast<std::uint64_t>(module.restarts);
-  std::string text = fmt::format(
+  std::string text = hc::format(
       "{} ran for {}: {}{}, {} ({})\n", options.graph.file, seconds_in_words(report.state.uptime),
       counted(report.state.modules.size(), "module"),
       restarts > 0 ? ", " + counted(restarts, "restart") : "", counted(sum.messages, "message"),
@@ -48,7 +48,7 @@ void print_summary(const Options& options, const hc::RunReport& report) {
   for (auto [count, word] : {std::pair(sum.over_rate, "throttled"),
                              {sum.lost() - sum.over_rate, "dropped"},
                              {ignored, "ignored out of focus"}})
-    if (count > 0) lost += fmt::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
+    if (count > 0) lost += hc::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
   if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");
   if (!options.graph.record.empty()) text += "  recorded into " + options.graph.record + "\n";
   print(text);
@@ -64,9 +64,9 @@ void print_links(const hc::GraphState& state) {
     const auto& sent = link.traffic;
     std::string lost;
     if (sent.lost() > 0) lost = "  " + losses_in_words(sent);
-    text += fmt::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
-                        sent.messages == 1 ? " " : "s",
-                        bytes_in_words(static_cast<double>(sent.bytes)), lost);
+    text += hc::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
+                       sent.messages == 1 ? " " : "s",
+                       bytes_in_words(static_cast<double>(sent.bytes)), lost);
   }
   print(text);
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "screen.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
+
+#include <hc/base/format.h>
 
 #include "common.h"
 
@@ -58,17 +58,17 @@ std::string heading(const hc::GraphState& state) {
     load += module.processor;
   }
   for (const auto& link : state.links) rate += link.per_second;
-  return fmt::format("{}: {} {}, {}/{} modules up, {} messages/s, {:.0f} % CPU{}", state.name,
-                     state.is_stopping ? "stopping" : "running", seconds_in_words(state.uptime), up,
-                     state.modules.size(), short_number(rate), 100 * load,
-                     state.focus == 0 ? "" : ", focus " + state.focus_name());
+  return hc::format("{}: {} {}, {}/{} modules up, {} messages/s, {:.0f} % CPU{}", state.name,
+                    state.is_stopping ? "stopping" : "running", seconds_in_words(state.uptime), up,
+                    state.modules.size(), short_number(rate), 100 * load,
+                    state.focus == 0 ? "" : ", focus " + state.focus_name());
 }
 
 std::string bids_line(const std::vector<Bid>& bids) {
   std::string text;
   for (const auto& bid : bids)
-    text += fmt::format("{}{} {:.2f}{}{}", text.empty() ? "bids: " : ", ", bid.mode, bid.salience,
-                        bid.is_person ? " (person)" : "", bid.in_focus ? " *" : "");
+    text += hc::format("{}{} {:.2f}{}{}", text.empty() ? "bids: " : ", ", bid.mode, bid.salience,
+                       bid.is_person ? " (person)" : "", bid.in_focus ? " *" : "");
   return text;
 }
 
@@ -96,7 +96,7 @@ std::string names(const std::vector<Column<Row>>& columns) {
 
 void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Line>& lines) {
   const std::vector<Column<hc::ModuleState>> columns = {
-      {"CPU", 7, [](const auto& m) { return fmt::format("{:.1f}%", 100 * m.processor); }},
+      {"CPU", 7, [](const auto& m) { return hc::format("{:.1f}%", 100 * m.processor); }},
       {"MEMORY", 9, [](const auto& m) { return bytes_in_words(static_cast<double>(m.memory)); }},
       {"RESTARTS", 9, [](const auto& m) { return std::to_string(m.restarts); }},
   };
@@ -112,8 +112,8 @@ void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Lin
   for (const auto& module : state.modules) {
     auto status = status_text(module);
     if (!module.last_line.empty())
-      status += fmt::format(" | {} ({} ago)", module.last_line,
-                            seconds_in_words(std::max(0.0, module.last_line_age)));
+      status += hc::format(" | {} ({} ago)", module.last_line,
+                           seconds_in_words(std::max(0.0, module.last_line_age)));
     const auto text = fitted(module.name, name) + cells(columns, module) + "  " +
                       fitted(module.mode, mode) + " " + status;
     lines.push_back({fitted(text, width), module.in_workspace, is_in_trouble(module),
@@ -204,7 +204,7 @@ std::string short_number(double number) {
   while (size >= 999.5 && prefix + 1 < kPrefixes.size()) size /= 1000, ++prefix;
   int digits = size < 9.995 ? 2 : size < 99.95 ? 1 : 0;
   if (prefix == 0 && size == std::floor(size)) digits = 0;
-  return fmt::format("{}{:.{}f}{}", number < 0 ? "-" : "", size, digits, kPrefixes.at(prefix));
+  return hc::format("{}{:.{}f}{}", number < 0 ? "-" : "", size, digits, kPrefixes.at(prefix));
 }
 
 std::string short_time(double seconds) {
@@ -231,8 +231,8 @@ std::string draw(const hc::GraphState& state, const std::vector<Bid>& bids, cons
     const std::size_t room = screen.height - fixed.size();
     if (lines.size() > room && room > 1) {
       const std::size_t shown = room - 1, first = std::min(screen.first, lines.size() - shown);
-      const auto more = fmt::format("lines {} to {} of {}; arrow keys scroll, q quits", first + 1,
-                                    first + shown, lines.size());
+      const auto more = hc::format("lines {} to {} of {}; arrow keys scroll, q quits", first + 1,
+                                   first + shown, lines.size());
       lines = {lines.begin() + static_cast<std::ptrdiff_t>(first),
                lines.begin() + static_cast<std::ptrdiff_t>(first + shown)};
       lines.push_back({more, false, false, true});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc send: makes one message, from the command line or from a file.
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +12,7 @@
 #include <optional>
 #include <system_error>
 
+#include <hc/base/format.h>
 #include <hc/compress/compress.h>
 #include <hc/mtp/text.h>
 
@@ -39,7 +39,7 @@ template <typename E>
 E named(std::optional<E> value, const std::string& kind, const std::string& name) {
   if (!value)
     throw Failure(hc::Error{hc::Code::Invalid,
-                            fmt::format("no {} \"{}\"; see spec/mtp-1.md, section 3", kind, name)});
+                            hc::format("no {} \"{}\"; see spec/mtp-1.md, section 3", kind, name)});
   return *value;
 }
 
@@ -63,7 +63,7 @@ hc::Message message_of_numbers(const Options& options) {
     auto error = hc::find_error(header.info);
     if (!error) break;
     if (options.components != 0 || error->rule != 18)
-      throw Failure(hc::Error{hc::Code::Invalid, fmt::format("R{}: {}", error->rule, error->what)});
+      throw Failure(hc::Error{hc::Code::Invalid, hc::format("R{}: {}", error->rule, error->what)});
   }
   std::size_t elements = options.numbers.size() / header.info.components;
   std::size_t width = options.width > 0 ? static_cast<std::size_t>(options.width)
@@ -73,9 +73,9 @@ hc::Message message_of_numbers(const Options& options) {
   if (width * height * header.info.components != options.numbers.size())
     throw Failure(hc::Error{
         hc::Code::Invalid,
-        fmt::format("{} numbers do not make {} of {} components each", options.numbers.size(),
-                    options.width > 0 ? fmt::format("rows of {} elements", width) : "elements",
-                    header.info.components)});
+        hc::format("{} numbers do not make {} of {} components each", options.numbers.size(),
+                   options.width > 0 ? hc::format("rows of {} elements", width) : "elements",
+                   header.info.components)});
   header.width = static_cast<std::int32_t>(width);
   header.height = static_cast<std::int32_t>(height);
   if (auto valid = hc::check(header); !valid) throw Failure(valid.error());

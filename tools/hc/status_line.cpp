@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "status_line.h"
 
-#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <map>
+
+#include <hc/base/format.h>
 
 namespace tool {
 
@@ -19,10 +20,10 @@ std::string summary_of(const hc::GraphState& state) {
         hc::ModuleStatus::GivenUp})
     if (counts[status] > 0)
       modules +=
-          fmt::format("{}{} {}", modules.empty() ? "" : ", ", counts[status], hc::name(status));
+          hc::format("{}{} {}", modules.empty() ? "" : ", ", counts[status], hc::name(status));
   double rate = 0;
   for (const auto& link : state.links) rate += link.per_second;
-  std::string text = fmt::format("{} | {:.0f} messages/s", modules, rate);
+  std::string text = hc::format("{} | {:.0f} messages/s", modules, rate);
   if (state.focus != 0) text += " | focus: " + state.focus_name();
   return text;
 }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Text with values in it: the part of std::format that we need, which g++ 12 lacks. Pure.
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+namespace hc {
+namespace internal {
+
+using FormatValue = std::variant<std::int64_t, std::uint64_t, double, std::string_view>;
+
+template <typename T>
+FormatValue format_value(const T& value) {
+  static_assert(!std::is_same_v<T, char> && !std::is_same_v<T, bool>, "make it text or a number");
+  if constexpr (std::is_floating_point_v<T>)
+    return static_cast<double>(value);
+  else if constexpr (std::is_integral_v<T> && std::is_signed_v<T>)
+    return std::int64_t{value};
+  else if constexpr (std::is_integral_v<T>)
+    return std::uint64_t{value};
+  else
+    return std::string_view(value);
+}
+
+std::string format(std::string_view pattern, std::initializer_list<FormatValue> values);
+
+}  // namespace internal
+
+/// Puts values into a pattern as std::format does.
+///
+///     format("{:<{}} {:>8} {:.2f}", name, width, count, 0.5)
+///
+/// A field is `{}` or `{:[<|>][0][width][.precision][f|g|x]}`; width and precision may be `{}`, the
+/// next values. A text is as wide as it has UTF-8 code points. `{{` and `}}` are braces. A pattern
+/// that does not fit its values is a bug.
+template <typename... Values>
+std::string format(std::string_view pattern, const Values&... values) {
+  return internal::format(pattern, {internal::format_value(values)...});
+}
+
+}  // namespace hc
