@@ -152,7 +152,7 @@ void doubles_read_reference(benchmark::State& state) {
 }
 BENCHMARK(doubles_read_reference)->Arg(0)->Arg(1);
 
-/// An SVGA picture in memory: what decoding costs beside copying it.
+/// An SVGA image in memory: what decoding costs beside copying it.
 void image_decode(benchmark::State& state) {
   std::string bytes = hc::encode(
       std::move(hc::Draft::make({hc::MatrixType::RgbImage, 3, hc::Scalar::U8, hc::Encoding::Binary},

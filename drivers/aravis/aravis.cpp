@@ -18,7 +18,7 @@ namespace {
 constexpr int kBuffers = 8;
 constexpr std::chrono::milliseconds kSilence{1000};
 constexpr std::chrono::milliseconds kForEver = std::chrono::hours(24 * 365 * 100);
-constexpr std::chrono::milliseconds kBeginning{2000};  // so much more until the first picture
+constexpr std::chrono::milliseconds kBeginning{2000};  // so much more until the first image
 // A camera's time that is further from ours is by another clock.
 constexpr std::int64_t kMostAge = 10'000'000'000;  // [ns]
 
@@ -175,7 +175,7 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
   return std::unique_ptr<Camera>(new Camera(std::move(handles)));
 }
 
-Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
+Result<std::optional<Image>> Camera::next(std::chrono::milliseconds timeout) {
   auto& all = *handles_;
   if (*all.is_lost) return Error{Code::Closed, "connection lost"};
   ArvBuffer* buffer = arv_stream_timeout_pop_buffer(
@@ -191,7 +191,7 @@ Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
       *all.is_lost = true;
       return Error{Code::Closed, "no image received"};
     }
-    return std::optional<Picture>();
+    return std::optional<Image>();
   }
   all.heard = now;
   std::size_t bytes = 0;
@@ -206,7 +206,7 @@ Result<std::optional<Picture>> Camera::next(std::chrono::milliseconds timeout) {
   if (!bgr) return bgr.error();
   const std::int64_t wall = wall_clock();
   const bool is_sensible = came > wall - kMostAge && came <= wall;
-  return std::optional<Picture>(Picture{*bgr, is_sensible ? came : wall});
+  return std::optional<Image>(Image{*bgr, is_sensible ? came : wall});
 }
 
 Status Camera::set_exposure(double exposure) {

@@ -14,21 +14,21 @@
 
 namespace hc::aravis {
 
-struct Picture {
+struct Image {
   cv::Mat bgr;            ///< (H, W, 3) u8: blue, green, red
   std::int64_t time = 0;  ///< when it came, by the wall clock [ns since the Unix epoch]
 };
 
 class Camera {
  public:
-  /// Opens a camera and has it give pictures all the time.
+  /// Opens a camera and has it give images all the time.
   ///
   /// @param name  its name, serial number, network address; "" the first one; Fake_1 one that
   ///     Aravis itself makes up.
   /// @param pixel_format  as GenICam calls it, such as BayerRG8; "" as the camera is set, or where
   ///     that is none of Mono8, RGB8, BGR8 and 8-bit Bayer, one of these.
   ///
-  /// @param rate  of pictures [1/s], where the camera can; 0: as it is set.
+  /// @param rate  of images [1/s], where the camera can; 0: as it is set.
   ///
   /// Errors: NotFound (no such camera), Unsupported (the format), System (what Aravis says).
   /// Cost: blocks for some 10 ms, and for up to 3 s where no camera answers.
@@ -39,14 +39,14 @@ class Camera {
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
 
-  /// Waits for the next picture; ones that came incomplete are passed over.
+  /// Waits for the next image; ones that came incomplete are passed over.
   /// @returns  nothing when none came within `timeout`.
   ///
   /// Errors: Closed (the camera is lost: Aravis says so, or it has been silent for a second
   /// beyond its exposure and two periods of its rate, and two more at first; one that waits for a
   /// trigger may be silent),
   /// Malformed, Unsupported (what it sends).
-  Result<std::optional<Picture>> next(std::chrono::milliseconds timeout);
+  Result<std::optional<Image>> next(std::chrono::milliseconds timeout);
 
   /// Sets the time of exposure and ends the camera's own choice of it. [s]
   /// Errors: Unsupported (it has none, or not this one), System.

@@ -6,26 +6,26 @@
 namespace hc::aravis {
 namespace {
 
-/// The next picture, however slow the machine is; the test's watchdog ends a wait without end.
-Result<Picture> wait_for_picture(Camera& camera) {
+/// The next image, however slow the machine is; the test's watchdog ends a wait without end.
+Result<Image> wait_for_image(Camera& camera) {
   while (true) {
-    auto picture = camera.next(std::chrono::milliseconds(500));
-    if (!picture) return picture.error();
-    if (*picture) return **picture;
+    auto image = camera.next(std::chrono::milliseconds(500));
+    if (!image) return image.error();
+    if (*image) return **image;
   }
 }
 
-TEST(Aravis, gives_pictures_with_rising_times) {
+TEST(Aravis, gives_images_with_rising_times) {
   auto camera = Camera::open("Fake_1");
   ASSERT_TRUE(camera) << camera.error().text();
   std::int64_t before = 0;
   for (int i = 0; i < 3; ++i) {
-    auto picture = wait_for_picture(**camera);
-    ASSERT_TRUE(picture) << picture.error().text();
-    EXPECT_EQ(picture->bgr.type(), CV_8UC3);
-    EXPECT_GT(picture->bgr.cols, 100);
-    EXPECT_GT(picture->time, before);
-    before = picture->time;
+    auto image = wait_for_image(**camera);
+    ASSERT_TRUE(image) << image.error().text();
+    EXPECT_EQ(image->bgr.type(), CV_8UC3);
+    EXPECT_GT(image->bgr.cols, 100);
+    EXPECT_GT(image->time, before);
+    before = image->time;
   }
   EXPECT_GT(before, 1'700'000'000'000'000'000);
 }
@@ -33,9 +33,9 @@ TEST(Aravis, gives_pictures_with_rising_times) {
 TEST(Aravis, a_slow_camera_is_not_lost) {
   auto camera = Camera::open("Fake_1", "", 0.6);
   ASSERT_TRUE(camera) << camera.error().text();
-  auto first = wait_for_picture(**camera);
-  auto second = wait_for_picture(**camera);
-  auto third = wait_for_picture(**camera);
+  auto first = wait_for_image(**camera);
+  auto second = wait_for_image(**camera);
+  auto third = wait_for_image(**camera);
   ASSERT_TRUE(first && second && third);
   EXPECT_GT(third->time - second->time, 1'000'000'000);
 }
@@ -50,7 +50,7 @@ TEST(Aravis, sets_exposure_and_gain) {
   ASSERT_TRUE(set) << set.error().text();
   EXPECT_NEAR((*camera)->gain().value_or(0), 3, 0.1);
   EXPECT_EQ((*camera)->set_exposure(1e6).error().code, Code::Unsupported);
-  EXPECT_TRUE(wait_for_picture(**camera));
+  EXPECT_TRUE(wait_for_image(**camera));
 }
 
 TEST(Aravis, chooses_the_gain_itself_until_it_is_set_and_when_it_is_to_again) {
@@ -72,7 +72,7 @@ TEST(Aravis, takes_the_pixel_format_that_is_asked_for) {
     auto camera = Camera::open("Fake_1", format);
     if (!camera && camera.error().code == Code::Unsupported) continue;
     ASSERT_TRUE(camera) << format << camera.error().text();
-    EXPECT_TRUE(wait_for_picture(**camera)) << format;
+    EXPECT_TRUE(wait_for_image(**camera)) << format;
   }
   EXPECT_EQ(Camera::open("Fake_1", "Nonsense").error().code, Code::Unsupported);
 }

@@ -50,14 +50,14 @@ Result<cv::Mat> to_bgr(std::uint32_t format, int width, int height,
   // Bayer's colours take two rows and columns.
   if (width < 2 || height < 2 || padding < 0)
     return Error{Code::Malformed,
-                 "a picture of " + std::to_string(width) + " x " + std::to_string(height)};
+                 "an image of " + std::to_string(width) + " x " + std::to_string(height)};
   const std::size_t row =
       static_cast<std::size_t>(width) * static_cast<std::size_t>(CV_ELEM_SIZE(conversion->type));
   const std::size_t step = row + static_cast<std::size_t>(padding);
   const std::size_t needed = step * static_cast<std::size_t>(height - 1) + row;
   if (pixels.size() < needed)
     return Error{Code::Malformed, std::to_string(pixels.size()) + " bytes, " +
-                                      std::to_string(needed) + " make a picture"};
+                                      std::to_string(needed) + " make an image"};
   const cv::Mat raw(height, width, conversion->type, const_cast<std::byte*>(pixels.data()), step);
   if (conversion->code < 0) return raw.clone();
   cv::Mat bgr;

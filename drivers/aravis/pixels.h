@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The pixels of GenICam cameras as pictures. Pure.
+// The pixels of GenICam cameras as images. Pure.
 
 #include <cstdint>
 #include <span>
@@ -24,9 +24,9 @@ enum class PixelFormat : std::uint32_t {
 /// Whether to_bgr() takes a format.
 bool is_known(std::uint32_t format);
 
-/// A picture of a camera's pixels, in memory of its own.
+/// An image of a camera's pixels, in memory of its own.
 ///
-/// @param pixels  more than a picture is passed over.
+/// @param pixels  more than an image is passed over.
 /// @param padding  behind each row [byte].
 /// @returns  (height, width, 3) u8: blue, green, red. Bayer's colours are interpolated.
 ///

@@ -18,7 +18,7 @@ std::uint32_t number(PixelFormat format) {
   return static_cast<std::uint32_t>(format);
 }
 
-/// A picture of one colour as a sensor with a pattern such as "RGGB" sees it.
+/// An image of one colour as a sensor with a pattern such as "RGGB" sees it.
 std::vector<std::uint8_t> mosaic(const char* pattern, int red, int green, int blue) {
   std::vector<std::uint8_t> values;
   for (int y = 0; y < kHeight; ++y)
@@ -38,9 +38,9 @@ TEST(Pixels, Bayer_gives_the_colours_that_were_seen) {
                                                          {PixelFormat::BayerGB8, "GBRG"}};
   for (const auto& [format, pattern] : formats) {
     const auto values = mosaic(pattern, 200, 100, 50);
-    const auto picture = to_bgr(number(format), kWidth, kHeight, bytes(values));
-    ASSERT_TRUE(picture) << pattern;
-    EXPECT_EQ(picture->at<cv::Vec3b>(5, 6), cv::Vec3b(50, 100, 200)) << pattern;
+    const auto image = to_bgr(number(format), kWidth, kHeight, bytes(values));
+    ASSERT_TRUE(image) << pattern;
+    EXPECT_EQ(image->at<cv::Vec3b>(5, 6), cv::Vec3b(50, 100, 200)) << pattern;
   }
 }
 
@@ -62,13 +62,13 @@ TEST(Pixels, what_stands_behind_the_rows_is_left_out) {
       for (int shift : {0, 1, 2}) values.push_back(static_cast<std::uint8_t>(10 * y + shift));
     if (y < kHeight - 1) values.insert(values.end(), {255, 255, 255, 255, 255});
   }
-  const auto picture = to_bgr(number(PixelFormat::Rgb8), kWidth, kHeight, bytes(values), 5);
-  ASSERT_TRUE(picture) << picture.error().text();
+  const auto image = to_bgr(number(PixelFormat::Rgb8), kWidth, kHeight, bytes(values), 5);
+  ASSERT_TRUE(image) << image.error().text();
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
-      EXPECT_EQ(picture->at<cv::Vec3b>(y, x), cv::Vec3b(static_cast<std::uint8_t>(10 * y + 2),
-                                                        static_cast<std::uint8_t>(10 * y + 1),
-                                                        static_cast<std::uint8_t>(10 * y)));
+      EXPECT_EQ(image->at<cv::Vec3b>(y, x), cv::Vec3b(static_cast<std::uint8_t>(10 * y + 2),
+                                                      static_cast<std::uint8_t>(10 * y + 1),
+                                                      static_cast<std::uint8_t>(10 * y)));
   values.pop_back();
   EXPECT_FALSE(to_bgr(number(PixelFormat::Rgb8), kWidth, kHeight, bytes(values), 5));
 }

@@ -11,7 +11,7 @@
 namespace hc {
 namespace {
 
-Result<Eigen::Vector3d> example(const Message& report, const Message& picture,
+Result<Eigen::Vector3d> example(const Message& report, const Message& image,
                                 const Eigen::Vector3d& p_left_eye,
                                 const Eigen::Isometry3d& T_world_robot,
                                 const Eigen::Isometry3d& T_head_left_eye) {
@@ -30,7 +30,7 @@ Result<Eigen::Vector3d> example(const Message& report, const Message& picture,
   if (!fed) return fed.error();
 
   // Whenever there is an image:
-  auto T_world_left_eye = tree.lookup("world", "left_eye", picture.header.time);
+  auto T_world_left_eye = tree.lookup("world", "left_eye", image.header.time);
   if (!T_world_left_eye) return T_world_left_eye.error();
   Eigen::Vector3d p_world = *T_world_left_eye * p_left_eye;
   // end
@@ -47,12 +47,12 @@ Message report_at(std::int64_t time) {
   return std::move(draft).finish();
 }
 
-Result<Eigen::Vector3d> run_example(std::int64_t report_time, std::int64_t picture_time) {
-  Message picture;
-  picture.header.time = picture_time;
+Result<Eigen::Vector3d> run_example(std::int64_t report_time, std::int64_t image_time) {
+  Message image;
+  image.header.time = image_time;
   Eigen::Isometry3d T_world_robot(Eigen::Translation3d(1, 0, 0));
   Eigen::Isometry3d T_head_left_eye(Eigen::Translation3d(0, 0.1, 0));
-  return example(report_at(report_time), picture, {0, 0, 2}, T_world_robot, T_head_left_eye);
+  return example(report_at(report_time), image, {0, 0, 2}, T_world_robot, T_head_left_eye);
 }
 
 TEST(FramesDocument, TheExampleRuns) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Where things are: coordinate systems joined to a tree, and the way from one to another at the
-// time of a picture. No messages, no clock; frames/messages.h makes transformations of messages.
+// time of an image. No messages, no clock; frames/messages.h makes transformations of messages.
 // Not safe for several threads at once; const calls alone are.
 
 #include <cstddef>
@@ -45,7 +45,7 @@ inline constexpr StandardFrame kStandardFrames[] = {
 ///     …
 ///     tree.feed("robot", "head", report.header.time, T_robot_head);
 ///     …
-///     auto T_world_left_eye = tree.lookup("world", "left_eye", picture.header.time);
+///     auto T_world_left_eye = tree.lookup("world", "left_eye", image.header.time);
 ///     if (!T_world_left_eye) return T_world_left_eye.error();
 ///     Eigen::Vector3d p_world = *T_world_left_eye * p_left_eye;
 ///

@@ -34,7 +34,7 @@ std::string refusal(const Result<T>& result) {
   return result ? "" : result.error().text();
 }
 
-TEST(Tree, FollowsTheHeadAtTheTimeOfAPicture) {
+TEST(Tree, FollowsTheHeadAtTheTimeOfAnImage) {
   Tree tree = head_tree();
   for (int i = 0; i <= 2; ++i) {
     Eigen::Isometry3d T_robot_head(rotation(0, 0, i * 0.2));

@@ -8,7 +8,7 @@ namespace hc::gaze {
 
 std::optional<Eigen::Vector3d> Binocular::see(const Eyes& eyes, Side side, std::int64_t time,
                                               const Eigen::Vector2d& pixel, double distance) {
-  // How far the pictures of a pair may be apart.
+  // How far the images of a pair may be apart.
   constexpr std::int64_t kPair = 1'000'000;  // [ns]
   // How far behind the other an eye may be.
   constexpr std::int64_t kLate = 1'000'000'000;  // [ns]

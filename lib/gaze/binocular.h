@@ -15,7 +15,7 @@ class Binocular {
   /// Takes in where an eye saw the target.
   ///
   /// The other eye's word is awaited, which may come later than this one's next; it is missed when
-  /// it has not come for three of this eye's pictures.
+  /// it has not come for three of this eye's images.
   /// @param distance  of the target then, if both have never seen it [m].
   /// @returns  the target's place in the head [m]. Nothing: the other eye's word is awaited, or
   ///     both see what is not the same.

@@ -31,7 +31,7 @@ TEST(Binocular, both_eyes_give_the_place_and_its_range_holds_for_one) {
   // The next pair: nothing is said of its first half.
   EXPECT_FALSE(sight.see(eyes, Side::Right, 1000 + kPeriod, right, 2.5));
   EXPECT_TRUE(sight.see(eyes, Side::Left, 1000 + kPeriod, left, 2.5));
-  // The left eye sees it no more: two pictures are lost by waiting for it, not more.
+  // The left eye sees it no more: two images are lost by waiting for it, not more.
   for (int i = 2; i < 4; ++i)
     EXPECT_FALSE(sight.see(eyes, Side::Right, 1000 + i * kPeriod, right, 2.5));
   for (int i = 4; i < 7; ++i) {

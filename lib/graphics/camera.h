@@ -11,7 +11,7 @@ namespace hc::graphics {
 struct PinholeCamera {
   int width = 800, height = 600;   ///< [px]
   double fx = 600, fy = 600;       ///< focal lengths [px]
-  double cx = 399.5, cy = 299.5;   ///< where the optical axis meets the picture [px]
+  double cx = 399.5, cy = 299.5;   ///< where the optical axis meets the image [px]
   double near = 0.05, far = 50.0;  ///< what is nearer or farther along z is not seen [m]
 
   /// Where a point is seen [px]; only of one with z > 0.

@@ -44,11 +44,11 @@ Mesh mesh_of(const aiMesh& from) {
 Result<cv::Mat> texture_of(const aiMaterial& material, const fs::path& folder) {
   aiString name;
   if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS) {
-    cv::Mat picture = cv::imread((folder / name.C_Str()).string(), cv::IMREAD_COLOR);
-    if (picture.empty())
-      return Error{Code::Malformed, (folder / name.C_Str()).string() + ": is no picture"};
-    cv::cvtColor(picture, picture, cv::COLOR_BGR2RGB);
-    return picture;
+    cv::Mat image = cv::imread((folder / name.C_Str()).string(), cv::IMREAD_COLOR);
+    if (image.empty())
+      return Error{Code::Malformed, (folder / name.C_Str()).string() + ": is no image"};
+    cv::cvtColor(image, image, cv::COLOR_BGR2RGB);
+    return image;
   }
   aiColor3D colour(0.8F, 0.8F, 0.8F);
   material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);

@@ -21,7 +21,7 @@ struct Part {
 /// they are; textures lie beside it. Normals are made where it has none.
 ///
 /// Errors: NotFound (no such file); Unsupported (another format); Malformed (what assimp says; a
-/// texture that is no picture; no triangle; more than 10 million corners).
+/// texture that is no image; no triangle; more than 10 million corners).
 Result<std::vector<Part>> read_model(const std::string& path);
 
 }  // namespace hc::graphics

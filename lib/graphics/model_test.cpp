@@ -45,7 +45,7 @@ TEST_F(Models, a_file_gives_its_triangles_and_colours) {
   EXPECT_EQ(part.texture.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 128, 0));
   for (const auto& vertex : part.mesh.vertices) {
     EXPECT_EQ(vertex.normal, Eigen::Vector3f(0, 0, 1));
-    // A file counts texture rows from below, a picture from above.
+    // A file counts texture rows from below, an image from above.
     EXPECT_FLOAT_EQ(vertex.texture.y(), 1 - vertex.position.y() / 3);
   }
 }
@@ -59,7 +59,7 @@ TEST_F(Models, a_texture_lies_beside_the_file) {
   write("square.mtl", "newmtl paint\nmap_Kd none.png\n");
   parts = read_model((folder / "square.obj").string());
   ASSERT_FALSE(parts);
-  EXPECT_NE(parts.error().detail.find("none.png: is no picture"), std::string::npos);
+  EXPECT_NE(parts.error().detail.find("none.png: is no image"), std::string::npos);
 }
 
 TEST_F(Models, what_is_no_model_is_refused) {

@@ -34,9 +34,9 @@ void main() {
 constexpr const char* kFragmentShader = R"(#version 330 core
 in vec2 place;
 in float brightness;
-uniform sampler2D picture;
+uniform sampler2D image;
 layout(location = 0) out vec4 colour;
-void main() { colour = vec4(texture(picture, place).rgb * brightness, 1.0); }
+void main() { colour = vec4(texture(image, place).rgb * brightness, 1.0); }
 )";
 
 /// Whether OpenGL did what it was told with a shader or a program.
@@ -182,7 +182,7 @@ Status Renderer::State::aim(int width, int height) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
   if (width < 1 || height < 1 || width > most || height > most)
-    return Error{Code::Unsupported, "graphics: a picture of " + std::to_string(width) + " x " +
+    return Error{Code::Unsupported, "graphics: an image of " + std::to_string(width) + " x " +
                                         std::to_string(height) + " cannot be drawn, " +
                                         std::to_string(most) + " is the most"};
   if (target.frame == 0) {

@@ -46,7 +46,7 @@ class Renderer {
   /// is
   ///     a plain colour.
   SurfaceId add(const Mesh& mesh, const cv::Mat& texture);
-  /// Puts another picture on a surface.
+  /// Puts another image on a surface.
   void set_texture(SurfaceId surface, const cv::Mat& texture);
 
   /// Draws.
@@ -54,7 +54,7 @@ class Renderer {
   /// @param T_world_camera  optical frame.
   /// @param[out] rgb  (H, W, 3) u8, red, green, blue; of that shape already, or made.
   /// @param[out] depth  (H, W) f32, z in the camera's frame [m], 0 where nothing is; null:
-  /// unwanted. Errors: Unsupported (a picture that is larger than OpenGL can draw). Cost: on a
+  /// unwanted. Errors: Unsupported (an image that is larger than OpenGL can draw). Cost: on a
   /// processor alone some 10 ms for 800 × 600; 2 ms more with the depth.
   Status draw(std::span<const Item> items, const PinholeCamera& camera,
               const Eigen::Isometry3d& T_world_camera, const Light& light, cv::Mat& rgb,

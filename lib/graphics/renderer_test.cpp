@@ -69,13 +69,13 @@ TEST_F(Drawing, its_depth_is_metric) {
   EXPECT_EQ(depth.at<float>(10, 10), 0);  // nothing there
 }
 
-TEST_F(Drawing, a_picture_hangs_upright_and_is_not_mirrored) {
+TEST_F(Drawing, an_image_hangs_upright_and_is_not_mirrored) {
   cv::Mat quarters(64, 64, CV_8UC3, cv::Scalar(255, 255, 255));
   quarters(cv::Rect(0, 0, 32, 32)) = cv::Scalar(255, 0, 0);   // top left
   quarters(cv::Rect(32, 0, 32, 32)) = cv::Scalar(0, 255, 0);  // top right
   quarters(cv::Rect(0, 32, 32, 32)) = cv::Scalar(0, 0, 255);  // bottom left
-  const auto picture = renderer->add(make_rectangle(1, 1), quarters);
-  const cv::Mat rgb = draw({at(picture, 0, 0, 2)});
+  const auto image = renderer->add(make_rectangle(1, 1), quarters);
+  const cv::Mat rgb = draw({at(image, 0, 0, 2)});
   EXPECT_EQ(rgb.at<cv::Vec3b>(80, 120), cv::Vec3b(255, 0, 0));
   EXPECT_EQ(rgb.at<cv::Vec3b>(80, 180), cv::Vec3b(0, 255, 0));
   EXPECT_EQ(rgb.at<cv::Vec3b>(140, 120), cv::Vec3b(0, 0, 255));
@@ -100,7 +100,7 @@ TEST_F(Drawing, the_same_is_the_same_to_the_byte_and_sizes_may_change) {
   EXPECT_EQ(cv::norm(first, draw({at(ball, 0.1F, 0.1F, 2)}), cv::NORM_INF), 0);
 }
 
-TEST_F(Drawing, a_picture_that_is_too_large_is_refused) {
+TEST_F(Drawing, an_image_that_is_too_large_is_refused) {
   camera.width = 1 << 20;
   cv::Mat rgb;
   auto drawn = renderer->draw({}, camera, T_world_camera, kFlat, rgb);

@@ -36,11 +36,11 @@ AprilTagFinder::~AprilTagFinder() = default;
 
 std::vector<Marker> AprilTagFinder::find(const cv::Mat& grey) const {
   std::vector<Marker> markers;
-  constexpr int kLeastSide = 16;  // the library does not take pictures of no size
+  constexpr int kLeastSide = 16;  // the library does not take images of no size
   if (grey.cols < kLeastSide || grey.rows < kLeastSide) return markers;
   const cv::Mat plain = grey.isContinuous() ? grey : grey.clone();
-  image_u8_t picture = {plain.cols, plain.rows, plain.cols, plain.data};
-  zarray_t* found = apriltag_detector_detect(detector_->detector, &picture);
+  image_u8_t image = {plain.cols, plain.rows, plain.cols, plain.data};
+  zarray_t* found = apriltag_detector_detect(detector_->detector, &image);
   for (int i = 0; i < zarray_size(found); ++i) {
     apriltag_detection_t* tag = nullptr;
     zarray_get(found, i, static_cast<void*>(&tag));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The largest blob of a colour in a picture. No messages; plain cv::Mat in.
+// The largest blob of a colour in an image. No messages; plain cv::Mat in.
 
 #include <cstdint>
 #include <optional>
@@ -28,7 +28,7 @@ cv::Vec3d hue_saturation_value(const cv::Vec3d& rgb);
 /// The colour about a pixel, as what a blob is to be looked for by: its hue, and somewhat more than
 /// half its saturation and value, since a thing has shades.
 ///
-/// @param rgb  (H, W, 3) u8.  @param at  [px], inside of the picture.
+/// @param rgb  (H, W, 3) u8.  @param at  [px], inside of the image.
 /// @returns  nothing where there is hardly any colour.
 std::optional<BlobColour> colour_at(const cv::Mat& rgb, cv::Point at);
 

@@ -12,28 +12,28 @@ namespace hc::vision {
 namespace {
 
 /// A disc whose rim is mixed, as a camera sees it.
-void draw_disc(cv::Mat& picture, cv::Point2d at, double radius, const cv::Scalar& rgb) {
+void draw_disc(cv::Mat& image, cv::Point2d at, double radius, const cv::Scalar& rgb) {
   constexpr int kShift = 8;
   const double scale = 1 << kShift;
-  cv::circle(picture, cv::Point(cv::Point2d(at * scale)),
+  cv::circle(image, cv::Point(cv::Point2d(at * scale)),
              static_cast<int>(std::lround(radius * scale)), rgb, cv::FILLED, cv::LINE_AA, kShift);
 }
 
 cv::Mat room(cv::Size size = {800, 600}) {
-  cv::Mat picture(size, CV_8UC3);
+  cv::Mat image(size, CV_8UC3);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
-      picture.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>(90 + x % 70),
-                                     static_cast<std::uint8_t>(100 + y % 50), 110};
-  return picture;
+      image.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>(90 + x % 70),
+                                   static_cast<std::uint8_t>(100 + y % 50), 110};
+  return image;
 }
 
-void add_noise(cv::Mat& picture, double sigma, std::uint64_t seed) {
-  cv::Mat noise(picture.size(), CV_16SC3), sum;
+void add_noise(cv::Mat& image, double sigma, std::uint64_t seed) {
+  cv::Mat noise(image.size(), CV_16SC3), sum;
   cv::RNG(seed).fill(noise, cv::RNG::NORMAL, 0, sigma);
-  picture.convertTo(sum, CV_16S);
+  image.convertTo(sum, CV_16S);
   sum += noise;
-  sum.convertTo(picture, CV_8U);
+  sum.convertTo(image, CV_8U);
 }
 
 const cv::Scalar kRed(205, 22, 22), kGreen(20, 190, 20), kBlue(30, 40, 200);
@@ -53,10 +53,10 @@ TEST_P(BlobSize, IsFoundToAPartOfAPixel) {
   const double radius = GetParam();
   BlobFinder finder{BlobColour{}};
   for (int i = 0; i < 10; ++i) {
-    cv::Mat picture = room();
+    cv::Mat image = room();
     const cv::Point2d at(300 + 13.37 * i, 200 + 7.21 * i);
-    draw_disc(picture, at, radius, kRed);
-    auto blob = finder.find(picture, 20);
+    draw_disc(image, at, radius, kRed);
+    auto blob = finder.find(image, 20);
     ASSERT_TRUE(blob);
     EXPECT_LT(std::hypot(blob->x - at.x, blob->y - at.y), 0.35) << "px";
     EXPECT_NEAR(blob->radius, radius, 0.04 * radius + 0.9) << "px";
@@ -70,15 +70,15 @@ TEST(Blob, IsFoundInNoiseBesideSmallerOnes) {
   BlobFinder finder{BlobColour{}};
   double worst = 0;
   for (int i = 0; i < 40; ++i) {
-    cv::Mat picture = room();
+    cv::Mat image = room();
     const cv::Point2d at(150 + 11.3 * i, 420 - 6.7 * i);
-    draw_disc(picture, at, 22, kRed);
-    for (int other = 0; other < 8; ++other) draw_disc(picture, {60.0 + 95 * other, 560}, 14, kRed);
-    cv::rectangle(picture, {20, 20, 200, 6}, kRed, cv::FILLED);
-    draw_disc(picture, {600, 480}, 50, kGreen);
-    draw_disc(picture, {700, 300}, 50, kBlue);
-    add_noise(picture, 20, static_cast<std::uint64_t>(i));
-    auto blob = finder.find(picture, 60);
+    draw_disc(image, at, 22, kRed);
+    for (int other = 0; other < 8; ++other) draw_disc(image, {60.0 + 95 * other, 560}, 14, kRed);
+    cv::rectangle(image, {20, 20, 200, 6}, kRed, cv::FILLED);
+    draw_disc(image, {600, 480}, 50, kGreen);
+    draw_disc(image, {700, 300}, 50, kBlue);
+    add_noise(image, 20, static_cast<std::uint64_t>(i));
+    auto blob = finder.find(image, 60);
     ASSERT_TRUE(blob) << i;
     worst = std::max(worst, std::hypot(blob->x - at.x, blob->y - at.y));
     EXPECT_NEAR(blob->radius, 22, 1.5);
@@ -90,10 +90,10 @@ TEST(Blob, NoiseAloneIsNone) {
   BlobFinder finder{BlobColour{}};
   int found = 0;
   for (int i = 0; i < 20; ++i) {
-    cv::Mat picture = room();
-    draw_disc(picture, {400, 300}, 60, kGreen);
-    add_noise(picture, 20, static_cast<std::uint64_t>(100 + i));
-    found += finder.find(picture, 60).has_value();
+    cv::Mat image = room();
+    draw_disc(image, {400, 300}, 60, kGreen);
+    add_noise(image, 20, static_cast<std::uint64_t>(100 + i));
+    found += finder.find(image, 60).has_value();
   }
   EXPECT_EQ(found, 0);
   EXPECT_FALSE(finder.find(cv::Mat(), 0));
@@ -101,36 +101,36 @@ TEST(Blob, NoiseAloneIsNone) {
 }
 
 TEST(Blob, AHighlightDoesNotMoveIt) {
-  cv::Mat picture = room();
-  draw_disc(picture, {400, 300}, 60, kRed);
-  draw_disc(picture, {385, 280}, 20, cv::Scalar::all(255));
-  auto blob = BlobFinder{BlobColour{}}.find(picture, 60);
+  cv::Mat image = room();
+  draw_disc(image, {400, 300}, 60, kRed);
+  draw_disc(image, {385, 280}, 20, cv::Scalar::all(255));
+  auto blob = BlobFinder{BlobColour{}}.find(image, 60);
   ASSERT_TRUE(blob);
   EXPECT_LT(std::hypot(blob->x - 400, blob->y - 300), 0.3);
   EXPECT_NEAR(blob->radius, 60, 1.5);
 }
 
-TEST(Blob, AreaHueAndSmallPicturesCount) {
-  cv::Mat picture = room({160, 120});
-  draw_disc(picture, {80, 60}, 10, kGreen);
+TEST(Blob, AreaHueAndSmallImagesCount) {
+  cv::Mat image = room({160, 120});
+  draw_disc(image, {80, 60}, 10, kGreen);
   BlobColour green;
   green.hue = 1.0 / 3;
-  EXPECT_FALSE(BlobFinder{BlobColour{}}.find(picture, 20));
-  auto blob = BlobFinder{green}.find(picture, 20);
+  EXPECT_FALSE(BlobFinder{BlobColour{}}.find(image, 20));
+  auto blob = BlobFinder{green}.find(image, 20);
   ASSERT_TRUE(blob);
   EXPECT_NEAR(blob->x, 80, 0.3);
-  EXPECT_FALSE(BlobFinder{green}.find(picture, 2 * blob->area));
+  EXPECT_FALSE(BlobFinder{green}.find(image, 2 * blob->area));
 }
 
 TEST(ColourAt, GivesWhatFindsTheThing) {
-  cv::Mat picture = room();
+  cv::Mat image = room();
   const cv::Scalar ochre(190, 170, 60);
-  draw_disc(picture, {500, 200}, 30, ochre);
-  add_noise(picture, 10, 7);
-  auto colour = colour_at(picture, {505, 195});
+  draw_disc(image, {500, 200}, 30, ochre);
+  add_noise(image, 10, 7);
+  auto colour = colour_at(image, {505, 195});
   ASSERT_TRUE(colour);
   EXPECT_NEAR(colour->hue, 0.141, 0.02);
-  auto blob = BlobFinder{*colour}.find(picture, 60);
+  auto blob = BlobFinder{*colour}.find(image, 60);
   ASSERT_TRUE(blob);
   EXPECT_LT(std::hypot(blob->x - 500, blob->y - 200), 0.7);
   EXPECT_FALSE(colour_at(cv::Mat(20, 20, CV_8UC3, cv::Scalar::all(128)), {0, 19})) << "grey";

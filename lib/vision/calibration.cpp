@@ -12,11 +12,11 @@ namespace {
 
 using Corners = std::vector<cv::Point2f>;
 
-/// A board that is small in its picture is found in one of twice the size.
-bool find_corners(const cv::Mat& picture, const Board& board, Corners& corners) {
-  if (picture.empty()) return false;
-  cv::Mat grey = picture;
-  if (picture.channels() == 3) cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
+/// A board that is small in its image is found in one of twice the size.
+bool find_corners(const cv::Mat& image, const Board& board, Corners& corners) {
+  if (image.empty()) return false;
+  cv::Mat grey = image;
+  if (image.channels() == 3) cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
   const cv::Size size(board.columns, board.rows);
   // Where there is surely no board, this says so in a tenth of the time.
   constexpr int kHow = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
@@ -148,7 +148,7 @@ std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right, c
   BoardView view;
   if (!find_corners(left, board, view.left) || !find_corners(right, board, view.right))
     return std::nullopt;
-  // Either end of a board may come first: the same one in both pictures.
+  // Either end of a board may come first: the same one in both images.
   const cv::Point2f along_left = view.left.back() - view.left.front();
   const cv::Point2f along_right = view.right.back() - view.right.front();
   if (along_left.dot(along_right) < 0) std::reverse(view.right.begin(), view.right.end());

@@ -22,7 +22,7 @@ struct Pinhole {
 
 /// Two cameras, by OpenCV's names. Frames are optical (x right, y down, z forward).
 struct StereoCalibration {
-  cv::Size size;                                    ///< of the pictures [px]; 0 × 0: unknown
+  cv::Size size;                                    ///< of the images [px]; 0 × 0: unknown
   cv::Matx33d M1, M2;                               ///< camera matrices, left and right [px]
   std::vector<double> D1 = std::vector<double>(5);  ///< distortion k1 k2 p1 p2 k3 …: 4, 5, 8,
   std::vector<double> D2 = std::vector<double>(5);  ///< 12 or 14 numbers [1]
@@ -44,11 +44,11 @@ struct StereoCalibration {
 
 /// A pair that is rectified as it is: two equal cameras without distortion, side by side.
 ///
-/// @param size  of the pictures; the optical axis goes through their middle.
+/// @param size  of the images; the optical axis goes through their middle.
 /// @param focal  [px]  @param baseline  [m]
 StereoCalibration ideal_pair(cv::Size size, double focal, double baseline);
 
-/// Sets R1, R2, P1, P2 and Q from the rest so that all of the rectified pictures is seen by the
+/// Sets R1, R2, P1, P2 and Q from the rest so that all of the rectified images is seen by the
 /// cameras (OpenCV's stereoRectify, alpha 0). `size` must be known.
 void rectify(StereoCalibration& calibration);
 
@@ -85,12 +85,12 @@ struct Board {
   double square = 0.025;      ///< side of a square [m]
 };
 
-/// A board's corners in both pictures, row by row [px]; the same corner has the same place in both.
+/// A board's corners in both images, row by row [px]; the same corner has the same place in both.
 struct BoardView {
   std::vector<cv::Point2f> left, right;
 };
 
-/// Finds the board in both pictures.
+/// Finds the board in both images.
 ///
 /// @param left, right  (H, W) or (H, W, 3) u8, red, green, blue.
 /// Cost: a few ms at 640×480 where the board is, 20 ms and more where it is not.

@@ -16,7 +16,7 @@ namespace hc::vision {
 namespace {
 
 constexpr std::size_t kLargestFile = 64 << 10;  // [byte]
-constexpr int kLargestSide = 65535;             // of a picture [px]
+constexpr int kLargestSide = 65535;             // of an image [px]
 constexpr double kMostFocal = 1e6;              // [px]
 constexpr double kMostBaseline = 1000;          // [m], or squares of a board in OpenCV's own files
 constexpr std::ptrdiff_t kMostNested = 64;

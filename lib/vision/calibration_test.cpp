@@ -29,17 +29,17 @@ struct Pairs {
 /// Corners as OpenCV's sample stereo_calib finds them.
 BoardView view_of_sample(const cv::Mat& left, const cv::Mat& right) {
   BoardView view;
-  for (auto [picture, corners] : {std::pair{&left, &view.left}, {&right, &view.right}}) {
+  for (auto [image, corners] : {std::pair{&left, &view.left}, {&right, &view.right}}) {
     const bool is_found = cv::findChessboardCorners(
-        *picture, {9, 6}, *corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+        *image, {9, 6}, *corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
     EXPECT_TRUE(is_found);
-    cv::cornerSubPix(*picture, *corners, {11, 11}, {-1, -1},
+    cv::cornerSubPix(*image, *corners, {11, 11}, {-1, -1},
                      {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.01});
   }
   return view;
 }
 
-/// The pictures of opencv-doc, in which OpenCV's own sample finds 13 pairs.
+/// The images of opencv-doc, in which OpenCV's own sample finds 13 pairs.
 Pairs photographs(bool as_sample) {
   const char* folder = std::getenv("HC_DATA");
   const std::string data = folder ? folder : "/usr/share/doc/opencv-doc/examples/data";
@@ -150,20 +150,20 @@ TEST(Calibration, RefusesWhatDoesNotDetermineTheCameras) {
   EXPECT_FALSE(calibrate(pairs.views, {9, 6, 0.04}, pairs.size));
 }
 
-TEST(Calibration, TheSameCornerHasTheSamePlaceInBothPictures) {
-  cv::Mat picture(480, 640, CV_8U, cv::Scalar(255));
+TEST(Calibration, TheSameCornerHasTheSamePlaceInBothImages) {
+  cv::Mat image(480, 640, CV_8U, cv::Scalar(255));
   for (int row = 0; row < 7; ++row)
     for (int column = 0; column < 10; ++column)
       if ((row + column) % 2 == 0)
-        cv::rectangle(picture, cv::Rect(60 + 50 * column, 60 + 50 * row, 50, 50), 0, cv::FILLED);
-  auto view = find_board(picture, picture, kBoard);
+        cv::rectangle(image, cv::Rect(60 + 50 * column, 60 + 50 * row, 50, 50), 0, cv::FILLED);
+  auto view = find_board(image, image, kBoard);
   ASSERT_TRUE(view);
   EXPECT_LT(cv::norm(view->left[3] - view->right[3]), 1e-3);
   EXPECT_NEAR(cv::norm(view->left.front() - view->left.back()), std::hypot(400, 250), 0.1);
   BoardView moved = *view;
   for (auto& corner : moved.left) corner.x += 10;
   EXPECT_NEAR(difference(*view, moved), 5, 1e-3) << "px: the mean of both eyes";
-  EXPECT_FALSE(find_board(cv::Mat::zeros(480, 640, CV_8U), picture, kBoard));
+  EXPECT_FALSE(find_board(cv::Mat::zeros(480, 640, CV_8U), image, kBoard));
   EXPECT_FALSE(find_board(cv::Mat(), cv::Mat(), kBoard));
 }
 

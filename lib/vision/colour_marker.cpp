@@ -115,7 +115,7 @@ std::optional<int> hue_of(const cv::Mat& rgb, const Quad& quad) {
     }
   int seen = 0;
   const cv::Vec3d white = mean_colour(rgb, about, seen);
-  // Half of the rim may be outside of the picture, or hidden.
+  // Half of the rim may be outside of the image, or hidden.
   if (2 * seen < static_cast<int>(about.size())) return std::nullopt;
   const cv::Vec3d colour = mean_colour(rgb, within, seen);
   const cv::Vec3d hsv = hue_saturation_value(colour), hsv_white = hue_saturation_value(white);
@@ -156,7 +156,7 @@ std::vector<Marker> find_colour_markers(const cv::Mat& rgb) {
       least = least_of(rgb);
       cv::GaussianBlur(least, least, {3, 3}, 0);
     }
-    // The first time from the corners of a picture of half the size.
+    // The first time from the corners of an image of half the size.
     constexpr double kFar = 5;  // [px]
     if (!refine_corners(least, *quad, kFar) || !refine_corners(least, *quad)) continue;
     Marker marker{MarkerKind::Colour, *hue, *quad};

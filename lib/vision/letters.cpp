@@ -13,7 +13,7 @@ namespace {
 
 // Of letters, in pixels of the level of the pyramid that they are looked for at.
 constexpr int kLeastHeight = 8, kMostHeight = 40, kWindow = 35;
-constexpr int kMostPieces = 1500;  // a picture of nothing but grains
+constexpr int kMostPieces = 1500;  // an image of nothing but grains
 constexpr int kLevels = 3;
 
 /// Something dark that is connected.
@@ -65,7 +65,7 @@ std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const c
   return piece;
 }
 
-/// The dark pieces of a picture that may be letters or stops.
+/// The dark pieces of an image that may be letters or stops.
 std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark) {
   cv::adaptiveThreshold(grey, dark, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, kWindow,
                         std::max(12.0, 3 * noise));
@@ -236,7 +236,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
 }
 
 void scale(TextLine& line, double by) {
-  // The middle of the first pixel of the larger picture is not that of the smaller one's.
+  // The middle of the first pixel of the larger image is not that of the smaller one's.
   for (auto& corner : line.corners)
     corner = (corner + cv::Point2f(0.5F, 0.5F)) * by - cv::Point2f(0.5F, 0.5F);
   line.height *= by;
@@ -260,8 +260,8 @@ double TextLine::width() const {
   return cv::norm((corners[1] + corners[2]) - (corners[0] + corners[3])) / 2;
 }
 
-std::vector<TextLine> find_text_lines(const cv::Mat& picture, double min_score) {
-  cv::Mat grey = mean_of_channels(picture);
+std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score) {
+  cv::Mat grey = mean_of_channels(image);
   double noise = noise_of(grey);
   if (noise > 4) {
     cv::Mat smooth;

@@ -10,7 +10,7 @@
 
 namespace hc::vision {
 
-/// A line of letters in a picture.
+/// A line of letters in an image.
 struct TextLine {
   /// Around the letters without a margin, as one who reads calls them: top left, top right, bottom
   /// right, bottom left [px]. Letters with a descender may stand out below.
@@ -18,7 +18,7 @@ struct TextLine {
   int letters = 0;       ///< pieces that look like letters; ones that touch count as one
   double height = 0;     ///< of capital letters [px]
   double score = 0;      ///< how much it is like a line on a clean board, 0 … 1
-  bool is_whole = true;  ///< inside the picture with a margin; otherwise letters may be missing
+  bool is_whole = true;  ///< inside the image with a margin; otherwise letters may be missing
 
   [[nodiscard]] cv::Point2f middle() const;
   [[nodiscard]] double width() const;    ///< [px]
@@ -26,24 +26,24 @@ struct TextLine {
 };
 
 /// Finds lines of at least two dark letters on a bright ground, from 8 pixels to a quarter of the
-/// picture high, at most about 20° from level.
+/// image high, at most about 20° from level.
 ///
-/// @param picture  (H, W, 3) or (H, W, 1) u8; noise of a standard deviation of 20 does no harm.
+/// @param image  (H, W, 3) or (H, W, 1) u8; noise of a standard deviation of 20 does no harm.
 /// @param min_score  lines that are less like one on a board are left out.
 /// @returns  the best first; none overlaps a better one.
 /// Cost: about 10 ms for 800 × 600.
-std::vector<TextLine> find_text_lines(const cv::Mat& picture, double min_score = 0.4);
+std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score = 0.4);
 
 /// Cuts a line out: level, with a margin, without noise, its ground white and its letters black.
 ///
 /// @param letter_height  of the capital letters in the result [px].
 /// @returns  (H, W) u8.
-cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_height = 40);
+cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height = 40);
 
-/// The grey picture with the least noise: the mean of the channels. (H, W) u8.
-cv::Mat mean_of_channels(const cv::Mat& picture);
+/// The grey image with the least noise: the mean of the channels. (H, W) u8.
+cv::Mat mean_of_channels(const cv::Mat& image);
 
-/// Standard deviation of a grey picture's noise, (H, W) u8.
+/// Standard deviation of a grey image's noise, (H, W) u8.
 /// Source: J. Immerkær, Fast noise variance estimation, Computer Vision and Image Understanding
 /// 64(2), 1996; by the median in place of the mean, which edges do not raise.
 double noise_of(const cv::Mat& grey);

@@ -9,30 +9,30 @@ namespace {
 
 /// A grey room with a dark-framed white board, (H, W, 3) u8.
 cv::Mat scene(const std::string& text, cv::Point at = {300, 200}, double scale = 1.0) {
-  cv::Mat picture(600, 800, CV_8UC3, cv::Scalar(150, 155, 150));
+  cv::Mat image(600, 800, CV_8UC3, cv::Scalar(150, 155, 150));
   int below = 0;
   const int stroke = scale > 1 ? 3 : 2;
   const auto size = cv::getTextSize(text, cv::FONT_HERSHEY_DUPLEX, scale, stroke, &below);
   const int h = size.height;
   const cv::Rect board(at.x - h, at.y - 2 * h, size.width + 2 * h, 3 * h);
-  cv::rectangle(picture, board, {240, 240, 235}, cv::FILLED);
-  cv::rectangle(picture, board, {70, 75, 80}, 3);
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_DUPLEX, scale, {20, 20, 25}, stroke, cv::LINE_AA);
+  cv::rectangle(image, board, {240, 240, 235}, cv::FILLED);
+  cv::rectangle(image, board, {70, 75, 80}, 3);
+  cv::putText(image, text, at, cv::FONT_HERSHEY_DUPLEX, scale, {20, 20, 25}, stroke, cv::LINE_AA);
   // A wall with a dark pipe, a striped box and a checkered plate.
-  cv::rectangle(picture, {60, 0, 14, 600}, {60, 60, 60}, cv::FILLED);
+  cv::rectangle(image, {60, 0, 14, 600}, {60, 60, 60}, cv::FILLED);
   for (int i = 0; i < 9; ++i)
-    cv::rectangle(picture, {560 + 14 * i, 430, 12, 40}, {90.0 + 9 * (i % 4), 80, 70}, cv::FILLED);
+    cv::rectangle(image, {560 + 14 * i, 430, 12, 40}, {90.0 + 9 * (i % 4), 80, 70}, cv::FILLED);
   for (int i = 0; i < 16; i += 2)
-    cv::rectangle(picture, {150 + 15 * (i % 4) + 15 * (i / 4 % 2), 450 + 15 * (i / 4), 15, 15},
+    cv::rectangle(image, {150 + 15 * (i % 4) + 15 * (i / 4 % 2), 450 + 15 * (i / 4), 15, 15},
                   {10, 10, 10}, cv::FILLED);
-  return picture;
+  return image;
 }
 
-void add_noise(cv::Mat& picture, double deviation, int seed) {
-  cv::Mat noise(picture.size(), CV_16SC3), sum;
+void add_noise(cv::Mat& image, double deviation, int seed) {
+  cv::Mat noise(image.size(), CV_16SC3), sum;
   cv::RNG(static_cast<std::uint64_t>(seed)).fill(noise, cv::RNG::NORMAL, 0, deviation);
-  cv::add(picture, noise, sum, cv::noArray(), CV_8U);
-  picture = sum;
+  cv::add(image, noise, sum, cv::noArray(), CV_8U);
+  image = sum;
 }
 
 cv::Rect text_box(const std::string& text, cv::Point at = {300, 200}, double scale = 1.0) {
@@ -56,10 +56,10 @@ TEST(Letters, finds_the_line_on_the_board) {
 
 TEST(Letters, finds_it_in_noise_and_in_the_dark) {
   for (int seed = 0; seed < 5; ++seed) {
-    cv::Mat picture = scene("WATER 27");
-    picture = 0.6 * picture;
-    add_noise(picture, 20, seed);
-    const auto lines = find_text_lines(picture);
+    cv::Mat image = scene("WATER 27");
+    image = 0.6 * image;
+    add_noise(image, 20, seed);
+    const auto lines = find_text_lines(image);
     ASSERT_GE(lines.size(), 1U) << seed;
     const auto box = text_box("WATER 27");
     EXPECT_NEAR(lines[0].middle().x, box.x + box.width / 2.0, 5);
@@ -75,9 +75,9 @@ TEST(Letters, finds_large_letters_too) {
 
 TEST(Letters, finds_nothing_where_nothing_is_written) {
   for (int seed = 0; seed < 5; ++seed) {
-    cv::Mat picture = scene("");
-    add_noise(picture, 20, seed);
-    EXPECT_TRUE(find_text_lines(picture).empty()) << seed;
+    cv::Mat image = scene("");
+    add_noise(image, 20, seed);
+    EXPECT_TRUE(find_text_lines(image).empty()) << seed;
   }
   EXPECT_TRUE(find_text_lines(cv::Mat(600, 800, CV_8U, cv::Scalar(128))).empty());
   EXPECT_TRUE(find_text_lines(cv::Mat(3, 2, CV_8U, cv::Scalar(128))).empty());
@@ -86,10 +86,10 @@ TEST(Letters, finds_nothing_where_nothing_is_written) {
   EXPECT_TRUE(find_text_lines(grains).empty());
 }
 
-TEST(Letters, a_line_at_the_edge_of_the_picture_is_not_whole) {
-  cv::Mat picture = scene("HELLO ROBOT");
+TEST(Letters, a_line_at_the_edge_of_the_image_is_not_whole) {
+  cv::Mat image = scene("HELLO ROBOT");
   const auto box = text_box("HELLO ROBOT");
-  const auto lines = find_text_lines(picture.colRange(box.x + box.width / 3, picture.cols));
+  const auto lines = find_text_lines(image.colRange(box.x + box.width / 3, image.cols));
   ASSERT_GE(lines.size(), 1U);
   EXPECT_FALSE(lines[0].is_whole);
 }
@@ -101,9 +101,9 @@ TEST(Letters, a_dash_and_a_stop_belong_to_the_line) {
 }
 
 TEST(Letters, straightens_what_is_turned) {
-  cv::Mat picture = scene("HELLO ROBOT", {300, 300}), turned;
+  cv::Mat image = scene("HELLO ROBOT", {300, 300}), turned;
   const auto turn = cv::getRotationMatrix2D({400, 300}, 8, 1);
-  cv::warpAffine(picture, turned, turn, picture.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::warpAffine(image, turned, turn, image.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   const auto lines = find_text_lines(turned);
   ASSERT_GE(lines.size(), 1U);
   EXPECT_NEAR(lines[0].width(), text_box("HELLO ROBOT").width, 8);
@@ -117,10 +117,10 @@ TEST(Letters, straightens_what_is_turned) {
 
 TEST(Letters, noise_is_measured_in_spite_of_edges) {
   for (double deviation : {2.0, 10.0, 20.0}) {
-    cv::Mat picture = scene("HELLO ROBOT");
-    add_noise(picture, deviation, 1);
+    cv::Mat image = scene("HELLO ROBOT");
+    add_noise(image, deviation, 1);
     cv::Mat green;
-    cv::extractChannel(picture, green, 1);
+    cv::extractChannel(image, green, 1);
     EXPECT_NEAR(noise_of(green), deviation, 0.1 * deviation + 0.3);
   }
 }

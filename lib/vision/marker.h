@@ -13,7 +13,7 @@ namespace hc::vision {
 
 enum class MarkerKind { Aruco = 0, AprilTag = 1, Colour = 2 };
 
-/// A marker in a picture.
+/// A marker in an image.
 struct Marker {
   MarkerKind kind = MarkerKind::Aruco;
   int id = 0;  ///< of the dictionary or family; of a coloured one, its hue, 0 … 359 [degree]
@@ -25,7 +25,7 @@ struct Marker {
   [[nodiscard]] cv::Point2d middle() const;  ///< mean of the corners [px]
 };
 
-/// A camera as pictures come out of it.
+/// A camera as images come out of it.
 struct Camera {
   Pinhole pinhole;
   std::vector<double> distortion;  ///< as StereoCalibration::D1; empty: none

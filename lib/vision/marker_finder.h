@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Finds markers of each kind in pictures. No messages. A finder belongs to one thread.
+// Finds markers of each kind in images. No messages. A finder belongs to one thread.
 
 #include <memory>
 #include <string>
@@ -35,7 +35,7 @@ class ArucoFinder {
 /// AprilTags of the family tag36h11.
 class AprilTagFinder {
  public:
-  /// @param decimate  edges are looked for in a picture so many times smaller: 1 finds the most, 2
+  /// @param decimate  edges are looked for in an image so many times smaller: 1 finds the most, 2
   ///     takes a third of the time. [1]
   explicit AprilTagFinder(double decimate);
   AprilTagFinder(AprilTagFinder&&) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <vision/image.h>
 #include <vision/marker.h>
-#include <vision/picture.h>
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ namespace {
 constexpr double kSide = 0.16;  // [m]
 const Camera kCamera{{600, 600, 399.5, 299.5}, {}};
 
-/// A picture of a marker's face, kPixels for each of its cells, with a margin of a cell.
+/// An image of a marker's face, kPixels for each of its cells, with a margin of a cell.
 struct Face {
   cv::Mat rgb;
   double margin = 0, side = 0;  // [px]
@@ -85,19 +85,19 @@ cv::Mat view(const Face& face, const Truth& truth, const Camera& camera, double 
   const cv::Matx33d plane(scale, 0, shift, 0, scale, shift, 0, 0, 1);
   cv::Matx33d pose = truth.R;
   for (int row = 0; row < 3; ++row) pose(row, 2) = truth.t[row];
-  cv::Mat fine, picture;
+  cv::Mat fine, image;
   cv::warpPerspective(face.rgb, fine, M * pose * plane, {800 * kFine, 600 * kFine},
                       cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(120, 125, 130));
-  cv::resize(fine, picture, {800, 600}, 0, 0, cv::INTER_AREA);
-  cv::GaussianBlur(picture, picture, {3, 3}, 0.7);
+  cv::resize(fine, image, {800, 600}, 0, 0, cv::INTER_AREA);
+  cv::GaussianBlur(image, image, {3, 3}, 0.7);
   if (noise > 0) {
-    cv::Mat error(picture.size(), CV_16SC3), sum;
+    cv::Mat error(image.size(), CV_16SC3), sum;
     cv::RNG(5).fill(error, cv::RNG::NORMAL, 0, noise);
-    picture.convertTo(sum, CV_16S);
+    image.convertTo(sum, CV_16S);
     sum += error;
-    sum.convertTo(picture, CV_8U);
+    sum.convertTo(image, CV_8U);
   }
-  return picture;
+  return image;
 }
 
 Truth truth_at(double x, double y, double z, double pitch, double yaw, double roll) {
@@ -114,12 +114,12 @@ double angle(const cv::Matx33d& a, const cv::Matx33d& b) {
   return cv::norm(turn) * 180 / std::numbers::pi;
 }
 
-std::vector<Marker> find(MarkerKind kind, const cv::Mat& picture) {
+std::vector<Marker> find(MarkerKind kind, const cv::Mat& image) {
   static const auto aruco = ArucoFinder::make("6X6_250");
   static const AprilTagFinder apriltag(1);
-  if (kind == MarkerKind::Aruco) return aruco->find(grey_of(picture));
-  if (kind == MarkerKind::AprilTag) return apriltag.find(grey_of(picture));
-  return find_colour_markers(picture);
+  if (kind == MarkerKind::Aruco) return aruco->find(grey_of(image));
+  if (kind == MarkerKind::AprilTag) return apriltag.find(grey_of(image));
+  return find_colour_markers(image);
 }
 
 class EachKind : public testing::TestWithParam<std::pair<MarkerKind, int>> {};
@@ -201,13 +201,13 @@ TEST(Marker, WhatIsNoSquareHasNoPoseOrAnError) {
 }
 
 TEST(ColourMarker, OtherThingsAreNone) {
-  cv::Mat picture(600, 800, CV_8UC3, cv::Scalar::all(235));
-  cv::circle(picture, {200, 200}, 60, {210, 20, 210}, cv::FILLED, cv::LINE_AA);
-  cv::rectangle(picture, {400, 100, 300, 20}, {210, 20, 210}, cv::FILLED);
-  cv::ellipse(picture, {600, 400}, {80, 50}, 30, 0, 360, {20, 190, 20}, cv::FILLED);
+  cv::Mat image(600, 800, CV_8UC3, cv::Scalar::all(235));
+  cv::circle(image, {200, 200}, 60, {210, 20, 210}, cv::FILLED, cv::LINE_AA);
+  cv::rectangle(image, {400, 100, 300, 20}, {210, 20, 210}, cv::FILLED);
+  cv::ellipse(image, {600, 400}, {80, 50}, 30, 0, 360, {20, 190, 20}, cv::FILLED);
   const std::vector<cv::Point> triangle = {{100, 400}, {220, 400}, {160, 520}};
-  cv::fillConvexPoly(picture, triangle, {20, 190, 20});
-  EXPECT_TRUE(find_colour_markers(picture).empty());
+  cv::fillConvexPoly(image, triangle, {20, 190, 20});
+  EXPECT_TRUE(find_colour_markers(image).empty());
   // A square, but on a dark ground and on a coloured one.
   cv::Mat dark(300, 300, CV_8UC3, cv::Scalar::all(40)),
       tinted(300, 300, CV_8UC3, cv::Scalar(230, 230, 90));
@@ -252,7 +252,7 @@ TEST(Aruco, CornersAreRightAtEverySizeWithAndWithoutAFrame) {
     }
 }
 
-TEST(Finders, PicturesWithoutMarkersAndUnknownDictionaries) {
+TEST(Finders, ImagesWithoutMarkersAndUnknownDictionaries) {
   cv::Mat noise(480, 640, CV_8U);
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);
   auto aruco = ArucoFinder::make("6X6_250");

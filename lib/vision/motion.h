@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a camera has turned and moved between two pictures of a scene at rest. No messages.
+// How a camera has turned and moved between two images of a scene at rest. No messages.
 
 #include <optional>
 #include <vector>
@@ -15,7 +15,7 @@ struct Intrinsics {
   double focal = 600, cx = 399.5, cy = 299.5;
 };
 
-/// Points of a scene in two pictures, place by place. [px]
+/// Points of a scene in two images, place by place. [px]
 struct Matches {
   std::vector<cv::Point2f> a, b;
 };
@@ -28,7 +28,7 @@ struct RelativePose {
   double rms = 0;                               ///< of their distances from the epipolar lines [px]
 };
 
-/// Finds points of picture a in picture b.
+/// Finds points of image a in image b.
 ///
 /// @param a, b  (H, W) u8 of the same size.
 /// @param R_a_b  about how the camera has turned, within some degrees.

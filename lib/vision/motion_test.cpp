@@ -79,9 +79,9 @@ TEST(RelativePose, needs_matches_that_agree) {
 }
 
 TEST(Match, follows_points_through_a_turn) {
-  cv::Mat coarse(60, 80, CV_8U), picture;
+  cv::Mat coarse(60, 80, CV_8U), image;
   cv::RNG(5).fill(coarse, cv::RNG::UNIFORM, 0, 255);
-  cv::resize(coarse, picture, {800, 600}, 0, 0, cv::INTER_CUBIC);
+  cv::resize(coarse, image, {800, 600}, 0, 0, cv::INTER_CUBIC);
   const Intrinsics camera;
   const Eigen::Matrix3d R = turned(0.05, 0.3, 0.02);
   Eigen::Matrix3d K;
@@ -89,8 +89,8 @@ TEST(Match, follows_points_through_a_turn) {
   const Eigen::Matrix3d H_b_a = K * R.transpose() * K.inverse();
   cv::Mat other, h(3, 3, CV_64F);
   for (int i = 0; i < 9; ++i) h.at<double>(i / 3, i % 3) = H_b_a(i / 3, i % 3);
-  cv::warpPerspective(picture, other, h, picture.size(), cv::INTER_CUBIC);
-  const auto matches = match(picture, other, camera, turned(0.04, 0.29, 0.02));  // 1 degree off
+  cv::warpPerspective(image, other, h, image.size(), cv::INTER_CUBIC);
+  const auto matches = match(image, other, camera, turned(0.04, 0.29, 0.02));  // 1 degree off
   ASSERT_GT(matches.a.size(), 100U);
   double sum = 0;
   for (std::size_t i = 0; i < matches.a.size(); ++i) {

@@ -11,13 +11,13 @@ namespace hc::vision {
 Result<Rectifier> Rectifier::make(const StereoCalibration& calibration, Eye eye, cv::Size size) {
   const auto& c = calibration;
   if (c.size.area() > 0 && c.size != size)
-    return Error{Code::Unsupported, "a picture of " + std::to_string(size.width) + " x " +
+    return Error{Code::Unsupported, "an image of " + std::to_string(size.width) + " x " +
                                         std::to_string(size.height) + ", the calibration is for " +
                                         std::to_string(c.size.width) + " x " +
                                         std::to_string(c.size.height)};
   constexpr int kMostSide = 32766;  // of what cv::remap() takes
   if (size.width < 1 || size.height < 1 || size.width > kMostSide || size.height > kMostSide)
-    return Error{Code::TooLarge, "a picture of " + std::to_string(size.width) + " x " +
+    return Error{Code::TooLarge, "an image of " + std::to_string(size.width) + " x " +
                                      std::to_string(size.height) + " cannot be rectified"};
   const bool is_left = eye == Eye::Left;
   const auto& M = is_left ? c.M1 : c.M2;
@@ -32,12 +32,12 @@ Result<Rectifier> Rectifier::make(const StereoCalibration& calibration, Eye eye,
   return rectifier;
 }
 
-void Rectifier::rectify(const cv::Mat& picture, cv::Mat& rectified) const {
-  CV_Assert(picture.size() == size_);
+void Rectifier::rectify(const cv::Mat& image, cv::Mat& rectified) const {
+  CV_Assert(image.size() == size_);
   if (whole_.empty())
-    picture.copyTo(rectified);
+    image.copyTo(rectified);
   else
-    cv::remap(picture, rectified, whole_, part_, cv::INTER_LINEAR);
+    cv::remap(image, rectified, whole_, part_, cv::INTER_LINEAR);
 }
 
 }  // namespace hc::vision

@@ -10,24 +10,24 @@ namespace hc::vision {
 namespace {
 
 cv::Mat noise(cv::Size size) {
-  cv::Mat picture(size, CV_8UC3);
-  cv::RNG(4).fill(picture, cv::RNG::UNIFORM, 0, 256);
-  return picture;
+  cv::Mat image(size, CV_8UC3);
+  cv::RNG(4).fill(image, cv::RNG::UNIFORM, 0, 256);
+  return image;
 }
 
 TEST(Rectifier, AnIdealPairStaysAsItIs) {
   const auto ideal = ideal_pair({64, 48}, 50, 0.1);
   EXPECT_DOUBLE_EQ(ideal.baseline(), 0.1);
   EXPECT_DOUBLE_EQ(ideal.rectified().cx, 31.5);
-  const cv::Mat picture = noise({64, 48});
+  const cv::Mat image = noise({64, 48});
   for (Eye eye : {Eye::Left, Eye::Right}) {
     auto rectifier = Rectifier::make(ideal, eye, {64, 48});
     ASSERT_TRUE(rectifier);
     cv::Mat rectified(48, 64, CV_8UC3);
     const auto* place = rectified.data;
-    rectifier->rectify(picture, rectified);
+    rectifier->rectify(image, rectified);
     EXPECT_EQ(rectified.data, place) << "in place";
-    EXPECT_EQ(cv::norm(picture, rectified, cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(image, rectified, cv::NORM_INF), 0);
   }
 }
 
@@ -51,11 +51,11 @@ TEST(Rectifier, RowsCorrespondAndDisparityIsDepth) {
       cv::projectPoints(std::vector<cv::Point3d>{place}, is_left ? cv::Vec3d() : turn,
                         is_left ? cv::Vec3d() : c.T, is_left ? c.M1 : c.M2, is_left ? c.D1 : c.D2,
                         at);
-      cv::Mat picture = cv::Mat::zeros(c.size, CV_8U), rectified;
+      cv::Mat image = cv::Mat::zeros(c.size, CV_8U), rectified;
       constexpr int kShift = 6;
-      cv::circle(picture, cv::Point2d(at[0] * (1 << kShift)), 12 << kShift, 255, cv::FILLED,
+      cv::circle(image, cv::Point2d(at[0] * (1 << kShift)), 12 << kShift, 255, cv::FILLED,
                  cv::LINE_AA, kShift);
-      (is_left ? left : right)->rectify(picture, rectified);
+      (is_left ? left : right)->rectify(image, rectified);
       const auto m = cv::moments(rectified);
       ASSERT_GT(m.m00, 0);
       x[side] = m.m10 / m.m00;
@@ -72,7 +72,7 @@ TEST(Rectifier, RowsCorrespondAndDisparityIsDepth) {
 TEST(Rectifier, AnotherSizeIsRefused) {
   auto made = Rectifier::make(ideal_pair({800, 600}, 600, 0.1), Eye::Left, {640, 480});
   ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().detail, "a picture of 640 x 480, the calibration is for 800 x 600");
+  EXPECT_EQ(made.error().detail, "an image of 640 x 480, the calibration is for 800 x 600");
   auto ideal = ideal_pair({800, 600}, 600, 0.1);
   ideal.size = {};  // unknown
   EXPECT_TRUE(Rectifier::make(ideal, Eye::Right, {640, 480}));

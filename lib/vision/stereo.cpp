@@ -9,9 +9,9 @@
 namespace hc::vision {
 namespace {
 
-const cv::Mat& grey(const cv::Mat& picture, cv::Mat& buffer) {
-  if (picture.channels() == 1) return picture;
-  cv::cvtColor(picture, buffer, cv::COLOR_RGB2GRAY);
+const cv::Mat& grey(const cv::Mat& image, cv::Mat& buffer) {
+  if (image.channels() == 1) return image;
+  cv::cvtColor(image, buffer, cv::COLOR_RGB2GRAY);
   return buffer;
 }
 

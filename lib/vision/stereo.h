@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Depth from a rectified stereo pair: a left and a right picture whose rows correspond. No
+// Depth from a rectified stereo pair: a left and a right image whose rows correspond. No
 // messages.
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hc::vision {
 
-/// How pictures are matched.
+/// How images are matched.
 struct StereoOptions {
   int disparities = 128;  ///< searched, from 0 on [px]; a multiple of 16
   int block_size = 5;     ///< side of the window that is compared, odd [px]
@@ -22,7 +22,7 @@ class StereoMatcher {
  public:
   explicit StereoMatcher(const StereoOptions& options);
 
-  /// Disparities of the left picture's pixels.
+  /// Disparities of the left image's pixels.
   ///
   /// @param left, right  (H, W) or (H, W, 3) u8, of the same size, wider than the disparities
   ///     searched (OpenCV 4.6 writes where it should not otherwise), H > 0.
@@ -31,7 +31,7 @@ class StereoMatcher {
   /// Cost: 100 ms at 800×600 and 128 disparities on one core.
   void match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity);
 
-  /// Whether pictures of this size can be matched.
+  /// Whether images of this size can be matched.
   [[nodiscard]] bool takes(cv::Size size) const {
     return size.height > 0 && size.width > matcher_->getNumDisparities();
   }
@@ -43,7 +43,7 @@ class StereoMatcher {
 
 /// The geometry of a rectified pair.
 struct StereoGeometry {
-  double focal = 0;     ///< focal length of the rectified pictures [px]
+  double focal = 0;     ///< focal length of the rectified images [px]
   double baseline = 0;  ///< distance of the two cameras [m]
   double offset = 0;    ///< disparity of a point infinitely far away, negated [px]
 };

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include <vision/picture.h>
+#include <vision/image.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 

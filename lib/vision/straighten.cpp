@@ -8,10 +8,10 @@
 
 namespace hc::vision {
 
-cv::Mat mean_of_channels(const cv::Mat& picture) {
-  if (picture.channels() == 1) return picture;
+cv::Mat mean_of_channels(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
   cv::Mat grey;
-  cv::transform(picture, grey, cv::Matx13f(1 / 3.0F, 1 / 3.0F, 1 / 3.0F));
+  cv::transform(image, grey, cv::Matx13f(1 / 3.0F, 1 / 3.0F, 1 / 3.0F));
   return grey;
 }
 
@@ -43,20 +43,20 @@ double noise_of(const cv::Mat& grey) {
   return value / 0.6745 / 6;  // median of |N(0, 1)|; the kernel's norm is 6
 }
 
-cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_height) {
+cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height) {
   const double scale = letter_height / line.height;
   const float margin = 0.45F * static_cast<float>(letter_height);
   const auto wide = static_cast<float>(line.width() * scale);
   const auto high = static_cast<float>(letter_height);
   const cv::Size size(cvRound(wide + 2 * margin), cvRound(high + 2 * margin));
-  // The part of the picture that is needed, so that nothing else is worked on.
+  // The part of the image that is needed, so that nothing else is worked on.
   cv::Rect2f around = line.box();
   const auto wider = static_cast<float>(line.height) + 4;
   const cv::Rect part = cv::Rect(cv::Rect2f(around.x - wider, around.y - wider,
                                             around.width + 2 * wider, around.height + 2 * wider)) &
-                        cv::Rect({}, picture.size());
+                        cv::Rect({}, image.size());
   if (part.empty()) return {};
-  cv::Mat grey = mean_of_channels(picture(part));
+  cv::Mat grey = mean_of_channels(image(part));
   const double noise = noise_of(grey);
   if (noise > 4) {
     cv::Mat smooth;
@@ -69,7 +69,7 @@ cv::Mat straighten(const cv::Mat& picture, const TextLine& line, int letter_heig
       cv::Point2f(margin, margin), cv::Point2f(margin + wide, margin),
       cv::Point2f(margin + wide, margin + high), cv::Point2f(margin, margin + high)};
   cv::Mat straight;
-  if (scale < 0.7) {  // a picture that is made smaller is to be smooth
+  if (scale < 0.7) {  // an image that is made smaller is to be smooth
     cv::Mat smooth;
     cv::GaussianBlur(grey, smooth, {}, 0.4 / scale);
     grey = smooth;

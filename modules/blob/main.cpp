@@ -9,14 +9,14 @@
 #include <vision/messages.h>
 
 int main(int argc, char** argv) {
-  hc::Module module{"blob", "Finds the largest blob of a colour in pictures."};
-  auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "pictures");
+  hc::Module module{"blob", "Finds the largest blob of a colour in images."};
+  auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "images");
   auto point = module.input("point", hc::position<double>(),
-                            "x, y in the next picture [px]: the colour there is the one from then "
+                            "x, y in the next image [px]: the colour there is the one from then "
                             "on, until the parameter hue is changed");
   auto target = module.output("target", hc::position<double>(),
                               "x, y of the blob's middle, its radius [px], in the coordinate "
-                              "system of the picture; nothing while there is none");
+                              "system of the image; nothing while there is none");
   auto area = module.output("area", hc::table<double>(), "area of the blob [px²]");
   auto hue = module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue", {.min = 0, .max = 1});
   auto hue_width = module.parameter("hue_width", 0.05, "", "how far a pixel's may be from it",
@@ -28,21 +28,21 @@ int main(int argc, char** argv) {
       module.parameter("min_area", 60.0, "px²", "a smaller blob is none", {.min = 0, .max = 1e9});
 
   std::optional<hc::vision::BlobFinder> finder;
-  std::optional<cv::Point2d> pointed;           // at the next picture
+  std::optional<cv::Point2d> pointed;           // at the next image
   std::optional<hc::vision::BlobColour> taken;  // by pointing
   double hue_then = 0;                          // when it was taken
-  auto take = [&](const cv::Mat& picture) {
+  auto take = [&](const cv::Mat& pixels) {
     const cv::Point at(static_cast<int>(std::lround(pointed->x)),
                        static_cast<int>(std::lround(pointed->y)));
     pointed.reset();
     char line[120];
-    if (!cv::Rect(0, 0, picture.cols, picture.rows).contains(at)) {
-      module.log("point: there is no such pixel");
+    if (!cv::Rect(0, 0, pixels.cols, pixels.rows).contains(at)) {
+      module.log("point: outside the image");
       return;
     }
-    auto colour = hc::vision::colour_at(picture, at);
+    auto colour = hc::vision::colour_at(pixels, at);
     if (!colour) {
-      std::snprintf(line, sizeof line, "point: there is no colour at %d, %d", at.x, at.y);
+      std::snprintf(line, sizeof line, "point: no colour at %d, %d", at.x, at.y);
     } else {
       colour->hue_width = *hue_width;
       taken = colour;
@@ -56,22 +56,20 @@ int main(int argc, char** argv) {
     auto numbers = message.matrix().numbers();
     constexpr double kFar = 1e6;
     if (numbers.empty() || !(std::abs(numbers[0]) < kFar) || !(std::abs(numbers[1]) < kFar))
-      module.log("point: there is no such pixel");
+      module.log("point: outside the image");
     else
       pointed = {numbers[0], numbers[1]};
   });
   module.on(image, [&](const auto& message) {
-    const cv::Mat picture = hc::as_mat(message);
-    if (pointed) take(picture);
+    const cv::Mat pixels = hc::as_mat(message);
+    if (pointed) take(pixels);
     if (taken && *hue != hue_then) taken.reset();
     const auto colour =
         taken.value_or(hc::vision::BlobColour{*hue, *hue_width, *saturation, *value});
     if (!finder || !(finder->colour() == colour)) finder.emplace(colour);
-    const auto blob = finder->find(picture, *min_area);
+    const auto blob = finder->find(pixels, *min_area);
     if (!blob) return;
-    auto position = hc::position(blob->x, blob->y, blob->radius);
-    position.header.coord = message.header.coord;
-    target.send(position);
+    target.send(hc::position(blob->x, blob->y, blob->radius).in(message.header.coord));
     area.send(hc::table({blob->area}));
   });
   return module.run(argc, argv);

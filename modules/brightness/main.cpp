@@ -12,8 +12,8 @@ int main(int argc, char** argv) {
       "camera image");
   auto mean = module.output("mean", hc::table<double>(), "mean of all its numbers, 0 … 255");
 
-  module.on(image, [&](const hc::Message& picture) {
-    auto numbers = hc::value_or_end(picture.view<std::uint8_t>()).numbers();
+  module.on(image, [&](const hc::Message& message) {
+    auto numbers = hc::value_or_end(message.view<std::uint8_t>()).numbers();
     auto sum = std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
     mean.send(hc::table({static_cast<double>(sum) / static_cast<double>(numbers.size())}));
   });

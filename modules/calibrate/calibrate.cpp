@@ -19,7 +19,7 @@ using hc::gaze::HeadCalibration;
 using hc::vision::StereoCalibration;
 
 hc::Error too_little(const std::string& where) {
-  return {hc::Code::NotFound, "too little is seen in both pictures " + where};
+  return {hc::Code::NotFound, "too little is seen in both images " + where};
 }
 
 /// A turn of the head as its axes and as an eye tell it: w in the head's frame, u in the eye's.
@@ -36,7 +36,7 @@ double spread(const std::vector<Turn>& turns) {
 
 /// One eye.
 struct Eye {
-  cv::Mat HeadView::*picture;
+  cv::Mat HeadView::*image;
   Eigen::Isometry3d T_head_mounted;
   Matrix3d M = T_head_mounted.linear();           // how it sits in the head, as far as it is known
   Vector3d place = T_head_mounted.translation();  // [m]
@@ -54,7 +54,7 @@ struct Eye {
       const Matrix3d U = U0.transpose() * hc::gaze::rotation(views[k].unit).matrix();
       const Matrix3d guess = M.transpose() * U * M;
       if (matches.size() < k)
-        matches.push_back(hc::vision::match(views[0].*picture, views[k].*picture, camera, guess));
+        matches.push_back(hc::vision::match(views[0].*image, views[k].*image, camera, guess));
       const auto pose = hc::vision::relative_pose(matches[k - 1], camera, guess,
                                                   M.transpose() * (U * place - place), true);
       if (pose)
@@ -76,7 +76,7 @@ Matrix3d align(const std::vector<Turn>& turns) {
 }
 
 /// Views as two equal cameras without distortion would have taken them.
-/// @param is_swapped  the first pictures are the right eye's.
+/// @param is_swapped  the first images are the right eye's.
 hc::Result<std::vector<HeadView>> straightened(const std::vector<HeadView>& views,
                                                const StereoCalibration& cameras, bool is_swapped,
                                                const hc::vision::Intrinsics& ideal) {
@@ -104,7 +104,7 @@ hc::vision::Matches matches_of_eyes(const HeadView& view, const hc::vision::Intr
   return hc::vision::match(view.first, view.second, camera, Matrix3d::Identity());
 }
 
-/// Whether the first picture is the right eye's: the right eye is on the right of the left one.
+/// Whether the first image is the right eye's: the right eye is on the right of the left one.
 hc::Result<bool> tell_apart(const HeadView& view, const hc::vision::Intrinsics& camera) {
   const auto eyes = hc::vision::relative_pose(matches_of_eyes(view, camera), camera,
                                               Matrix3d::Identity(), Vector3d::UnitX());
@@ -122,7 +122,7 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
   using hc::gaze::Side;
   Eye left{&HeadView::first, mounted.T_head_eye(Side::Left)};
   Eye right{&HeadView::second, mounted.T_head_eye(Side::Right)};
-  if (found.swapped) std::swap(left.picture, right.picture);
+  if (found.swapped) std::swap(left.image, right.image);
   // Where an eye moves as the head turns is known once it is known how it sits.
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
@@ -158,12 +158,12 @@ hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
                                       const hc::gaze::Eyes& mounted, std::stop_token stop) {
   const cv::Size size = views[0].first.size();
   if (cameras.size.area() > 0 && cameras.size != size)
-    return hc::Error{hc::Code::Unsupported, "the cameras' calibration is for pictures of " +
+    return hc::Error{hc::Code::Unsupported, "the cameras' calibration is for images of " +
                                                 std::to_string(cameras.size.width) + " x " +
                                                 std::to_string(cameras.size.height)};
   const hc::vision::Intrinsics ideal{cameras.M1(0, 0), (size.width - 1) / 2.0,
                                      (size.height - 1) / 2.0};
-  // Which camera took which pictures is not known before the eyes are told apart.
+  // Which camera took which images is not known before the eyes are told apart.
   const auto first = straightened({views[0]}, cameras, false, ideal);
   if (!first) return first.error();
   const auto is_swapped = tell_apart(first->front(), ideal);

@@ -35,7 +35,7 @@ class Discs {
   /// @param T_robot_eye  optical.
   [[nodiscard]] cv::Mat seen_from(const Eigen::Isometry3d& T_robot_eye) const {
     const hc::vision::Intrinsics camera;
-    cv::Mat picture(600, 800, CV_8U, cv::Scalar(20));
+    cv::Mat image(600, 800, CV_8U, cv::Scalar(20));
     constexpr int kShift = 8;  // fractions of a pixel
     for (const auto& disc : discs_) {
       const Vector3d p = T_robot_eye.inverse() * disc.place;
@@ -43,11 +43,11 @@ class Discs {
       const cv::Point middle(
           static_cast<int>((camera.focal * p.x() / p.z() + camera.cx) * (1 << kShift)),
           static_cast<int>((camera.focal * p.y() / p.z() + camera.cy) * (1 << kShift)));
-      cv::circle(picture, middle,
+      cv::circle(image, middle,
                  static_cast<int>(disc.radius * camera.focal / p.z() * (1 << kShift)),
                  cv::Scalar(disc.grey), cv::FILLED, cv::LINE_AA, kShift);
     }
-    return picture;
+    return image;
   }
 
  private:
@@ -115,7 +115,7 @@ TEST(Calibrate, a_stand_that_shows_little_is_left_out) {
   views[3].second.setTo(0);
   const auto found = calibrate(views, head.pair, head.mounted);
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().detail, "too little is seen in both pictures as the head turns");
+  EXPECT_EQ(found.error().detail, "too little is seen in both images as the head turns");
 }
 
 TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
@@ -137,12 +137,12 @@ TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
 }
 
 TEST(Calibrate, ends_when_it_is_asked_to) {
-  cv::Mat picture(600, 800, CV_8U);
-  cv::RNG(1).fill(picture, cv::RNG::UNIFORM, 0, 256);
-  cv::GaussianBlur(picture, picture, {}, 2);
+  cv::Mat image(600, 800, CV_8U);
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(image, image, {}, 2);
   std::stop_source stop;
   stop.request_stop();
-  const auto found = calibrate({{{0, 0}, picture, picture}, {{0.2, 0}, picture, picture}},
+  const auto found = calibrate({{{0, 0}, image, image}, {{0.2, 0}, image, image}},
                                hc::vision::ideal_pair({800, 600}, 600, 0.1),
                                hc::gaze::mounted_eyes(), stop.get_token());
   ASSERT_FALSE(found);
@@ -155,10 +155,10 @@ TEST(Calibrate, says_when_too_little_is_seen) {
   const std::vector<HeadView> views = {{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}};
   auto found = calibrate(views, pair, hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().detail, "too little is seen in both pictures of the eyes");
+  EXPECT_EQ(found.error().detail, "too little is seen in both images of the eyes");
   found = calibrate(views, hc::vision::ideal_pair({640, 480}, 600, 0.1), hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().detail, "the cameras' calibration is for pictures of 640 x 480");
+  EXPECT_EQ(found.error().detail, "the cameras' calibration is for images of 640 x 480");
 }
 
 }  // namespace

@@ -37,8 +37,8 @@ int main(int argc, char** argv) {
   auto command = module.output("command", hc::rotation<double>().in(kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
   auto bid = module.output("bid", hc::table<double>(), "salience while it looks, else 0");
-  auto result = module.output("result", hc::table<double>(),
-                              "1 x 7: eyes swapped 0/1, pan and tilt of the left eye with the unit "
+  auto result = module.output("result", hc::table<double>().of(7, 1),
+                              "eyes swapped 0/1, pan and tilt of the left eye with the unit "
                               "at 0, roll, pitch, yaw of the right eye to the left one [rad], "
                               "distance from epipolar lines, RMS [px]; once a second");
   auto file = module.parameter(
@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   std::vector<Angles> poses;  // that the head takes
   std::optional<hc::gaze::Eyes> mounted;
   std::int64_t rests_from = 0;                              // 0: it moves [ns]
-  hc::vision::StereoCalibration cameras;                    // once the pictures' size is known
+  hc::vision::StereoCalibration cameras;                    // once the images' size is known
   std::future<hc::Result<hc::gaze::HeadCalibration>> work;  // while it computes
   std::stop_source stop;
   std::optional<hc::gaze::HeadCalibration> found;
@@ -187,7 +187,7 @@ int main(int argc, char** argv) {
   module.every(std::chrono::seconds(1), [&] {
     if (found) tell();
   });
-  // Of all the pictures that came the result is told; who is asked to stop does not wait for it.
+  // Of all the images that came the result is told; who is asked to stop does not wait for it.
   module.on_end([&] {
     if (work.valid()) take();
   });

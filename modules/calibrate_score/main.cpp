@@ -10,10 +10,9 @@
 int main(int argc, char** argv) {
   hc::Module module{"calibrate_score", "Compares a head's calibration with the truth."};
   auto result = module.input("result", hc::table<double>(), "result of calibrate");
-  auto score =
-      module.output("score", hc::table<double>(),
-                    "1 x 3: left and right identified correctly 0/1, error of the zero, of the "
-                    "right eye's offset [rad]");
+  auto score = module.output("score", hc::table<double>().of(3, 1),
+                             "left and right identified correctly 0/1, error of the zero, of the "
+                             "right eye's offset [rad]");
   auto swapped = module.parameter("swapped", false, "", "truth: the cameras are swapped");
   auto zero_pan = module.parameter("zero_pan", 0.0, "rad", "truth");
   auto zero_tilt = module.parameter("zero_tilt", 0.0, "rad", "truth");

@@ -23,10 +23,10 @@ class AravisDevice final : public Device {
  public:
   explicit AravisDevice(std::unique_ptr<hc::aravis::Camera> camera) : camera_(std::move(camera)) {}
   hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) override {
-    auto picture = camera_->next(timeout);
-    if (!picture) return picture.error();
-    if (!*picture) return std::optional<Frame>();
-    return std::optional<Frame>(Frame{(*picture)->bgr, (*picture)->time});
+    auto image = camera_->next(timeout);
+    if (!image) return image.error();
+    if (!*image) return std::optional<Frame>();
+    return std::optional<Frame>(Frame{(*image)->bgr, (*image)->time});
   }
   hc::Status adjust(const Adjustment& adjustment) override {
     auto exposure = adjustment.exposure > 0 ? camera_->set_exposure(adjustment.exposure)
@@ -50,8 +50,8 @@ class CaptureDevice final : public Device {
         remark_(std::move(remark)) {}
   hc::Result<std::optional<Frame>> next(std::chrono::milliseconds) override {
     Frame frame;
-    if (!capture_.read(frame.picture)) return hc::Error{hc::Code::Closed, "no image received"};
-    frame.time = time_of_picture();
+    if (!capture_.read(frame.image)) return hc::Error{hc::Code::Closed, "no image received"};
+    frame.time = time_of_image();
     return std::optional<Frame>(std::move(frame));
   }
   hc::Status adjust(const Adjustment& adjustment) override {
@@ -63,8 +63,8 @@ class CaptureDevice final : public Device {
   [[nodiscard]] std::string remark() const override { return remark_; }
 
  private:
-  /// V4L2 says when a picture was taken, by the monotonic clock.
-  [[nodiscard]] std::int64_t time_of_picture() const {
+  /// V4L2 says when an image was taken, by the monotonic clock.
+  [[nodiscard]] std::int64_t time_of_image() const {
     const hc::SystemClock clock;
     if (is_device_) {
       const auto taken = static_cast<std::int64_t>(capture_.get(cv::CAP_PROP_POS_MSEC) * 1e6);
@@ -112,7 +112,7 @@ bool is_live(const std::string& name) {
 }
 
 LiveCamera live_camera(const std::string& name, const CaptureMode& mode) {
-  // OpenCV has no property of a V4L2 device for it, and reads this once, before the first picture;
+  // OpenCV has no property of a V4L2 device for it, and reads this once, before the first image;
   // here, since no camera's thread runs yet.
   ::setenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT", std::to_string(silence_of(mode)).c_str(), 0);
   if (!name.starts_with(kAravis)) return {name, [=] { return open_capture(name, mode); }};

@@ -94,7 +94,7 @@ void LiveCameras::run(Camera& camera) {
   } while (true);
 }
 
-/// Takes a camera's pictures until it is lost, or all is to end.
+/// Takes a camera's images until it is lost, or all is to end.
 void LiveCameras::serve(Camera& camera, Device& device) {
   std::optional<Adjustment> adjusted;
   std::optional<std::chrono::steady_clock::time_point> first;

@@ -26,10 +26,10 @@ struct Adjustment {
   bool operator==(const Adjustment&) const = default;
 };
 
-/// Thins out pictures to a rate, by their times, without holding any back. Pure.
+/// Thins out images to a rate, by their times, without holding any back. Pure.
 class Thinning {
  public:
-  /// Whether a picture of such a time [ns] is taken at a rate [1/s]; 0: all are.
+  /// Whether an image of such a time [ns] is taken at a rate [1/s]; 0: all are.
   bool takes(std::int64_t time, double rate);
 
  private:
@@ -40,7 +40,7 @@ class Thinning {
 class Device {
  public:
   virtual ~Device() = default;
-  /// Waits for a picture; nothing when none comes in time. Errors: any, the camera is lost.
+  /// Waits for an image; nothing when none comes in time. Errors: any, the camera is lost.
   virtual hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) = 0;
   virtual hc::Status adjust(const Adjustment& adjustment) = 0;
   /// What it does otherwise than it was asked to when it was opened; "": nothing.
@@ -55,7 +55,7 @@ struct LiveCamera {
   OpenDevice open;
 };
 
-/// One camera, or two whose pictures are taken in pairs at nearest times. When one of two is lost
+/// One camera, or two whose images are taken in pairs at nearest times. When one of two is lost
 /// the other goes on alone.
 class LiveCameras {
  public:
@@ -69,7 +69,7 @@ class LiveCameras {
   LiveCameras(const LiveCameras&) = delete;
   LiveCameras& operator=(const LiveCameras&) = delete;
 
-  /// Waits for a picture or pair; the newest where several have come. Nothing when none has.
+  /// Waits for an image or pair; the newest where several have come. Nothing when none has.
   /// Errors: without `reopen`, those of a camera.
   hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
   /// Sets what the cameras are to do from now on. The same again changes nothing.

@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 struct Plug {
   std::atomic<bool> is_in = true;
   std::atomic<int> opened = 0, adjusted = 0;
-  std::atomic<bool> is_loose = false;  // each picture is the last one
+  std::atomic<bool> is_loose = false;  // each image is the last one
   std::atomic<bool> is_small = false;
 };
 
@@ -51,7 +51,7 @@ LiveCamera camera(const std::string& name, Plug& plug) {
           }};
 }
 
-/// Takes pictures until one is as wanted; all that was said meanwhile. The watchdog is the test's.
+/// Takes images until one is as wanted; all that was said meanwhile. The watchdog is the test's.
 template <typename Wanted>
 std::vector<std::string> take_until(LiveCameras& cameras, Wanted wanted) {
   std::vector<std::string> said;
@@ -177,7 +177,7 @@ TEST(LiveCameras, is_set_to_its_own_choice_from_the_beginning) {
   EXPECT_EQ(plug.adjusted, 1);
 }
 
-TEST(LiveCameras, what_cannot_be_set_is_told_and_pictures_go_on) {
+TEST(LiveCameras, what_cannot_be_set_is_told_and_images_go_on) {
   Plug plug;
   LiveCameras cameras({camera("eye", plug)}, true, {0, 11});
   auto adjusted = [&](const auto&) { return plug.adjusted > 0; };

@@ -4,8 +4,8 @@
 #include "sequence.h"
 
 #include <hc/module/module.h>
+#include <vision/image.h>
 #include <vision/messages.h>
-#include <vision/picture.h>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -116,8 +116,8 @@ int main(int argc, char** argv) {
     // A pair has one time, so that its images match.
     const std::int64_t time = left_frame ? left_frame->time : right_frame->time;
     if (thinning.takes(time, *rate))
-      send_both(left_frame ? left_frame->picture : cv::Mat(),
-                right_frame ? right_frame->picture : cv::Mat(), time);
+      send_both(left_frame ? left_frame->image : cv::Mat(),
+                right_frame ? right_frame->image : cv::Mat(), time);
   };
   auto next = [&](ImageSequence& file) {
     cv::Mat image = file.next();

@@ -9,7 +9,7 @@
 namespace {
 
 constexpr std::size_t kPeriods = 7;
-// So that cameras half a period apart do not lose a pair to each uneven picture.
+// So that cameras half a period apart do not lose a pair to each uneven image.
 constexpr double kTolerance = 0.55;
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Brings together the pictures of two cameras that run freely, by their times. Pure.
+// Brings together the images of two cameras that run freely, by their times. Pure.
 
 #include <array>
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 #include <opencv2/core.hpp>
 
-/// A picture, (H, W, 3) u8 blue, green, red, and when it was taken [ns since the Unix epoch].
+/// An image, (H, W, 3) u8 blue, green, red, and when it was taken [ns since the Unix epoch].
 struct Frame {
-  cv::Mat picture;
+  cv::Mat image;
   std::int64_t time = 0;
 };
 
-/// A pair is given as soon as no later picture can make a closer one: when its times differ by no
-/// more than half a period of the camera that is behind. So nothing waits for a picture to come
+/// A pair is given as soon as no later image can make a closer one: when its times differ by no
+/// more than half a period of the camera that is behind. So nothing waits for an image to come
 /// that is not needed.
 class Pairing {
  public:

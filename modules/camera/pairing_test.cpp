@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// The times [ms] of all pairs, of pictures that come in the order of their times.
+/// The times [ms] of all pairs, of images that come in the order of their times.
 std::vector<std::pair<std::int64_t, std::int64_t>> pairs_of(std::vector<std::int64_t> left,
                                                             std::vector<std::int64_t> right) {
   Pairing pairing;
@@ -47,7 +47,7 @@ TEST(Pairing, a_faster_camera_is_thinned_out) {
   EXPECT_EQ(pairs, (Pairs{{100, 100}, {130, 132}, {160, 164}}));
 }
 
-TEST(Pairing, a_picture_that_is_missing_costs_one_pair) {
+TEST(Pairing, an_image_that_is_missing_costs_one_pair) {
   const auto pairs = pairs_of({20, 40, 60, 80, 100, 120}, {20, 40, 80, 100, 120});
   EXPECT_EQ(pairs, (Pairs{{20, 20}, {40, 40}, {80, 80}, {100, 100}, {120, 120}}));
 }

@@ -43,5 +43,5 @@ std::vector<Setting> settings_of(const Adjustment& adjustment, const Found& foun
 /// 800 x 600"; "" when it does.
 std::string difference(const CaptureMode& asked, int width, int height, double fourcc);
 
-/// How long a device may be silent at one picture until it is lost [s]: 2, or two periods.
+/// How long a device may be silent at one image until it is lost [s]: 2, or two periods.
 int silence_of(const CaptureMode& mode);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int32_t kLeftRectified = 9, kRightRectified = 10, kDepth = 11, kDisparity = 12;
 
-hc::AnyKind picture(std::int32_t coord) {
+hc::AnyKind image(std::int32_t coord) {
   return hc::any_of(hc::rgb_image<std::uint8_t>().in(coord),
                     hc::intensity_image<std::uint8_t>().in(coord));
 }
@@ -21,8 +21,8 @@ hc::AnyKind picture(std::int32_t coord) {
 
 int main(int argc, char** argv) {
   hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair."};
-  auto left = module.input("left", picture(kLeftRectified), "rectified image of the left eye");
-  auto right = module.input("right", picture(kRightRectified), "rectified image of the right eye");
+  auto left = module.input("left", image(kLeftRectified), "rectified image of the left eye");
+  auto right = module.input("right", image(kRightRectified), "rectified image of the right eye");
   auto intrinsics = module.input("intrinsics", hc::table<double>(),
                                  "fx, fy, cx, cy [px], baseline [m] of the rectified pair, from "
                                  "rectify; until then focal and baseline apply");
@@ -63,22 +63,22 @@ int main(int argc, char** argv) {
     if (!is_pair) return module.log("intrinsics: not fx, fy, cx, cy, baseline of a pair");
     measured = {numbers[0], numbers[4]};
   });
-  module.on(hc::together(left, right), [&](const hc::Message& left_picture,
-                                           const hc::Message& right_picture) {
-    const auto& size = left_picture.header;
-    if (size.width != right_picture.header.width || size.height != right_picture.header.height)
+  module.on(hc::together(left, right), [&](const hc::Message& left_image,
+                                           const hc::Message& right_image) {
+    const auto& size = left_image.header;
+    if (size.width != right_image.header.width || size.height != right_image.header.height)
       throw hc::ModuleError("the left image is " + std::to_string(size.width) + " x " +
                             std::to_string(size.height) + ", the right one " +
-                            std::to_string(right_picture.header.width) + " x " +
-                            std::to_string(right_picture.header.height));
+                            std::to_string(right_image.header.width) + " x " +
+                            std::to_string(right_image.header.height));
     if (!matcher->takes({size.width, size.height}))
       throw hc::ModuleError("images of " + std::to_string(size.width) + " x " +
                             std::to_string(size.height) + " are not wider than " +
                             std::to_string(*disparities) + " disparities");
     auto found = disparity.loan(size.width, size.height);
     cv::Mat found_mat = hc::as_mat(found);
-    matcher->match(hc::value_or_end(hc::as_mat(left_picture)),
-                   hc::value_or_end(hc::as_mat(right_picture)), found_mat);
+    matcher->match(hc::value_or_end(hc::as_mat(left_image)),
+                   hc::value_or_end(hc::as_mat(right_image)), found_mat);
     if (depth.linked()) {
       auto metres = depth.loan(size.width, size.height);
       cv::Mat metres_mat = hc::as_mat(metres);

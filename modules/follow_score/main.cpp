@@ -14,8 +14,8 @@ int main(int argc, char** argv) {
   auto wish = module.input("wish", hc::rotation<double>(), "truth: roll, tilt, pan wished [rad]");
   auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
-  auto result = module.output("score", hc::table<double>(),
-                              "1 x 4: RMS error [rad], greatest error [rad], by how much it is "
+  auto result = module.output("score", hc::table<double>().of(4, 1),
+                              "RMS error [rad], greatest error [rad], by how much it is "
                               "behind [s], samples");
   auto settle = module.parameter("settle", 2.0, "s", "from the first of both until it counts",
                                  {.min = 0, .max = 1e6});

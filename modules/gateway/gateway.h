@@ -50,7 +50,7 @@ struct GatewayCounts {
 /// otherwise the reason is counted.
 bool admit(hc::Header& header, const GatewayRules& rules, GatewayCounts& counts);
 
-/// The message in another encoding, where it can have it: pictures of u8 as jpeg, everything plain
+/// The message in another encoding, where it can have it: images of u8 as jpeg, everything plain
 /// as zstd when that makes it smaller, everything as text or binary. Otherwise as it is.
 ///
 /// Errors: Malformed (compressed elements that cannot be opened).

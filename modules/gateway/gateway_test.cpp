@@ -14,7 +14,7 @@ hc::Message message(const hc::Info& info, std::int32_t width, std::int32_t heigh
   return std::move(draft).finish();
 }
 
-const hc::Info kPicture{hc::MatrixType::RgbImage, 3, hc::Scalar::U8, hc::Encoding::Binary};
+const hc::Info kImage{hc::MatrixType::RgbImage, 3, hc::Scalar::U8, hc::Encoding::Binary};
 const hc::Info kMap{hc::MatrixType::Map, 1, hc::Scalar::F32, hc::Encoding::Binary};
 
 TEST(Gateway, reads_its_tables) {
@@ -65,11 +65,11 @@ TEST(Gateway, drops_what_is_not_listed_and_what_R42_ends) {
 }
 
 TEST(Gateway, R21_compresses_what_can_be_and_leaves_the_rest) {
-  auto picture = message(kPicture, 64, 48), map = message(kMap, 64, 48);
-  auto jpeg = in_encoding(picture, hc::Encoding::Jpeg);
+  auto image = message(kImage, 64, 48), map = message(kMap, 64, 48);
+  auto jpeg = in_encoding(image, hc::Encoding::Jpeg);
   ASSERT_TRUE(jpeg.has_value());
   EXPECT_EQ(jpeg->header.info.encoding, hc::Encoding::Jpeg);
-  EXPECT_LT(jpeg->elements.size(), picture.elements.size());
+  EXPECT_LT(jpeg->elements.size(), image.elements.size());
   EXPECT_EQ(in_encoding(map, hc::Encoding::Jpeg)->header, map.header);
   auto zstd = in_encoding(map, hc::Encoding::Zstd);
   EXPECT_EQ(zstd->header.info.encoding, hc::Encoding::Zstd);

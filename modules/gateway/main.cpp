@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
   auto in = module.input("in", hc::anything(), "messages of this graph");
   auto out = module.output("out", hc::anything(),
                            "those that pass, encoded as asked where possible (u8 images as jpeg)");
-  auto sent = module.output("counts", hc::table<std::int64_t>(),
-                            "5 x 1 each second: messages passed; dropped for ttl, as not listed, "
+  auto sent = module.output("counts", hc::table<std::int64_t>().of(5, 1),
+                            "each second: messages passed; dropped for ttl, as not listed, "
                             "without a route, as damaged");
   auto numbers = module.parameter("numbers", "", "",
                                   "what src and dst become, e.g. \"12=112 -2=-5\"; others stay",

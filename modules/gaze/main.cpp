@@ -32,8 +32,8 @@ int main(int argc, char** argv) {
       "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
       "pose of marker, or its table");
   auto wish = module.input("wish", hc::rotation<double>(), "setpoint: roll, tilt, pan [rad]");
-  auto stick = module.input("stick", hc::table<double>(),
-                            "1 x 2: turn to the left, turn down, -1 … 1 of stick_rate");
+  auto stick = module.input("stick", hc::table<double>().of(2, 1),
+                            "turn to the left, turn down, -1 … 1 of stick_rate");
   auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
   auto command = module.output("command", hc::rotation<double>().in(kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");

@@ -6,10 +6,10 @@
 
 #include <hc/module/module.h>
 #include <vision/calibration.h>
+#include <vision/image.h>
 #include <vision/marker.h>
 #include <vision/marker_finder.h>
 #include <vision/messages.h>
-#include <vision/picture.h>
 #include <Eigen/Geometry>
 
 #include "names.h"
@@ -22,13 +22,13 @@ using hc::vision::Marker;
 constexpr std::int32_t kLeftEye = 4, kRightEye = 5;
 constexpr std::int32_t kRightImage = 8, kLeftRectified = 9, kRightRectified = 10;
 
-/// A camera, and the turn from its pictures' axes to those of its eye.
+/// A camera, and the turn from its images' axes to those of its eye.
 struct View {
   Camera camera;
   cv::Matx33d R_eye_camera = cv::Matx33d::eye();
 };
 
-/// What took pictures of a coordinate system (spec/mtp-1.md, R44), by a calibration.
+/// What took images of a coordinate system (spec/mtp-1.md, R44), by a calibration.
 View view_of(const hc::vision::StereoCalibration& c, std::int32_t coord) {
   const bool is_right = coord == kRightImage || coord == kRightRectified;
   if (coord == kLeftRectified || coord == kRightRectified) {
@@ -106,15 +106,15 @@ int main(int argc, char** argv) {
     if (!file->empty()) calibration = hc::value_or_end(hc::vision::read_calibration(*file));
   });
 
-  auto look = [&](const cv::Mat& picture) {
-    const cv::Mat grey = hc::vision::grey_of(picture);
+  auto look = [&](const cv::Mat& pixels) {
+    const cv::Mat grey = hc::vision::grey_of(pixels);
     std::vector<Marker> all;
     auto add = [&](const std::vector<Marker>& some) {
       all.insert(all.end(), some.begin(), some.end());
     };
     if (*use_aruco) add(aruco->find(grey));
     if (*use_apriltag) add(apriltag->find(grey));
-    if (*use_colour && picture.channels() == 3) add(hc::vision::find_colour_markers(picture));
+    if (*use_colour && pixels.channels() == 3) add(hc::vision::find_colour_markers(pixels));
     return all;
   };
   auto send_poses = [&](const std::vector<Found>& all, std::int32_t eye) {
@@ -158,19 +158,19 @@ int main(int argc, char** argv) {
 
   module.on(image, [&](const hc::Message& message) {
     read_parameters();
-    const cv::Mat picture = hc::value_or_end(hc::as_mat(message));
-    if (picture.empty()) return;
+    const cv::Mat pixels = hc::value_or_end(hc::as_mat(message));
+    if (pixels.empty()) return;
     const auto& header = message.header;
-    View view{{{*focal, *focal, *cx < 0 ? (picture.cols - 1) / 2.0 : *cx,
-                *cy < 0 ? (picture.rows - 1) / 2.0 : *cy},
+    View view{{{*focal, *focal, *cx < 0 ? (pixels.cols - 1) / 2.0 : *cx,
+                *cy < 0 ? (pixels.rows - 1) / 2.0 : *cy},
                {}}};
     if (calibration) {
-      if (calibration->size.area() > 0 && calibration->size != picture.size())
-        throw hc::ModuleError("the calibration is for pictures of another size");
+      if (calibration->size.area() > 0 && calibration->size != pixels.size())
+        throw hc::ModuleError("the calibration is for images of another size");
       view = view_of(*calibration, header.coord);
     }
     std::vector<Found> all;
-    for (auto& marker : look(picture)) {
+    for (auto& marker : look(pixels)) {
       Found found{marker, *side, {}, 0};
       const auto its_side = find_name(side_names, marker.kind, marker.id);
       const auto its_frame = find_name(frame_names, marker.kind, marker.id);

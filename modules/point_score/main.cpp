@@ -17,9 +17,9 @@ int main(int argc, char** argv) {
                              "truth: roll, tilt, pan of the head [rad]");
   auto report = module.input("gaze", hc::rotation<double>().in(kGaze),
                              "how the head says that it stands: with the first it is ready");
-  auto stick = module.output("stick", hc::table<double>(), "1 x 2: left > 0, down > 0, -1 to 1");
-  auto result = module.output("score", hc::table<double>(),
-                              "1 x 4: median and greatest time from the stick to the motion [s], "
+  auto stick = module.output("stick", hc::table<double>().of(2, 1), "left > 0, down > 0, -1 to 1");
+  auto result = module.output("score", hc::table<double>().of(4, 1),
+                              "median and greatest time from the stick to the motion [s], "
                               "pushes that moved the head, pushes");
   auto count = module.parameter("count", 20, "", "pushes", {.min = 1, .max = 1e6, .fixed = true});
   auto seed = module.parameter("seed", 1, "", "of when, how far and how long it is pushed",

@@ -18,7 +18,7 @@ class Announcer {
 
   /// Takes a reading.
   ///
-  /// @param time  when the picture was taken [ns].
+  /// @param time  when the image was taken [ns].
   /// @param is_heard  whether anybody hears what is said now, as those who wait for the focus do
   ///     not while another mode has it.
   /// @returns  whether its text is to be said now: it is sure, and another than was said last, or

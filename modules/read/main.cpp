@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads block letters in pictures, and says where they are.
+// Reads block letters in images, and says where they are.
 #include <optional>
 
 #include <hc/module/module.h>
@@ -20,13 +20,13 @@ int main(int argc, char** argv) {
   hc::Module module{"read", "Reads a line of dark letters on a bright ground, as on a board."};
   auto image = module.input(
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "picture with letters");
+      "image with letters");
   auto text = module.output("text", hc::string().in(kText),
                             "what is read, once it is sure; again when it changes");
   auto confidence =
       module.output("confidence", hc::table<double>(), "of each reading, sure or not, 0 to 1");
   auto target = module.output("target", hc::position<double>(),
-                              "x, y, width of the line [px], in the picture's coordinate system");
+                              "x, y, width of the line [px], in the image's coordinate system");
   auto language = module.parameter("language", "eng", "",
                                    "as Tesseract calls it: eng, deu, eng+deu", {.fixed = true});
   auto upper_case = module.parameter(
@@ -51,26 +51,24 @@ int main(int argc, char** argv) {
   module.on_start(
       [&] { recogniser.emplace(hc::value_or_end(Recogniser::make(*language, *upper_case))); });
 
-  /// Whether it is time to read again. By the pictures' times, as recordings are to give the same.
+  /// Whether it is time to read again. By the images' times, as recordings are to give the same.
   auto is_due = [&](std::int64_t time) {
     if (*rate <= 0 || !read_at) return true;
     const auto since = time - *read_at;
-    // Half a millisecond is what times of pictures that come evenly may differ by.
+    // Half a millisecond is what times of images that come evenly may differ by.
     return since < 0 || static_cast<double>(since) + 5e5 >= 1e9 / *rate;
   };
 
-  module.on(image, [&](const hc::Message& picture) {
-    const cv::Mat pixels = hc::value_or_end(hc::as_mat(picture));
+  module.on(image, [&](const hc::Message& message) {
+    const cv::Mat pixels = hc::value_or_end(hc::as_mat(message));
     const auto lines = hc::vision::find_text_lines(pixels, *score);
     if (lines.empty()) return;
     const auto& line = lines.front();
     if (target.linked()) {
       const auto middle = line.middle();
-      auto place = hc::position<double>(middle.x, middle.y, line.width());
-      place.header.coord = picture.header.coord;
-      target.send(place);
+      target.send(hc::position<double>(middle.x, middle.y, line.width()).in(message.header.coord));
     }
-    const std::int64_t time = picture.header.time != 0 ? picture.header.time : module.now();
+    const std::int64_t time = message.header.time != 0 ? message.header.time : module.now();
     if (!line.is_whole || !is_due(time)) return;
     read_at = time;
     const cv::Mat straight = hc::vision::straighten(pixels, line);

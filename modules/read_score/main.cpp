@@ -22,15 +22,14 @@ std::int64_t nanoseconds(double seconds) {
 
 int main(int argc, char** argv) {
   hc::Module module{"read_score", "Writes texts for a robot to read aloud, and scores it."};
-  auto text =
-      module.input("text", hc::string().in(kText), "what was read, with the picture's time");
+  auto text = module.input("text", hc::string().in(kText), "what was read, with the image's time");
   auto sound = module.input("sound", hc::sound<std::int16_t>(1).in(kSound22k),
                             "what is spoken, with the time of the text");
   auto writing = module.output("writing", hc::string().in(kText), "what is to be read next");
   auto result =
-      module.output("score", hc::table<double>(),
-                    "1 x 6: letters that are wrong, of 1; seen to spoken, median and most [s]; of "
-                    "it since the picture that decided, median [s]; texts; texts not spoken");
+      module.output("score", hc::table<double>().of(6, 1),
+                    "letters that are wrong, of 1; seen to spoken, median and most [s]; of "
+                    "it since the image that decided, median [s]; texts; texts not spoken");
   auto seed = module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9});
   auto count = module.parameter("count", 5, "", "texts", {.min = 1, .max = 100'000});
   auto time_out = module.parameter("time_out", 10.0, "s", "for a text, then comes the next",

@@ -74,21 +74,21 @@ ReadingScore score_of(const std::vector<ReadText>& texts) {
   return score;
 }
 
-void Attempt::take_text(const std::string& text, std::int64_t picture) {
-  if (picture >= written_at_ && !read_) read_ = text;
+void Attempt::take_text(const std::string& text, std::int64_t image) {
+  if (image >= written_at_ && !read_) read_ = text;
 }
 
-void Attempt::take_sound(std::int64_t picture, std::int64_t now) {
-  if (picture < written_at_ || spoken_at_) return;
+void Attempt::take_sound(std::int64_t image, std::int64_t now) {
+  if (image < written_at_ || spoken_at_) return;
   spoken_at_ = now;
-  picture_ = picture;
+  image_ = image;
 }
 
 ReadText Attempt::result() const {
   ReadText text{truth_, read_.value_or(""), std::nullopt};
   if (spoken_at_) {
     text.seen_to_spoken = static_cast<double>(*spoken_at_ - written_at_) * 1e-9;
-    text.work = static_cast<double>(*spoken_at_ - picture_) * 1e-9;
+    text.work = static_cast<double>(*spoken_at_ - image_) * 1e-9;
   }
   return text;
 }

@@ -19,7 +19,7 @@ std::size_t edits(const std::string& truth, const std::string& read);
 struct ReadText {
   std::string truth, read;
   std::optional<double> seen_to_spoken;  ///< [s]; not when it was not spoken in time
-  double work = 0;                       ///< the part of it since the picture that decided [s]
+  double work = 0;                       ///< the part of it since the image that decided [s]
 };
 
 struct ReadingScore {
@@ -32,16 +32,16 @@ struct ReadingScore {
 ReadingScore score_of(const std::vector<ReadText>& texts);
 
 /// One text from when it is written until it was read and spoken. The first reading counts, however
-/// wrong it is; readings of pictures from before do not.
+/// wrong it is; readings of images from before do not.
 class Attempt {
  public:
   Attempt(std::string truth, std::int64_t written_at)
       : truth_(std::move(truth)), written_at_(written_at) {}
 
-  /// @param picture  when the picture was taken that was read [ns].
-  void take_text(const std::string& text, std::int64_t picture);
-  /// @param picture  the same of the text that is spoken [ns].
-  void take_sound(std::int64_t picture, std::int64_t now);
+  /// @param image  when the image was taken that was read [ns].
+  void take_text(const std::string& text, std::int64_t image);
+  /// @param image  the same of the text that is spoken [ns].
+  void take_sound(std::int64_t image, std::int64_t now);
 
   [[nodiscard]] bool is_done() const { return read_.has_value() && spoken_at_.has_value(); }
   [[nodiscard]] const std::string& truth() const { return truth_; }
@@ -53,5 +53,5 @@ class Attempt {
   std::int64_t written_at_;
   std::optional<std::string> read_;
   std::optional<std::int64_t> spoken_at_;
-  std::int64_t picture_ = 0;  // of what was spoken
+  std::int64_t image_ = 0;  // of what was spoken
 };

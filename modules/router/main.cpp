@@ -12,8 +12,8 @@ int main(int argc, char** argv) {
   auto in = module.input("in", hc::anything(), "messages with an address (dst)");
   auto out = module.output("out", hc::anything(), "the same, on the links of its address");
   auto counts = module.output(
-      "counts", hc::table<std::int64_t>(),
-      "5 x 1 each second: messages passed; dropped for ttl, as duplicates, without a route, "
+      "counts", hc::table<std::int64_t>().of(5, 1),
+      "each second: messages passed; dropped for ttl, as duplicates, without a route, "
       "without an address");
   auto remember =
       module.parameter("remember", 1.0, "s", "how long a duplicate of a message is recognised",

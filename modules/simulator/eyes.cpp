@@ -36,5 +36,5 @@ void Eyes::take(Eye& eye, const Eigen::Isometry3d& T_head_eye, const View& view,
 }
 
 void Eyes::send_due(std::int64_t now) {
-  while (auto picture = late_.take(now)) picture->output.send(std::move(picture->draft));
+  while (auto image = late_.take(now)) image->output.send(std::move(image->draft));
 }

@@ -12,7 +12,7 @@
 #include "parameters.h"
 #include "sensor.h"
 
-/// What a pair of pictures is taken of.
+/// What a pair of images is taken of.
 struct View {
   std::int64_t time;    ///< [ns]
   std::int64_t number;  ///< of the pair
@@ -30,13 +30,13 @@ class Eyes {
   Eyes(const Parameters& parameters, const Head& head, hc::graphics::Renderer& renderer,
        Output left, Output right);
 
-  /// Takes a pair; a picture that nobody takes is not drawn, as that is most of the work.
+  /// Takes a pair; an image that nobody takes is not drawn, as that is most of the work.
   ///
-  /// @param[out] depth  of the left picture, (H, W) f32 [m], 0 where nothing is; null: unwanted.
+  /// @param[out] depth  of the left image, (H, W) f32 [m], 0 where nothing is; null: unwanted.
   void take(const View& view, cv::Mat* depth);
-  /// Sends the pictures that are due [ns].
+  /// Sends the images that are due [ns].
   void send_due(std::int64_t now);
-  /// Whether no picture waits to be sent.
+  /// Whether no image waits to be sent.
   [[nodiscard]] bool empty() const { return late_.empty(); }
 
  private:
@@ -44,7 +44,7 @@ class Eyes {
     Output output;
     Sensor sensor;
   };
-  struct Picture {
+  struct Image {
     Output output;
     hc::DraftOf<Kind> draft;
   };
@@ -55,5 +55,5 @@ class Eyes {
   const Head head_;
   const hc::graphics::PinholeCamera camera_;
   Eye left_, right_;
-  Late<Picture> late_;
+  Late<Image> late_;
 };

@@ -20,7 +20,7 @@
 namespace {
 
 constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kGaze = 13, kSound16k = 21;
-constexpr double kTick = 250;  // how often it is looked whether a picture is due [Hz]
+constexpr double kTick = 250;  // how often it is looked whether an image is due [Hz]
 const Eigen::Vector3d kUnderground(0, 0, -10);  // where a ball is that has gone [m]
 
 /// What begins when the parameters are known.

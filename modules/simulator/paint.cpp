@@ -31,29 +31,29 @@ cv::Mat paint_grains(int width, int height, const cv::Scalar& rgb, double streng
   std::vector<cv::Mat> planes(3);
   for (int channel = 0; channel < 3; ++channel)
     sum.convertTo(planes[static_cast<std::size_t>(channel)], CV_8U, strength, rgb[channel]);
-  cv::Mat picture;
-  cv::merge(planes, picture);
-  return picture;
+  cv::Mat image;
+  cv::merge(planes, image);
+  return image;
 }
 
 cv::Mat paint_planks(int width, int height, std::uint64_t seed) {
   cv::RNG random(seed + 2);
-  cv::Mat picture = paint_grains(width, height, {150, 128, 104}, 18, seed);
-  cv::resize(picture(cv::Rect(0, 0, width / 8, height)), picture, {width, height});
+  cv::Mat image = paint_grains(width, height, {150, 128, 104}, 18, seed);
+  cv::resize(image(cv::Rect(0, 0, width / 8, height)), image, {width, height});
   const int plank = std::max(4, height / 12);
   for (int y = 0; y < height; y += plank) {
-    cv::Mat row = picture(cv::Rect(0, y, width, std::min(plank, height - y)));
+    cv::Mat row = image(cv::Rect(0, y, width, std::min(plank, height - y)));
     row += cv::Scalar::all(random.uniform(-22, 22));
-    cv::line(picture, {0, y}, {width, y}, {70, 60, 50}, 1);
+    cv::line(image, {0, y}, {width, y}, {70, 60, 50}, 1);
     for (int x = random.uniform(0, width / 2); x < width; x += random.uniform(width / 4, width / 2))
-      cv::line(picture, {x, y}, {x, std::min(y + plank, height)}, {70, 60, 50}, 1);
+      cv::line(image, {x, y}, {x, std::min(y + plank, height)}, {70, 60, 50}, 1);
   }
-  return picture;
+  return image;
 }
 
 cv::Mat paint_poster(int width, int height, std::uint64_t seed) {
   cv::RNG random(seed + 3);
-  cv::Mat picture(height, width, CV_8UC3, cv::Scalar(214, 210, 196));
+  cv::Mat image(height, width, CV_8UC3, cv::Scalar(214, 210, 196));
   for (int i = 0; i < 60; ++i) {
     // Greys, blues and ochres, of little saturation.
     const int base = random.uniform(40, 200), tint = random.uniform(-25, 25);
@@ -62,12 +62,12 @@ cv::Mat paint_poster(int width, int height, std::uint64_t seed) {
     const cv::Point a(x, y);
     const int size = random.uniform(width / 30, width / 8);
     if (i % 2 == 0)
-      cv::circle(picture, a, size, colour, cv::FILLED, cv::LINE_AA);
+      cv::circle(image, a, size, colour, cv::FILLED, cv::LINE_AA);
     else
-      cv::rectangle(picture, a, a + cv::Point(size, 2 * size), colour, cv::FILLED);
+      cv::rectangle(image, a, a + cv::Point(size, 2 * size), colour, cv::FILLED);
   }
-  cv::rectangle(picture, {0, 0}, {width - 1, height - 1}, {50, 50, 55}, width / 50 + 1);
-  return picture;
+  cv::rectangle(image, {0, 0}, {width - 1, height - 1}, {50, 50, 55}, width / 50 + 1);
+  return image;
 }
 
 cv::Mat paint_plate(const std::string& dictionary, int id) {
@@ -88,20 +88,20 @@ cv::Mat paint_plate(const std::string& dictionary, int id) {
   cells(cv::Rect(2, 2, all.markerSize, all.markerSize)) = bits * 255;
   // OpenCV has AprilTags upside down, as their own library reads them.
   if (dictionary == "apriltag") cv::rotate(cells, cells, cv::ROTATE_180);
-  cv::Mat picture;
-  cv::resize(cells, picture, {}, kCell, kCell, cv::INTER_NEAREST);
-  cv::cvtColor(picture, picture, cv::COLOR_GRAY2RGB);
-  return picture;
+  cv::Mat image;
+  cv::resize(cells, image, {}, kCell, kCell, cv::INTER_NEAREST);
+  cv::cvtColor(image, image, cv::COLOR_GRAY2RGB);
+  return image;
 }
 
 cv::Mat paint_marker(const cv::Scalar& rgb) {
-  cv::Mat picture(96, 96, CV_8UC3, cv::Scalar(255, 255, 255));
-  picture(cv::Rect(16, 16, 64, 64)) = rgb;
-  return picture;
+  cv::Mat image(96, 96, CV_8UC3, cv::Scalar(255, 255, 255));
+  image(cv::Rect(16, 16, 64, 64)) = rgb;
+  return image;
 }
 
 cv::Mat paint_board(const std::string& text, int width, int height) {
-  cv::Mat picture(height, width, CV_8UC3, cv::Scalar(245, 245, 240));
+  cv::Mat image(height, width, CV_8UC3, cv::Scalar(245, 245, 240));
   std::vector<std::string> lines;
   std::string line;
   for (std::istringstream all(text); std::getline(all, line);) {
@@ -122,9 +122,9 @@ cv::Mat paint_board(const std::string& text, int width, int height) {
   for (const auto& each : lines) {
     const int stroke = std::max(1, static_cast<int>(2.6 * scale));
     const auto size = cv::getTextSize(each, font, scale, stroke, &below);
-    cv::putText(picture, each, {(width - size.width) / 2, top + (room + size.height) / 2}, font,
+    cv::putText(image, each, {(width - size.width) / 2, top + (room + size.height) / 2}, font,
                 scale, {20, 20, 25}, stroke, cv::LINE_AA);
     top += room;
   }
-  return picture;
+  return image;
 }

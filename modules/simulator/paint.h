@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Pictures for the surfaces of the world. Pure; the same seed gives the same bytes.
+// Images for the surfaces of the world. Pure; the same seed gives the same bytes.
 
 #include <cstdint>
 #include <string>
@@ -16,9 +16,9 @@ cv::Mat paint_grains(int width, int height, const cv::Scalar& rgb, double streng
                      std::uint64_t seed);
 /// Planks along x.
 cv::Mat paint_planks(int width, int height, std::uint64_t seed);
-/// A picture of coloured shapes, in none of the colours that markers and the ball have.
+/// An image of coloured shapes, in none of the colours that markers and the ball have.
 cv::Mat paint_poster(int width, int height, std::uint64_t seed);
-/// A black and white plate with a white margin of one cell. The picture has 8 pixels a cell.
+/// A black and white plate with a white margin of one cell. The image has 8 pixels a cell.
 ///
 /// @param dictionary  "aruco" (6×6_250) or "apriltag" (36h11). @param id  within it.
 cv::Mat paint_plate(const std::string& dictionary, int id);

@@ -15,7 +15,7 @@ struct Parameters {
 
   hc::Parameter<std::int64_t> seed = module.parameter(
       "seed", 1, "", "of the world, the ball and the noise", {.min = 0, .max = 1e9, .fixed = true});
-  hc::Parameter<double> rate = module.parameter("rate", 20.0, "Hz", "pairs of pictures a second",
+  hc::Parameter<double> rate = module.parameter("rate", 20.0, "Hz", "pairs of images a second",
                                                 {.min = 0.1, .max = 1000, .fixed = true});
   hc::Parameter<std::int64_t> count =
       module.parameter("count", 0, "", "pairs to give, 0: all", {.min = 0});
@@ -23,11 +23,11 @@ struct Parameters {
       "paced", true, "", "in real time; false: as fast as they are drawn and gazes come",
       {.fixed = true});
   hc::Parameter<std::int64_t> start = module.parameter(
-      "start", 0, "ns", "time of the first picture, 0: now", {.min = 0, .fixed = true});
+      "start", 0, "ns", "time of the first image, 0: now", {.min = 0, .fixed = true});
 
-  hc::Parameter<std::int64_t> width = module.parameter("width", 800, "px", "of the pictures",
+  hc::Parameter<std::int64_t> width = module.parameter("width", 800, "px", "of the images",
                                                        {.min = 16, .max = 8192, .fixed = true});
-  hc::Parameter<std::int64_t> height = module.parameter("height", 600, "px", "of the pictures",
+  hc::Parameter<std::int64_t> height = module.parameter("height", 600, "px", "of the images",
                                                         {.min = 16, .max = 8192, .fixed = true});
   hc::Parameter<double> focal = module.parameter("focal", 600.0, "px", "focal length of the eyes",
                                                  {.min = 10, .max = 1e5, .fixed = true});
@@ -38,7 +38,7 @@ struct Parameters {
   hc::Parameter<double> exposure =
       module.parameter("exposure", 1.0, "", "1 is as it should be", {.min = 0, .max = 10});
   hc::Parameter<double> latency = module.parameter(
-      "latency", 0.0, "s", "from taking a picture to giving it", {.min = 0, .max = 2});
+      "latency", 0.0, "s", "from taking an image to giving it", {.min = 0, .max = 2});
   hc::Parameter<bool> swapped =
       module.parameter("swapped", false, "", "the cables of the eyes are mixed up");
 
@@ -74,7 +74,7 @@ struct Parameters {
   [[nodiscard]] HeadFaults faults() const {
     return {*zero_pan, *zero_tilt, *offset_roll, *offset_pitch, *offset_yaw};
   }
-  /// Each eye's; its optical axis meets the middle of the picture.
+  /// Each eye's; its optical axis meets the middle of the image.
   [[nodiscard]] hc::graphics::PinholeCamera camera() const {
     hc::graphics::PinholeCamera camera;
     camera.width = static_cast<int>(*width);

@@ -22,7 +22,7 @@ class ParametersTest : public testing::Test {
   const Parameters parameters{module};
 };
 
-TEST_F(ParametersTest, the_camera_looks_through_the_middle_of_its_picture) {
+TEST_F(ParametersTest, the_camera_looks_through_the_middle_of_its_image) {
   set("width", "320");
   set("height", "201");
   set("focal", "250");

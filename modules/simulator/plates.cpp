@@ -22,7 +22,7 @@ struct Wish {
   double yaw;
 };
 
-/// The picture of a plate with its white margin.
+/// The image of a plate with its white margin.
 cv::Mat paint(const Wish& wish) {
   if (std::string_view(wish.kind) != "colour") return paint_plate(wish.kind, wish.id);
   return paint_marker(wish.id == 300   ? cv::Scalar(210, 20, 210)
@@ -61,7 +61,7 @@ std::vector<Plate> add_plates(Scenery& room) {
   };
   std::vector<Plate> plates;
   for (const auto& wish : wishes) {
-    // The margin is a sixth of the picture, or one cell of ten.
+    // The margin is a sixth of the image, or one cell of ten.
     const bool is_colour = std::string_view(wish.kind) == "colour";
     const auto whole = static_cast<float>(wish.side * (is_colour ? 1.5 : 1.25));
     const Isometry3d place = hang(wish.place, wish.yaw);

@@ -65,23 +65,23 @@ hc::graphics::SurfaceId add_room(Scenery& room) {
 }
 
 void add_shadows(Scenery& room, hc::graphics::SurfaceId floor, const Vector3d& to_light) {
-  cv::Mat picture = paint_floor(room.seed()), light(picture.size(), CV_8U, cv::Scalar(255));
+  cv::Mat image = paint_floor(room.seed()), light(image.size(), CV_8U, cv::Scalar(255));
   constexpr double kShade = 150, kSoft = 5;  // of 255; [px]
   for (const auto& corners : room.boxes()) {
     std::vector<cv::Point> outline, hull;
     for (const auto& corner : corners) {
       const Vector3d on_floor = corner - corner.z() / to_light.z() * to_light;
       outline.emplace_back(
-          static_cast<int>((on_floor.x() - kRoomBack) / (kRoomFront - kRoomBack) * picture.cols),
-          static_cast<int>((kRoomSide - on_floor.y()) / (2 * kRoomSide) * picture.rows));
+          static_cast<int>((on_floor.x() - kRoomBack) / (kRoomFront - kRoomBack) * image.cols),
+          static_cast<int>((kRoomSide - on_floor.y()) / (2 * kRoomSide) * image.rows));
     }
     cv::convexHull(outline, hull);
     cv::fillConvexPoly(light, hull, kShade);
   }
   cv::GaussianBlur(light, light, {}, kSoft);
   cv::cvtColor(light, light, cv::COLOR_GRAY2BGR);
-  cv::multiply(picture, light, picture, 1.0 / 255);
-  room.set_texture(floor, picture);
+  cv::multiply(image, light, image, 1.0 / 255);
+  room.set_texture(floor, image);
 }
 
 void add_furniture(Scenery& room) {

@@ -13,7 +13,7 @@
 /// How high above the floor the robot's head is for whom the room is furnished [m].
 inline constexpr double kHeadHeight = 1.2;
 
-/// Where a picture hangs, T_world_picture (x right, y down, z into it, of who looks at it).
+/// Where an image hangs, T_world_image (x right, y down, z into it, of who looks at it).
 ///
 /// @param middle  in the world [m].
 /// @param yaw  of the direction into it, 0 being forward, > 0 to the left [rad].
@@ -37,7 +37,7 @@ class Scenery {
                double yaw = 0);
   /// The corners of all boxes, in the world [m].
   [[nodiscard]] const std::vector<std::array<Eigen::Vector3d, 8>>& boxes() const { return boxes_; }
-  /// Puts another picture on a surface.
+  /// Puts another image on a surface.
   void set_texture(hc::graphics::SurfaceId surface, const cv::Mat& texture) {
     renderer_.set_texture(surface, texture);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// When pairs of pictures are taken: pair n is taken n / rate after the start. Pure.
+// When pairs of images are taken: pair n is taken n / rate after the start. Pure.
 
 #include <cstdint>
 

@@ -7,10 +7,10 @@ namespace {
 
 TEST(Sensor, adds_noise_of_the_deviation_asked_for) {
   for (double noise : {2.0, 20.0}) {
-    cv::Mat picture(300, 400, CV_8UC3, cv::Scalar::all(128));
-    Sensor(1).apply(picture, 0, noise, 5);
+    cv::Mat image(300, 400, CV_8UC3, cv::Scalar::all(128));
+    Sensor(1).apply(image, 0, noise, 5);
     cv::Scalar mean, deviation;
-    cv::meanStdDev(picture, mean, deviation);
+    cv::meanStdDev(image, mean, deviation);
     for (int channel = 0; channel < 3; ++channel) {
       EXPECT_NEAR(mean[channel], 128, 0.3);
       EXPECT_NEAR(deviation[channel], noise, 0.05 * noise + 0.1);  // values are rounded
@@ -20,24 +20,24 @@ TEST(Sensor, adds_noise_of_the_deviation_asked_for) {
 
 TEST(Sensor, gives_the_same_noise_for_a_number_and_another_for_the_next) {
   auto noisy = [](std::uint64_t seed, std::uint64_t number) {
-    cv::Mat picture(60, 80, CV_8UC3, cv::Scalar::all(128));
-    Sensor(seed).apply(picture, 0, 5, number);
-    return picture;
+    cv::Mat image(60, 80, CV_8UC3, cv::Scalar::all(128));
+    Sensor(seed).apply(image, 0, 5, number);
+    return image;
   };
   EXPECT_EQ(cv::norm(noisy(1, 3), noisy(1, 3), cv::NORM_INF), 0);
   EXPECT_GT(cv::norm(noisy(1, 3), noisy(1, 4), cv::NORM_INF), 0);
   EXPECT_GT(cv::norm(noisy(1, 3), noisy(2, 3), cv::NORM_INF), 0);
 }
 
-TEST(Sensor, blurs_an_edge_and_leaves_a_picture_alone_when_told_nothing) {
-  cv::Mat picture(20, 20, CV_8UC3, cv::Scalar::all(0));
-  picture.colRange(10, 20) = cv::Scalar::all(200);
-  const cv::Mat before = picture.clone();
-  Sensor(1).apply(picture, 0, 0, 1);
-  EXPECT_EQ(cv::norm(before, picture, cv::NORM_INF), 0);
-  Sensor(1).apply(picture, 2, 0, 1);
-  EXPECT_GT(picture.at<cv::Vec3b>(10, 8)[0], 10);
-  EXPECT_LT(picture.at<cv::Vec3b>(10, 11)[0], 190);
+TEST(Sensor, blurs_an_edge_and_leaves_an_image_alone_when_told_nothing) {
+  cv::Mat image(20, 20, CV_8UC3, cv::Scalar::all(0));
+  image.colRange(10, 20) = cv::Scalar::all(200);
+  const cv::Mat before = image.clone();
+  Sensor(1).apply(image, 0, 0, 1);
+  EXPECT_EQ(cv::norm(before, image, cv::NORM_INF), 0);
+  Sensor(1).apply(image, 2, 0, 1);
+  EXPECT_GT(image.at<cv::Vec3b>(10, 8)[0], 10);
+  EXPECT_LT(image.at<cv::Vec3b>(10, 11)[0], 190);
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ std::array<double, 10> row_of(const Plate& plate) {
 
 Truth::Truth(hc::Module& module)
     : depth(module.output("depth", hc::intensity_image<float>().in(kDepth),
-                          "truth: depth of the left picture [m], 0 where nothing is")),
+                          "truth: depth of the left image [m], 0 where nothing is")),
       head_pose_(module.output("head_pose", hc::transformation<double>(4, 4).in(kWorldFromHead),
-                               "truth: T_world_head as the pictures were taken")),
+                               "truth: T_world_head as the images were taken")),
       left_pose_(module.output("left_pose", hc::transformation<double>(4, 4).in(kWorldFromLeftEye),
                                "truth: T_world_left_eye")),
       right_pose_(module.output("right_pose",
@@ -53,8 +53,8 @@ Truth::Truth(hc::Module& module)
                                 "truth: T_world_right_eye")),
       ball_(module.output("ball", hc::position<double>(6).in(kWorld),
                           "truth: the ball's middle [m] and velocity [m/s]")),
-      ball_seen_(module.output("ball_seen", hc::table<double>(),
-                               "truth, 1 x 4: u, v, radius of the ball in the left picture [px], "
+      ball_seen_(module.output("ball_seen", hc::table<double>().of(4, 1),
+                               "truth: u, v, radius of the ball in the left image [px], "
                                "share of it that is seen")),
       plates_(module.output("plates", hc::table<double>(),
                             "truth, a row each: kind (0 aruco, 1 apriltag, 2 colour), id, side "

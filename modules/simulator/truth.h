@@ -17,7 +17,7 @@
 #include "plates.h"
 
 /// How the ball is seen: u, v, radius [px], share of it that is seen, 0 where it is not within the
-/// picture [0 … 1].
+/// image [0 … 1].
 ///
 /// @param ball  its middle, in the world [m].
 std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_eye,

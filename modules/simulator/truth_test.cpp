@@ -26,7 +26,7 @@ TEST(SeenBall, is_where_the_camera_projects_it) {
   EXPECT_EQ(share, 1);
 }
 
-TEST(SeenBall, has_no_share_outside_the_picture) {
+TEST(SeenBall, has_no_share_outside_the_image) {
   const double edge = std::atan(400.0 / 600);
   EXPECT_EQ(seen({2, 0, 1.2}, eye(edge - 0.01), {})[3], 1);
   EXPECT_EQ(seen({2, 0, 1.2}, eye(edge + 0.01), {})[3], 0);

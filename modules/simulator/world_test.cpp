@@ -17,7 +17,7 @@ class Room : public testing::Test {
     world = std::make_unique<World>(*renderer, 1, "HELLO");
   }
 
-  /// The left eye's picture with pan and tilt [rad].
+  /// The left eye's image with pan and tilt [rad].
   cv::Mat look(double pan, double tilt, const Eigen::Vector3d& ball, cv::Mat* depth = nullptr) {
     using Eigen::AngleAxisd, Eigen::Vector3d;
     const Eigen::Isometry3d T_world_head = Eigen::Translation3d(0, 0, kHeadHeight) *

@@ -17,12 +17,12 @@ int main(int argc, char** argv) {
   auto eye = module.input("left_pose", hc::transformation<double>(4, 4).in(kWorldLeftEye),
                           "truth: T_world_left_eye");
   auto ball = module.input("ball", hc::position<double>(6).in(kWorld), "truth: of the ball [m]");
-  auto seen = module.input("ball_seen", hc::table<double>(),
-                           "truth, 1 x 4: of which the last is the share that is seen");
+  auto seen = module.input("ball_seen", hc::table<double>().of(4, 1),
+                           "truth, of which the last number is the share that is seen");
   auto begin = module.input("begin", hc::table<double>(),
                             "the first message begins the score anew: as calibrate's result");
-  auto result = module.output("score", hc::table<double>(),
-                              "1 x 5: RMS error [rad], time to acquire it [s], times that it came "
+  auto result = module.output("score", hc::table<double>().of(5, 1),
+                              "RMS error [rad], time to acquire it [s], times that it came "
                               "back, longest time to acquire it then [s], samples");
   auto duration =
       module.parameter("duration", 20.0, "s", "how long it is scored", {.min = 0.1, .max = 1e6});
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
 
   std::vector<hc::gaze::TrackSample> samples;
   bool has_begun = false;
-  std::int64_t waits = 0;  // looks since a picture
+  std::int64_t waits = 0;  // looks since an image
   module.on(begin, [&](const auto&) {
     if (!std::exchange(has_begun, true)) samples.clear();
   });

@@ -11,8 +11,8 @@
 
 #include <hc/module/module.h>
 #include <hc/os/program.h>
+#include <vision/image.h>
 #include <vision/messages.h>
-#include <vision/picture.h>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -67,8 +67,8 @@ int main(int argc, char** argv) {
       module.parameter("window", "auto", "", "show a window", {.choices = {"auto", "yes", "no"}});
   auto stay = module.parameter("stay", true, "",
                                "keep windows after the last image, until a key is pressed");
-  auto min = module.parameter("min", 0.0, "", "value that is bluest; both 0: from the picture");
-  auto max = module.parameter("max", 0.0, "", "value that is reddest; both 0: from the picture");
+  auto min = module.parameter("min", 0.0, "", "value that is bluest; both 0: from the image");
+  auto max = module.parameter("max", 0.0, "", "value that is reddest; both 0: from the image");
 
   bool shows = false;
   std::set<std::string> windows;

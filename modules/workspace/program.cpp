@@ -51,11 +51,11 @@ class Complaints {
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", clock};
   auto bids = module.input("bids", hc::table<double>(),
-                           "1 x 1: salience 0 … 1 of the message's mode; 0 withdraws");
+                           "salience 0 … 1 of the message's mode; 0 withdraws");
   auto person = module.input("person", hc::table<double>(),
                              "the same from a person, above all others while it is valid");
-  auto focus = module.output("focus", hc::table<std::int32_t>(),
-                             "1 x 1: number of the mode in focus, 0 none; each period");
+  auto focus = module.output("focus", hc::table<std::int32_t>().of(1, 1),
+                             "number of the mode in focus, 0 none; each period");
   auto standings = module.output(
       "standings", hc::table<double>(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compressed parts, made once: zstd frames with zstd 1.5.4, pictures with libjpeg-turbo's cjpeg 2.1.5.
+"""Compressed parts, made once: zstd frames with zstd 1.5.4, images with libjpeg-turbo's cjpeg 2.1.5.
 
-Every picture is flat and of such a colour that each correct decoder gives the same elements. What no
+Every image is flat and of such a colour that each correct decoder gives the same elements. What no
 tool makes (wrong on purpose, or of a rare kind) is put together by hand, field by field.
 """
 

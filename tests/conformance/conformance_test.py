@@ -4,7 +4,7 @@
 
     conformance_test.py HC
 
-Random messages come from fixed seeds. The folder pictures/ holds small pictures that cjpeg made, of
+Random messages come from fixed seeds. The folder images/ holds small images that cjpeg made, of
 the kinds that hc reads and does not write; their names say which.
 """
 
@@ -29,7 +29,7 @@ ROOT = HERE.parents[1]
 VALID = sorted((ROOT / "spec/vectors/valid").glob("*.mtp"))
 INVALID = sorted((ROOT / "spec/vectors/invalid").glob("*.mtp"))
 COMPRESSED = [path for path in VALID if path.name.startswith(("zstd", "jpeg"))]
-PICTURES = sorted((HERE / "pictures").glob("*.jpg"))
+PICTURES = sorted((HERE / "images").glob("*.jpg"))
 HC = "hc"
 SEEDS = (1, 2, 3)
 COUNT = 800
@@ -153,8 +153,8 @@ def send_table(rng, size):
     return message, send(header, data, "--npy=/dev/stdin")
 
 
-def send_picture(rng):
-    """A small random picture, grey or in colour, as hc sends it in JPEG."""
+def send_image(rng):
+    """A small random image, grey or in colour, as hc sends it in JPEG."""
     header = mtp1_random.random_header(rng)
     header.info = rng.choice((30303, 40103))
     header.width, header.height = rng.randint(1, 30), rng.randint(1, 20)
@@ -166,12 +166,12 @@ def send_picture(rng):
     return send(header, b"", *words)
 
 
-def wrap(picture):
-    """A message of a picture file."""
-    frame = re.search(rb"\xff[\xc0\xc2]..\x08(..)(..)(.)", picture, re.S)
+def wrap(image):
+    """A message of an image file."""
+    frame = re.search(rb"\xff[\xc0\xc2]..\x08(..)(..)(.)", image, re.S)
     height, width, components = (int.from_bytes(number, "big") for number in frame.groups())
     header = Header(info={1: 40103, 3: 30303}[components], width=width, height=height)
-    return mtp1.write(mtp1.Message(header, None, picture))
+    return mtp1.write(mtp1.Message(header, None, image))
 
 
 class Vectors(unittest.TestCase):
@@ -274,24 +274,24 @@ class RandomMessages(unittest.TestCase):
                 self.assertEqual(message.header, sent.header)
                 self.assertTrue(message.elements == sent.elements)
 
-    def test_both_read_pictures_alike(self):
+    def test_both_read_images_alike(self):
         rng = random.Random(13)
-        pictures = [wrap(path.read_bytes()) for path in PICTURES]
-        pictures += [send_picture(rng) for _ in range(200)]
-        for i, picture in enumerate(pictures):
+        images = [wrap(path.read_bytes()) for path in PICTURES]
+        images += [send_image(rng) for _ in range(200)]
+        for i, image in enumerate(images):
             with self.subTest(i):
-                self.assertEqual(self.check_alike(picture, by=2), {})
+                self.assertEqual(self.check_alike(image, by=2), {})
 
     def test_both_refuse_damaged_compressed_alike(self):
         rng = random.Random(17)
         whole = [path.read_bytes() for path in COMPRESSED]
         whole += [wrap(path.read_bytes()) for path in PICTURES]
         whole += [send_table(rng, rng.choice((9, 60, 400)))[1] for _ in range(50)]
-        whole += [send_picture(rng) for _ in range(20)]
+        whole += [send_image(rng) for _ in range(20)]
         for i in range(800):
             (message,) = mtp1.read(rng.choice(whole), expand=False)
             message.compressed = mtp1_random.damage(rng, message.compressed) or b"?"
-            # Where a damaged picture leaves its 8 bits far behind, decoders differ by any number.
+            # Where a damaged image leaves its 8 bits far behind, decoders differ by any number.
             with self.subTest(i):
                 self.check_alike(mtp1.write(message), by=255 * (message.header.encoding == "jpeg"))
 

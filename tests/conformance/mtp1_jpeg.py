@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Decodes a JPEG picture, written from ITU-T T.81: sequential or progressive, 8 bits, Huffman codes.
+"""Decodes a JPEG image, written from ITU-T T.81: sequential or progressive, 8 bits, Huffman codes.
 
     decode(data, width, height, components) -> bytes, row by row, components next to one another
 
 One component, or three: JFIF's YCbCr or RGB, given as r g b. Section numbers are of T.81. Anything
-that is not just one whole picture of the wanted shape raises JpegError.
+that is not just one whole image of the wanted shape raises JpegError.
 """
 
 import re
@@ -21,11 +21,11 @@ STUFFED = re.compile(rb"\xff+\x00")
 
 
 def decode(data, width, height, components):
-    """The samples of a picture that must be of just this shape."""
+    """The samples of an image that must be of just this shape."""
     try:
-        picture = Picture(data, width, height, components)
-        picture.read()
-        return picture.samples()
+        image = Image(data, width, height, components)
+        image.read()
+        return image.samples()
     except OverflowError:  # of an array("h")
         raise JpegError("a coefficient is out of range") from None
 
@@ -47,8 +47,8 @@ class Component:
         self.blocks = self.stride * frame.mcu_rows * self.v
 
 
-class Picture:
-    """A picture as it is read: tables, components and their coefficients."""
+class Image:
+    """An image as it is read: tables, components and their coefficients."""
 
     def __init__(self, data, width, height, components):
         self.data, self.width, self.height, self.wanted = data, width, height, components
@@ -90,7 +90,7 @@ class Picture:
                 )
             self.read_segment(marker, self.segment())
         if self.at != len(self.data):
-            raise JpegError("bytes behind the picture")
+            raise JpegError("bytes behind the image")
         if not self.components or any(part.known[0] is None for part in self.components):
             raise JpegError("a component is missing")
 
@@ -131,7 +131,7 @@ class Picture:
         height, width, count = fields.number(2), fields.number(2), fields.number(1)
         if (width, height, count) != (self.width, self.height, self.wanted):
             wanted = f"{self.width}x{self.height} of {self.wanted}"
-            raise JpegError(f"a picture {width}x{height} of {count} components, not {wanted}")
+            raise JpegError(f"an image {width}x{height} of {count} components, not {wanted}")
         for _ in range(count):
             name, factors, quantizer = (fields.number(1) for _ in range(3))
             if not (1 <= factors >> 4 <= 4 and 1 <= factors & 15 <= 4):
@@ -186,7 +186,7 @@ class Picture:
             self.at = found.end()
 
     def samples(self):
-        """The whole picture."""
+        """The whole image."""
         planes = [plane(part) for part in self.components]
         if len(planes) == 1:
             return b"".join(planes[0])
@@ -197,7 +197,7 @@ class Picture:
         return b"".join(interleave(to_rgb(*row)) for row in zip(*full))
 
     def is_rgb(self):
-        """Whether the picture says that it is RGB: by Adobe's segment, or else by its names."""
+        """Whether the image says that it is RGB: by Adobe's segment, or else by its names."""
         if self.has_jfif:
             return False
         if self.adobe is not None:

@@ -3,7 +3,7 @@
 
 
 class JpegError(ValueError):
-    """Why bytes are not the wanted picture."""
+    """Why bytes are not the wanted image."""
 
 
 class Fields:

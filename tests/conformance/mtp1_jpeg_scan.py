@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the scans of a JPEG picture into coefficients: Huffman codes, sequential and progressive.
+"""Reads the scans of a JPEG image into coefficients: Huffman codes, sequential and progressive.
 
 Section numbers are of ITU-T T.81.
 """

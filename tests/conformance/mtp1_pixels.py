@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From the coefficients of a JPEG picture to its samples: inverse DCT, upsampling, colours.
+"""From the coefficients of a JPEG image to its samples: inverse DCT, upsampling, colours.
 
 ITU-T T.81 leaves the last bit open. Here the sums are those of the IJG's slow integer DCT and
 triangle filter, so that results agree with most decoders to a unit.
@@ -68,7 +68,7 @@ def clamp(value):
 
 
 def upsample(rows, part, frame):
-    """The rows of a component at the picture's size.
+    """The rows of a component at the image's size.
 
     Twice as many: between two samples, three parts of the nearer and one of the farther (rounded
     down and up in turns). Any other ratio: the sample that lies there.

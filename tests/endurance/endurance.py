@@ -23,7 +23,7 @@ IS_FULL = os.environ.get("HC_FULL") == "1"
 CHECKER = BUILD / "tests/endurance_checker"
 IMAGES = """
 [modules.camera]
-parameters = { source = "picture.ppm", loop = true, rate = 30 }
+parameters = { source = "image.ppm", loop = true, rate = 30 }
 [modules.relay]
 [modules.near]
 program = "%(checker)s"
@@ -95,10 +95,10 @@ class Endurance(Graphs):
     def begin(self, text, options=""):
         """A graph that runs, once it can be observed; what it says goes into a file."""
         self.write_graph(text)
-        picture = pathlib.Path(self.path("picture.ppm"))
-        if not picture.exists():
+        image = pathlib.Path(self.path("image.ppm"))
+        if not image.exists():
             size = 800 * 600 * 3
-            picture.write_bytes(b"P6 800 600 255\n" + random.Random(1).randbytes(size))
+            image.write_bytes(b"P6 800 600 255\n" + random.Random(1).randbytes(size))
         return self.start("exec hc run g.toml %s >>out 2>>errors" % options, stdout=-3, stderr=-3)
 
     def observed(self, process):
@@ -147,7 +147,7 @@ class Endurance(Graphs):
         return [(int(at) / 1e9, int(seq), hash) for at, seq, hash, _ in self.lines(name)]
 
     def check_noted(self, *names):
-        """One still picture was sent: all are the same."""
+        """One still image was sent: all are the same."""
         hashes = {each[2] for name in names for each in self.noted(name)}
         self.assertEqual(len(hashes), 1, hashes)
 

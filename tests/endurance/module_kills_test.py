@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Each module of a graph of images is killed again and again, while pictures flow."""
+"""Each module of a graph of images is killed again and again, while images flow."""
 
 import os
 import signal

@@ -64,7 +64,7 @@ class CameraDevices(Pipes):
         process.wait()
 
     def camera(self, arguments):
-        """Starts hc camera, with its pictures as text in `seen` and its lines in `said`."""
+        """Starts hc camera, with its images as text in `seen` and its lines in `said`."""
         return self.start("hc camera %s --width 8 --height 8 2>said | hc cat >seen" % arguments)
 
     def said(self):
@@ -73,18 +73,18 @@ class CameraDevices(Pipes):
     def seen(self, word="rgb_image"):
         return self.read("seen").count(word)
 
-    def test_pictures_of_a_camera_with_its_time(self):
+    def test_images_of_a_camera_with_its_time(self):
         self.fake(1)
         before = time.time_ns()
         out = self.shell(
             "hc camera aravis:127.0.0.1 --count 3 --width 16 --height 16 | hc cat --json"
         )
-        pictures = [json.loads(line) for line in out.splitlines()]
-        times = [picture["time"] for picture in pictures]
+        images = [json.loads(line) for line in out.splitlines()]
+        times = [image["time"] for image in images]
         self.assertEqual(len(times), 3)
         self.assertEqual(times, sorted(set(times)))
         self.assertTrue(before < times[0] <= times[-1] < time.time_ns())
-        self.assertEqual((pictures[0]["coord"], pictures[0]["width"]), (7, 16))
+        self.assertEqual((images[0]["coord"], images[0]["width"]), (7, 16))
 
     def test_pixel_formats(self):
         self.fake(1)
@@ -106,7 +106,7 @@ class CameraDevices(Pipes):
             "mkfifo commands; hc camera aravis:127.0.0.1 --exposure 0.01 --gain 1 --width 8"
             " --height 8 --out - --control commands 2>said | hc cat >seen"
         )
-        # What cannot be set is told, and pictures go on.
+        # What cannot be set is told, and images go on.
         command = self.start("hc send --text 'set gain=9999' >commands")
         wait_until(self.said)
         self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: gain must be from ")
@@ -167,9 +167,9 @@ class CameraDevices(Pipes):
             "hc camera aravis:127.0.0.1 aravis:127.0.0.2 --count 40 --width 8 --height 8"
             " | hc cat --json"
         )
-        pictures = [json.loads(line) for line in out.splitlines()]
-        both = [p["time"] for p in pictures if p["src"] == 1], [
-            p["time"] for p in pictures if p["src"] == 2
+        images = [json.loads(line) for line in out.splitlines()]
+        both = [p["time"] for p in images if p["src"] == 1], [
+            p["time"] for p in images if p["src"] == 2
         ]
         paired = set(both[0]) & set(both[1])
         self.assertGreater(len(paired), 20)

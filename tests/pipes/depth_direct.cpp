@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What graphs/depth.toml computes, in one process and with OpenCV alone, but for the cutting of the
-// pictures. Prints the sentence that depth_score says.
+// images. Prints the sentence that depth_score says.
 #include <cmath>
 #include <cstdio>
 #include <string>
 
-#include <vision/picture.h>
+#include <vision/image.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

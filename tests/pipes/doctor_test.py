@@ -46,8 +46,8 @@ class Doctor(Pipes):
         self.assertEqual(said["missing"], ["camera parameter source: ./none.jpg does not exist"])
         said = self.examine(GRAPH % "./none.jpg", 1, " --set camera.source=/none/a.jpg")
         self.assertEqual(said["missing"], ["camera parameter source: /none/a.jpg does not exist"])
-        os.mkdir(self.path("pictures"))
-        self.assertNotIn("missing", self.examine(GRAPH % "./pictures", 0))
+        os.mkdir(self.path("images"))
+        self.assertNotIn("missing", self.examine(GRAPH % "./images", 0))
         self.assertNotIn("missing", self.examine(GRAPH % "rtsp://robot/left", 0))
 
     def test_ports_in_use(self):

@@ -32,7 +32,7 @@ translation = [0.05, 0.03, 0.0]
 [[modules.neck.inputs.in]]
 from = "file:poses"
 [[modules.eyes.inputs.in]]
-from = "file:pictures"
+from = "file:images"
 [[modules.whereabouts.inputs.when]]
 from = "eyes.out"
 [[modules.whereabouts.outputs.pose]]
@@ -63,7 +63,7 @@ def pose(step):
     return "1 11 0 %d 8 %d 70190 0 2003 4 4\n%s" % (step, START + STEP * step, text)
 
 
-def picture(number, time):
+def image(number, time):
     return "1 12 0 %d 8 %d 60100 0 0 1 1\nx\n" % (number, time)
 
 
@@ -72,7 +72,7 @@ class Frames(Pipes):
         """The poses that whereabouts tells, by time; `told` is what the graph logs then."""
         self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", parameters))
         self.write("poses", "".join(map(pose, poses)))
-        self.write("pictures", "".join(picture(*each) for each in enumerate(times)))
+        self.write("images", "".join(image(*each) for each in enumerate(times)))
         self.shell("exec hc run graph.toml")
         self.told = self.err
         lines = self.shell("hc cat --raw found").splitlines()
@@ -88,7 +88,7 @@ class Frames(Pipes):
             for number, each in zip(row, wanted_row):
                 self.assertAlmostEqual(number, each, delta=1e-12)  # m or 1, some roundings
 
-    def test_the_left_eye_is_where_the_head_was_at_the_time_of_each_picture(self):
+    def test_the_left_eye_is_where_the_head_was_at_the_time_of_each_image(self):
         steps = [0, 0.5, 1.25, 3, 7.875, 9]
         times = [START + int(STEP * each) for each in steps]
         found = self.run_graph(range(10), times)
@@ -123,9 +123,9 @@ class Frames(Pipes):
         self.expect(found[times[2]], world_left_eye(2.5))
 
     def test_text_that_is_no_frames_ends_the_module_with_what_is_wrong(self):
-        self.write("pictures", picture(1, START))
+        self.write("images", image(1, START))
         module = BUILD / "tests/whereabouts"
-        self.shell("%s --frames 'head 5 robot a.b 1' <pictures" % module, status=1)
+        self.shell("%s --frames 'head 5 robot a.b 1' <images" % module, status=1)
         self.assertIn("frames: frame 1, head: its number is 3, not 5", self.err)
 
 

@@ -23,9 +23,9 @@ class Graph(Pipes):
         self.assertLess(abs(share - 2.7), 0.2)
         self.assertRegex(out, r"camera\.left → depth\.left +1 message +1\.44 MB")
         self.assertRegex(out, r"depth\.depth → view\.image +1 message +1\.92 MB")
-        picture = self.read_bytes("depth.png")
-        self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
-        self.assertEqual(picture[16:24], b"\0\0\3\x20\0\0\2\x58")  # 800 x 600
+        image = self.read_bytes("depth.png")
+        self.assertEqual(image[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(image[16:24], b"\0\0\3\x20\0\0\2\x58")  # 800 x 600
 
     def test_one_pipe_does_the_same(self):
         out = self.shell(
@@ -193,7 +193,7 @@ inputs.in = "camera.left"
             _, err = process.communicate(timeout=WATCHDOG)
             self.assertEqual((process.returncode, err), (0, b""))
 
-    def test_a_window_shows_the_picture(self):
+    def test_a_window_shows_the_image(self):
         """On a virtual display, whose memory is looked at."""
         command = (
             "hc camera %s/aloeL.jpg --count 0 --loop --rate 20 --width 320 --height 240" % DATA

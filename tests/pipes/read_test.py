@@ -29,11 +29,11 @@ class Read(Pipes):
         # 1.5 m of board at 3.5 m are 257 pixels, of which the letters take up to nine tenths.
         self.assertTrue(100 < width < 240, width)
 
-    def test_the_target_comes_with_pictures_that_are_not_read(self):
+    def test_the_target_comes_with_images_that_are_not_read(self):
         found = reading.read_board(
-            BUILD, "LOOK HERE", 2, 0, pictures=6, options="--rate 5 --repeat 1"
+            BUILD, "LOOK HERE", 2, 0, images=6, options="--rate 5 --repeat 1"
         )
-        # Pictures of 20 Hz, of which each fourth is read.
+        # Images of 20 Hz, of which each fourth is read.
         self.assertEqual((len(found["target"]), len(found["sure"])), (6, 2))
 
     def test_what_is_not_sure_enough_is_a_target_and_no_text(self):
@@ -48,7 +48,7 @@ class Read(Pipes):
         self.assertEqual(self.shell("hc read --in image=eye.mtp | hc cat"), "")
 
     def draw(self, text, font, size=40):
-        """A picture of 800 x 600 with a text in a TrueType font, by Graphviz; gives its name."""
+        """An image of 800 x 600 with a text in a TrueType font, by Graphviz; gives its name."""
         node = (
             'graph { graph [size="8.3333,6.25!", dpi=96, margin=0, pad=0]; n [shape=plaintext,'
             'label="%s", fontname="%s", fontsize=%d, width=8.33, height=6.25, fixedsize=true] }'
@@ -69,10 +69,10 @@ class Read(Pipes):
             for text in ("READ A TEXT", "STOP AT LAB 4", "OLD ROBOT 2", "EXIT 105"):
                 for size in (40, 20):
                     with self.subTest(font=font, text=text, size=size):
-                        picture = self.draw(text, font, size)
+                        image = self.draw(text, font, size)
                         read = self.shell(
                             "hc camera --source %s --loop --count 2 | hc read --rate 0 --in image=-"
-                            " --out text=- | hc cat --json" % picture
+                            " --out text=- | hc cat --json" % image
                         )
                         lines = [json.loads(line)["elements"][0] for line in read.splitlines()]
                         self.assertEqual(lines, [text])
@@ -80,7 +80,7 @@ class Read(Pipes):
     def test_what_was_said_out_of_focus_is_said_anew_in_focus(self):
         self.draw("LOOK HERE", "DejaVu Sans")
         self.shell("hc camera --source drawn.png --count 1 --out left=eye.mtp")
-        picture = pathlib.Path(self.path("eye.mtp")).read_bytes()
+        image = pathlib.Path(self.path("eye.mtp")).read_bytes()
         os.mkfifo(self.path("focus"))
         focus = [self.shell("hc send --type table --scalar i32 %d" % mode) for mode in (2, 1)]
         command = "hc read --rate 0 --mode 1 --in image=- --in focus=focus --out text=text.mtp"
@@ -91,8 +91,8 @@ class Read(Pipes):
             return said.read_bytes().count(b"LOOK HERE") if said.exists() else 0
 
         def is_said(times):
-            # Each picture has the same time, so that none is due again.
-            read.stdin.write(picture)
+            # Each image has the same time, so that none is due again.
+            read.stdin.write(image)
             read.stdin.flush()
             return count_said() >= times
 

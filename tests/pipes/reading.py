@@ -12,7 +12,7 @@ import random
 import subprocess
 import tempfile
 
-ROOM_TIME = 10**18  # of the first picture [ns]; any time will do, and so it is the same each time
+ROOM_TIME = 10**18  # of the first image [ns]; any time will do, and so it is the same each time
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
 WATCHDOG = 100  # [s]
 
@@ -37,8 +37,8 @@ def edits(truth, read):
     return row[-1]
 
 
-def read_board(build, text, seed, noise, pictures=4, options=""):
-    """What is read in so many pictures of the board: the texts given, confidences and targets."""
+def read_board(build, text, seed, noise, images=4, options=""):
+    """What is read in so many images of the board: the texts given, confidences and targets."""
     with tempfile.TemporaryDirectory() as folder:
         environment = dict(os.environ, PATH="%s/bin:%s" % (build, os.environ["PATH"]))
 
@@ -56,7 +56,7 @@ def read_board(build, text, seed, noise, pictures=4, options=""):
         shell("hc send --type rotation 0 -0.04 0.3 --coord 13 --time %d >gaze.mtp" % ROOM_TIME)
         shell(
             "hc simulator --paced=false --count %d --start %d --text '%s' --seed %d --noise %g"
-            " --in gaze=gaze.mtp --out left=eye.mtp" % (pictures, ROOM_TIME, text, seed, noise)
+            " --in gaze=gaze.mtp --out left=eye.mtp" % (images, ROOM_TIME, text, seed, noise)
         )
         shell(
             "hc read --rate 0 %s --in image=eye.mtp --out text=text.mtp"
@@ -77,7 +77,7 @@ def score(build, seeds, noise, out=None, options=""):
     wrong = letters = 0
     for seed in seeds:
         truth = random_text(seed)
-        found = read_board(build, truth, seed, noise, pictures=6, options=options)
+        found = read_board(build, truth, seed, noise, images=6, options=options)
         read = found["text"][0] if found["text"] else ""
         errors = edits(truth, read)
         wrong += errors

@@ -5,7 +5,7 @@ alone, on the recording, by the clock of its messages, and what it sends is comp
 
 What is compared how:
 
-- What a module makes of each message alone (pictures, targets, sound, scores) is the same to the
+- What a module makes of each message alone (images, targets, sound, scores) is the same to the
   byte, in all messages that have the same time.
 - What it does by the clock (commands, bids, the focus) has times of its own, so a message counts as
   the same if one of the replay with the same numbers is near it in time. Numbers and times may
@@ -96,7 +96,7 @@ class Recording(Pipes):
         return min(message.time for message in self.messages("kept", output))
 
     def replay_eyes(self, count):
-        """Pictures of the same places of the head. One may have been drawn with a gaze that came
+        """Images of the same places of the head. One may have been drawn with a gaze that came
         late, or before a text that came at that moment."""
         start = self.first_time("head_eyes.left")
         self.replay("head_eyes", start=start, count=count)
@@ -159,10 +159,10 @@ class Recording(Pipes):
         self.replay_workspace()
         self.replay_eyes(8)
         self.replay("calibrate")
-        # Each of nine places within 1e-9 rad of the recorded one, a late picture (0.2 s) earlier.
+        # Each of nine places within 1e-9 rad of the recorded one, a late image (0.2 s) earlier.
         self.assert_close("calibrate.command", 0.3, 1e-9, 0.95)
         self.assert_close("calibrate.bid", 0.3, 0, 0.95)
-        # Another picture of the same place has other noise.
+        # Another image of the same place has other noise.
         kept, again = (self.messages(f, "calibrate.result")[0] for f in ("kept", "again"))
         for a, b in zip(numbers(kept)[:6], numbers(again)):
             self.assertAlmostEqual(a, b, delta=0.02 * DEGREE)
@@ -226,7 +226,7 @@ class Recording(Pipes):
         self.replay_eyes(12)
         self.replay("read")
         self.assert_same("read.target", 10)
-        # Which picture decides depends on those that were left out while it read.
+        # Which image decides depends on those that were left out while it read.
         texts = [[m.elements for m in self.messages(f, "read.text")] for f in ("kept", "again")]
         self.assertGreaterEqual(len(texts[0]), 2)
         self.assertEqual(*texts)

@@ -93,10 +93,10 @@ class Together(Pipes):
         ports = "--in place=file:place --in words=file:words --in score=%s" % endless
         self.assertEqual(self.sets("%s %s" % (TRIO, ports)), [(100, 100, 100)])
 
-    def test_pictures_that_wait_leave_room_for_their_publisher(self):
-        picture = b"1 %d 0 0 8 %d 40101 0 %d 200 200\n" + bytes(40_000) + b"\n"
-        self.write("left", b"".join(picture % (1, time, 9) for time in range(1, 200)))
-        right = b"".join(picture % (2, time, 10) for time in range(150, 200))
+    def test_images_that_wait_leave_room_for_their_publisher(self):
+        image = b"1 %d 0 0 8 %d 40101 0 %d 200 200\n" + bytes(40_000) + b"\n"
+        self.write("left", b"".join(image % (1, time, 9) for time in range(1, 200)))
+        right = b"".join(image % (2, time, 10) for time in range(150, 200))
         name = "shm:together-eyes-%d" % os.getpid()
         depth = self.start(
             "exec hc depth --disparities 16 --in 'left={0}-left?wait=60' "

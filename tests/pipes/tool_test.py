@@ -113,7 +113,7 @@ class Tool(Pipes):
         self.assertEqual((told["encoding"], told["scalar"]), ("zstd", "f32"))
         self.assertEqual(told["elements"], [[1, 0], [0, 1]])
 
-    def test_send_takes_pictures_and_arrays(self):
+    def test_send_takes_images_and_arrays(self):
         self.shell(
             PYTHON
             + ' -c \'import numpy; numpy.save("a.npy", numpy.arange(6, dtype="<f4").reshape(2, 3))\''
@@ -232,7 +232,7 @@ class Tool(Pipes):
         self.shell(": >empty.mtp; hc record x.mtp --in empty.mtp --in bad.mtp --in r.mtp", 1)
         self.assertIn("bad.mtp: R5", self.err)
 
-    def test_a_picture_gets_the_header_that_was_asked_for(self):
+    def test_an_image_gets_the_header_that_was_asked_for(self):
         out = self.shell(
             "hc send --picture %s/aloeL.jpg --src 3 --dst 5 --seq 9 --ttl 2 --time 5 --mode 4 --coord 8"
             " | hc cat --raw | head -n 1" % DATA

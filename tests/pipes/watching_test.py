@@ -52,9 +52,9 @@ class Watching(Graphs):
             self.hc("graph --dot --of " + name),
         )
         self.hc("graph --svg g.svg --of " + name)
-        picture = pathlib.Path(self.path("g.svg")).read_text()
+        image = pathlib.Path(self.path("g.svg")).read_text()
         for word in ("camera", "brightness", "left", "image"):
-            self.assertIn(">%s</text>" % word, picture)
+            self.assertIn(">%s</text>" % word, image)
         self.stop_named(name, process)
         self.assertNotIn(name, self.hc("ps"))
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <vision/picture.h>
+#include <vision/image.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,23 +25,23 @@ double fit_scale(const cv::Size& size, int width, int height) {
                   static_cast<double>(height) / size.height);
 }
 
-cv::Mat fit(const cv::Mat& picture, int width, int height, bool smooth) {
-  double scale = fit_scale(picture.size(), width, height);
-  if (scale == 0 || picture.size() == cv::Size(width, height)) return picture;
-  cv::Size covering(std::max(width, static_cast<int>(std::lround(picture.cols * scale))),
-                    std::max(height, static_cast<int>(std::lround(picture.rows * scale))));
+cv::Mat fit(const cv::Mat& image, int width, int height, bool smooth) {
+  double scale = fit_scale(image.size(), width, height);
+  if (scale == 0 || image.size() == cv::Size(width, height)) return image;
+  cv::Size covering(std::max(width, static_cast<int>(std::lround(image.cols * scale))),
+                    std::max(height, static_cast<int>(std::lround(image.rows * scale))));
   int method = !smooth ? cv::INTER_NEAREST : scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR;
   cv::Mat scaled;
-  cv::resize(picture, scaled, covering, 0, 0, method);
+  cv::resize(image, scaled, covering, 0, 0, method);
   cv::Size kept(width == 0 ? covering.width : width, height == 0 ? covering.height : height);
   return scaled(cv::Rect((covering.width - kept.width) / 2, (covering.height - kept.height) / 2,
                          kept.width, kept.height));
 }
 
-cv::Mat grey_of(const cv::Mat& picture) {
-  if (picture.channels() == 1) return picture;
+cv::Mat grey_of(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
   cv::Mat grey;
-  cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
+  cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
   return grey;
 }
 

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Pictures: sizes and colours. No messages; plain cv::Mat in and out.
+// Images: sizes and colours. No messages; plain cv::Mat in and out.
 
 #include <opencv2/core.hpp>
 
 namespace hc::vision {
 
-/// Scales a picture so that it covers width × height and cuts what stands over, equally on both
+/// Scales an image so that it covers width × height and cuts what stands over, equally on both
 /// sides. Where one of them is 0, it follows from the other; where both are, nothing changes.
 ///
 /// @param smooth  average over the pixels (area) when shrinking; false takes the nearest pixel,
-///     for pictures whose values must not be mixed, as disparities.
-cv::Mat fit(const cv::Mat& picture, int width, int height, bool smooth = true);
+///     for images whose values must not be mixed, as disparities.
+cv::Mat fit(const cv::Mat& image, int width, int height, bool smooth = true);
 
 /// By how much fit() scales. [1]
 double fit_scale(const cv::Size& size, int width, int height);
 
-/// Red, green, blue to grey, as bright as it looks; (H, W) u8. A grey picture is given as it is.
-cv::Mat grey_of(const cv::Mat& picture);
+/// Red, green, blue to grey, as bright as it looks; (H, W) u8. A grey image is given as it is.
+cv::Mat grey_of(const cv::Mat& image);
 
-/// A picture of one channel of any depth in colours, from blue (far or small) over green to red
+/// An image of one channel of any depth in colours, from blue (far or small) over green to red
 /// (near or large).
 ///
 /// @param values  (H, W) of any scalar; 0, nan and inf are unknown and become black.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <vision/picture.h>
+#include <vision/image.h>
 
 #include <gtest/gtest.h>
 
@@ -9,19 +9,19 @@ namespace hc::vision {
 namespace {
 
 TEST(Fit, CoversAndCuts) {
-  cv::Mat picture(1110, 1282, CV_8UC3, cv::Scalar(1, 2, 3));
-  cv::Mat fitted = fit(picture, 800, 600);
+  cv::Mat image(1110, 1282, CV_8UC3, cv::Scalar(1, 2, 3));
+  cv::Mat fitted = fit(image, 800, 600);
   EXPECT_EQ(fitted.size(), cv::Size(800, 600));
   EXPECT_EQ(fitted.at<cv::Vec3b>(300, 400), cv::Vec3b(1, 2, 3));
-  EXPECT_NEAR(fit_scale(picture.size(), 800, 600), 800.0 / 1282, 1e-12);
-  EXPECT_EQ(fit(picture, 0, 0).data, picture.data);
-  EXPECT_EQ(fit(picture, 641, 0).size(), cv::Size(641, 555));
+  EXPECT_NEAR(fit_scale(image.size(), 800, 600), 800.0 / 1282, 1e-12);
+  EXPECT_EQ(fit(image, 0, 0).data, image.data);
+  EXPECT_EQ(fit(image, 641, 0).size(), cv::Size(641, 555));
 }
 
 TEST(Fit, TheNearestPixelMixesNothing) {
-  cv::Mat picture(100, 100, CV_8U, cv::Scalar(0));
-  picture.colRange(50, 100).setTo(200);
-  cv::Mat fitted = fit(picture, 37, 37, false);
+  cv::Mat image(100, 100, CV_8U, cv::Scalar(0));
+  image.colRange(50, 100).setTo(200);
+  cv::Mat fitted = fit(image, 37, 37, false);
   for (int x = 0; x < 37; ++x) {
     int value = fitted.at<std::uint8_t>(5, x);
     EXPECT_TRUE(value == 0 || value == 200) << value;
