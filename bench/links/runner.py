@@ -104,13 +104,13 @@ class Process:
         except BrokenPipeError as error:
             raise Failed(self.why()) from error
 
-    def end(self, patience):
+    def end(self, timeout):
         try:
             self.popen.stdin.close()
         except BrokenPipeError:
             pass
         try:
-            self.popen.wait(patience)
+            self.popen.wait(timeout)
         except subprocess.TimeoutExpired:
             self.popen.kill()
             self.popen.wait()

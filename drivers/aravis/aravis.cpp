@@ -102,8 +102,8 @@ std::chrono::milliseconds choose_rate(ArvCamera* camera, double rate) {
   if (trigger != nullptr && std::string_view(trigger) == "On") return kForEver;
   if (arv_camera_is_frame_rate_available(camera, ignored.out())) {
     if (rate > 0) arv_camera_set_frame_rate(camera, rate, ignored.out());
-    const double told = arv_camera_get_frame_rate(camera, ignored.out());
-    if (!ignored && told > 0) rate = told;
+    const double native = arv_camera_get_frame_rate(camera, ignored.out());
+    if (!ignored && native > 0) rate = native;
   }
   if (!(rate > 0)) return kSilence;
   return kSilence + std::chrono::milliseconds(std::llround(std::min(2 / rate, 1e6) * 1e3));
@@ -116,7 +116,7 @@ struct Camera::Handles {
   ArvStream* stream = nullptr;
   Flag is_lost = std::make_shared<std::atomic<bool>>(false);  // set on Aravis' thread
   gulong handler = 0;                                         // of what sets it
-  std::chrono::milliseconds patience = kSilence;              // beside that for the exposure
+  std::chrono::milliseconds timeout = kSilence;               // beside that for the exposure
   std::chrono::steady_clock::time_point heard = std::chrono::steady_clock::now();
   double exposure = 0;  // as we have set it [s]
 
@@ -162,7 +162,7 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
   if (auto chosen = choose_format(camera, pixel_format); !chosen) return chosen.error();
   arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.out());
   if (failure) return failure.error();
-  handles->patience = choose_rate(camera, rate);
+  handles->timeout = choose_rate(camera, rate);
   handles->stream = arv_camera_create_stream(camera, nullptr, nullptr, failure.out());
   if (failure || handles->stream == nullptr) return failure.error();
   const auto bytes = arv_camera_get_payload(camera, failure.out());
@@ -187,7 +187,7 @@ Result<std::optional<Image>> Camera::next(std::chrono::milliseconds timeout) {
     if (buffer != nullptr) arv_stream_push_buffer(all.stream, buffer);
     const auto exposure = std::chrono::milliseconds(std::llround(all.exposure * 1e3));
     if (*all.is_lost) return Error{Code::Closed, "connection lost"};
-    if (now - all.heard - exposure > all.patience) {
+    if (now - all.heard - exposure > all.timeout) {
       *all.is_lost = true;
       return Error{Code::Closed, "no image received"};
     }

@@ -39,7 +39,7 @@ class Camera {
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
 
-  /// Waits for the next image; ones that came incomplete are passed over.
+  /// Waits for the next image; incomplete ones are skipped.
   /// @returns  nothing when none came within `timeout`.
   ///
   /// Errors: Closed (the camera is lost: Aravis says so, or it has been silent for a second

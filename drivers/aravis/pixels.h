@@ -27,7 +27,7 @@ bool is_known(std::uint32_t format);
 /// An image of a camera's pixels, in memory of its own.
 ///
 /// @param pixels  more than an image is passed over.
-/// @param padding  behind each row [byte].
+/// @param padding  after each row [byte].
 /// @returns  (height, width, 3) u8: blue, green, red. Bayer's colours are interpolated.
 ///
 /// Errors: Unsupported (the format), Malformed (too few bytes for the size).

@@ -3,8 +3,8 @@
 // What a head tracker says in a packet, and where the head is by it. Pure.
 //
 // opentrack's packet has 48 bytes: six little-endian f64, x y z [cm], yaw pitch roll [°]. What they
-// mean is told by what opentrack does with them (its plugin for X-Plane, whose frame is known): x >
-// 0 is to the person's right, y > 0 up, z > 0 back, away from the screen; yaw > 0 turns right,
+// mean is known from what opentrack does with them (its plugin for X-Plane, whose frame is known):
+// x > 0 is to the person's right, y > 0 up, z > 0 back, away from the screen; yaw > 0 turns right,
 // pitch > 0 looks up, roll > 0 tilts the head to the right shoulder. A tracker that is set up
 // otherwise is put right in opentrack, where each axis can be inverted.
 //

@@ -43,7 +43,7 @@ HeadPoseSender::~HeadPoseSender() {
 Result<void> HeadPoseSender::send(const HeadPose& pose) {
   const auto packet = write_head_packet(pose);
   if (::send(socket_, packet.data(), packet.size(), 0) >= 0) return {};
-  // ECONNREFUSED tells of an earlier packet that nobody heard.
+  // ECONNREFUSED is of an earlier packet that nobody received.
   if (errno == ECONNREFUSED || errno == EAGAIN || errno == EINTR) return {};
   return failed("send");
 }

@@ -18,7 +18,7 @@ class HeadPoseSender {
   HeadPoseSender& operator=(HeadPoseSender&&) = delete;
   ~HeadPoseSender();
 
-  /// Sends a packet. One that nobody hears is lost, as on any network.
+  /// Sends a packet. A packet that nobody receives is lost, as on any network.
   ///
   /// Errors: System.
   Result<void> send(const HeadPose& pose);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<const char*, 14> kQuestions = {"pr", "tr", "pn", "px", "tn", "tx", "pu",
                                                     "tu", "pl", "tl", "ps", "ts", "pa", "ta"};
-// Part of a word that somebody has left in the unit becomes one that it refuses.
+// A partial command left in the unit becomes an invalid one, which it refuses.
 constexpr const char* kNoWord = "-";
 constexpr double kArcsecond = std::numbers::pi / 180 / 3600;  // [rad]
 constexpr double kSlack = 50;  // of a place beyond what the greatest speed allows [position]
@@ -68,7 +68,7 @@ void Conversation::halt_unheard(MonotonicTime now) {
   has_halted_ = true;
 }
 
-/// Begins anew: at once where nothing came, else when no more garbage comes.
+/// Starts over: at once if nothing came, else when no more garbage comes.
 void Conversation::fail(MonotonicTime now, Error error) {
   const bool is_silent = error.code == Code::Closed;
   fault_ = std::move(error);
@@ -129,16 +129,16 @@ void Conversation::become_ready(MonotonicTime now) {
   tries_ = 0;
   may_move_ = false;
   if (std::exchange(halt_follows_, false)) say(now, "", {Awaits::Halted});
-  Pace told;
-  for (std::size_t i = 0; i < told.size(); ++i) told[i] = bounded(s[kPS + i], -1e6, 1e6);
+  Pace reported;
+  for (std::size_t i = 0; i < reported.size(); ++i) reported[i] = bounded(s[kPS + i], -1e6, 1e6);
   // Who moved it by its speed alone has left one with a sign, or none.
   if (!own_pace_)
     own_pace_ = {reachable_speed(0, std::abs(s[kPS])), reachable_speed(1, std::abs(s[kTS])),
-                 std::max(told[2], 1), std::max(told[3], 1)};
-  // One that was switched off and on meanwhile has forgotten its pace.
+                 std::max(reported[2], 1), std::max(reported[3], 1)};
+  // A unit that was switched off and on meanwhile has forgotten its pace.
   pace_.reset();
   pace_at_ = now;
-  if (!is_known_) pace_ = told;
+  if (!is_known_) pace_ = reported;
   is_known_ = true;
   send_pace(now);
 }
@@ -255,7 +255,7 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   if (axis == 0) return;
   place_ = heard_;
   place_time_ = looked_;
-  // One that was asked so long ago has waited to be read: nobody knows when it was.
+  // An answer to a query so long ago has waited to be read: its time is unknown.
   if (now - looked_ >= kTimeOut) return;
   gaze_ = Gaze{heard_[0] * step(0), -heard_[1] * step(1), looked_ + (now - looked_) / 2};
 }

@@ -25,12 +25,12 @@ struct Gaze {
 /// Begins with `- ft ed ci`, asks what the unit is like, twice, since a wrong answer would stay,
 /// and is ready when both agree. At most one question (both positions), one command (both axes),
 /// one pace and one halt are without answer at a time; of commands that come meanwhile the newest
-/// is sent. A line that brings garbage or no answer for kTimeOut is begun anew; what was commanded
-/// before is not sent again, and its motion is halted, whether the unit can be heard or not.
+/// is sent. A line that brings garbage or no answer for kTimeOut is reset; what was commanded
+/// before is not sent again, and its motion is halted, whether the unit answers or not.
 class Conversation {
  public:
   static constexpr std::chrono::milliseconds kTimeOut{500};
-  static constexpr std::chrono::milliseconds kQuiet{60};  ///< behind garbage, before a new try
+  static constexpr std::chrono::milliseconds kQuiet{60};  ///< after garbage, before a new try
   static constexpr int kTries = 3;                        ///< before the line is lost
   static constexpr std::chrono::milliseconds kLife{200};  ///< of a command
 
@@ -38,11 +38,11 @@ class Conversation {
     Closed,  ///< there is no line
     Begins,  ///< it is being found out what is there
     Ready,   ///< commands are taken
-    Lost,    ///< nothing sensible came in kTries tries: open the line anew
+    Lost,    ///< no valid answer in kTries tries: reopen the line
   };
   [[nodiscard]] Phase phase() const { return phase_; }
 
-  /// The line has been opened, or has gone.
+  /// The line has been opened or closed.
   void begin(MonotonicTime now);
   void end();
 
@@ -56,7 +56,7 @@ class Conversation {
   /// Has it turn there, or to the nearest it can; false when it is not ready, and nothing is done
   /// then. The angles are finite [rad].
   ///
-  /// @param life  how long it may be sent yet: one that waits longer for the answer to another is
+  /// @param life  how long it may still be sent: one that waits longer for the answer to another is
   /// forgotten.
   bool command(MonotonicTime now, double pan, double tilt, std::chrono::nanoseconds life = kLife);
   /// How fast it turns [rad/s, rad/s²], or the nearest it can; 0: as it did when it was met. While
@@ -70,8 +70,8 @@ class Conversation {
 
   // What is to be done now; each is given once.
   std::string bytes() { return std::exchange(bytes_, {}); }           ///< to be written
-  std::optional<Gaze> gaze() { return std::exchange(gaze_, {}); }     ///< the unit has told
-  std::optional<Error> fault() { return std::exchange(fault_, {}); }  ///< why it is begun anew
+  std::optional<Gaze> gaze() { return std::exchange(gaze_, {}); }     ///< the unit has reported
+  std::optional<Error> fault() { return std::exchange(fault_, {}); }  ///< why it is reset
   std::string remark() { return std::exchange(remark_, {}); }         ///< the unit refused that
 
   /// "pan -158.9 … 158.9 degrees, …", once it has been ready.
@@ -108,10 +108,10 @@ class Conversation {
 
   bool may_move_ = true;       // as somebody else has left it
   bool has_halted_ = false;    // in this try
-  bool halt_follows_ = false;  // its answer comes behind that to the first question
+  bool halt_follows_ = false;  // its answer comes after that to the first question
   int tries_ = 0;
   std::size_t asked_ = 0;  // while it begins: the setting that is being asked
-  bool is_known_ = false;  // settings have been heard on this line
+  bool is_known_ = false;  // settings have been read on this line
   std::array<double, kSettings> settings_ = {};
   std::optional<Pace> own_pace_, pace_;  // as it was met; as it is, none: refused
   MonotonicTime pace_at_{0};             // no pace is sent before

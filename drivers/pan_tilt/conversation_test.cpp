@@ -32,8 +32,8 @@ TEST(Conversation, tells_where_the_unit_looks_and_when) {
     EXPECT_NEAR(static_cast<double>(gaze.time.count() % 20'000'000), 4e6, 1.1e6);
   }
   const Gaze last = line.gazes.back();
-  const double told = std::chrono::duration<double>(last.time).count();
-  EXPECT_NEAR(last.pan, (told - 1.3) * 1000 * kStep, 10 * kStep);
+  const double seconds = std::chrono::duration<double>(last.time).count();
+  EXPECT_NEAR(last.pan, (seconds - 1.3) * 1000 * kStep, 10 * kStep);
   EXPECT_NEAR(last.tilt, 100 * kStep, 10 * kStep);
 }
 

@@ -18,7 +18,7 @@ TEST(Halting, a_motion_is_halted_when_commands_end) {
   line.run(milliseconds(1000));
   EXPECT_EQ(line.commands(), "");
   EXPECT_NEAR(line.gazes.back().pan, 0.2 * 1000 * kStep, 10 * kStep);
-  line.host.command(line.now, 2, 0);  // the same place: the unit has to be told again
+  line.host.command(line.now, 2, 0);  // the same place: the command has to be sent again
   line.run(milliseconds(20));
   EXPECT_EQ(line.commands(), "pp2228 tp0 ");
 }

@@ -58,7 +58,7 @@ void Motion::brake() {
   end_speed_ = 0;
 }
 
-/// From the state behind the last leg to the target.
+/// From the state after the last leg to the target.
 void Motion::plan() {
   const double a = pace_.acceleration, base = std::min(pace_.base, pace_.speed);
   auto way_to_brake = [&](double speed) {
@@ -97,7 +97,7 @@ void Motion::set_pace(double time, const Pace& pace) {
   HC_CHECK(pace.speed > 0 && pace.acceleration > 0, pace.speed, pace.acceleration);
   const State state = at(time);
   pace_ = pace;
-  if (time >= end_time_) return;  // it stands
+  if (time >= end_time_) return;  // it is at rest
   start(time, state);
   plan();
 }

@@ -31,16 +31,16 @@ class Motion {
     double position, speed;  ///< [position], [position/s] with its sign
   };
   [[nodiscard]] State at(double time) const;
-  /// Where it is heading for, or stands.
+  /// Where it is heading, or rests.
   [[nodiscard]] double target() const { return target_; }
-  /// When it stands, or stood, still.
+  /// When it comes, or came, to rest.
   [[nodiscard]] double end() const;
   [[nodiscard]] const Pace& pace() const { return pace_; }
 
   /// Heads for another place from now on; what is too fast to be stopped there goes beyond and
   /// comes back.
   void go(double time, double target);
-  /// Goes on at another pace.
+  /// Continues at another pace.
   void set_pace(double time, const Pace& pace);
   /// Brakes, and stays where that ends.
   void halt(double time);
@@ -60,7 +60,7 @@ class Motion {
   double target_;
   std::array<Leg, 5> legs_ = {};  // brake, accelerate or slow down, cruise, brake
   std::size_t count_ = 0;
-  double end_time_ = 0, end_position_ = 0, end_speed_ = 0;  // behind the last leg
+  double end_time_ = 0, end_position_ = 0, end_speed_ = 0;  // after the last leg
 };
 
 }  // namespace hc::pan_tilt

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNear = 1e-6;  // [position, position/s], of rounding
 
-TEST(Motion, stands_where_it_began) {
+TEST(Motion, rests_where_it_began) {
   Motion axis(12, {});
   EXPECT_EQ(axis.at(0).position, 12);
   EXPECT_EQ(axis.at(1e6).position, 12);

@@ -20,7 +20,7 @@ std::string hexadecimal(char byte) {
   return {'0', 'x', kDigits[value >> 4], kDigits[value & 15]};
 }
 
-/// What stands behind the mark and its spaces.
+/// What follows the mark and its spaces.
 std::string text_of(std::string_view line) {
   const auto first = line.find_first_not_of(' ', 1);
   if (first == std::string_view::npos) return {};

@@ -43,7 +43,7 @@ class ReplyReader {
  public:
   void feed(std::string_view bytes);
 
-  /// The next reply, if it is whole. What is no reply is left out up to the end of its line, and
+  /// The next reply, if it is whole. What is no reply is skipped up to the end of its line, and
   /// gives one error, however long it is.
   ///
   /// Errors: Malformed (a byte that begins no reply, or is not printable), TooLarge (a line of more
@@ -59,7 +59,7 @@ class ReplyReader {
   bool skips_ = false;        // garbage, until its line ends
 };
 
-/// A number as a unit tells it, all of the text: "22", "-907", "185.1428".
+/// A number as a unit writes it, all of the text: "22", "-907", "185.1428".
 ///
 /// Errors: Malformed.
 Result<double> number(std::string_view text);

@@ -28,12 +28,13 @@ class Serial {
 
   /// Reads what has come; none is nothing.
   ///
-  /// Errors: Closed (the device has gone), System.
+  /// Errors: Closed (the device is disconnected), System.
   Result<std::string_view> read(std::span<char> room);
 
   /// Writes all at once.
   ///
-  /// Errors: Closed (the device has gone), System (it takes no more: nobody reads at its end).
+  /// Errors: Closed (the device is disconnected), System (it takes no more: nobody reads at its
+  /// end).
   Status write(std::string_view bytes);
 
  private:

@@ -243,12 +243,12 @@ std::string Unit::set_speed(double time, Axis& axis, int speed) {
   if (std::abs(speed) > axis.upper)
     return refusal(std::string(axis.name) + " speed cannot exceed " + std::to_string(axis.upper) +
                    " positions/sec");
-  const bool stands = controls_speed_ && speed == 0;
-  if (!stands && (controls_speed_ ? std::abs(speed) : speed) < axis.lower)
+  const bool is_at_rest = controls_speed_ && speed == 0;
+  if (!is_at_rest && (controls_speed_ ? std::abs(speed) : speed) < axis.lower)
     return refusal(std::string(axis.name) + " speed cannot be below " + std::to_string(axis.lower) +
                    " positions/sec");
   axis.speed = speed;
-  if (stands) {
+  if (is_at_rest) {
     axis.runs_into_limit = false;
     axis.motion.halt(time);
     return kDone;

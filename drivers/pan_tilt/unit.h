@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A pan-tilt unit that is simulated: a PTU-D46 as its manual describes it, as far as one that turns
-// a head is asked for. Bytes in, bytes out, at a time that is given. Pure.
-// Source: PTU-D46 Command Reference, version 2.14.
+// A pan-tilt unit that is simulated: a PTU-D46 as its manual describes it, as far as a client that
+// turns a head is asked for. Bytes in, bytes out, at a time that is given. Pure. Source: PTU-D46
+// Command Reference, version 2.14.
 
 #include <array>
 #include <cstdint>
@@ -18,13 +18,13 @@ inline constexpr double kArcsecondsPerPosition = 185.1428;  ///< of both axes
 
 /// Knows PP TP PO TO PS TS PD TD PA TA PB TB PU TU PL TL PR TR PN TN PX TX, I A H HP HT C CI CV
 /// L LE LD E EE ED F FT FV R V O, with and without a value where they have one, in any case. Begins
-/// as one that was switched on: echo, verbose, limits. It differs from a real one in that R goes to
+/// as after being switched on: echo, verbose, limits. It differs from a real one in that R goes to
 /// 0, 0 at the pace that is set, without looking for the limits first.
 ///
 /// Positions are the unit's own: pan > 0 to the left, tilt > 0 up. Times [s] do not fall.
 class Unit {
  public:
-  /// @param pan, tilt  where it stands, brought within its limits [position].
+  /// @param pan, tilt  its position, brought within its limits [position].
   explicit Unit(double pan = 0, double tilt = 0);
 
   /// Takes bytes that came at a time; gives what it answers at once, to all up to an `A` or `R`,

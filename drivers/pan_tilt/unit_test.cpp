@@ -134,7 +134,7 @@ TEST(Unit, resets) {
   EXPECT_EQ(unit.pass(30), "!T!T!P!P*\r\n* 0\r\n");
 }
 
-TEST(Unit, stands_within_its_limits_at_the_start) {
+TEST(Unit, is_within_its_limits_at_the_start) {
   Unit unit = quiet_unit(1e9, -1e9);
   EXPECT_EQ(unit.take(0, "pp tp "), "* 3090\r\n* -907\r\n");
 }

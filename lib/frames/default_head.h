@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The head that a module assumes which is run without a graph file.
+// The head that a module assumes without a graph file.
 
 #include <string_view>
 

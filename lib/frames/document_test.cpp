@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The example of doc/frames.md stands here too, letter for letter, and runs.
+// The example of doc/frames.md is repeated here, letter for letter, and runs.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -53,7 +53,7 @@ struct Entry {
   std::size_t place;  // from 1 on
   std::string_view name, parent;
   std::int32_t number = 0;
-  std::vector<std::string_view> joint;  // the words behind the parent
+  std::vector<std::string_view> joint;  // the words after the parent
 
   [[nodiscard]] Error error(Code code, const std::string& what) const {
     return Error{code, "frames: frame " + std::to_string(place) + ", " +

@@ -12,7 +12,7 @@
 
 namespace hc::frames {
 
-/// What tells where a frame is that moves.
+/// What reports the pose of a frame that moves.
 struct Mover {
   std::string parent, child;  ///< the joint
   std::string output;         ///< "MODULE.PORT"

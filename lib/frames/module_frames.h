@@ -52,7 +52,7 @@ class ModuleFrames {
                                                  const frames::Frame& source, std::int64_t time) {
     return tree().lookup(target, source, time);
   }
-  /// The same of joints that stand still unless a pose says otherwise; unknown frames end the
+  /// The same for joints that do not move unless a pose says so; unknown frames end the
   /// module. See frames::Tree::nearest().
   [[nodiscard]] Eigen::Isometry3d nearest(const frames::Frame& target, const frames::Frame& source,
                                           std::int64_t time);

@@ -32,7 +32,7 @@ Result<Eigen::Isometry3d> rigid(const Eigen::Matrix4d& matrix);
 Result<Eigen::Isometry3d> rigid(const Eigen::Vector3d& p, const Eigen::Quaterniond& q);
 
 /// Rotation by roll φ about x, then pitch θ about y, then yaw ψ about z, the axes being those of
-/// the frame it leads to, which stand still: R = Rz(ψ) Ry(θ) Rx(φ). That is yaw, then pitch about
+/// the frame it leads to, which are fixed: R = Rz(ψ) Ry(θ) Rx(φ). That is yaw, then pitch about
 /// the turned y, then roll about the turned x.
 ///
 /// @param roll, pitch, yaw  [rad], right-handed. In a body's frame (x forward, y left, z up)

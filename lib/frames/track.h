@@ -14,7 +14,7 @@
 
 namespace hc::frames {
 
-/// How much of a movement is kept, and how far apart poses may be that tell of what lies between.
+/// How much of a movement is kept, and how far apart poses may be to interpolate between them.
 /// What passes `span` or `poses` is forgotten, the oldest first.
 struct Memory {
   std::chrono::nanoseconds span = std::chrono::seconds(10);  ///< before the latest time, over 0
@@ -69,9 +69,9 @@ class Track {
   /// Cost: logarithmic in the poses; no allocation.
   [[nodiscard]] Pose at(std::int64_t time) const;
 
-  /// The pose of any time, of what does not move unless it is told: before all that is known its
-  /// first pose, after it the last, in a gap the one before it. Of an empty track: a bug.
-  /// Cost: as at().
+  /// The pose of any time, of what does not move unless a pose says so: before all that is known
+  /// its first pose, after it the last, in a gap the one before it. Of an empty track: a bug. Cost:
+  /// as at().
   [[nodiscard]] Pose nearest(std::int64_t time) const;
 
   void clear() { samples_.clear(); }

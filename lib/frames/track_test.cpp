@@ -40,7 +40,7 @@ TEST(Track, ARepeatedTimeReplaces) {
   EXPECT_EQ(track.at(1500).p.x(), 3);
   track.clear();
   EXPECT_TRUE(track.empty());
-  EXPECT_EQ(track.add(1, at_x(0)), Fed::Added) << "a clock that begins anew";
+  EXPECT_EQ(track.add(1, at_x(0)), Fed::Added) << "a clock that starts over";
 }
 
 TEST(Track, RemembersASpan) {

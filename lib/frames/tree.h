@@ -81,9 +81,9 @@ class Tree {
   /// nothing, or that joins nothing).
   Status join(const Frame& parent, const Frame& child, const Memory& memory = {});
 
-  /// Tells where `child`, which join() joined, was at a time. Poses may come in any order. One of a
-  /// time that is known already replaces it. One that is further back than the joint's memory is
-  /// left out, which is no error but is told: a source whose clock went back needs forget().
+  /// Adds the pose of `child`, which join() joined, at a time. Poses may come in any order; one of
+  /// a known time replaces the earlier one. One older than the joint's memory is dropped, which is
+  /// no error but is reported (Fed::TooOld): after a clock was set back, call forget().
   ///
   /// @param time  [ns], over 0.
   /// Errors: NotFound (no such frame); Malformed (rigid() refuses it; a time of 0 or below);
@@ -106,9 +106,9 @@ class Tree {
   [[nodiscard]] Result<Eigen::Isometry3d> lookup(const Frame& target, const Frame& source,
                                                  std::int64_t time) const;
 
-  /// The same of what stands still unless a pose says otherwise, such as a head whose unit is
-  /// silent: a joint that is not known at `time` is where it was at the last time before that is
-  /// known (or at the first after it), and one that was never fed is where its parent is.
+  /// The same for what does not move unless a pose says so, such as a head whose unit is silent: a
+  /// joint without a pose at `time` keeps its last one before it (or takes the first after it);
+  /// without any pose it is the identity.
   ///
   /// Errors: NotFound (no such frame; frames that are not joined). Cost: as lookup().
   [[nodiscard]] Result<Eigen::Isometry3d> nearest(const Frame& target, const Frame& source,
@@ -122,8 +122,8 @@ class Tree {
   /// Errors: NotFound (no such frame; not joined; a joint that was not fed; no time in common).
   [[nodiscard]] Result<TimeSpan> known(const Frame& target, const Frame& source) const;
 
-  /// Whether a pose may still come that tells of a time: a joint between the two has none at or
-  /// after it. False where there are no such frames, or all that lies between is fixed.
+  /// Whether a pose of a time may still come: a joint between the two has none at or after it.
+  /// False where there are no such frames, or all that lies between is fixed.
   [[nodiscard]] bool is_ahead(const Frame& target, const Frame& source, std::int64_t time) const;
 
   /// The names of all frames, sorted.
@@ -133,7 +133,7 @@ class Tree {
   [[nodiscard]] Result<std::vector<std::string>> chain(const Frame& target,
                                                        const Frame& source) const;
 
-  /// Forgets every pose that was fed: for a simulation or a recording that begins anew.
+  /// Forgets every pose: for a simulation or a recording that starts over.
   void forget();
 
  private:

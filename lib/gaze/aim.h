@@ -6,7 +6,7 @@
 
 namespace hc::gaze {
 
-/// How a pan-tilt unit stands: T_robot_head = Rz(pan) Ry(tilt). [rad]
+/// Orientation of a pan-tilt unit: T_robot_head = Rz(pan) Ry(tilt). [rad]
 struct Angles {
   double pan = 0;   ///< > 0: to the left
   double tilt = 0;  ///< > 0: down
@@ -14,7 +14,7 @@ struct Angles {
 
 /// Turns vectors of the head (x forward, y left, z up) into the robot's frame.
 Eigen::Quaterniond rotation(const Angles& angles);
-/// The angles of such a rotation; a roll is left out.
+/// The angles of such a rotation; a roll is ignored.
 Angles angles_of(const Eigen::Quaterniond& R_robot_head);
 /// The angle between two directions of gaze, 0 … π [rad].
 double between(const Angles& a, const Angles& b);

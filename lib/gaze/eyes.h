@@ -50,13 +50,13 @@ class Eyes {
   Eyes(const Eigen::Isometry3d& T_head_left, const Eigen::Isometry3d& T_head_right)
       : mounted_{T_head_left, T_head_right}, T_head_eye_{T_head_left, T_head_right} {}
 
-  /// Takes another distance of the eyes, their middle staying: one that was measured [m].
+  /// Sets the measured distance between the eyes; their middle stays where it is [m].
   void set_baseline(double baseline);
   [[nodiscard]] double baseline() const;
-  /// Turns the right eye to the left one as it was measured, R_left_right.
+  /// Sets the measured rotation between the eyes, R_left_right; the left eye stays as it is.
   void set_offset(const Eigen::Matrix3d& R_left_right);
-  /// Takes the eyes to sit as it was measured: the bar that they are mounted on is turned about the
-  /// unit's axes, so that the left eye looks to `zero`.
+  /// Sets the measured mounting: the bar that the eyes are mounted on is turned about the unit's
+  /// axes, so that the left eye looks to `zero`.
   void calibrate(const HeadCalibration& calibration);
 
   [[nodiscard]] bool swapped() const { return swapped_; }

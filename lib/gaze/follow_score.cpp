@@ -12,12 +12,12 @@ namespace {
 constexpr double kMostBehind = 0.5;  // either way [s]
 constexpr double kStep = 1e-3;       // in which it is sought [s]
 
-/// Mean of the squared angle between both, with `wish` later by `behind`.
-double mean_square(const std::vector<TimedAngles>& wish, const std::vector<TimedAngles>& follows,
+/// Mean of the squared angle between both, with `wanted` later by `behind`.
+double mean_square(const std::vector<TimedAngles>& wanted, const std::vector<TimedAngles>& follows,
                    double behind) {
   double sum = 0;
   for (const auto& sample : follows) {
-    const double error = between(sample.angles, angles_at(wish, sample.time - behind));
+    const double error = between(sample.angles, angles_at(wanted, sample.time - behind));
     sum += error * error;
   }
   return sum / static_cast<double>(follows.size());
@@ -37,27 +37,27 @@ Angles angles_at(const std::vector<TimedAngles>& samples, double time) {
           std::lerp(before.angles.tilt, next->angles.tilt, share)};
 }
 
-FollowScore score_follow(const std::vector<TimedAngles>& wish,
+FollowScore score_follow(const std::vector<TimedAngles>& wanted,
                          const std::vector<TimedAngles>& follows, double begin, double end) {
   FollowScore score;
-  if (wish.empty()) return score;
+  if (wanted.empty()) return score;
   std::vector<TimedAngles> compared;
   for (const auto& sample : follows)
-    if (sample.time >= std::max(begin, wish.front().time) &&
-        sample.time <= std::min(end, wish.back().time))
+    if (sample.time >= std::max(begin, wanted.front().time) &&
+        sample.time <= std::min(end, wanted.back().time))
       compared.push_back(sample);
   if (compared.empty()) return score;
   score.samples = compared.size();
-  score.rms = std::sqrt(mean_square(wish, compared, 0));
+  score.rms = std::sqrt(mean_square(wanted, compared, 0));
   for (const auto& sample : compared)
-    score.max = std::max(score.max, between(sample.angles, angles_at(wish, sample.time)));
+    score.max = std::max(score.max, between(sample.angles, angles_at(wanted, sample.time)));
 
   // The error has one hollow as long as the delay is short against the movement: coarse, then fine.
-  double best = 0, least = mean_square(wish, compared, 0);
+  double best = 0, least = mean_square(wanted, compared, 0);
   for (double step : {50 * kStep, 10 * kStep, kStep}) {
     const double middle = best, reach = step == 50 * kStep ? kMostBehind : 10 * step;
     for (double behind = middle - reach; behind <= middle + reach; behind += step) {
-      const double error = mean_square(wish, compared, behind);
+      const double error = mean_square(wanted, compared, behind);
       if (error < least) {
         least = error;
         best = behind;

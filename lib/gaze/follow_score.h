@@ -16,8 +16,7 @@ struct TimedAngles {
 
 struct FollowScore {
   double rms = 0, max = 0;  ///< angle between the two at equal times [rad]
-  /// By which the one that follows fits best to the other when it is put ahead; < 0: it is ahead
-  /// itself [s].
+  /// The delay of the follower that fits best; < 0: it is ahead [s].
   double behind = 0;
   std::size_t samples = 0;  ///< of those, all in the order of time
 };
@@ -29,9 +28,9 @@ Angles angles_at(const std::vector<TimedAngles>& samples, double time);
 
 /// Compares at the times of `follows` from `begin` to `end` [s].
 ///
-/// @param wish, follows  in the order of time.
-/// What of `follows` is outside `wish` is left out.
-FollowScore score_follow(const std::vector<TimedAngles>& wish,
+/// @param wanted, follows  in the order of time.
+/// Samples of `follows` outside the time of `wanted` are ignored.
+FollowScore score_follow(const std::vector<TimedAngles>& wanted,
                          const std::vector<TimedAngles>& follows, double begin, double end);
 
 }  // namespace hc::gaze

@@ -37,10 +37,10 @@ TEST(FollowScore, compares_only_what_both_have) {
   EXPECT_EQ(score_follow({}, turning(0, 100), 0, 9).samples, 0U);
   EXPECT_EQ(score_follow(turning(0, 100), {}, 0, 9).samples, 0U);
   EXPECT_EQ(score_follow(turning(0, 100), turning(0, 100), 20, 30).samples, 0U);
-  const std::vector<TimedAngles> wish = {{1, {0, 0}}, {2, {1, 0}}};
-  EXPECT_DOUBLE_EQ(angles_at(wish, 1.5).pan, 0.5);
-  EXPECT_DOUBLE_EQ(angles_at(wish, 0).pan, 0);
-  EXPECT_DOUBLE_EQ(angles_at(wish, 3).pan, 1);
+  const std::vector<TimedAngles> wanted = {{1, {0, 0}}, {2, {1, 0}}};
+  EXPECT_DOUBLE_EQ(angles_at(wanted, 1.5).pan, 0.5);
+  EXPECT_DOUBLE_EQ(angles_at(wanted, 0).pan, 0);
+  EXPECT_DOUBLE_EQ(angles_at(wanted, 3).pan, 1);
 }
 
 }  // namespace

@@ -13,9 +13,9 @@ namespace hc::gaze {
 /// What is known of how a target moves and is seen.
 struct FollowerOptions {
   double noise = 0.003;       ///< standard deviation of an angle as it is seen, over 0 [rad]
-  double acceleration = 2.0;  ///< standard deviation of what speeds it up, over 0 [rad/s²]
-  double gap = 0.5;           ///< after so long unseen, it is another [s]
-  double horizon = 0.2;       ///< so long unseen its rates go on; then it is taken to stand [s]
+  double acceleration = 2.0;  ///< standard deviation of its acceleration, over 0 [rad/s²]
+  double gap = 0.5;           ///< unseen for longer, it is another target [s]
+  double horizon = 0.2;       ///< how long its rates are extrapolated while unseen [s]
 };
 
 /// A target's angles and their rates.
@@ -32,9 +32,10 @@ class Follower {
 
   /// Takes in where the target was.
   ///
-  /// @param time  [s], of any origin; one that is not after the last is left out, one that is a gap
-  ///     before it begins anew: the clock was set back.
-  /// A place where it cannot have come to is another target's, and begins anew as well.
+  /// @param time  [s], of any origin; one that is not after the last is ignored; one that is a gap
+  /// before
+  ///     it starts over: the clock was set back.
+  /// A place that it cannot have reached is another target's, and starts over as well.
   void see(double time, const Angles& angles);
   /// When it was last seen [s].
   [[nodiscard]] std::optional<double> last() const { return last_; }

@@ -8,26 +8,26 @@
 
 namespace hc::gaze {
 
-/// Where a stick has steered to: on from how the head stands at the rates that it is pushed with,
-/// and never far ahead of the head. Times are in seconds, of any origin.
+/// Where a stick has steered to: from the head's measured orientation, at the rates that it is
+/// pushed with, and never far ahead of the head. Times are in seconds, of any origin.
 class Stick {
  public:
-  /// A push counts for so long if it is not told again [s].
-  static constexpr double kTold = 0.1;
+  /// How long a push counts unless it is repeated [s].
+  static constexpr double kHold = 0.1;
 
-  /// @param rates  [rad/s]; both 0: it is let go.
-  /// @param stands  how the head stands.
-  void push(const Angles& rates, double now, const Angles& stands);
-  /// Where the head is to be and how fast, while the stick is pushed; after it was let go, for
-  /// kTold where it is to stop. Nothing: the stick wants nothing.
-  std::optional<Motion> at(double now, const Angles& stands);
+  /// @param rates  [rad/s]; both 0: it is released.
+  /// @param measured  where the head looks.
+  void push(const Angles& rates, double now, const Angles& measured);
+  /// The setpoint and its rates while the stick is pushed; for kHold after its release, where to
+  /// stop. Nothing: the stick is in its middle.
+  std::optional<Motion> at(double now, const Angles& measured);
   /// When it was out of its middle last [s].
   [[nodiscard]] std::optional<double> last() const { return pushed_; }
 
  private:
   std::optional<Motion> motion_;
   double time_ = 0;               // of motion_
-  double told_ = 0;               // when motion_'s rates were
+  double pushed_at_ = 0;          // when motion_'s rates were set
   std::optional<double> pushed_;  // with rates other than 0
 };
 

@@ -30,7 +30,7 @@ struct Mesh {
 /// z forward).
 ///
 /// @param width, height  along x and y [m].
-/// @param repeat  how often its image stands in it along x and y.
+/// @param repeat  how often its image is repeated along x and y.
 Mesh make_rectangle(float width, float height,
                     const Eigen::Vector2f& repeat = Eigen::Vector2f::Ones());
 

@@ -39,7 +39,7 @@ layout(location = 0) out vec4 colour;
 void main() { colour = vec4(texture(image, place).rgb * brightness, 1.0); }
 )";
 
-/// Whether OpenGL did what it was told with a shader or a program.
+/// Whether OpenGL compiled a shader or linked a program.
 ///
 /// @param what  GL_COMPILE_STATUS or GL_LINK_STATUS. @param get, get_log  glGetShaderiv and
 /// glGetShaderInfoLog, or those of programs. Errors: Unsupported (what its compiler says).

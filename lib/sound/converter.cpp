@@ -60,7 +60,7 @@ void Converter::put(std::span<const std::int16_t> samples) {
 void Converter::finish() {
   if (is_finished_) return;
   is_finished_ = true;
-  // SDL keeps the last 20 ms or so back, even when it is told to give all; so silence pushes them.
+  // SDL keeps about the last 20 ms back, even when flushed; so silence pushes them out.
   const auto size = static_cast<std::size_t>(from_.rate / 5 * from_.channels);
   if (scalar_ == Scalar::F32)
     put_any<float>(std::vector<float>(size));

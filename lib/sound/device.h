@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What playing and recording by SDL2 share: SDL's audio, started anew for each device, so that a
-// sound server that was started anew is found; and when to try again. Which driver is used says
+// What playing and recording by SDL2 share: SDL's audio, restarted for each device, so that a
+// restarted sound server is found; and when to try again. Which driver is used says
 // SDL_AUDIODRIVER (pulseaudio, alsa, disk, dummy, …).
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class AudioSystem {
   bool is_held_ = true;
 };
 
-/// Gives sound that comes in pieces the time of its first frame: counts frames, and begins anew
+/// Gives sound that comes in pieces the time of its first frame: counts frames, and starts over
 /// where the count and the clock differ by more than 50 ms. Pure.
 class FrameClock {
  public:

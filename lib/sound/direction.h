@@ -15,7 +15,7 @@ struct Heard {
 };
 
 /// The level of a piece of sound, and its direction by the time between the ears. A source behind
-/// the head cannot be told from one in front of it.
+/// the head cannot be distinguished from one in front of it.
 ///
 /// @param stereo  left and right in turns. @param rate  frames a second [Hz].
 /// @param base  distance between the ears [m].

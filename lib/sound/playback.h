@@ -28,9 +28,9 @@ class Playback {
   /// Takes samples, channels next to one another. Never waits: who looks at waiting()
   /// before keeps the queue short.
   void put(std::span<const std::int16_t> samples);
-  /// Frames that have not gone to the device yet.
+  /// Frames that have not been sent to the device yet.
   [[nodiscard]] std::int64_t waiting() const;
-  /// False once the device has gone; nothing is heard any more then.
+  /// False once the device is disconnected; nothing is played any more then.
   [[nodiscard]] bool is_there() const;
   [[nodiscard]] const Format& format() const { return format_; }
 

@@ -56,8 +56,8 @@ class WavWriter {
   /// Errors: System (cannot be written).
   static Result<WavWriter> create(const std::string& path, const Format& format);
   /// Goes on behind what is in a file that another WavWriter of this format wrote, or who writes
-  /// the same plain header; sizes in it that are wrong, as of one that was killed, are mended. Any
-  /// other file is begun anew, as by create().
+  /// the same plain header; wrong sizes in it, as after a crash of its writer, are repaired. Any
+  /// other file is overwritten, as by create().
   /// Errors: as of create().
   static Result<WavWriter> append(const std::string& path, const Format& format);
   WavWriter(WavWriter&& other) noexcept;

@@ -101,7 +101,7 @@ TEST_F(Wav, a_file_of_the_same_format_is_gone_on_with) {
   EXPECT_EQ(samples(), some);
   write({8000, 2});
   EXPECT_EQ(samples(), (std::vector<std::int16_t>{1, 2, 3, 4, 1, 2, 3, 4}));
-  write({8000, 1});  // another format begins anew
+  write({8000, 1});  // another format overwrites
   EXPECT_EQ(samples(), some);
   write({16000, 1});
   EXPECT_EQ(samples(), some);
@@ -116,7 +116,7 @@ TEST_F(Wav, a_file_whose_writer_was_killed_is_mended_and_gone_on_with) {
   for (const std::string& bytes : {
            riff_size(0) + begin + le(0, 4) + four,          // samples, and no word of them
            riff_size(4) + begin + le(4, 4) + four + "abc",  // and part of a frame
-           riff_size(400) + begin + le(400, 4) + four,      // told, but not there
+           riff_size(400) + begin + le(400, 4) + four,      // claimed, but not there
        }) {
     save(bytes);
     auto writer = WavWriter::append(path, {8000, 2});

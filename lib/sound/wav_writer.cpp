@@ -76,7 +76,7 @@ Result<WavWriter> WavWriter::append(const std::string& path, const Format& forma
                        ::pread(file, found.data(), found.size(), 0) == kHeaderBytes &&
                        found == header_of(format, said_in(found));
   if (!is_ours) return create(path, format);
-  // What is there counts: who was killed may have told of less, and a full disk have taken less.
+  // The bytes that are there count: a killed writer may have declared less, a full disk taken less.
   const std::int64_t frame = 2 * format.channels;
   writer.data_bytes_ =
       std::min<std::int64_t>(about.st_size - kHeaderBytes, kMostBytes) / frame * frame;
@@ -116,7 +116,7 @@ Status WavWriter::write(std::span<const std::int16_t> samples) {
   const auto size = static_cast<std::int64_t>(bytes.size());
   if (size > kMostBytes - data_bytes_)
     return Error{Code::TooLarge, path_ + ": a WAV file has room for 4 GiB"};
-  // The samples first: a header that tells of them is true at every moment.
+  // The samples first: a header that counts them is valid at every moment.
   if (auto written = put(bytes, kHeaderBytes + data_bytes_); !written) return written;
   data_bytes_ += size;
   return put_header();

@@ -32,7 +32,7 @@ struct Truth {
   cv::Vec3d t;
 };
 
-// ViSP's tag frame has y upwards and z out of the plate.
+// ViSP's tag frame has y upwards and z out of the marker.
 const cv::Matx33d kTurned(1, 0, 0, 0, -1, 0, 0, 0, -1);
 
 struct Errors {
@@ -58,7 +58,7 @@ TEST(AprilTag, RenderedPosesAreKnown) {
   const cv::Mat grey =
       cv::imread(data + "benchmark/640x480/tag36_11_640x480.png", cv::IMREAD_GRAYSCALE);
   ASSERT_FALSE(grey.empty());
-  // The plates are 0.25 and 0.125 m wide with their margins; 8 of their 10 cells are the tag. The
+  // The tags are 0.25 and 0.125 m wide with their margins; 8 of their 10 cells are the tag. The
   // camera is as ViSP has it, whose pixels begin half a pixel earlier.
   const Camera camera{{700, 700, 319.5, 239.5}, {}};
   Errors errors;

@@ -61,7 +61,7 @@ class BlobFinder {
   void fill_table();
   std::optional<Region> largest(const cv::Mat& rgb);
 
-  static constexpr int kBits = 6;  // of each of red, green, blue that the table tells apart
+  static constexpr int kBits = 6;  // of each of red, green, blue that the table distinguishes
   BlobColour colour_;
   std::vector<std::uint8_t> table_;  // 255 where a colour is the one looked for
   cv::Mat small_, smooth_, mask_, labels_, sizes_, middles_;

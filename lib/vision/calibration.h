@@ -52,7 +52,7 @@ StereoCalibration ideal_pair(cv::Size size, double focal, double baseline);
 /// cameras (OpenCV's stereoRectify, alpha 0). `size` must be known.
 void rectify(StereoCalibration& calibration);
 
-/// Turns the right camera about its own middle, and rectifies anew if that is not how it is.
+/// Turns the right camera about its own middle, and rectifies again if that is not how it is.
 /// @param R_left_right  as in StereoCalibration.
 void turn(StereoCalibration& calibration, const Eigen::Matrix3d& R_left_right);
 
@@ -75,7 +75,7 @@ std::string text_of(const StereoCalibration& calibration);
 Result<StereoCalibration> calibration_of(const std::string& text);
 
 /// The same with a file. Errors: System (not to be opened, read, written), as above. The file is
-/// written anew as a whole: who reads it sees the old or the new one.
+/// replaced as a whole: a reader sees the old or the new one.
 Result<StereoCalibration> read_calibration(const std::string& path);
 Status write_calibration(const std::string& path, const StereoCalibration& calibration);
 
@@ -103,7 +103,7 @@ double difference(const BoardView& a, const BoardView& b);
 struct Calibrated {
   StereoCalibration calibration;
   std::size_t views = 0;  ///< that were used
-  double rms_all = 0;     ///< reprojection error before views were left out [px]
+  double rms_all = 0;     ///< reprojection error before outliers were removed [px]
   double rms_left = 0;    ///< reprojection error of the left camera alone [px]
   double rms_right = 0;   ///< [px]
   double epipolar = 0;    ///< mean distance of corresponding rows, rectified [px]
@@ -112,7 +112,7 @@ struct Calibrated {
 inline constexpr std::size_t kLeastViews = 3;  ///< that a calibration takes
 
 /// Finds the geometry of two cameras: each alone, then both together. Views whose error is more
-/// than three times the median's are left out, as long as two thirds stay.
+/// than three times the median's are removed, as long as two thirds remain.
 ///
 /// Errors: NotFound (fewer than kLeastViews); Invalid (a board that is not so); Malformed (views
 /// that do not determine the cameras, as when all are the same). Cost: 0.1 to 1 s. Source: Zhang, A

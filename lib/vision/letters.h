@@ -29,7 +29,7 @@ struct TextLine {
 /// image high, at most about 20° from level.
 ///
 /// @param image  (H, W, 3) or (H, W, 1) u8; noise of a standard deviation of 20 does no harm.
-/// @param min_score  lines that are less like one on a board are left out.
+/// @param min_score  lines that are less like one on a board are dropped.
 /// @returns  the best first; none overlaps a better one.
 /// Cost: about 10 ms for 800 × 600.
 std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score = 0.4);

@@ -18,7 +18,7 @@ cv::Mat scene(const std::string& text, cv::Point at = {300, 200}, double scale =
   cv::rectangle(image, board, {240, 240, 235}, cv::FILLED);
   cv::rectangle(image, board, {70, 75, 80}, 3);
   cv::putText(image, text, at, cv::FONT_HERSHEY_DUPLEX, scale, {20, 20, 25}, stroke, cv::LINE_AA);
-  // A wall with a dark pipe, a striped box and a checkered plate.
+  // A wall with a dark pipe, a striped box and a checkered board.
   cv::rectangle(image, {60, 0, 14, 600}, {60, 60, 60}, cv::FILLED);
   for (int i = 0; i < 9; ++i)
     cv::rectangle(image, {560 + 14 * i, 430, 12, 40}, {90.0 + 9 * (i % 4), 80, 70}, cv::FILLED);

@@ -138,7 +138,7 @@ std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camer
   const auto& p = camera.pinhole;
   const cv::Matx33d M(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1);
   const double half = side / 2;
-  // OpenCV's order and frame, in which y is up and z comes out of the plate.
+  // OpenCV's order and frame, in which y is up and z comes out of the marker.
   const std::vector<cv::Point3d> square = {
       {-half, half, 0}, {half, half, 0}, {half, -half, 0}, {-half, -half, 0}};
   const std::vector<cv::Point2d> seen(marker.corners.begin(), marker.corners.end());

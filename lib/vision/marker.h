@@ -31,7 +31,7 @@ struct Camera {
   std::vector<double> distortion;  ///< as StereoCalibration::D1; empty: none
 };
 
-/// Where a marker is. Its frame: x right, y down, z into the plate as seen by who looks at it,
+/// Where a marker is. Its frame: x right, y down, z into the marker as seen by who looks at it,
 /// origin in its middle.
 struct MarkerPose {
   cv::Matx33d R = cv::Matx33d::eye();  ///< of T_eye_marker

@@ -51,7 +51,7 @@ class AprilTagFinder {
   std::unique_ptr<Detector> detector_;
 };
 
-/// Filled squares of one saturated colour on white. The square tells nothing about its turn, so
+/// Filled squares of one saturated colour on white. The square does not show its rotation, so
 /// that top left is the corner for which the marker is turned least.
 ///
 /// @param rgb  (H, W, 3) u8.

@@ -80,7 +80,7 @@ void fill(const DraftOf<K>& draft, const cv::Mat& mat) {
   if (mat.data != own.data) mat.copyTo(own);
 }
 
-/// Writes a draft in place. OpenCV's functions allocate their result anew where shape or type
+/// Writes a draft in place. OpenCV's functions reallocate their result where shape or type
 /// differ from what they are given; then it is copied where only the memory differs, and a bug
 /// where shape or type do.
 ///

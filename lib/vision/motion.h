@@ -36,7 +36,7 @@ struct RelativePose {
 Matches match(const cv::Mat& a, const cv::Mat& b, const Intrinsics& camera,
               const Eigen::Matrix3d& R_a_b);
 
-/// The movement that agrees best with matches: Sampson's error, outliers left out.
+/// The movement that agrees best with matches: Sampson's error, outliers removed.
 ///
 /// @param R_a_b, t  where to begin; t of any length but 0.
 /// @param is_known  the direction of t is known, and R alone is found: better where the camera

@@ -58,7 +58,7 @@ void depth_of(const cv::Mat& disparity, const StereoGeometry& geometry, cv::Mat&
 struct StereoScore {
   std::int64_t truth = 0;  ///< pixels whose true disparity is known
   std::int64_t holes = 0;  ///< of these, without a disparity
-  std::int64_t bad = 0;    ///< of these, with one that is off by more than the threshold
+  std::int64_t bad = 0;    ///< of these, off by more than the threshold
 
   [[nodiscard]] std::int64_t valid() const { return truth - holes; }
   [[nodiscard]] double bad_share() const { return share(bad, valid()); }   ///< of the valid

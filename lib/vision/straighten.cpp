@@ -26,7 +26,7 @@ double noise_of(const cv::Mat& grey) {
   for (int y = 1; y < rough.rows - 1; y += 4) {
     const auto* row = rough.ptr<std::int16_t>(y);
     for (int x = 1; x < rough.cols - 1; x += 4) {
-      // What is black or white altogether has been cut off, and tells nothing.
+      // What is black or white altogether has been cut off, and carries no information.
       const int value = grey.at<std::uint8_t>(y, x);
       if (value < 3 || value > 252) continue;
       ++counts[static_cast<std::size_t>(std::min(2047, std::abs(static_cast<int>(row[x]))))];

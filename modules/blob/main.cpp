@@ -12,20 +12,20 @@ int main(int argc, char** argv) {
   hc::Module module{"blob", "Finds the largest blob of a colour in images."};
   auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "images");
   auto point = module.input("point", hc::position<double>(),
-                            "x, y in the next image [px]: the colour there is the one from then "
-                            "on, until the parameter hue is changed");
+                            "x, y in the next image [px]: its colour is searched from then on, "
+                            "until the parameter hue changes");
   auto target = module.output("target", hc::position<double>(),
                               "x, y of the blob's middle, its radius [px], in the coordinate "
                               "system of the image; nothing while there is none");
   auto area = module.output("area", hc::table<double>(), "area of the blob [px²]");
   auto hue = module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue", {.min = 0, .max = 1});
-  auto hue_width = module.parameter("hue_width", 0.05, "", "how far a pixel's may be from it",
+  auto hue_width = module.parameter("hue_width", 0.05, "", "maximum difference of a pixel's hue",
                                     {.min = 0, .max = 0.5});
-  auto saturation =
-      module.parameter("saturation", 0.5, "", "least saturation of a pixel", {.min = 0, .max = 1});
-  auto value = module.parameter("value", 0.2, "", "least value of a pixel", {.min = 0, .max = 1});
+  auto saturation = module.parameter("saturation", 0.5, "", "minimum saturation of a pixel",
+                                     {.min = 0, .max = 1});
+  auto value = module.parameter("value", 0.2, "", "minimum value of a pixel", {.min = 0, .max = 1});
   auto min_area =
-      module.parameter("min_area", 60.0, "px²", "a smaller blob is none", {.min = 0, .max = 1e9});
+      module.parameter("min_area", 60.0, "px²", "minimum area of a blob", {.min = 0, .max = 1e9});
 
   std::optional<hc::vision::BlobFinder> finder;
   std::optional<cv::Point2d> pointed;           // at the next image

@@ -22,12 +22,12 @@ hc::Error too_little(const std::string& where) {
   return {hc::Code::NotFound, "too little is seen in both images " + where};
 }
 
-/// A turn of the head as its axes and as an eye tell it: w in the head's frame, u in the eye's.
+/// A rotation of the head in its own frame and in an eye's: w in the head's frame, u in the eye's.
 struct Turn {
   Vector3d w, u;
 };
 
-/// How much the turns are about a second axis, beside the one that they are about most [rad²].
+/// How much the turns are about a second axis, other than their main one [rad²].
 double spread(const std::vector<Turn>& turns) {
   Matrix3d sum = Matrix3d::Zero();
   for (const auto& turn : turns) sum += turn.w * turn.w.transpose();
@@ -38,7 +38,7 @@ double spread(const std::vector<Turn>& turns) {
 struct Eye {
   cv::Mat HeadView::*image;
   Eigen::Isometry3d T_head_mounted;
-  Matrix3d M = T_head_mounted.linear();           // how it sits in the head, as far as it is known
+  Matrix3d M = T_head_mounted.linear();           // its mounting in the head, as far as it is known
   Vector3d place = T_head_mounted.translation();  // [m]
   std::vector<hc::vision::Matches> matches = {};  // of the first pose with each other one
   std::vector<Turn> turns = {};
@@ -123,12 +123,12 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
   Eye left{&HeadView::first, mounted.T_head_eye(Side::Left)};
   Eye right{&HeadView::second, mounted.T_head_eye(Side::Right)};
   if (found.swapped) std::swap(left.image, right.image);
-  // Where an eye moves as the head turns is known once it is known how it sits.
+  // How an eye moves as the head turns follows from its mounting.
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     for (Eye* eye : {&left, &right})
       if (auto seen = eye->see(views, camera, stop); !seen) return seen.error();
-    // What both eyes see at once tells how one sits to the other.
+    // What both eyes see at once shows how they are mounted.
     const Eye &first = found.swapped ? right : left, &second = found.swapped ? left : right;
     const Vector3d to_second = first.M.transpose() * (second.place - first.place);
     const auto eyes =
@@ -142,7 +142,7 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
     for (const auto& turn : right.turns) turns.push_back({turn.w, R_left_right * turn.u});
     left.M = align(turns);
     right.M = left.M * R_left_right;
-    // The eyes sit on one bar, which is turned as the left one is.
+    // The eyes are mounted on one bar, which is turned as the left one is.
     const Matrix3d bar = left.M * left.T_head_mounted.linear().transpose();
     for (Eye* eye : {&left, &right}) eye->place = bar * eye->T_head_mounted.translation();
   }
@@ -163,7 +163,7 @@ hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
                                                 std::to_string(cameras.size.height)};
   const hc::vision::Intrinsics ideal{cameras.M1(0, 0), (size.width - 1) / 2.0,
                                      (size.height - 1) / 2.0};
-  // Which camera took which images is not known before the eyes are told apart.
+  // Which camera took which images is not known before the eyes are identified.
   const auto first = straightened({views[0]}, cameras, false, ideal);
   if (!first) return first.error();
   const auto is_swapped = tell_apart(first->front(), ideal);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a head's eyes sit on its pan-tilt unit, from what they see as it turns. No messages.
+// How a head's eyes are mounted on its pan-tilt unit, from what they see as it turns. No messages.
 
 #include <stop_token>
 #include <vector>
@@ -24,10 +24,10 @@ struct HeadView {
 /// The unit's axes are seen as those that the images turn about: of each turn of the unit, by the
 /// vector w in the head's frame, an eye sees the turn u = Mᵀ w, and M, which is how the eye sits in
 /// the head, comes out of several. Where `cameras` were measured, and what is seen does not speak
-/// against it, the offset is theirs: a chessboard tells it better.
+/// against it, the offset is theirs: a chessboard measures it better.
 ///
 /// Source: Kabsch, A solution for the best rotation to relate two sets of vectors, 1976.
-/// A pose in which an eye sees too little of what it saw from the first is left out.
+/// A pose in which an eye sees too little of what it saw from the first is ignored.
 /// Errors: NotFound (too little is seen by both eyes, or of turns about one axis); Unsupported
 /// (images of another size than the cameras'); Stopped (`stop` was asked for).
 /// Cost: 2 to 4 s of nine views at 800×600.

@@ -131,7 +131,7 @@ TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
   const auto found = calibrate(views, measured, head.mounted);
   ASSERT_TRUE(found);
   EXPECT_NEAR((found->R_left_right() - turned(0.15 * kDegree)).norm(), 0, 1e-9);
-  // One that was moved since is.
+  // One that has moved since is.
   hc::vision::turn(measured, turned(2 * kDegree));
   head.expect_found(calibrate(views, measured, head.mounted));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A task: turns the head a little to all sides, and finds how its eyes sit on it.
+// A task: turns the head a little to all sides, and finds how its eyes are mounted.
 #include "calibrate.h"
 
 #include <cmath>
@@ -22,14 +22,14 @@ using hc::gaze::Angles;
 
 constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kGaze = 13;
 constexpr double kSecond = 1e9;                  // [ns]
-constexpr std::int64_t kSilent = 1'000'000'000;  // so long nothing comes, then it is gone [ns]
+constexpr std::int64_t kSilent = 1'000'000'000;  // nothing comes for so long: disconnected [ns]
 constexpr double kNear = 0.004;                  // of where it was sent: it is there [rad]
-constexpr std::int64_t kRests = 300'000'000;     // so long, then it is at rest [ns]
+constexpr std::int64_t kRests = 300'000'000;     // it is at rest after this time [ns]
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  hc::Module module{"calibrate", "Finds how a head's eyes sit on it, by turning it."};
+  hc::Module module{"calibrate", "Finds how a head's eyes are mounted, by turning it."};
   auto left = module.input("left", hc::rgb_image<std::uint8_t>().in(kLeftImage),
                            "image of the left camera");
   auto right =
@@ -50,8 +50,8 @@ int main(int argc, char** argv) {
   auto salience = module.parameter("salience", 0.9, "", "of the bid", {.min = 0, .max = 1});
   auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes, without a file",
                                 {.min = 1, .fixed = true});
-  auto patience = module.parameter("patience", 5.0, "s", "for the head to rest where it is sent",
-                                   {.min = 0.5, .max = 600});
+  auto timeout = module.parameter("timeout", 5.0, "s", "for the head to rest where it is sent",
+                                  {.min = 0.5, .max = 600});
   auto pause = module.parameter("pause", 30.0, "s", "after a failed attempt", {.min = 0});
   auto tries = module.parameter("tries", 3, "", "failed attempts until it gives up", {.min = 1});
   hc::ModuleFrames frames{module};
@@ -68,9 +68,9 @@ int main(int argc, char** argv) {
   std::int64_t last_pair = 0;     // when both eyes saw, and the head was known [ns]
   std::int64_t sent = 0;          // to the pose of now; 0: not yet [ns]
   std::int64_t paused_until = 0;  // [ns]
-  std::int64_t tried = 0;         // in vain
+  std::int64_t tried = 0;         // failed attempts
 
-  auto tell = [&] {
+  auto publish = [&] {
     const auto numbers = found->numbers();
     auto draft = result.loan(numbers.size(), 1);
     std::copy(numbers.begin(), numbers.end(), draft.matrix().numbers().begin());
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   auto finish = [&](const hc::gaze::HeadCalibration& calibration, const char* how) {
     is_done = true;
     found = calibration;
-    tell();
+    publish();
     constexpr double kDegrees = 180 / M_PI;
     char line[200];
     std::snprintf(line, sizeof line,
@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
     }
     const auto& wanted = work.valid() ? poses.back() : poses[views.size()];
     if (sent == 0) sent = now;
-    if (!work.valid() && static_cast<double>(now - sent) > *patience * kSecond)
+    if (!work.valid() && static_cast<double>(now - sent) > *timeout * kSecond)
       return fail("the head did not come to rest where it was sent");
     auto draft = command.loan(1, 1);
     draft.header.time = now;
@@ -185,9 +185,9 @@ int main(int argc, char** argv) {
     command.send(std::move(draft));
   });
   module.every(std::chrono::seconds(1), [&] {
-    if (found) tell();
+    if (found) publish();
   });
-  // Of all the images that came the result is told; who is asked to stop does not wait for it.
+  // At the end of the images the result is published; a module that is asked to stop does not wait.
   module.on_end([&] {
     if (work.valid()) take();
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a head has been calibrated, by what a simulation was told to have wrong.
+// How well a head has been calibrated, compared with what a simulation was set to.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,8 +19,8 @@ int main(int argc, char** argv) {
   auto offset_roll = module.parameter("offset_roll", 0.0, "rad", "truth");
   auto offset_pitch = module.parameter("offset_pitch", 0.0, "rad", "truth");
   auto offset_yaw = module.parameter("offset_yaw", 0.0, "rad", "truth");
-  auto patience = module.parameter("patience", 60.0, "s", "for a result, then it fails",
-                                   {.min = 1, .max = 3600});
+  auto timeout =
+      module.parameter("timeout", 60.0, "s", "to wait for a result", {.min = 1, .max = 3600});
 
   bool is_done = false;
   module.on(result, [&](const auto& message) {
@@ -42,8 +42,8 @@ int main(int argc, char** argv) {
   module.generate([&] {
     constexpr double kLook = 20;  // [Hz]
     module.keep_rate(kLook);
-    if (static_cast<double>(++looks) > *patience * kLook)
-      throw hc::ModuleError("no result within patience");
+    if (static_cast<double>(++looks) > *timeout * kLook)
+      throw hc::ModuleError("no result within timeout");
     return !is_done;
   });
   return module.run(argc, argv);

@@ -6,8 +6,8 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{100};  // until a thread notices that it is to end
-constexpr std::chrono::seconds kSettled{1};  // a camera that is lost sooner is retried later
+constexpr std::chrono::milliseconds kTimeout{100};  // until a thread notices that it is to end
+constexpr std::chrono::seconds kSettled{1};         // a camera that is lost sooner is retried later
 
 }  // namespace
 
@@ -51,7 +51,7 @@ LiveCameras::~LiveCameras() {
   for (auto& camera : cameras_) camera->thread.join();
 }
 
-void LiveCameras::tell(std::string line) {
+void LiveCameras::report(std::string line) {
   const std::lock_guard lock(mutex_);
   remarks_.push_back(std::move(line));
 }
@@ -69,7 +69,7 @@ void LiveCameras::run(Camera& camera) {
     if (device) {
       const std::string remark = (*device)->remark();
       if (remark != std::exchange(camera.remark, remark) && !remark.empty())
-        tell(camera.how.name + ": " + remark);
+        report(camera.how.name + ": " + remark);
       serve(camera, **device);
     } else {
       const std::lock_guard lock(mutex_);
@@ -108,9 +108,9 @@ void LiveCameras::serve(Camera& camera, Device& device) {
     if (wanted != adjusted) {
       adjusted = wanted;
       if (auto done = device.adjust(wanted); !done)
-        tell(camera.how.name + ": " + done.error().detail);
+        report(camera.how.name + ": " + done.error().detail);
     }
-    auto frame = device.next(kPatience);
+    auto frame = device.next(kTimeout);
     if (frame && !*frame) continue;
     const std::lock_guard lock(mutex_);
     if (!frame) {

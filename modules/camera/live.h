@@ -43,7 +43,7 @@ class Device {
   /// Waits for an image; nothing when none comes in time. Errors: any, the camera is lost.
   virtual hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) = 0;
   virtual hc::Status adjust(const Adjustment& adjustment) = 0;
-  /// What it does otherwise than it was asked to when it was opened; "": nothing.
+  /// How it differs from what was asked for when it was opened; "": not.
   [[nodiscard]] virtual std::string remark() const { return {}; }
 };
 
@@ -56,7 +56,7 @@ struct LiveCamera {
 };
 
 /// One camera, or two whose images are taken in pairs at nearest times. When one of two is lost
-/// the other goes on alone.
+/// the other continues alone.
 class LiveCameras {
  public:
   struct Taken {
@@ -74,14 +74,14 @@ class LiveCameras {
   hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
   /// Sets what the cameras are to do from now on. The same again changes nothing.
   void adjust(const Adjustment& adjustment);
-  /// What there is to tell about the cameras, in lines: once for each change.
+  /// Log lines about the cameras: one for each change.
   std::vector<std::string> remarks();
 
  private:
   struct Camera;
   void run(Camera& camera);
   void serve(Camera& camera, Device& device);
-  void tell(std::string line);
+  void report(std::string line);
   bool pause(std::chrono::nanoseconds time);
 
   const bool reopen_;

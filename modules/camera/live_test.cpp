@@ -26,7 +26,7 @@ class FakeDevice final : public Device {
     if (!plug_.is_in || (plug_.is_loose && ++given_ > 1))
       return hc::Error{hc::Code::Closed, "pulled out"};
     std::this_thread::sleep_for(milliseconds(1));  // its rate
-    // Of one clock for all, or those of one that was away would have no partners.
+    // One clock for all, or images of a camera that was away would have no partners.
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     return std::optional<Frame>(
         Frame{cv::Mat(2, 2, CV_8UC3), std::chrono::nanoseconds(now).count()});

@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{20};  // until commands are looked for again
+constexpr std::chrono::milliseconds kTimeout{20};  // until commands are looked for again
 
 void check(bool is_valid, const std::string& problem) {
   if (!is_valid) throw hc::ModuleError(hc::Error{hc::Code::Invalid, problem});
@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
   };
   auto take_live = [&] {
     cameras->adjust({*exposure, *gain});
-    auto taken = cameras->next(kPatience);
+    auto taken = cameras->next(kTimeout);
     for (const auto& line : cameras->remarks()) module.log(line);
     if (!taken) throw hc::ModuleError(taken.error().detail);
     if (!*taken) return;

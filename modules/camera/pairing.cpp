@@ -46,7 +46,7 @@ std::optional<std::array<Frame, 2>> Pairing::take() {
       right.pop_front();
       return pair;
     }
-    // The next of the one behind is closer; without a period, it tells one.
+    // The next of the one behind is closer; without a period, it gives one.
     if (!period && behind.waiting.size() < 2) return {};
     behind.waiting.pop_front();
   }

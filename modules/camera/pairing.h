@@ -20,7 +20,7 @@ struct Frame {
 /// that is not needed.
 class Pairing {
  public:
-  /// @param side  0 left, 1 right; its times do not fall (after one that does, all begins anew).
+  /// @param side  0 left, 1 right; its times do not fall (when one does, pairing starts over).
   void add(std::size_t side, Frame frame);
   /// The next pair: left, right.
   std::optional<std::array<Frame, 2>> take();

@@ -39,7 +39,7 @@ hc::Result<std::vector<Setting>> settings_to_open(const CaptureMode& mode);
 /// OpenCV does not reach V4L2_CID_AUTOGAIN.
 std::vector<Setting> settings_of(const Adjustment& adjustment, const Found& found);
 
-/// What to tell when a device does not do as it was asked: "gives 640 x 480 pixels instead of
+/// What to log when a device does not do as it was asked: "gives 640 x 480 pixels instead of
 /// 800 x 600"; "" when it does.
 std::string difference(const CaptureMode& asked, int width, int height, double fourcc);
 

@@ -17,7 +17,7 @@ class Wire {
   struct Faults {
     double delay = 0;             ///< of each byte [s]
     double bytes_per_second = 0;  ///< 0: unbounded
-    double garbage = 0;           ///< share of bytes that are spoilt, 0 … 1
+    double garbage = 0;           ///< share of bytes that are corrupted, 0 … 1
   };
 
   explicit Wire(std::uint64_t seed) : random_(seed) {}
@@ -41,5 +41,5 @@ class Wire {
   };
   std::mt19937_64 random_;
   std::deque<Byte> bytes_;
-  double free_at_ = 0;  // when the last one has gone out
+  double free_at_ = 0;  // when the last one has been sent
 };

@@ -10,8 +10,9 @@
 
 int main(int argc, char** argv) {
   constexpr std::int32_t kGaze = 13;
-  hc::Module module{"follow_score", "Compares how a head looks with how another one wishes it."};
-  auto wish = module.input("wish", hc::rotation<double>(), "truth: roll, tilt, pan wished [rad]");
+  hc::Module module{"follow_score", "Compares the orientation of a head with its setpoints."};
+  auto setpoint =
+      module.input("setpoint", hc::rotation<double>(), "truth: setpoint roll, tilt, pan [rad]");
   auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
   auto result = module.output("score", hc::table<double>().of(4, 1),
@@ -22,10 +23,10 @@ int main(int argc, char** argv) {
   auto duration =
       module.parameter("duration", 10.0, "s", "how long it counts", {.min = 0.1, .max = 1e6});
 
-  auto patience = module.parameter("patience", 60.0, "s", "for a gaze of each, or it has failed",
-                                   {.min = 1, .max = 3600});
+  auto timeout =
+      module.parameter("timeout", 60.0, "s", "to wait for a gaze of each", {.min = 1, .max = 3600});
 
-  std::vector<hc::gaze::TimedAngles> wished, turned;
+  std::vector<hc::gaze::TimedAngles> wanted, turned;
   std::int64_t waits[2] = {};  // looks since one of each
   auto take = [](auto& samples, const auto& message) {
     const double time = static_cast<double>(message.header.time) * 1e-9;
@@ -33,9 +34,9 @@ int main(int argc, char** argv) {
     if (samples.empty() || time > samples.back().time)
       samples.push_back({time, hc::gaze::angles_of(q)});
   };
-  module.on(wish, [&](const auto& message) {
+  module.on(setpoint, [&](const auto& message) {
     waits[0] = 0;
-    take(wished, message);
+    take(wanted, message);
   });
   module.on(motion, [&](const auto& message) {
     waits[1] = 0;
@@ -45,13 +46,13 @@ int main(int argc, char** argv) {
     constexpr double kLook = 20;  // [Hz]
     module.keep_rate(kLook);
     for (auto& wait : waits)
-      if (static_cast<double>(++wait) > *patience * kLook)
+      if (static_cast<double>(++wait) > *timeout * kLook)
         throw hc::ModuleError("there was no gaze of both");
-    if (wished.empty() || turned.empty()) return true;
-    const double begin = std::max(wished.front().time, turned.front().time) + *settle;
+    if (wanted.empty() || turned.empty()) return true;
+    const double begin = std::max(wanted.front().time, turned.front().time) + *settle;
     const double end = begin + *duration;
-    if (wished.back().time < end || turned.back().time < end) return true;
-    const auto score = hc::gaze::score_follow(wished, turned, begin, end);
+    if (wanted.back().time < end || turned.back().time < end) return true;
+    const auto score = hc::gaze::score_follow(wanted, turned, begin, end);
     result.send(
         hc::table({score.rms, score.max, score.behind, static_cast<double>(score.samples)}));
     constexpr double kDegrees = 180 / M_PI, kMilliseconds = 1000;

@@ -11,7 +11,8 @@ Angles Controller::command(const hc::gaze::Motion& motion) const {
 std::optional<Angles> Controller::follow(std::int64_t now, const Angles& measured) const {
   const auto& follower = targets.follower();
   if (!is_fresh(follower.last(), now))
-    return *parameters_.rest > 0 ? std::optional(parameters_.within_limits({0, 0})) : std::nullopt;
+    return *parameters_.idle_salience > 0 ? std::optional(parameters_.within_limits({0, 0}))
+                                          : std::nullopt;
   const auto motion = *follower.at(seconds(now) + *parameters_.predict);
   if (hc::gaze::between(motion.angles, measured) < *parameters_.dead_zone) return std::nullopt;
   return command(motion);

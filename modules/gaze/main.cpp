@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
       hc::any_of(hc::position<double>(), hc::transformation<double>(4, 4), hc::table<double>()),
       "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
       "pose of marker, or its table");
-  auto wish = module.input("wish", hc::rotation<double>(), "setpoint: roll, tilt, pan [rad]");
+  auto setpoint =
+      module.input("setpoint", hc::rotation<double>(), "setpoint: roll, tilt, pan [rad]");
   auto stick = module.input("stick", hc::table<double>().of(2, 1),
                             "turn to the left, turn down, -1 … 1 of stick_rate");
   auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
   auto steer = [&] { send(controller->steer(module.now(), measured())); };
   auto send_bid = [&] {
     was_wanted = controller->wants_head(module.now());
-    auto message = hc::table({was_wanted ? *parameters.salience : *parameters.rest});
+    auto message = hc::table({was_wanted ? *parameters.salience : *parameters.idle_salience});
     message.header.time = module.now();
     bid.send(message);
   };
@@ -113,9 +114,9 @@ int main(int argc, char** argv) {
       follow();
     });
   });
-  module.on(wish, [&](const auto& message) {
+  module.on(setpoint, [&](const auto& message) {
     const auto q = hc::rotation_of(message);
-    if (!q) return module.log("wish: " + q.error().detail);
+    if (!q) return module.log("setpoint: " + q.error().detail);
     const auto time = sensed_at(message.header.time);
     if (!time) return;
     controller->targets.set(*time, hc::gaze::angles_of(*q));

@@ -16,17 +16,17 @@ struct Parameters {
       module.parameter("rate", 100.0, "Hz", "commands a second", {.min = 1, .max = 1000});
   hc::Parameter<double> salience =
       module.parameter("salience", 0.5, "", "of the bid", {.min = 0, .max = 1});
-  hc::Parameter<double> rest = module.parameter(
-      "rest", 0.0, "", "salience of looking straight ahead while there is no target, 0: idle",
-      {.min = 0, .max = 1});
-  hc::Parameter<double> patience =
-      module.parameter("patience", 0.5, "s", "how long a target that is lost is still followed",
+  hc::Parameter<double> idle_salience = module.parameter(
+      "idle_salience", 0.0, "",
+      "salience of looking straight ahead while there is no target, 0: idle", {.min = 0, .max = 1});
+  hc::Parameter<double> timeout =
+      module.parameter("timeout", 0.5, "s", "how long a target that is lost is still followed",
                        {.min = 0.01, .max = 60});
   hc::Parameter<double> noise =
       module.parameter("noise", 0.003, "rad", "measurement noise: σ of the target's angles",
                        {.min = 1e-6, .max = 1, .fixed = true});
-  hc::Parameter<double> liveliness = module.parameter(
-      "liveliness", 2.0, "rad/s²",
+  hc::Parameter<double> process_noise = module.parameter(
+      "process_noise", 2.0, "rad/s²",
       "process noise: σ of the target's acceleration; larger is faster but noisier",
       {.min = 1e-3, .max = 1e3, .fixed = true});
   hc::Parameter<double> predict = module.parameter(
@@ -73,7 +73,7 @@ struct Parameters {
     return eyes;
   }
   [[nodiscard]] hc::gaze::FollowerOptions follower() const {
-    return {*noise, *liveliness, *patience, *horizon};
+    return {*noise, *process_noise, *timeout, *horizon};
   }
   /// How far ahead a command has to be of what moves so fast [rad/s, rad].
   [[nodiscard]] double lead(double speed) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How loud it is, and from which side the sound comes.
+// The level of a sound, and its direction.
 #include <hc/module/module.h>
 #include <sound/direction.h>
 #include <sound/format.h>

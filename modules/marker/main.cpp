@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
       "image of an eye: the left one unless its coordinate system is the right one's");
   auto poses = module.output("poses", hc::transformation<double>(4, 4),
-                             "T_eye_marker, one a marker: x right, y down, z into the plate as "
+                             "T_eye_marker, one a marker: x right, y down, z into the marker as "
                              "seen by the viewer, origin in its middle [m]; coord = 1000 · eye + "
                              "frame of the marker, 0 where it has none");
   auto markers = module.output(

@@ -60,7 +60,7 @@ void DeviceEar::look() {
     log_("microphone disconnected; retrying");
   }
   if (capture_ != nullptr) {
-    if (now - heard_at_ > kPatience && !std::exchange(is_silent_, true))
+    if (now - heard_at_ > kTimeout && !std::exchange(is_silent_, true))
       log_("microphone unresponsive; waiting");
     return;
   }

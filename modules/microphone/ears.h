@@ -43,11 +43,11 @@ class FileEar {
   bool is_finished_ = false;
 };
 
-/// A microphone, which may be disconnected at any time, or give nothing for kPatience. Each change
+/// A microphone, which may be disconnected at any time, or give nothing for kTimeout. Each change
 /// is logged once.
 class DeviceEar {
  public:
-  static constexpr std::chrono::seconds kPatience{3};  ///< some servers begin late
+  static constexpr std::chrono::seconds kTimeout{3};  ///< some servers begin late
   using Log = std::function<void(std::string_view line)>;
   DeviceEar(std::string device, const hc::audio::Format& format, int frames, Log log)
       : device_(std::move(device)),

@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
   auto report = module.input("gaze", hc::rotation<double>().in(kGaze),
-                             "how the head says that it stands: with the first it is ready");
+                             "measured head orientation; with the first one it starts");
   auto stick = module.output("stick", hc::table<double>().of(2, 1), "left > 0, down > 0, -1 to 1");
   auto result = module.output("score", hc::table<double>().of(4, 1),
                               "median and greatest time from the stick to the motion [s], "
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   auto seed = module.parameter("seed", 1, "", "of when, how far and how long it is pushed",
                                {.min = 0, .max = 1e9, .fixed = true});
   auto rate = module.parameter("rate", 50.0, "Hz",
-                               "how often the stick is told while it is out of its middle",
+                               "how often the stick is repeated while it is out of its middle",
                                {.min = 1, .max = 1000});
   auto acceleration = module.parameter("acceleration", 1.795, "rad/s²", "of the unit",
                                        {.min = 0.01, .max = 1000, .fixed = true});
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
                        {.min = 0, .max = 100, .fixed = true});
 
   std::optional<Pusher> pusher;
-  std::int64_t told = 0;  // when the stick was last [ns]
+  std::int64_t sent = 0;  // when `stick` was last sent [ns]
   module.on_start([&] {
     Pusher::Options options;
     options.count = static_cast<int>(*count);
@@ -48,22 +48,22 @@ int main(int argc, char** argv) {
   });
   bool is_ready = false;
   module.on(report, [&](const auto&) { is_ready = true; });
-  auto tell = [&] {
+  auto repeat = [&] {
     if (!is_ready) return;
     const std::int64_t now = module.now();
-    const auto wish = pusher->look(static_cast<double>(now) * 1e-9);
-    const bool is_out = wish.left != 0 || wish.down != 0;
-    const bool is_due = is_out && static_cast<double>(now - told) * 1e-9 >= 1 / *rate;
-    if (!wish.changed && !is_due) return;
-    told = now;
-    auto message = hc::table({wish.left, wish.down});
+    const auto push = pusher->look(static_cast<double>(now) * 1e-9);
+    const bool is_out = push.left != 0 || push.down != 0;
+    const bool is_due = is_out && static_cast<double>(now - sent) * 1e-9 >= 1 / *rate;
+    if (!push.changed && !is_due) return;
+    sent = now;
+    auto message = hc::table({push.left, push.down});
     message.header.time = now;
     stick.send(message);
   };
   module.generate([&] {
     constexpr double kLook = 1000;  // [Hz]
     module.keep_rate(kLook);
-    tell();
+    repeat();
     if (!pusher->is_done()) return true;
     auto delays = pusher->delays();
     std::sort(delays.begin(), delays.end());

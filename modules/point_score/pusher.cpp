@@ -6,7 +6,7 @@
 
 namespace {
 
-constexpr double kStill = 1e-6;  // what stands moves less [rad]
+constexpr double kStill = 1e-6;  // a head at rest moves less [rad]
 
 double way(const hc::gaze::Angles& a, const hc::gaze::Angles& b) {
   return std::max(std::abs(a.pan - b.pan), std::abs(a.tilt - b.tilt));
@@ -26,7 +26,7 @@ double Pusher::random(double least, double most) {
 Pusher::Stick Pusher::look(double time) {
   stick_.changed = false;
   if (pushed_) {
-    const bool is_over = moved_ ? time >= release_ : time - *pushed_ > options_.patience;
+    const bool is_over = moved_ ? time >= release_ : time - *pushed_ > options_.timeout;
     if (!is_over) return stick_;
     pushed_.reset();
     still_since_ = time;

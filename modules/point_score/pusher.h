@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Pushes a stick and lets it go, and looks when the head begins to move. Pure: who uses it tells
-// the time. Times are seconds of any origin.
+// Pushes a stick and releases it, and measures when the head begins to move. Pure: who uses it
+// tells the time. Times are seconds of any origin.
 
 #include <cstdint>
 #include <optional>
@@ -17,7 +17,7 @@ class Pusher {
     int count = 20;              ///< pushes
     std::uint64_t seed = 1;      ///< of when, how long and where to
     hc::gaze::Brakes unit;       ///< how the unit speeds up, too
-    double patience = 2;         ///< without motion for so long, a push had no effect [s]
+    double timeout = 2;          ///< without motion for so long, a push had no effect [s]
     double min_motion = 2.5e-4;  ///< as which a motion counts [rad]
   };
   explicit Pusher(const Options& options) : options_(options), random_(options.seed) {}
@@ -27,9 +27,9 @@ class Pusher {
     double left = 0, down = 0;  ///< -1 … 1
     bool changed = false;       ///< since the last look
   };
-  /// Moves the stick as it is time to. Nothing is pushed before the head stands still.
+  /// Moves the stick as it is time to. Nothing is pushed before the head is at rest.
   Stick look(double time);
-  /// Hears how the head stands. @param time  grows.
+  /// Takes the measured head orientation. @param time  grows.
   void hear(double time, const hc::gaze::Angles& angles);
 
   [[nodiscard]] bool is_done() const { return pushes_ >= options_.count && !pushed_; }
@@ -37,7 +37,7 @@ class Pusher {
   [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
   [[nodiscard]] int pushes() const { return pushes_; }
 
-  /// How long a unit that stood has moved when it has come so far. [s]
+  /// How long a unit has moved from rest when it has come so far [s].
   /// @param way  not below 0 [rad].
   /// Source: way = base t + a t² / 2.
   static double moving_since(double way, const hc::gaze::Brakes& unit);
@@ -49,7 +49,7 @@ class Pusher {
   std::mt19937_64 random_;
   std::optional<hc::gaze::Angles> stands_;  // since still_since_
   double still_since_ = 0, heard_ = 0;
-  double rest_ = 0.5;             // that it has to stand still before the next push [s]
+  double rest_ = 0.5;             // for which it has to be at rest before the next push [s]
   std::optional<double> pushed_;  // when
   double release_ = 0;            // when, at the earliest
   bool moved_ = false;            // since then

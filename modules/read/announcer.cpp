@@ -28,7 +28,7 @@ bool Announcer::take(const std::string& text, double confidence, std::int64_t ti
   while (std::ssize(readings_) > 2 * kDoubt * rules.repeat - 1) readings_.pop_front();
   const auto first = readings_.end() - std::min(std::ssize(readings_), 2 * wanted - 1);
   if (!is_sure || std::count(first, readings_.end(), text) < wanted) return false;
-  // A clock that went back, as that of a recording which begins anew, does not silence it.
+  // A clock that went back, as when a recording starts over, does not silence it.
   const auto since = static_cast<double>(time - said_at_) * 1e-9;
   const bool is_due = rules.again > 0 && (since >= rules.again || since < 0);
   if (text == said_ && !is_due && (was_heard_ || !is_heard)) return false;

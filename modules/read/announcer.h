@@ -9,19 +9,18 @@
 class Announcer {
  public:
   struct Rules {
-    double confidence = 0;    ///< least confidence of a reading that counts, 0 … 1
-    std::int64_t repeat = 1;  ///< so many of the last 2 · repeat − 1 readings, which is most of
+    double confidence = 0;    ///< minimum confidence of a reading that counts, 0 … 1
+    std::int64_t repeat = 1;  ///< so many of the last 2 · repeat − 1 readings, the majority of
                               ///< them, are to be the same; of a text that is said already but
                               ///< for a letter or two, thrice as many
-    double again = 0;         ///< after so long, what is still there is said again, 0: never [s]
+    double again = 0;         ///< after this time an unchanged text is said again, 0: never [s]
   };
 
   /// Takes a reading.
   ///
   /// @param time  when the image was taken [ns].
-  /// @param is_heard  whether anybody hears what is said now, as those who wait for the focus do
-  ///     not while another mode has it.
-  /// @returns  whether its text is to be said now: it is sure, and another than was said last, or
+  /// @param is_heard  whether what is said now is used: not while another mode has the focus.
+  /// @returns  whether its text is to be said now: it is certain, and differs from the last one, or
   ///     that was said long ago, or not heard.
   bool take(const std::string& text, double confidence, std::int64_t time, const Rules& rules,
             bool is_heard = true);

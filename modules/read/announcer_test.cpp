@@ -79,7 +79,7 @@ TEST(Announcer, says_anew_what_was_not_heard_when_it_is_heard) {
   EXPECT_FALSE(announcer.take("A", 1, 2 * kSecond, rules, false));
   EXPECT_TRUE(announcer.take("A", 1, 3 * kSecond, rules, true));
   EXPECT_FALSE(announcer.take("A", 1, 4 * kSecond, rules, true));
-  // It was heard before the focus went away and came back.
+  // It was spoken before the focus was lost and regained.
   EXPECT_FALSE(announcer.take("A", 1, 5 * kSecond, rules, false));
   EXPECT_FALSE(announcer.take("A", 1, 6 * kSecond, rules, true));
 }

@@ -22,28 +22,29 @@ int main(int argc, char** argv) {
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
       "image with letters");
   auto text = module.output("text", hc::string().in(kText),
-                            "what is read, once it is sure; again when it changes");
+                            "the text, once it is certain, and when it changes");
   auto confidence =
-      module.output("confidence", hc::table<double>(), "of each reading, sure or not, 0 to 1");
+      module.output("confidence", hc::table<double>(), "of each reading, certain or not, 0 to 1");
   auto target = module.output("target", hc::position<double>(),
                               "x, y, width of the line [px], in the image's coordinate system");
-  auto language = module.parameter("language", "eng", "",
-                                   "as Tesseract calls it: eng, deu, eng+deu", {.fixed = true});
+  auto language = module.parameter("language", "eng", "", "Tesseract's name: eng, deu, eng+deu",
+                                   {.fixed = true});
   auto upper_case = module.parameter(
       "upper_case", true, "", "nothing but capital letters, digits and - . , ! ?", {.fixed = true});
-  auto least = module.parameter("confidence", 0.4, "", "least confidence of a text that is given",
+  auto least = module.parameter("confidence", 0.4, "", "minimum confidence of a text that is sent",
                                 {.min = 0, .max = 1});
-  auto repeat = module.parameter("repeat", 2, "",
-                                 "so many of the last 2 repeat - 1 readings are to be the same",
-                                 {.min = 1, .max = 1000});
+  auto repeat =
+      module.parameter("repeat", 2, "", "of the last 2 repeat - 1 readings so many must agree",
+                       {.min = 1, .max = 1000});
   auto again =
-      module.parameter("again", 10.0, "s", "until a text that stays is given again, 0: never",
+      module.parameter("again", 10.0, "s", "until an unchanged text is sent again, 0: never",
                        {.min = 0, .max = 1e6});
-  auto rate = module.parameter(
-      "rate", 4.0, "Hz", "readings a second at most, 0: all; others are looked at for target alone",
-      {.min = 0, .max = 1000});
-  auto score = module.parameter(
-      "score", 0.4, "", "least likeness of a line to one on a clean board", {.min = 0, .max = 1});
+  auto rate = module.parameter("rate", 4.0, "Hz",
+                               "maximum readings a second, 0: all; target is sent for every image",
+                               {.min = 0, .max = 1000});
+  auto score =
+      module.parameter("score", 0.4, "", "minimum similarity of a line to one on a clean board",
+                       {.min = 0, .max = 1});
 
   std::optional<Recogniser> recogniser;
   Announcer announcer;

@@ -13,7 +13,7 @@
 struct Letter {
   char letter = ' ';
   double confidence = 0;     ///< [%]
-  bool begins_word = false;  ///< a space stands before it, or nothing
+  bool begins_word = false;  ///< preceded by a space, or nothing
   bool is_known = false;     ///< its word is in Tesseract's dictionary
 };
 

@@ -14,7 +14,7 @@ namespace {
 // Width by height of the middle of the stroke: 0 up to 0.69, O from 0.73, seen from the side by
 // some degrees. Between these limits it is left. An O of a typewriter's font is as narrow as a 0.
 constexpr double kNarrow = 0.695, kRound = 0.72;
-// How far the left side stands out in the middle of its upper part, by the width: 5 up to 0.03, S
+// How far the left side protrudes in the middle of its upper part, by the width: 5 up to 0.03, S
 // from 0.07.
 constexpr double kStraight = 0.045, kBulging = 0.06;
 // Where the middle of the hole is, from the top: of a 9 at 0.33 at most, of a Q from 0.40.
@@ -74,7 +74,7 @@ double left_side(const cv::Mat& glyph, double from, double to) {
   return *middle;
 }
 
-/// How far an S or 5 stands out to the left between the top and the middle, by its width.
+/// How far an S or 5 protrudes to the left between the top and the middle, by its width.
 double bulge(const cv::Mat& glyph) {
   const double ends = (left_side(glyph, 0.02, 0.12) + left_side(glyph, 0.3, 0.4)) / 2;
   return 2 * (ends - left_side(glyph, 0.14, 0.26)) / glyph.cols;
@@ -108,7 +108,7 @@ bool is_bar(const cv::Mat& glyph) {
   return most < 128;
 }
 
-/// Leaves out letters that were read twice until there are as many as glyphs, where that can be.
+/// Drops letters that were read twice until there are as many as glyphs, if possible.
 void leave_out_twice(std::vector<Letter>& letters, std::size_t glyphs) {
   while (letters.size() > glyphs) {
     auto worst = letters.end();

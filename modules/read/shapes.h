@@ -16,13 +16,13 @@
 std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 
 /// What a glyph is that was read as `letter`: O or 0 by how round it is, 5, S or 3 by whether it
-/// is straight, stands out or is open on its left, Q or 9 by how low its hole is, I where it is
+/// is straight, protrudes or is open on its left, Q or 9 by how low its hole is, I where it is
 /// nothing but a bar, 1 where an I has a flag; otherwise `letter`.
 /// @param glyph  cut out, (H, W) u8, black on white.
 char by_shape(const cv::Mat& glyph, char letter);
 
 /// A reading's text, set right: of a letter that was read twice, as two that look alike, the less
-/// sure one is left out; a space no wider than the gaps between letters is none; and each letter of
+/// sure one is dropped; a space no wider than the gaps between letters is none; and each letter of
 /// a word that is in no dictionary is by its shape. As it was read where letters cannot be counted.
 /// @param line  what was read, (H, W) u8, black on white.
 std::string by_shape(const cv::Mat& line, const Reading& reading);

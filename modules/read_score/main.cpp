@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
     next_at = module.now() + nanoseconds(*time_out);
   });
   module.on(text, [&](const auto& message) {
-    // What stands there at first shows that all is running; the head turns to it.
+    // The first text shows that all is running; the head turns to it.
     if (!has_begun) next_at = module.now() + kSettle;
     has_begun = true;
     if (attempt) attempt->take_text(std::string(message.characters()), message.header.time);

@@ -12,7 +12,7 @@
 #include <hc/base/clock.h>
 #include <hc/mtp/header.h>
 
-/// Messages that came lately, to tell the second coming of one that goes in a circle.
+/// Messages that came lately, to recognise one that comes again in a circle.
 ///
 /// Two are the same where src, dst, seq and time are. A message is remembered for a time, unless
 /// its source has sent `most_of_source` others since. What was not remembered is never taken for
@@ -79,7 +79,8 @@ class Router {
  public:
   explicit Router(std::chrono::nanoseconds remember) : seen_(remember) {}
 
-  /// Whether the message is to be sent on. Then its ttl has been lowered, and sent() is to be told.
+  /// Whether the message is to be sent on. Then its ttl has been lowered, and sent() must be
+  /// called.
   bool admit(hc::Header& header, hc::MonotonicTime now);
   /// How many links have taken the message.
   void sent(const hc::Header& header, std::size_t links);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kGaze = 13, kSound16k = 21;
 constexpr double kTick = 250;  // how often it is looked whether an image is due [Hz]
-const Eigen::Vector3d kUnderground(0, 0, -10);  // where a ball is that has gone [m]
+const Eigen::Vector3d kUnderground(0, 0, -10);  // where an absent ball is [m]
 
 /// What begins when the parameters are known.
 struct Scene {
@@ -102,13 +102,13 @@ int main(int argc, char** argv) {
     const auto time = schedule.time();
     const Eigen::Isometry3d T_world_head = frames.nearest("world", "head", time);
     const auto ball = scene->ball.at(schedule.seconds());
-    const bool is_gone = *parameters.ball == "gone";
-    look(is_gone ? kUnderground : ball.position, T_world_head);
+    const bool is_absent = *parameters.ball == "absent";
+    look(is_absent ? kUnderground : ball.position, T_world_head);
     truth.send_poses(time, T_world_head, scene->head);
-    truth.send_ball(time, ball, !is_gone, T_world_head * scene->head.left_eye, scene->camera);
+    truth.send_ball(time, ball, !is_absent, T_world_head * scene->head.left_eye, scene->camera);
     if (schedule.begins_second()) {
       truth.send_board(time, scene->world.text());
-      truth.send_plates(time, scene->world.plates());
+      truth.send_markers(time, scene->world.markers());
     }
     scene->ears.hear_until(time, T_world_head);
   };

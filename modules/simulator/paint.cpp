@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr int kCell = 8;  // of a plate [px]
+constexpr int kCell = 8;  // of a marker [px]
 
 }  // namespace
 
@@ -70,7 +70,7 @@ cv::Mat paint_poster(int width, int height, std::uint64_t seed) {
   return image;
 }
 
-cv::Mat paint_plate(const std::string& dictionary, int id) {
+cv::Mat paint_tag(const std::string& dictionary, int id) {
   const auto words = cv::aruco::getPredefinedDictionary(
       dictionary == "aruco" ? cv::aruco::DICT_6X6_250 : cv::aruco::DICT_APRILTAG_36h11);
   // cv::Ptr in OpenCV 4.6, a value in 4.7 and later.

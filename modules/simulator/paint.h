@@ -18,14 +18,14 @@ cv::Mat paint_grains(int width, int height, const cv::Scalar& rgb, double streng
 cv::Mat paint_planks(int width, int height, std::uint64_t seed);
 /// An image of coloured shapes, in none of the colours that markers and the ball have.
 cv::Mat paint_poster(int width, int height, std::uint64_t seed);
-/// A black and white plate with a white margin of one cell. The image has 8 pixels a cell.
+/// A black and white marker with a white margin of one cell. The image has 8 pixels a cell.
 ///
 /// @param dictionary  "aruco" (6×6_250) or "apriltag" (36h11). @param id  within it.
-cv::Mat paint_plate(const std::string& dictionary, int id);
+cv::Mat paint_tag(const std::string& dictionary, int id);
 /// A coloured square on white, margin 1/6 of the side.
 cv::Mat paint_marker(const cv::Scalar& rgb);
 /// Block letters on a white board, black, as large as they fit in one line, or in several that are
-/// told apart by line feeds.
+/// separated by line feeds.
 ///
 /// @param text  UTF-8; what is no ASCII becomes "?".
 cv::Mat paint_board(const std::string& text, int width, int height);

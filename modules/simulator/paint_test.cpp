@@ -11,7 +11,7 @@ namespace {
 TEST(Paint, a_plate_is_found_by_who_looks_for_it) {
   for (const auto& [name, id] : {std::pair("aruco", 23), std::pair("aruco", 40)}) {
     cv::Mat image, around(400, 400, CV_8UC3, cv::Scalar::all(255));
-    cv::resize(paint_plate(name, id), image, {200, 200}, 0, 0, cv::INTER_NEAREST);
+    cv::resize(paint_tag(name, id), image, {200, 200}, 0, 0, cv::INTER_NEAREST);
     image.copyTo(around(cv::Rect(100, 100, 200, 200)));
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;

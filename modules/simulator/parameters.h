@@ -59,13 +59,13 @@ struct Parameters {
 
   hc::Parameter<std::string> ball =
       module.parameter("ball", "roll", "", "what the ball does",
-                       {.choices = {"still", "roll", "bounce", "hide", "gone"}, .fixed = true});
+                       {.choices = {"still", "roll", "bounce", "hide", "absent"}, .fixed = true});
   hc::Parameter<double> ball_speed = module.parameter(
       "ball_speed", 0.349, "rad/s", "as seen from the robot", {.min = 0, .max = 10, .fixed = true});
   hc::Parameter<double> ball_hidden = module.parameter(
       "ball_hidden", 2.0, "s", "rest behind the screen", {.min = 0, .max = 60, .fixed = true});
   hc::Parameter<std::string> text =
-      module.parameter("text", "HELLO ROBOT", "", "what stands on the board");
+      module.parameter("text", "HELLO ROBOT", "", "text on the board");
 
   [[nodiscard]] std::uint64_t world_seed() const { return static_cast<std::uint64_t>(*seed); }
   [[nodiscard]] BallMotion motion() const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The room about the robot, and what stands in it.
+// The room about the robot, and its furniture.
 
 #include "scenery.h"
 

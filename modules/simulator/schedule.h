@@ -23,8 +23,8 @@ class Schedule {
 
   /// The next pair has been taken.
   void next() { last_ = number_++; }
-  /// Leaves out pairs that could not be taken in time, but for the latest that is due, and for the
-  /// first of all: that tells a recording when the world began.
+  /// Skips pairs that could not be taken in time, but for the latest that is due, and for the
+  /// first of all: it shows a recording when the world began.
   void catch_up(std::int64_t now);
   /// Whether the next pair is to be taken.
   /// @param gaze_is_awaited  where the head is then becomes known yet.

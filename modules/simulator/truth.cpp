@@ -34,11 +34,11 @@ std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d&
           is_inside ? share_seen(ball, T_world_eye.translation()) : 0};
 }
 
-std::array<double, 10> row_of(const Plate& plate) {
-  const double kind = plate.kind == "aruco" ? 0 : plate.kind == "apriltag" ? 1 : 2;
-  const Eigen::Vector3d p = plate.T_world_plate.translation();
-  const Eigen::Quaterniond q(plate.T_world_plate.linear());
-  return {kind, double(plate.id), plate.side, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+std::array<double, 10> row_of(const RoomMarker& marker) {
+  const double kind = marker.kind == "aruco" ? 0 : marker.kind == "apriltag" ? 1 : 2;
+  const Eigen::Vector3d p = marker.T_world_marker.translation();
+  const Eigen::Quaterniond q(marker.T_world_marker.linear());
+  return {kind, double(marker.id), marker.side, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
 Truth::Truth(hc::Module& module)
@@ -56,10 +56,10 @@ Truth::Truth(hc::Module& module)
       ball_seen_(module.output("ball_seen", hc::table<double>().of(4, 1),
                                "truth: u, v, radius of the ball in the left image [px], "
                                "share of it that is seen")),
-      plates_(module.output("plates", hc::table<double>(),
-                            "truth, a row each: kind (0 aruco, 1 apriltag, 2 colour), id, side "
-                            "[m], x y z [m] and qx qy qz qw in the world")),
-      board_(module.output("board", hc::string(), "truth: what stands on the board")) {}
+      markers_(module.output("markers", hc::table<double>(),
+                             "truth, a row each: kind (0 aruco, 1 apriltag, 2 colour), id, side "
+                             "[m], x y z [m] and qx qy qz qw in the world")),
+      board_(module.output("board", hc::string(), "truth: text on the board")) {}
 
 void Truth::send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head, const Head& head) {
   send_pose(head_pose_, time, T_world_head);
@@ -88,10 +88,10 @@ void Truth::send_board(std::int64_t time, const std::string& text) {
   board_.send(message);
 }
 
-void Truth::send_plates(std::int64_t time, const std::vector<Plate>& plates) {
-  auto draft = plates_.loan(10, static_cast<std::int32_t>(plates.size()));
+void Truth::send_markers(std::int64_t time, const std::vector<RoomMarker>& markers) {
+  auto draft = markers_.loan(10, static_cast<std::int32_t>(markers.size()));
   draft.header.time = time;
-  for (std::size_t i = 0; i < plates.size(); ++i)
-    std::ranges::copy(row_of(plates[i]), draft.matrix().row(i).begin());
-  plates_.send(std::move(draft));
+  for (std::size_t i = 0; i < markers.size(); ++i)
+    std::ranges::copy(row_of(markers[i]), draft.matrix().row(i).begin());
+  markers_.send(std::move(draft));
 }

@@ -14,7 +14,7 @@
 
 #include "ball.h"
 #include "head.h"
-#include "plates.h"
+#include "markers.h"
 
 /// How the ball is seen: u, v, radius [px], share of it that is seen, 0 where it is not within the
 /// image [0 … 1].
@@ -23,9 +23,9 @@
 std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_eye,
                            const hc::graphics::PinholeCamera& camera);
 
-/// A plate as a row: kind (0 aruco, 1 apriltag, 2 colour), id, side [m], x y z [m] and
-/// qx qy qz qw of T_world_plate.
-std::array<double, 10> row_of(const Plate& plate);
+/// A marker as a row: kind (0 aruco, 1 apriltag, 2 colour), id, side [m], x y z [m] and
+/// qx qy qz qw of T_world_marker.
+std::array<double, 10> row_of(const RoomMarker& marker);
 
 class Truth {
  public:
@@ -38,7 +38,7 @@ class Truth {
   void send_ball(std::int64_t time, const Ball::State& ball, bool is_there,
                  const Eigen::Isometry3d& T_world_left, const hc::graphics::PinholeCamera& camera);
   void send_board(std::int64_t time, const std::string& text);
-  void send_plates(std::int64_t time, const std::vector<Plate>& plates);
+  void send_markers(std::int64_t time, const std::vector<RoomMarker>& markers);
 
  private:
   using Poses = hc::Output<decltype(hc::transformation<double>(4, 4))>;
@@ -46,6 +46,6 @@ class Truth {
 
   Poses head_pose_, left_pose_, right_pose_;
   hc::Output<decltype(hc::position<double>(6))> ball_;
-  Tables ball_seen_, plates_;
+  Tables ball_seen_, markers_;
   hc::Output<decltype(hc::string())> board_;
 };

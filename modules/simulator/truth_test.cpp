@@ -10,7 +10,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// Stands in the world's origin, at the height of the ball, and looks along x, turned to the left.
+/// A head in the world's origin, at the height of the ball, and looks along x, turned to the left.
 Isometry3d eye(double pan) {
   Eigen::Matrix3d optical;
   optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -38,13 +38,13 @@ TEST(SeenBall, is_nowhere_behind_the_eye) {
 }
 
 TEST(PlateRow, has_kind_number_side_and_pose) {
-  Plate plate{"apriltag", 7, 0.16, Isometry3d(Eigen::Translation3d(1, 2, 3))};
-  EXPECT_EQ(row_of(plate), (std::array<double, 10>{1, 7, 0.16, 1, 2, 3, 0, 0, 0, 1}));
-  plate.kind = "aruco";
-  EXPECT_EQ(row_of(plate)[0], 0);
-  plate.kind = "colour";
-  plate.T_world_plate.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitZ()));
-  const auto row = row_of(plate);
+  RoomMarker marker{"apriltag", 7, 0.16, Isometry3d(Eigen::Translation3d(1, 2, 3))};
+  EXPECT_EQ(row_of(marker), (std::array<double, 10>{1, 7, 0.16, 1, 2, 3, 0, 0, 0, 1}));
+  marker.kind = "aruco";
+  EXPECT_EQ(row_of(marker)[0], 0);
+  marker.kind = "colour";
+  marker.T_world_marker.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitZ()));
+  const auto row = row_of(marker);
   EXPECT_EQ(row[0], 2);
   EXPECT_NEAR(row[8], std::sqrt(0.5), 1e-12);  // qz
   EXPECT_NEAR(row[9], std::sqrt(0.5), 1e-12);  // qw

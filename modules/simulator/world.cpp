@@ -25,7 +25,7 @@ World::World(hc::graphics::Renderer& renderer, std::uint64_t seed, const std::st
   add_furniture(room_);
   add_bench(room_);
   add_screen(room_);
-  plates_ = add_plates(room_);
+  markers_ = add_markers(room_);
   add_board();
   add_shadows(room_, floor, light_.to_light.cast<double>());
   write(text);

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "plates.h"
+#include "markers.h"
 #include "scenery.h"
 
 class World {
@@ -23,9 +23,9 @@ class World {
   /// Writes on the board, black on white: a line, or several.
   void write(const std::string& text);
 
-  /// What stands on the board.
+  /// The text on the board.
   [[nodiscard]] const std::string& text() const { return text_; }
-  [[nodiscard]] const std::vector<Plate>& plates() const { return plates_; }
+  [[nodiscard]] const std::vector<RoomMarker>& markers() const { return markers_; }
   [[nodiscard]] const hc::graphics::Light& light() const { return light_; }
 
  private:
@@ -33,7 +33,7 @@ class World {
 
   Scenery room_;  // the ball is its last
   hc::graphics::Light light_;
-  std::vector<Plate> plates_;
+  std::vector<RoomMarker> markers_;
   hc::graphics::SurfaceId board_ = 0;
   std::string text_;
 };

@@ -82,18 +82,18 @@ TEST_F(Room, the_screen_hides_the_ball_as_its_truth_says) {
 }
 
 TEST_F(Room, every_plate_is_seen_from_the_neck) {
-  ASSERT_EQ(world->plates().size(), 7U);
-  for (const auto& plate : world->plates()) {
-    const Eigen::Vector3d p = plate.T_world_plate.translation();
+  ASSERT_EQ(world->markers().size(), 7U);
+  for (const auto& marker : world->markers()) {
+    const Eigen::Vector3d p = marker.T_world_marker.translation();
     const double pan = std::atan2(p.y(), p.x());
     cv::Mat depth;
     look(pan, 0, {9, 9, 9}, &depth);
     const auto pixel = pixel_of(p);
     const double z = (T_world_left.inverse() * p).z();
     EXPECT_NEAR(depth.at<float>(int(std::lround(pixel.y())), int(std::lround(pixel.x()))), z, 0.01)
-        << plate.kind << " " << plate.id;
+        << marker.kind << " " << marker.id;
     // It faces who looks at it.
-    EXPECT_GT(plate.T_world_plate.linear().col(2).dot(p - T_world_left.translation()), 0);
+    EXPECT_GT(marker.T_world_marker.linear().col(2).dot(p - T_world_left.translation()), 0);
   }
 }
 

@@ -41,8 +41,8 @@ int main(int argc, char** argv) {
   auto rate = module.parameter("rate", 175, "1/min", "words a minute", {.min = 80, .max = 450});
   auto pitch = module.parameter("pitch", 50, "", "of the voice", {.min = 0, .max = 100});
   auto volume = module.parameter("volume", 100, "", "of the voice", {.min = 0, .max = 200});
-  auto paced = module.parameter("paced", true, "",
-                                "a text begins when the one before has been heard; false: at once");
+  auto paced = module.parameter(
+      "paced", true, "", "a text begins when the one before has been played; false: at once");
   auto waiting =
       module.parameter("waiting", 4, "", "texts that may wait for their turn; the oldest make room",
                        {.min = 1, .max = 1000});

@@ -76,7 +76,7 @@ void Player::wait_until_at_most(double seconds) {
     if (waiting <= most) return;
     if (waiting < last) since = clock.monotonic();
     last = waiting;
-    if (clock.monotonic() - since > kPatience) {
+    if (clock.monotonic() - since > kTimeout) {
       stuck_at_ = waiting;
       return log_("loudspeaker unresponsive; dropping sound");
     }

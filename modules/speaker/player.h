@@ -29,14 +29,14 @@ struct PlayerOptions {
 /// Plays sound and writes it to a file. Each change of the device is logged once.
 class Player {
  public:
-  static constexpr std::chrono::seconds kPatience{1};
+  static constexpr std::chrono::seconds kTimeout{1};
   using Log = std::function<void(std::string_view line)>;
   /// @param stop  descriptor that is readable when waiting is to end.
   Player(PlayerOptions options, Log log, int stop)
       : options_(std::move(options)), log_(std::move(log)), stop_(stop) {}
 
   /// Takes a sound; waits while more than `buffer` waits to be played. Without a device, or when it
-  /// has played nothing for kPatience, the sound is dropped and counted; the file gets it all the
+  /// has played nothing for kTimeout, the sound is dropped and counted; the file gets it all the
   /// same.
   ///
   /// Errors: Unsupported (such a format), System, TooLarge (the file).

@@ -29,8 +29,8 @@ int main(int argc, char** argv) {
   auto within = module.parameter("within", 0.0524, "rad", "an error up to this has acquired it",
                                  {.min = 1e-4, .max = 1});
   hc::ModuleFrames frames{module, {.input = false}};
-  auto patience = module.parameter("patience", 60.0, "s", "for an image, then it fails",
-                                   {.min = 1, .max = 3600});
+  auto timeout = module.parameter("timeout", 60.0, "s", "for an image, then it fails",
+                                  {.min = 1, .max = 3600});
 
   std::vector<hc::gaze::TrackSample> samples;
   bool has_begun = false;
@@ -51,8 +51,8 @@ int main(int argc, char** argv) {
   module.generate([&] {
     constexpr double kLook = 50;  // [Hz]
     module.keep_rate(kLook);
-    if (static_cast<double>(++waits) > *patience * kLook)
-      throw hc::ModuleError("no image within patience");
+    if (static_cast<double>(++waits) > *timeout * kLook)
+      throw hc::ModuleError("no image within timeout");
     if (samples.empty() || samples.back().time - samples.front().time < *duration) return true;
     const auto score = hc::gaze::score_track(samples, *within);
     const double longest =

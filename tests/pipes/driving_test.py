@@ -53,7 +53,7 @@ class Driving(Pipes):
 
     def start_gaze(self, port):
         self.start(
-            "exec hc gaze --mode 1 --patience 1 --acceleration 0 --in %s=unix-listen:link"
+            "exec hc gaze --mode 1 --timeout 1 --acceleration 0 --in %s=unix-listen:link"
             " --out command=file:commands --out bid=file:bids" % port
         )
         wait_until(lambda: os.path.exists(self.path("link")))
@@ -68,18 +68,18 @@ class Driving(Pipes):
         return [[float(word) for word in line.split()] for line in lines[1::2]]
 
     def wait_bid_end(self):
-        """Waits until the bid ends, as it does when the patience has."""
+        """Waits until the bid ends, as it does when the timeout has."""
         wait_until(lambda: [row[0] for row in self.rows("bids")][-2:] == [0.5, 0])
 
     def test_a_push_that_is_not_told_again_ends(self):
         self.start_gaze("stick").sendall(b"1 1 0 0 8 %d 120190 0 0 2 1\n1 0\n" % time.time_ns())
         self.wait_bid_end()
-        # Each 5 ms for 0.1 s, where a patience has 200.
+        # Each 5 ms for 0.1 s, where a timeout has 200.
         self.assertTrue(1 <= len(self.rows("commands")) <= 40, len(self.rows("commands")))
         self.assertLess(max(row[2] for row in self.rows("commands")), 0.2)
 
     def test_a_wish_that_is_not_told_again_does_not_run_away(self):
-        link = self.start_gaze("wish")
+        link = self.start_gaze("setpoint")
         now = time.time_ns()
         for i in range(-100, 1):  # a head that turns by 1 rad/s, to 1 rad
             stamp = now + i * 10_000_000
@@ -107,7 +107,7 @@ class Driving(Pipes):
 class Gaze(Pipes):
     def test_a_wish_of_the_future_holds_nothing_back(self):
         now = time.time_ns()
-        wishes = "".join(
+        setpoints = "".join(
             "hc send --type rotation %s --coord 14 --time %d;" % (angles, stamp)
             for angles, stamp in (
                 ("0 0.3 1", now + 60 * 10**9),
@@ -115,7 +115,7 @@ class Gaze(Pipes):
                 ("0 0.1 0.2", now + 1000),
             )
         )
-        out = self.shell("(%s) | hc gaze --in wish=- --out command=-" % wishes)
+        out = self.shell("(%s) | hc gaze --in setpoint=- --out command=-" % setpoints)
         self.assertRegex(self.err, r"^gaze: target dropped: its time is \d+ ms in the future")
         self.assertEqual(self.err.count("\n"), 1)
         angles = [line.split() for line in out.splitlines()[1::2]]

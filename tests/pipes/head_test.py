@@ -121,15 +121,15 @@ class Marker(Head):
     def test_the_head_turns_to_it(self):
         graph = (ROOT / "graphs/track_marker.toml").read_text()
         graph = graph.replace("simulated_head.toml", str(ROOT / "graphs/simulated_head.toml"))
-        for port in ("left_pose", "plates"):
+        for port in ("left_pose", "markers"):
             graph = graph.replace(
                 "[modes]",
                 '[graphs.head.modules.eyes.outputs.%s]\nto = "file:%s"\n\n[modes]' % (port, port),
             )
         self.write("graph.toml", graph)
         self.shell("hc run graph.toml --set head_eyes.count=100")
-        plates = self.shell("hc cat --raw plates").splitlines()
-        rows = [list(map(float, row.split())) for row in plates[1:]]
+        markers = self.shell("hc cat --raw markers").splitlines()
+        rows = [list(map(float, row.split())) for row in markers[1:]]
         marker = next(row for row in rows if row[:2] == [2, 300])
         pose = [
             list(map(float, r.split())) for r in self.shell("hc cat --raw left_pose").splitlines()

@@ -39,22 +39,22 @@ parameters = { rate = 200, dwell = 0.05 }
 [modules.left]
 program = "gaze"
 mode = "left"
-parameters = { salience = 0.5, patience = 60, acceleration = 0 }
+parameters = { salience = 0.5, timeout = 60, acceleration = 0 }
 
 [modules.right]
 program = "gaze"
 mode = "right"
-parameters = { salience = 0.2, patience = 60, acceleration = 0 }
+parameters = { salience = 0.2, timeout = 60, acceleration = 0 }
 
 [modules.point]
 program = "gaze"
 mode = "point"
-parameters = { salience = 1, patience = 0.3, acceleration = 0, tilt_min = 0, tilt_max = 0 }
+parameters = { salience = 1, timeout = 0.3, acceleration = 0, tilt_min = 0, tilt_max = 0 }
 
-[[modules.left.inputs.wish]]
+[[modules.left.inputs.setpoint]]
 from = "unix-listen:left"
 
-[[modules.right.inputs.wish]]
+[[modules.right.inputs.setpoint]]
 from = "unix-listen:right"
 
 [[modules.point.inputs.stick]]
@@ -119,7 +119,7 @@ class Feeder:
         self.thread.join()
 
 
-def wish(side):
+def setpoint(side):
     """Looks to a side, down or up, and to and fro a little, so that each command is another."""
 
     def message(now):
@@ -180,8 +180,8 @@ class OneNeck(Graphs):
         self.stick = 0.0
         pushed = lambda now: (120190, 0, 2, "%g 0" % self.stick) if self.stick else None
         self.feeders = [
-            Feeder(self.path("left"), wish(1)),
-            Feeder(self.path("right"), wish(-1)),
+            Feeder(self.path("left"), setpoint(1)),
+            Feeder(self.path("right"), setpoint(-1)),
             Feeder(self.path("stick"), pushed),
         ]
         self.addCleanup(lambda: [feeder.end() for feeder in self.feeders])

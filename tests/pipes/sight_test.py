@@ -43,18 +43,18 @@ class Sight(Pipes):
         return [0.05 - place[1], 1.25 - place[2], place[0] - 0.06]
 
     def test_markers_are_where_the_room_has_them(self):
-        self.simulate("--seed 1 --noise 2", left="left.mtp", plates="plates.mtp")
-        plates = {tuple(row[:2]): row for row in self.messages("cat plates.mtp")}
+        self.simulate("--seed 1 --noise 2", left="left.mtp", markers="markers.mtp")
+        markers = {tuple(row[:2]): row for row in self.messages("cat markers.mtp")}
         found = self.messages(
             "hc marker --focal 600 --sides '%s' --in image=left.mtp --out markers=-" % self.SIDES
         )
         self.assertGreaterEqual(len({tuple(row[:2]) for row in found}), 5)
         for row in found:
-            plate = plates[tuple(row[:2])]
-            truth = self.in_left_eye(plate[3:6])
+            marker = markers[tuple(row[:2])]
+            truth = self.in_left_eye(marker[3:6])
             self.assertLess(math.dist(row[3:6], truth), 0.01 * math.hypot(*truth), row)
             # The marker's x axis, in both; the room's axes are those of the eye in another order.
-            x = turn(plate[6:10], [1, 0, 0])
+            x = turn(marker[6:10], [1, 0, 0])
             cosine = sum(a * b for a, b in zip(turn(row[6:10], [1, 0, 0]), [-x[1], -x[2], x[0]]))
             self.assertGreater(cosine, math.cos(math.radians(4)), row)
             self.assertLess(row[10], 0.3, "reprojected, px")
@@ -81,8 +81,8 @@ class Sight(Pipes):
                     self.assertLess(math.dist(blob[:2], truth[:2]), 1.5, "px")
                     self.assertLess(abs(blob[2] - truth[2]), 2, "px")
 
-    def test_a_ball_that_has_gone_is_not_found(self):
-        self.simulate("--ball gone --noise 20", left="left.mtp")
+    def test_an_absent_ball_is_not_found(self):
+        self.simulate("--ball absent --noise 20", left="left.mtp")
         self.assertEqual(self.shell("hc blob --in image=left.mtp"), "")
 
     def test_an_ideal_pair_that_is_rectified_gives_the_depth(self):

@@ -11,8 +11,8 @@ int main(int argc, char** argv) {
   auto target = module.parameter("target", "world", "", "the frame that points are wanted in");
   auto source = module.parameter("source", "left_eye", "", "the frame that they are given in");
   auto pose = module.output("pose", hc::transformation<double>(4, 4), "T_target_source");
-  constexpr std::chrono::seconds kPatience{60};
-  hc::ModuleFrames frames{module, {.silence = kPatience, .first = kPatience}};
+  constexpr std::chrono::seconds kTimeout{60};
+  hc::ModuleFrames frames{module, {.silence = kTimeout, .first = kTimeout}};
 
   module.on(when, [&](const hc::Message& message) {
     const auto time = message.header.time;
