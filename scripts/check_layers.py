@@ -7,7 +7,7 @@ import re
 import sys
 
 # Library packages: over other libraries, without messages but in their messages.h and module_frames.h.
-PACKAGES = {"frames", "vision", "graphics", "sound", "gaze"}
+PACKAGES = {"frames", "vision", "graphics", "room", "sound", "gaze"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
     "base": set(),
@@ -23,6 +23,7 @@ ALLOWED = {
     "vision": {"base"},
     "gaze": {"base"},
     "graphics": {"base"},
+    "room": {"base", "graphics"},
     "sound": {"base"},
     "drivers": {"base"},
     "modules": {"base", "os", "mtp", "contract", "compress", "module", "drivers"} | PACKAGES,
@@ -51,7 +52,7 @@ def layer_of(path):
 def layer_of_include(name):
     inner = name[1:-1]
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|sound|gaze|drivers)/", inner
+        r"(frames|vision|graphics|room|sound|gaze|drivers)/", inner
     )
     return match[1] if match else None
 

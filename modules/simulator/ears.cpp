@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ears.h"
 
+#include <room/sounds.h>
 #include "schedule.h"
-#include "sounds.h"
 
 namespace {
 
@@ -11,14 +11,14 @@ const Eigen::Vector3d kLoudspeaker(2.4, -1.6, 0.7);  // in the world [m]
 }  // namespace
 
 void Ears::hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head) {
-  const auto end = (until - start_) * kSoundRate / 1'000'000'000;
+  const auto end = (until - start_) * hc::room::kSoundRate / 1'000'000'000;
   if (end <= sample_) return;
   if (sound_.linked()) {
     auto draft = sound_.loan(static_cast<std::int32_t>(end - sample_), 1);
-    draft.header.time = start_ + period_end(sample_, kSoundRate);
+    draft.header.time = start_ + period_end(sample_, hc::room::kSoundRate);
     for (std::size_t side : {0, 1}) {
       const double distance = (T_world_head * places_[side] - kLoudspeaker).norm();
-      hear(sample_, distance, draft.matrix().numbers().subspan(side), 2);
+      hc::room::hear(sample_, distance, draft.matrix().numbers().subspan(side), 2);
     }
     sound_.send(std::move(draft));
   }

@@ -3,14 +3,14 @@
 
 #include <vision/messages.h>
 
-Eyes::Eyes(const Parameters& parameters, const Head& head, hc::graphics::Renderer& renderer,
-           Output left, Output right)
+Eyes::Eyes(const Parameters& parameters, const hc::room::Head& head,
+           hc::graphics::Renderer& renderer, Output left, Output right)
     : parameters_(parameters),
       renderer_(renderer),
       head_(head),
       camera_(parameters.camera()),
-      left_{std::move(left), Sensor(2 * parameters.world_seed())},
-      right_{std::move(right), Sensor(2 * parameters.world_seed() + 1)} {}
+      left_{std::move(left), hc::room::Sensor(2 * parameters.world_seed())},
+      right_{std::move(right), hc::room::Sensor(2 * parameters.world_seed() + 1)} {}
 
 void Eyes::take(const View& view, cv::Mat* depth) {
   auto first = head_.left_eye, second = head_.right_eye;

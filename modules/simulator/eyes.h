@@ -8,9 +8,9 @@
 #include <graphics/renderer.h>
 #include <hc/module/module.h>
 
+#include <room/sensor.h>
 #include "late.h"
 #include "parameters.h"
-#include "sensor.h"
 
 /// What a pair of images is taken of.
 struct View {
@@ -27,7 +27,7 @@ class Eyes {
   using Output = hc::Output<Kind>;
 
   /// @param parameters, renderer  must outlive it.
-  Eyes(const Parameters& parameters, const Head& head, hc::graphics::Renderer& renderer,
+  Eyes(const Parameters& parameters, const hc::room::Head& head, hc::graphics::Renderer& renderer,
        Output left, Output right);
 
   /// Takes a pair; an image that nobody takes is not drawn, as that is most of the work.
@@ -42,7 +42,7 @@ class Eyes {
  private:
   struct Eye {
     Output output;
-    Sensor sensor;
+    hc::room::Sensor sensor;
   };
   struct Image {
     Output output;
@@ -52,7 +52,7 @@ class Eyes {
 
   const Parameters& parameters_;
   hc::graphics::Renderer& renderer_;
-  const Head head_;
+  const hc::room::Head head_;
   const hc::graphics::PinholeCamera camera_;
   Eye left_, right_;
   Late<Image> late_;

@@ -9,13 +9,13 @@
 #include <hc/module/module.h>
 #include <vision/messages.h>
 
-#include "ball.h"
+#include <room/ball.h>
+#include <room/world.h>
 #include "ears.h"
 #include "eyes.h"
 #include "parameters.h"
 #include "schedule.h"
 #include "truth.h"
-#include "world.h"
 
 namespace {
 
@@ -26,9 +26,9 @@ const Eigen::Vector3d kUnderground(0, 0, -10);  // where an absent ball is [m]
 /// What begins when the parameters are known.
 struct Scene {
   std::unique_ptr<hc::graphics::Renderer> renderer;
-  World world;
-  Ball ball;
-  Head head;
+  hc::room::World world;
+  hc::room::Ball ball;
+  hc::room::Head head;
   hc::graphics::PinholeCamera camera;
   Schedule schedule;
   Eyes eyes;
@@ -56,17 +56,19 @@ int main(int argc, char** argv) {
   module.on_start([&] {
     auto renderer = hc::value_or_end(hc::graphics::Renderer::make());
     auto& drawing = *renderer;
-    World world(drawing, parameters.world_seed(), *parameters.text);
-    const Head mounted{frames.fixed("head", "left_eye"), frames.fixed("head", "right_eye")};
-    const Head head = mounted.with(parameters.faults());
+    hc::room::World world(drawing, parameters.world_seed(), *parameters.text);
+    const hc::room::Head mounted{frames.fixed("head", "left_eye"),
+                                 frames.fixed("head", "right_eye")};
+    const hc::room::Head head = mounted.with(parameters.faults());
     const auto ear = [&](const char* name) -> Eigen::Vector3d {
       if (!sound.linked()) return Eigen::Vector3d::Zero();
       return frames.fixed("head", name).translation();
     };
     // Time begins when the world is there, which takes a while.
     const std::int64_t start = *parameters.start > 0 ? *parameters.start : module.now();
-    scene.reset(new Scene{std::move(renderer), std::move(world), Ball(parameters.motion()), head,
-                          parameters.camera(), Schedule(start, *parameters.rate),
+    scene.reset(new Scene{std::move(renderer), std::move(world),
+                          hc::room::Ball(parameters.motion()), head, parameters.camera(),
+                          Schedule(start, *parameters.rate),
                           Eyes(parameters, head, drawing, left, right),
                           Ears(ear("left_ear"), ear("right_ear"), sound, start)});
     last_parameter = *parameters.text;

@@ -7,8 +7,8 @@
 #include <graphics/camera.h>
 #include <hc/module/module.h>
 
-#include "ball.h"
-#include "head.h"
+#include <room/ball.h>
+#include <room/head.h>
 
 struct Parameters {
   hc::Module& module;  ///< that has them
@@ -68,10 +68,10 @@ struct Parameters {
       module.parameter("text", "HELLO ROBOT", "", "text on the board");
 
   [[nodiscard]] std::uint64_t world_seed() const { return static_cast<std::uint64_t>(*seed); }
-  [[nodiscard]] BallMotion motion() const {
+  [[nodiscard]] hc::room::BallMotion motion() const {
     return {*ball, *ball_speed, *ball_hidden, world_seed()};
   }
-  [[nodiscard]] HeadFaults faults() const {
+  [[nodiscard]] hc::room::HeadFaults faults() const {
     return {*zero_pan, *zero_tilt, *offset_roll, *offset_pitch, *offset_yaw};
   }
   /// Each eye's; its optical axis meets the middle of the image.

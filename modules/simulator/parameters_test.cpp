@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenery.h"
+#include <room/scenery.h>
 
 namespace {
 
@@ -34,13 +34,13 @@ TEST_F(ParametersTest, the_camera_looks_through_the_middle_of_its_image) {
 }
 
 /// Of an eye that looks straight ahead.
-const Eigen::Isometry3d optical = hang(Eigen::Vector3d::Zero(), 0);
+const Eigen::Isometry3d optical = hc::room::hang(Eigen::Vector3d::Zero(), 0);
 
 TEST_F(ParametersTest, faults_turn_the_eyes_as_they_are_named) {
   set("zero_pan", "0.1");     // to the left
   set("zero_tilt", "0.2");    // down
   set("offset_yaw", "0.05");  // about the eye's y, which is down: to the right
-  const Head mounted{optical, optical};
+  const hc::room::Head mounted{optical, optical};
   const auto head = mounted.with(parameters.faults());
   const Eigen::Vector3d forward = head.left_eye.linear().col(2);
   EXPECT_NEAR(std::atan2(forward.y(), forward.x()), 0.1, 1e-12);

@@ -5,7 +5,7 @@
 
 #include <frames/messages.h>
 
-#include "screen.h"
+#include <room/screen.h>
 
 namespace {
 
@@ -30,11 +30,11 @@ std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d&
   const Eigen::Vector2d pixel = camera.project(p_eye);
   const bool is_inside = pixel.x() > -0.5 && pixel.x() < camera.width - 0.5 && pixel.y() > -0.5 &&
                          pixel.y() < camera.height - 0.5;
-  return {pixel.x(), pixel.y(), camera.fx * kBallRadius / p_eye.z(),
-          is_inside ? share_seen(ball, T_world_eye.translation()) : 0};
+  return {pixel.x(), pixel.y(), camera.fx * hc::room::kBallRadius / p_eye.z(),
+          is_inside ? hc::room::share_seen(ball, T_world_eye.translation()) : 0};
 }
 
-std::array<double, 10> row_of(const RoomMarker& marker) {
+std::array<double, 10> row_of(const hc::room::RoomMarker& marker) {
   const double kind = marker.kind == "aruco" ? 0 : marker.kind == "apriltag" ? 1 : 2;
   const Eigen::Vector3d p = marker.T_world_marker.translation();
   const Eigen::Quaterniond q(marker.T_world_marker.linear());
@@ -61,13 +61,14 @@ Truth::Truth(hc::Module& module)
                              "[m], x y z [m] and qx qy qz qw in the world")),
       board_(module.output("board", hc::string(), "truth: text on the board")) {}
 
-void Truth::send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head, const Head& head) {
+void Truth::send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head,
+                       const hc::room::Head& head) {
   send_pose(head_pose_, time, T_world_head);
   send_pose(left_pose_, time, T_world_head * head.left_eye);
   send_pose(right_pose_, time, T_world_head * head.right_eye);
 }
 
-void Truth::send_ball(std::int64_t time, const Ball::State& ball, bool is_there,
+void Truth::send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool is_there,
                       const Eigen::Isometry3d& T_world_left,
                       const hc::graphics::PinholeCamera& camera) {
   if (ball_.linked()) {
@@ -88,7 +89,7 @@ void Truth::send_board(std::int64_t time, const std::string& text) {
   board_.send(message);
 }
 
-void Truth::send_markers(std::int64_t time, const std::vector<RoomMarker>& markers) {
+void Truth::send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers) {
   auto draft = markers_.loan(10, static_cast<std::int32_t>(markers.size()));
   draft.header.time = time;
   for (std::size_t i = 0; i < markers.size(); ++i)

@@ -12,9 +12,9 @@
 #include <graphics/camera.h>
 #include <hc/module/module.h>
 
-#include "ball.h"
-#include "head.h"
-#include "markers.h"
+#include <room/ball.h>
+#include <room/head.h>
+#include <room/markers.h>
 
 /// How the ball is seen: u, v, radius [px], share of it that is seen, 0 where it is not within the
 /// image [0 … 1].
@@ -25,7 +25,7 @@ std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d&
 
 /// A marker as a row: kind (0 aruco, 1 apriltag, 2 colour), id, side [m], x y z [m] and
 /// qx qy qz qw of T_world_marker.
-std::array<double, 10> row_of(const RoomMarker& marker);
+std::array<double, 10> row_of(const hc::room::RoomMarker& marker);
 
 class Truth {
  public:
@@ -33,12 +33,13 @@ class Truth {
 
   hc::Output<decltype(hc::intensity_image<float>())> depth;
 
-  void send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head, const Head& head);
+  void send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head,
+                  const hc::room::Head& head);
   /// @param is_there  otherwise nothing of it is seen.
-  void send_ball(std::int64_t time, const Ball::State& ball, bool is_there,
+  void send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool is_there,
                  const Eigen::Isometry3d& T_world_left, const hc::graphics::PinholeCamera& camera);
   void send_board(std::int64_t time, const std::string& text);
-  void send_markers(std::int64_t time, const std::vector<RoomMarker>& markers);
+  void send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers);
 
  private:
   using Poses = hc::Output<decltype(hc::transformation<double>(4, 4))>;

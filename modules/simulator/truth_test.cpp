@@ -22,7 +22,7 @@ TEST(SeenBall, is_where_the_camera_projects_it) {
   const auto [u, v, radius, share] = seen({2, 0.2, 1.1}, eye(0), {});
   EXPECT_NEAR(u, 399.5 - 600 * 0.1, 1e-9);
   EXPECT_NEAR(v, 299.5 + 600 * 0.05, 1e-9);
-  EXPECT_NEAR(radius, 600 * kBallRadius / 2, 1e-9);
+  EXPECT_NEAR(radius, 600 * hc::room::kBallRadius / 2, 1e-9);
   EXPECT_EQ(share, 1);
 }
 
@@ -38,7 +38,7 @@ TEST(SeenBall, is_nowhere_behind_the_eye) {
 }
 
 TEST(PlateRow, has_kind_number_side_and_pose) {
-  RoomMarker marker{"apriltag", 7, 0.16, Isometry3d(Eigen::Translation3d(1, 2, 3))};
+  hc::room::RoomMarker marker{"apriltag", 7, 0.16, Isometry3d(Eigen::Translation3d(1, 2, 3))};
   EXPECT_EQ(row_of(marker), (std::array<double, 10>{1, 7, 0.16, 1, 2, 3, 0, 0, 0, 1}));
   marker.kind = "aruco";
   EXPECT_EQ(row_of(marker)[0], 0);

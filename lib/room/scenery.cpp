@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenery.h"
+#include <room/scenery.h>
+
+namespace hc::room {
 
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
@@ -19,14 +21,14 @@ double Scenery::random(double least, double most) {
   return value;
 }
 
-void Scenery::add(const hc::graphics::Mesh& mesh, const cv::Mat& texture, const Isometry3d& place) {
+void Scenery::add(const graphics::Mesh& mesh, const cv::Mat& texture, const Isometry3d& place) {
   items_.push_back({renderer_.add(mesh, texture), place.cast<float>()});
 }
 
 void Scenery::add_box(const Vector3d& size, const Vector3d& middle, const cv::Mat& texture,
                       double yaw) {
   const Isometry3d place(Translation3d(middle) * AngleAxisd(yaw, Vector3d::UnitZ()));
-  add(hc::graphics::make_box(size.cast<float>()), texture, place);
+  add(graphics::make_box(size.cast<float>()), texture, place);
   auto& corners = boxes_.emplace_back();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vector3d side((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5,
@@ -38,3 +40,5 @@ void Scenery::add_box(const Vector3d& size, const Vector3d& middle, const cv::Ma
 void Scenery::move_last(const Vector3d& middle) {
   items_.back().T_world_object = Isometry3d(Translation3d(middle)).cast<float>();
 }
+
+}  // namespace hc::room

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "screen.h"
+#include <room/screen.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ball.h"
+#include <room/ball.h>
+
+namespace hc::room {
 
 namespace {
 
@@ -38,3 +40,5 @@ TEST(Screen, hides_nothing_before_it_and_from_above) {
 }
 
 }  // namespace
+
+}  // namespace hc::room

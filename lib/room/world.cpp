@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world.h"
+#include <room/world.h>
 
 #include <cmath>
 
-#include "ball.h"
-#include "paint.h"
-#include "room.h"
-#include "screen.h"
+#include <room/ball.h>
+#include <room/paint.h>
+#include <room/room.h>
+#include <room/screen.h>
+
+namespace hc::room {
 
 namespace {
 
@@ -16,7 +18,7 @@ constexpr float kBoardWidth = 1.5F, kBoardHeight = 0.36F;  // [m]
 
 }  // namespace
 
-World::World(hc::graphics::Renderer& renderer, std::uint64_t seed, const std::string& text)
+World::World(graphics::Renderer& renderer, std::uint64_t seed, const std::string& text)
     : room_(renderer, seed) {
   light_.to_light = Eigen::Vector3f(static_cast<float>(room_.random(-0.6, -0.2)),
                                     static_cast<float>(room_.random(-0.5, 0.5)), 0.8F)
@@ -29,7 +31,7 @@ World::World(hc::graphics::Renderer& renderer, std::uint64_t seed, const std::st
   add_board();
   add_shadows(room_, floor, light_.to_light.cast<double>());
   write(text);
-  room_.add(hc::graphics::make_ball(static_cast<float>(kBallRadius)),
+  room_.add(graphics::make_ball(static_cast<float>(kBallRadius)),
             paint_grains(64, 64, {205, 22, 22}, 14, seed), Eigen::Isometry3d::Identity());
 }
 
@@ -48,12 +50,12 @@ void World::add_board() {
                       0.02 * Vector3d(std::cos(towards), std::sin(towards), 0),
                   cv::Mat(1, 1, CV_8UC3, cv::Scalar(70, 75, 80)), towards);
   }
-  room_.add(hc::graphics::make_rectangle(kBoardWidth, kBoardHeight),
+  room_.add(graphics::make_rectangle(kBoardWidth, kBoardHeight),
             cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(255)), hang(middle, towards));
   board_ = room_.items().back().surface;
 }
 
-const std::vector<hc::graphics::Item>& World::items(const Vector3d& ball) {
+const std::vector<graphics::Item>& World::items(const Vector3d& ball) {
   room_.move_last(ball);
   return room_.items();
 }
@@ -62,3 +64,5 @@ void World::write(const std::string& text) {
   text_ = text;
   room_.set_texture(board_, paint_board(text, 1000, 240));
 }
+
+}  // namespace hc::room

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+namespace hc::room {
+
 /// What a real head has wrong, and a calibration finds. [rad]
 struct HeadFaults {
   double zero_pan = 0, zero_tilt = 0;  ///< the bar of the eyes is turned so with the unit at 0
@@ -27,3 +29,5 @@ struct Head {
     return {bar * left_eye, bar * right_eye * offset};
   }
 };
+
+}  // namespace hc::room

@@ -9,31 +9,35 @@
 
 #include <Eigen/Core>
 
-#include "markers.h"
-#include "scenery.h"
+#include <room/markers.h>
+#include <room/scenery.h>
+
+namespace hc::room {
 
 class World {
  public:
   /// Builds the room. @param seed  of colours, and of where things stand. @param text  on the
   /// board.
-  World(hc::graphics::Renderer& renderer, std::uint64_t seed, const std::string& text);
+  World(graphics::Renderer& renderer, std::uint64_t seed, const std::string& text);
 
   /// What is to be drawn, the ball being there.
-  [[nodiscard]] const std::vector<hc::graphics::Item>& items(const Eigen::Vector3d& ball);
+  [[nodiscard]] const std::vector<graphics::Item>& items(const Eigen::Vector3d& ball);
   /// Writes on the board, black on white: a line, or several.
   void write(const std::string& text);
 
   /// The text on the board.
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const std::vector<RoomMarker>& markers() const { return markers_; }
-  [[nodiscard]] const hc::graphics::Light& light() const { return light_; }
+  [[nodiscard]] const graphics::Light& light() const { return light_; }
 
  private:
   void add_board();
 
   Scenery room_;  // the ball is its last
-  hc::graphics::Light light_;
+  graphics::Light light_;
   std::vector<RoomMarker> markers_;
-  hc::graphics::SurfaceId board_ = 0;
+  graphics::SurfaceId board_ = 0;
   std::string text_;
 };
+
+}  // namespace hc::room

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world.h"
+#include <room/world.h>
 
 #include <gtest/gtest.h>
 
-#include "ball.h"
-#include "screen.h"
+#include <room/ball.h>
+#include <room/screen.h>
+
+namespace hc::room {
 
 namespace {
 
 class Room : public testing::Test {
  protected:
   void SetUp() override {
-    auto made = hc::graphics::Renderer::make();
+    auto made = graphics::Renderer::make();
     ASSERT_TRUE(made) << made.error().text();
     renderer = std::move(*made);
     world = std::make_unique<World>(*renderer, 1, "HELLO");
@@ -34,9 +36,9 @@ class Room : public testing::Test {
     return camera.project(T_world_left.inverse() * p_world);
   }
 
-  std::unique_ptr<hc::graphics::Renderer> renderer;
+  std::unique_ptr<graphics::Renderer> renderer;
   std::unique_ptr<World> world;
-  hc::graphics::PinholeCamera camera;
+  graphics::PinholeCamera camera;
   Eigen::Isometry3d T_world_left;
 };
 
@@ -98,3 +100,5 @@ TEST_F(Room, every_plate_is_seen_from_the_neck) {
 }
 
 }  // namespace
+
+}  // namespace hc::room

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ball.h"
+#include <room/ball.h>
 
 #include <algorithm>
 #include <cmath>
+
+namespace hc::room {
 
 namespace {
 
@@ -87,3 +89,5 @@ Ball::State Ball::at(double t) {
   return {{kArcRadius * c, kArcRadius * s, kArcHeight + kBallRadius + height},
           {-kArcRadius * s * rate, kArcRadius * c * rate, climb}};
 }
+
+}  // namespace hc::room

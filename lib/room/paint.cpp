@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "paint.h"
+#include <room/paint.h>
 
 #include <algorithm>
 #include <sstream>
@@ -7,6 +7,8 @@
 
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
+
+namespace hc::room {
 
 namespace {
 
@@ -128,3 +130,5 @@ cv::Mat paint_board(const std::string& text, int width, int height) {
   }
   return image;
 }
+
+}  // namespace hc::room

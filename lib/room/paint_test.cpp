@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "paint.h"
+#include <room/paint.h>
 
 #include <gtest/gtest.h>
 
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
+
+namespace hc::room {
 
 namespace {
 
@@ -40,3 +42,5 @@ TEST(Paint, the_same_seed_gives_the_same_bytes) {
 }
 
 }  // namespace
+
+}  // namespace hc::room

@@ -10,6 +10,8 @@
 
 #include <graphics/renderer.h>
 
+namespace hc::room {
+
 /// How high above the floor the robot's head is for whom the room is furnished [m].
 inline constexpr double kHeadHeight = 1.2;
 
@@ -22,7 +24,7 @@ Eigen::Isometry3d hang(const Eigen::Vector3d& middle, double yaw);
 class Scenery {
  public:
   /// @param seed  of the dice.
-  Scenery(hc::graphics::Renderer& renderer, std::uint64_t seed)
+  Scenery(graphics::Renderer& renderer, std::uint64_t seed)
       : renderer_(renderer), seed_(seed), state_(seed * 7919 + 1) {}
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
@@ -31,25 +33,27 @@ class Scenery {
   double random(double least, double most);
 
   /// Puts a surface somewhere, T_world_surface. @param texture  (H, W, 3) u8, red, green, blue.
-  void add(const hc::graphics::Mesh& mesh, const cv::Mat& texture, const Eigen::Isometry3d& place);
+  void add(const graphics::Mesh& mesh, const cv::Mat& texture, const Eigen::Isometry3d& place);
   /// Puts a box somewhere, turned about the vertical. @param size  along x, y, z [m].
   void add_box(const Eigen::Vector3d& size, const Eigen::Vector3d& middle, const cv::Mat& texture,
                double yaw = 0);
   /// The corners of all boxes, in the world [m].
   [[nodiscard]] const std::vector<std::array<Eigen::Vector3d, 8>>& boxes() const { return boxes_; }
   /// Puts another image on a surface.
-  void set_texture(hc::graphics::SurfaceId surface, const cv::Mat& texture) {
+  void set_texture(graphics::SurfaceId surface, const cv::Mat& texture) {
     renderer_.set_texture(surface, texture);
   }
 
   /// All that was put, in that order.
-  [[nodiscard]] const std::vector<hc::graphics::Item>& items() const { return items_; }
+  [[nodiscard]] const std::vector<graphics::Item>& items() const { return items_; }
   /// Moves what was put last.
   void move_last(const Eigen::Vector3d& middle);
 
  private:
-  hc::graphics::Renderer& renderer_;
+  graphics::Renderer& renderer_;
   std::uint64_t seed_, state_;
-  std::vector<hc::graphics::Item> items_;
+  std::vector<graphics::Item> items_;
   std::vector<std::array<Eigen::Vector3d, 8>> boxes_;
 };
+
+}  // namespace hc::room

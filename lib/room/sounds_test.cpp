@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sounds.h"
+#include <room/sounds.h>
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <vector>
+
+namespace hc::room {
 
 namespace {
 
@@ -54,3 +56,5 @@ TEST(Sounds, fill_one_channel_of_two) {
 }
 
 }  // namespace
+
+}  // namespace hc::room

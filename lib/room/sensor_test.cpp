@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sensor.h"
+#include <room/sensor.h>
 
 #include <gtest/gtest.h>
+
+namespace hc::room {
 
 namespace {
 
@@ -41,3 +43,5 @@ TEST(Sensor, blurs_an_edge_and_leaves_an_image_alone_when_told_nothing) {
 }
 
 }  // namespace
+
+}  // namespace hc::room

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+namespace hc::room {
+
 inline constexpr std::int32_t kSoundRate = 16000;  ///< sample frames a second
 inline constexpr double kSpeedOfSound = 343;       ///< in air of 20 °C [m/s]
 
@@ -21,3 +23,5 @@ double source_sound(double t);
 /// @param distance  of ear and source, over 0.1 m nothing grows louder [m].
 /// @param[out] samples  i16; every `stride`-th is written.
 void hear(std::int64_t first, double distance, std::span<std::int16_t> samples, std::size_t stride);
+
+}  // namespace hc::room

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "room.h"
+#include <room/room.h>
 
 #include <cmath>
 #include <numbers>
@@ -7,16 +7,18 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "ball.h"
-#include "paint.h"
+#include <room/ball.h>
+#include <room/paint.h>
+
+namespace hc::room {
 
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Translation3d;
 using Eigen::Vector3d;
-using hc::graphics::make_ball;
-using hc::graphics::make_rectangle;
+using graphics::make_ball;
+using graphics::make_rectangle;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -30,7 +32,7 @@ cv::Mat paint_floor(std::uint64_t seed) {
 
 }  // namespace
 
-hc::graphics::SurfaceId add_room(Scenery& room) {
+graphics::SurfaceId add_room(Scenery& room) {
   const double length = kRoomFront - kRoomBack, middle = (kRoomFront + kRoomBack) / 2;
   auto wall = [&](const Vector3d& place, double yaw, double width) {
     const double grey = room.random(165, 200);
@@ -64,7 +66,7 @@ hc::graphics::SurfaceId add_room(Scenery& room) {
   return floor;
 }
 
-void add_shadows(Scenery& room, hc::graphics::SurfaceId floor, const Vector3d& to_light) {
+void add_shadows(Scenery& room, graphics::SurfaceId floor, const Vector3d& to_light) {
   cv::Mat image = paint_floor(room.seed()), light(image.size(), CV_8U, cv::Scalar(255));
   constexpr double kShade = 150, kSoft = 5;  // of 255; [px]
   for (const auto& corners : room.boxes()) {
@@ -143,3 +145,5 @@ void add_bench(Scenery& room) {
           wood, angle);
   }
 }
+
+}  // namespace hc::room

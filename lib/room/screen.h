@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 
-#include "scenery.h"
+#include <room/scenery.h>
+
+namespace hc::room {
 
 /// How much of the ball is seen past the screen. [0 … 1]
 ///
@@ -13,3 +15,5 @@ double share_seen(const Eigen::Vector3d& ball, const Eigen::Vector3d& from);
 
 /// Puts the screen before the arc on which the ball rolls, with its foot.
 void add_screen(Scenery& room);
+
+}  // namespace hc::room

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sounds.h"
+#include <room/sounds.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+namespace hc::room {
 
 namespace {
 
@@ -33,3 +35,5 @@ void hear(std::int64_t first, double distance, std::span<std::int16_t> samples,
         std::lround(std::clamp(gain * source_sound(t), -32768.0, 32767.0)));
   }
 }
+
+}  // namespace hc::room

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+namespace hc::room {
+
 /// What the ball does.
 struct BallMotion {
   std::string kind = "roll";  ///< still, roll, bounce or hide (rolls, and rests behind the screen)
@@ -48,3 +50,5 @@ inline constexpr double kArcRadius = 2.4;      ///< from the robot's axis to the
 inline constexpr double kArcHeight = 0.55;     ///< of the bench on which it rolls, in the world [m]
 inline constexpr double kArcEnd = 0.87;        ///< the ball turns before this, to either side [rad]
 inline constexpr double kScreenAngle = -0.62;  ///< direction of the screen, to the right [rad]
+
+}  // namespace hc::room

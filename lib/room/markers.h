@@ -7,7 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "scenery.h"
+#include <room/scenery.h>
+
+namespace hc::room {
 
 /// A marker of the room.
 struct RoomMarker {
@@ -21,3 +23,5 @@ struct RoomMarker {
 
 /// Hangs them up before the robot, each of which it can see from its neck. @returns  where.
 std::vector<RoomMarker> add_markers(Scenery& room);
+
+}  // namespace hc::room

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ball.h"
+#include <room/ball.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include <Eigen/Geometry>
+
+namespace hc::room {
 
 namespace {
 
@@ -80,3 +82,5 @@ TEST(Ball, stays_where_it_is_when_still) {
 }
 
 }  // namespace
+
+}  // namespace hc::room

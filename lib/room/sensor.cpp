@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sensor.h"
+#include <room/sensor.h>
 
 #include <algorithm>
 
 #include <opencv2/imgproc.hpp>
+
+namespace hc::room {
 
 namespace {
 
@@ -32,3 +34,5 @@ void Sensor::apply(cv::Mat& rgb, double blur, double noise, std::uint64_t number
       to[i] = static_cast<std::uint8_t>(std::clamp(to[i] + from[i], 0, 255));
   }
 }
+
+}  // namespace hc::room

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "screen.h"
+#include <room/screen.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "ball.h"
-#include "paint.h"
+#include <room/ball.h>
+#include <room/paint.h>
+
+namespace hc::room {
 
 namespace {
 
@@ -55,3 +57,5 @@ void add_screen(Scenery& room) {
   room.add_box({0.3, kWidth, 0.32}, kRadius * towards() + Vector3d(0, 0, 0.16),
                paint_grains(128, 128, {100, 100, 104}, 20, room.seed() + 12), kScreenAngle);
 }
+
+}  // namespace hc::room

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "markers.h"
+#include <room/markers.h>
 
 #include <string_view>
 
-#include "paint.h"
-#include "room.h"
+#include <room/paint.h>
+#include <room/room.h>
+
+namespace hc::room {
 
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Translation3d;
 using Eigen::Vector3d;
-using hc::graphics::make_box;
-using hc::graphics::make_rectangle;
+using graphics::make_box;
+using graphics::make_rectangle;
 
 struct Placement {
   const char* kind;
@@ -77,3 +79,5 @@ std::vector<RoomMarker> add_markers(Scenery& room) {
   }
   return markers;
 }
+
+}  // namespace hc::room

@@ -7,6 +7,8 @@
 
 #include <opencv2/core.hpp>
 
+namespace hc::room {
+
 // All give (H, W, 3) u8, red, green, blue.
 
 /// A colour with grains of several sizes, as of plaster, cloth or stone: what stereo needs.
@@ -29,3 +31,5 @@ cv::Mat paint_marker(const cv::Scalar& rgb);
 ///
 /// @param text  UTF-8; what is no ASCII becomes "?".
 cv::Mat paint_board(const std::string& text, int width, int height);
+
+}  // namespace hc::room

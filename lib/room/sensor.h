@@ -6,6 +6,8 @@
 
 #include <opencv2/core.hpp>
 
+namespace hc::room {
+
 class Sensor {
  public:
   /// @param seed  of the noise.
@@ -24,3 +26,5 @@ class Sensor {
   double noise_ = 0;
   cv::Mat field_;  // noise for images that begin anywhere within its margin
 };
+
+}  // namespace hc::room
