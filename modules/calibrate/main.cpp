@@ -72,9 +72,7 @@ int main(int argc, char** argv) {
 
   auto publish = [&] {
     const auto numbers = found->numbers();
-    auto draft = result.loan(numbers.size(), 1);
-    std::copy(numbers.begin(), numbers.end(), draft.matrix().numbers().begin());
-    result.send(std::move(draft));
+    result.send(hc::table<double>(std::span(numbers)));
   };
   auto finish = [&](const hc::gaze::HeadCalibration& calibration, const char* how) {
     is_done = true;
@@ -165,9 +163,7 @@ int main(int argc, char** argv) {
     // It wants the head only while it sees with both eyes and knows how the head is turned.
     const bool sees = now - last_pair < kSilent;
     const bool wants = !is_done && now >= paused_until && (sees || work.valid());
-    auto message = hc::table({wants ? *salience : 0.0});
-    message.header.time = now;
-    bid.send(message);
+    bid.send(hc::table({wants ? *salience : 0.0}).at(now));
     if (!wants) {
       sent = 0;
       return;
@@ -176,13 +172,7 @@ int main(int argc, char** argv) {
     if (sent == 0) sent = now;
     if (!work.valid() && static_cast<double>(now - sent) > *timeout * kSecond)
       return fail("the head did not come to rest where it was sent");
-    auto draft = command.loan(1, 1);
-    draft.header.time = now;
-    auto numbers = draft.matrix().numbers();
-    numbers[0] = 0;
-    numbers[1] = wanted.tilt;
-    numbers[2] = wanted.pan;
-    command.send(std::move(draft));
+    command.send(hc::rotation(0.0, wanted.tilt, wanted.pan).at(now));
   });
   module.every(std::chrono::seconds(1), [&] {
     if (found) publish();

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
       "pose of marker, or its table");
   auto setpoint =
       module.input("setpoint", hc::rotation<double>(), "setpoint: roll, tilt, pan [rad]");
-  auto stick = module.input("stick", hc::table<double>().of(2, 1),
+  auto stick = module.input("stick", hc::table<double>().of(2, 1).finite(),
                             "turn to the left, turn down, -1 … 1 of stick_rate");
   auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
   auto command = module.output("command", hc::rotation<double>().in(kGaze),
@@ -63,22 +63,14 @@ int main(int argc, char** argv) {
         Eigen::Quaterniond(frames.nearest(kRobot, kHead, module.now()).linear()));
   };
   auto send = [&](const std::optional<hc::gaze::Angles>& to) {
-    if (!to) return;
-    auto draft = command.loan(1, 1);
-    draft.header.time = module.now();
-    auto numbers = draft.matrix().numbers();
-    numbers[0] = 0;
-    numbers[1] = to->tilt;
-    numbers[2] = to->pan;
-    command.send(std::move(draft));
+    if (to) command.send(hc::rotation(0.0, to->tilt, to->pan).at(module.now()));
   };
   auto follow = [&] { send(controller->follow(module.now(), measured())); };
   auto steer = [&] { send(controller->steer(module.now(), measured())); };
   auto send_bid = [&] {
     was_wanted = controller->wants_head(module.now());
-    auto message = hc::table({was_wanted ? *parameters.salience : *parameters.idle_salience});
-    message.header.time = module.now();
-    bid.send(message);
+    const double salience = was_wanted ? *parameters.salience : *parameters.idle_salience;
+    bid.send(hc::table({salience}).at(module.now()));
   };
   /// The time of what was sensed; nothing of what is to come, since it would hold back all that is
   /// sensed until then.
@@ -123,9 +115,7 @@ int main(int argc, char** argv) {
     follow();
   });
   module.on(stick, [&](const auto& message) {
-    const auto numbers = message.matrix().numbers();
-    if (numbers.size() < 2 || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) return;
-    controller->push(module.now(), numbers[0], numbers[1], measured());
+    controller->push(module.now(), message.numbers()[0], message.numbers()[1], measured());
     // A person's push does not wait for the next bid.
     if (!was_wanted && controller->wants_head(module.now())) send_bid();
     steer();

@@ -56,9 +56,7 @@ int main(int argc, char** argv) {
     const bool is_due = is_out && static_cast<double>(now - sent) * 1e-9 >= 1 / *rate;
     if (!push.changed && !is_due) return;
     sent = now;
-    auto message = hc::table({push.left, push.down});
-    message.header.time = now;
-    stick.send(message);
+    stick.send(hc::table({push.left, push.down}).at(now));
   };
   module.generate([&] {
     constexpr double kLook = 1000;  // [Hz]

@@ -3,12 +3,12 @@
 #include <optional>
 
 #include <hc/module/module.h>
+#include <vision/letter_shapes.h>
 #include <vision/letters.h>
 #include <vision/messages.h>
 
 #include "announcer.h"
 #include "recogniser.h"
-#include "shapes.h"
 
 namespace {
 
@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
     read_at = time;
     const cv::Mat straight = hc::vision::straighten(pixels, line);
     auto reading = recogniser->read(straight);
-    if (*upper_case) reading.text = by_shape(straight, reading);
+    if (*upper_case) reading.text = hc::vision::by_shape(straight, reading);
     confidence.send(hc::table({reading.confidence}));
     if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again},
                        module.has_focus()))

@@ -52,12 +52,12 @@ hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_
   return Recogniser(std::move(engine));
 }
 
-Reading Recogniser::read(const cv::Mat& line) {
+hc::vision::Reading Recogniser::read(const cv::Mat& line) {
   auto& api = engine_->api;
   api.SetImage(line.data, line.cols, line.rows, 1, static_cast<int>(line.step));
   api.SetSourceResolution(300);
   const std::unique_ptr<char[]> text(api.GetUTF8Text());
-  Reading reading;
+  hc::vision::Reading reading;
   if (text == nullptr) return reading;
   reading.text = without_space_around(text.get());
   // The mean of the letters': that of a word is its worst letter's, however right the others are.

@@ -4,24 +4,10 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <hc/base/result.h>
+#include <vision/letter_shapes.h>
 #include <opencv2/core.hpp>
-
-/// A letter that was read, of those that are one byte in UTF-8 (ASCII).
-struct Letter {
-  char letter = ' ';
-  double confidence = 0;     ///< [%]
-  bool begins_word = false;  ///< preceded by a space, or nothing
-  bool is_known = false;     ///< its word is in Tesseract's dictionary
-};
-
-struct Reading {
-  std::string text;             ///< UTF-8, without space around it; may be empty
-  double confidence = 0;        ///< 0 … 1
-  std::vector<Letter> letters;  ///< what the text is made of, but for other letters
-};
 
 class Recogniser {
  public:
@@ -39,7 +25,7 @@ class Recogniser {
 
   /// @param line  (H, W) u8, black letters about 40 pixels high on white, level, with a margin.
   /// Cost: 30 … 150 ms on one core.
-  Reading read(const cv::Mat& line);
+  hc::vision::Reading read(const cv::Mat& line);
 
  private:
   struct Engine;

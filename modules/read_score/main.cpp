@@ -94,9 +94,7 @@ int main(int argc, char** argv) {
     if (now < std::max(next_at, heard_until)) return true;
     has_begun = true;
     attempt.emplace(random_text(random), now);
-    auto message = hc::string(attempt->truth());
-    message.header.time = now;
-    writing.send(message);
+    writing.send(hc::string(attempt->truth()).at(now));
     return true;
   });
   return module.run(argc, argv);

@@ -44,14 +44,14 @@ int main(int argc, char** argv) {
   auto paced = module.parameter(
       "paced", true, "", "a text begins when the one before has been played; false: at once");
   auto waiting =
-      module.parameter("waiting", 4, "", "texts that may wait for their turn; the oldest make room",
+      module.parameter("waiting", 4, "", "length of the queue; the oldest texts are dropped",
                        {.min = 1, .max = 1000});
 
   std::optional<Synthesis> synthesis;
   TextQueue queue;
   hc::MonotonicTime spoken_until{0};
-  std::int64_t left_out = 0;
-  std::string told;  // what is wrong, which is told once
+  std::int64_t dropped = 0;
+  std::string problem;  // the last one that was logged
 
   module.on_start([&] {
     synthesis.emplace(hc::value_or_end(Synthesis::start()));
@@ -66,10 +66,10 @@ int main(int argc, char** argv) {
         next.characters,
         {*voice, static_cast<int>(*rate), static_cast<int>(*pitch), static_cast<int>(*volume)});
     if (!speech) {
-      if (told != speech.error().detail) module.log(told = speech.error().detail);
+      if (problem != speech.error().detail) module.log(problem = speech.error().detail);
       return;
     }
-    told.clear();
+    problem.clear();
     const auto time = next.time != 0 ? next.time : module.now();
     const auto frames = speech->samples.size();
     auto draft = sound.loan(static_cast<std::int32_t>(frames), 1);
@@ -99,8 +99,8 @@ int main(int argc, char** argv) {
     if (is_blank(characters)) return;
     if (queue.push({std::move(characters), message.header.time, message.header.mode},
                    static_cast<std::size_t>(*waiting)) &&
-        left_out++ == 0)
-      module.log("too many texts wait; the oldest are left out");
+        dropped++ == 0)
+      module.log("queue full: the oldest texts are dropped");
     speak_next();
   });
   module.every(kLook, speak_next);
@@ -111,6 +111,6 @@ int main(int argc, char** argv) {
   if (said > 0)
     module.log("result: said " + std::to_string(said) + (said == 1 ? " text" : " texts") +
                ", the last \"" + last + "\"");
-  if (left_out > 0) module.log(std::to_string(left_out) + " texts were left out");
+  if (dropped > 0) module.log(std::to_string(dropped) + " texts dropped");
   return status;
 }

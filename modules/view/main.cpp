@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows images in a window and saves them as PNG files.
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -13,53 +8,18 @@
 #include <hc/os/program.h>
 #include <vision/image.h>
 #include <vision/messages.h>
+#include <vision/window.h>
 #include <opencv2/highgui.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace {
-
-namespace fs = std::filesystem;
-
-/// Whether a window can be opened. OpenCV's window library aborts the program where a display is
-/// named but does not answer, so a child tries first.
-bool has_display() {
-  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return false;
-  pid_t child = ::fork();
-  if (child == 0) {
-    rlimit no_core{0, 0};
-    ::setrlimit(RLIMIT_CORE, &no_core);
-    ::dup2(::open("/dev/null", O_WRONLY | O_CLOEXEC), STDERR_FILENO);
-    try {
-      cv::namedWindow("hypercolumn");
-    } catch (const cv::Exception&) {
-      ::_exit(1);
-    }
-    ::_exit(0);
-  }
-  int status = 1;
-  return child > 0 && ::waitpid(child, &status, 0) == child && status == 0;
-}
-
-/// Replaces a file at once: a reader finds the previous image or this one, whole.
-void write_whole(const fs::path& path, const cv::Mat& bgr) {
-  if (path.has_parent_path()) fs::create_directories(path.parent_path());
-  fs::path unfinished = path;
-  unfinished.replace_extension(".part.png");
-  if (!cv::imwrite(unfinished.string(), bgr))
-    throw hc::ModuleError(path.string() + ": cannot be written");
-  fs::rename(unfinished, path);
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
+  namespace fs = std::filesystem;
   hc::Module module{"view", "Shows images in a window and saves them as PNG files."};
   auto image =
       module.input("image",
                    hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>(),
                               hc::intensity_image<std::uint16_t>(), hc::intensity_image<float>()),
-                   "anything but u8 is shown in colours, blue for small");
+                   "an image; other than u8 in colours, blue for small values");
   auto save = module.parameter("save", "", "",
                                "PNG file for the latest image, or folder/ for all as SRC_SEQ.png",
                                {.positional = true});
@@ -67,8 +27,10 @@ int main(int argc, char** argv) {
       module.parameter("window", "auto", "", "show a window", {.choices = {"auto", "yes", "no"}});
   auto stay = module.parameter("stay", true, "",
                                "keep windows after the last image, until a key is pressed");
-  auto min = module.parameter("min", 0.0, "", "value that is bluest; both 0: from the image");
-  auto max = module.parameter("max", 0.0, "", "value that is reddest; both 0: from the image");
+  auto min =
+      module.parameter("min", 0.0, "", "lower end of the colour scale; both 0: from the image");
+  auto max =
+      module.parameter("max", 0.0, "", "upper end of the colour scale; both 0: from the image");
 
   bool shows = false;
   std::set<std::string> windows;
@@ -76,7 +38,7 @@ int main(int argc, char** argv) {
   module.on_start([&] {
     if (*min > *max) throw hc::ModuleError("min is above max");
     bool wants_window = *window == "yes" || (*window == "auto" && save->empty());
-    shows = wants_window && has_display();
+    shows = wants_window && hc::vision::has_display();
     if (*window == "yes" && !shows) throw hc::ModuleError("window: there is no display");
     if (!shows && save->empty())
       throw hc::ModuleError("no display for a window and no file to save to: give --save");
@@ -96,7 +58,8 @@ int main(int argc, char** argv) {
       bool all = save->ends_with('/');
       std::string file = std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";
       last = all ? fs::path(*save) / file : fs::path(*save);
-      write_whole(last, bgr);
+      if (auto saved = hc::vision::save_image(last, bgr); !saved)
+        throw hc::ModuleError(saved.error());
     }
     if (shows) {
       std::string title = "hypercolumn " + std::to_string(header.src);

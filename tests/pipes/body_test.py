@@ -297,7 +297,7 @@ public <words> = (hello | robot | seven | window | yellow | river | tomorrow | e
             data += b"1 1 0 %d 8 %d 60100 0 30 %d 1\n%s\n" % (i, i + 1, len(word), word)
         out = self.shell("hc speak --waiting 2 --out words=- | hc cat --json", data=data)
         self.assertEqual(re.findall(r'"time":(\d+)', out), ["1", "4", "5"])
-        self.assertIn("speak: 2 texts were left out", self.err)
+        self.assertIn("speak: 2 texts dropped", self.err)
         out = self.shell(
             "hc speak --waiting 2 --paced=false --out words=- | hc cat --json", data=data
         )

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shapes.h"
+#include <vision/letter_shapes.h>
 
 #include <algorithm>
 #include <optional>
 #include <string_view>
 
 #include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
 
 namespace {
 
@@ -109,7 +111,7 @@ bool is_bar(const cv::Mat& glyph) {
 }
 
 /// Drops letters that were read twice until there are as many as glyphs, if possible.
-void leave_out_twice(std::vector<Letter>& letters, std::size_t glyphs) {
+void drop_twice(std::vector<Letter>& letters, std::size_t glyphs) {
   while (letters.size() > glyphs) {
     auto worst = letters.end();
     for (auto next = letters.begin(); next != letters.end() && next + 1 != letters.end(); ++next) {
@@ -227,7 +229,7 @@ std::string by_shape(const cv::Mat& line, const Reading& reading) {
   }
   if (boxes.size() < letters.size()) {
     boxes = find_letters(line);
-    leave_out_twice(letters, boxes.size());
+    drop_twice(letters, boxes.size());
   }
   if (letters.size() != boxes.size()) return reading.text;
   join_words(letters, boxes);
@@ -235,3 +237,5 @@ std::string by_shape(const cv::Mat& line, const Reading& reading) {
     if (!letters[i].is_known) letters[i].letter = by_shape(line(boxes[i]), letters[i].letter);
   return text_of(letters);
 }
+
+}  // namespace hc::vision

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shapes.h"
+#include <vision/letter_shapes.h>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
 
 namespace {
 
@@ -91,3 +93,5 @@ TEST(Shapes, a_dash_is_one_letter) {
 }
 
 }  // namespace
+
+}  // namespace hc::vision

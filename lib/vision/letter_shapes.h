@@ -8,7 +8,21 @@
 
 #include <opencv2/core.hpp>
 
-#include "recogniser.h"
+namespace hc::vision {
+
+/// A letter that was read, of those that are one byte in UTF-8 (ASCII).
+struct Letter {
+  char letter = ' ';
+  double confidence = 0;     ///< [%]
+  bool begins_word = false;  ///< preceded by a space, or nothing
+  bool is_known = false;     ///< its word is in a dictionary
+};
+
+struct Reading {
+  std::string text;             ///< UTF-8, without space around it; may be empty
+  double confidence = 0;        ///< 0 … 1
+  std::vector<Letter> letters;  ///< of the text, without other characters
+};
 
 /// The boxes of the letters of a straight line, from left to right; what stands one above the
 /// other, as the parts of a !, is one. @param line (H, W) u8, black on white.
@@ -26,3 +40,5 @@ char by_shape(const cv::Mat& glyph, char letter);
 /// a word that is in no dictionary is by its shape. As it was read where letters cannot be counted.
 /// @param line  what was read, (H, W) u8, black on white.
 std::string by_shape(const cv::Mat& line, const Reading& reading);
+
+}  // namespace hc::vision
