@@ -2,17 +2,64 @@
 #include <room/paint.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
 #include <sstream>
 #include <vector>
 
 #include <opencv2/aruco.hpp>
+#include <opencv2/freetype.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace hc::room {
 
 namespace {
 
-constexpr int kCell = 8;  // of a marker [px]
+constexpr int kCell = 8;  // of a plate [px]
+const cv::Scalar kInk(20, 20, 25);
+const char* const kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
+
+/// Letters of a font, by their size and stroke as OpenCV's own have them.
+struct Pen {
+  std::function<cv::Size(const std::string&, double scale, int stroke, int& below)> measure;
+  std::function<void(cv::Mat&, const std::string&, cv::Point, double scale, int stroke)> write;
+};
+
+/// OpenCV's own letters, of strokes, which are those of ASCII; others become "?".
+Pen stroked_pen() {
+  constexpr int kDuplex = cv::FONT_HERSHEY_DUPLEX;
+  const auto plain = [](const std::string& text) {
+    std::string each;
+    for (const char letter : text)
+      if (letter >= ' ' && letter <= '~')
+        each += letter;
+      else if ((letter & 0xC0) != 0x80)  // the first byte of a letter in UTF-8
+        each += '?';
+    return each;
+  };
+  return {[=](const std::string& text, double scale, int stroke, int& below) {
+            return cv::getTextSize(plain(text), kDuplex, scale, stroke, &below);
+          },
+          [=](cv::Mat& image, const std::string& text, cv::Point at, double scale, int stroke) {
+            cv::putText(image, plain(text), at, kDuplex, scale, kInk, stroke, cv::LINE_AA);
+          }};
+}
+
+/// A TrueType font's letters, for what has others than those of ASCII.
+Pen pen_for(const std::string& text) {
+  const bool is_ascii =
+      std::all_of(text.begin(), text.end(), [](char letter) { return (letter & 0x80) == 0; });
+  if (is_ascii || !std::filesystem::exists(kFont)) return stroked_pen();
+  auto font = cv::freetype::createFreeType2();
+  font->loadFontData(kFont, 0);
+  const auto height = [](double scale) { return std::max(1, static_cast<int>(30 * scale)); };
+  return {[=](const std::string& each, double scale, int, int& below) {
+            return font->getTextSize(each, height(scale), cv::FILLED, &below);
+          },
+          [=](cv::Mat& image, const std::string& each, cv::Point at, double scale, int) {
+            font->putText(image, each, at, height(scale), kInk, cv::FILLED, cv::LINE_AA, true);
+          }};
+}
 
 }  // namespace
 
@@ -106,26 +153,23 @@ cv::Mat paint_board(const std::string& text, int width, int height) {
   cv::Mat image(height, width, CV_8UC3, cv::Scalar(245, 245, 240));
   std::vector<std::string> lines;
   std::string line;
-  for (std::istringstream all(text); std::getline(all, line);) {
-    for (char& letter : line)
-      if (letter < ' ' || letter > '~') letter = '?';
-    lines.push_back(line);
-  }
-  const int margin = width / 20, font = cv::FONT_HERSHEY_DUPLEX;
+  for (std::istringstream all(text); std::getline(all, line);) lines.push_back(line);
+  const Pen pen = pen_for(text);
+  const int margin = width / 20;
   const int room = (height - 2 * margin) / std::max(1, static_cast<int>(lines.size()));
   double scale = 1e9;
   int below = 0;
   for (const auto& each : lines) {
-    const auto size = cv::getTextSize(each, font, 10, 1, &below);
+    const auto size = pen.measure(each, 10, 1, below);
     if (size.width > 0) scale = std::min(scale, 10.0 * (width - 2 * margin) / size.width);
     scale = std::min(scale, 10.0 * 0.8 * room / (size.height + below));
   }
   int top = margin;
   for (const auto& each : lines) {
     const int stroke = std::max(1, static_cast<int>(2.6 * scale));
-    const auto size = cv::getTextSize(each, font, scale, stroke, &below);
-    cv::putText(image, each, {(width - size.width) / 2, top + (room + size.height) / 2}, font,
-                scale, {20, 20, 25}, stroke, cv::LINE_AA);
+    const auto size = pen.measure(each, scale, stroke, below);
+    pen.write(image, each, {(width - size.width) / 2, top + (room + size.height) / 2}, scale,
+              stroke);
     top += room;
   }
   return image;

@@ -29,7 +29,8 @@ cv::Mat paint_marker(const cv::Scalar& rgb);
 /// Block letters on a white board, black, as large as they fit in one line, or in several that are
 /// separated by line feeds.
 ///
-/// @param text  UTF-8; what is no ASCII becomes "?".
+/// @param text  UTF-8; in DejaVu Sans if it is not ASCII, with "?" for others where that is not
+/// installed.
 cv::Mat paint_board(const std::string& text, int width, int height);
 
 }  // namespace hc::room

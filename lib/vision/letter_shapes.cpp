@@ -23,10 +23,12 @@ constexpr double kStraight = 0.045, kBulging = 0.06;
 constexpr double kUpper = 0.355, kMiddle = 0.375;
 // How far the upper right corner is cut off: of a Z 0.05 at most, of a 2 from 0.14.
 constexpr double kCorner = 0.08, kRoundCorner = 0.11;
-constexpr double kOpen = -0.2;  // what is open there is a 3
-constexpr double kBar = 0.28;   // width by height of an I without serifs at most; 1 from 0.33
-constexpr double kSure = 96;    // [%] what is surer was not read twice
-constexpr double kGap = 1.6;    // by the median of those in words; a space is wider
+constexpr double kEven = 0.14;   // what differs less from its mirror image is an I, not a 1
+constexpr double kOpen = -0.2;   // what is open there is a 3
+constexpr double kBar = 0.28;    // width by height of an I without serifs at most; 1 from 0.33
+constexpr double kSure = 96;     // [%] what is surer was not read twice
+constexpr double kGap = 1.6;     // by the median of those in words; a space is wider
+constexpr double kSpace = 0.75;  // by the narrowest space that was read; a gap so wide is one
 
 constexpr std::string_view kAlike[] = {"0OQ9", "1I!", "2Z", "35S9", "368BES", "4A", "VY"};
 
@@ -100,6 +102,13 @@ bool has_flag(const cv::Mat& glyph) {
   return sticks_out(glyph) > 0.08 && sticks_out(mirrored) < 0.03;
 }
 
+/// How much a glyph differs from its mirror image, by its ink: nothing to twice all.
+double asymmetry(const cv::Mat& glyph) {
+  cv::Mat mirrored;
+  cv::flip(glyph, mirrored, 1);
+  return cv::norm(glyph, mirrored, cv::NORM_L1) / (1 + cv::norm(255 - glyph, cv::NORM_L1));
+}
+
 /// Whether a glyph is one straight stroke from top to bottom, where a ! has a gap above its dot.
 bool is_bar(const cv::Mat& glyph) {
   if (glyph.cols > kBar * glyph.rows) return false;
@@ -135,17 +144,31 @@ std::string text_of(const std::vector<Letter>& letters) {
   return text;
 }
 
-/// Takes away spaces that are no wider than the gaps within words.
-void join_words(std::vector<Letter>& letters, const std::vector<cv::Rect>& boxes) {
-  std::vector<int> within;
+/// Sets spaces by the gaps: none where it is no wider than those within words, and one where it is
+/// as wide as the others between words.
+void set_spaces(std::vector<Letter>& letters, const std::vector<cv::Rect>& boxes) {
   const auto gap = [&](std::size_t i) { return std::max(1, boxes[i].x - boxes[i - 1].br().x); };
+  std::vector<int> within;
+  double space = 1e9;
   for (std::size_t i = 1; i < letters.size(); ++i)
     if (!letters[i].begins_word) within.push_back(gap(i));
   if (within.size() < 3) return;
   const auto middle = within.begin() + static_cast<std::ptrdiff_t>(within.size() / 2);
   std::nth_element(within.begin(), middle, within.end());
-  for (std::size_t i = 1; i < letters.size(); ++i)
+  for (std::size_t i = 1; i < letters.size(); ++i) {
     if (gap(i) < kGap * *middle) letters[i].begins_word = false;
+    if (letters[i].begins_word) space = std::min<double>(space, gap(i));
+  }
+  for (std::size_t i = 1; i < letters.size(); ++i)
+    if (gap(i) > kSpace * space) letters[i].begins_word = true;
+}
+
+/// Whether boxes are of the letters, one by one, and not as many by chance.
+bool are_of(const std::vector<cv::Rect>& boxes, const std::vector<Letter>& letters) {
+  if (boxes.size() != letters.size()) return false;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (letters[i].x < boxes[i].x || letters[i].x > boxes[i].br().x) return false;
+  return true;
 }
 
 }  // namespace
@@ -212,6 +235,7 @@ char by_shape(const cv::Mat& glyph, char letter) {
     case 'I':
       return has_flag(glyph) ? '1' : letter;
     case '1':
+      return is_bar(glyph) || asymmetry(glyph) < kEven ? 'I' : letter;
     case '!':
       return is_bar(glyph) ? 'I' : letter;
     default:
@@ -219,7 +243,7 @@ char by_shape(const cv::Mat& glyph, char letter) {
   }
 }
 
-std::string by_shape(const cv::Mat& line, const Reading& reading) {
+std::string by_shape(const cv::Mat& line, const Reading& reading, bool upper_case) {
   auto letters = reading.letters;
   // What is darker is ink; less of it where letters touch.
   std::vector<cv::Rect> boxes;
@@ -232,9 +256,16 @@ std::string by_shape(const cv::Mat& line, const Reading& reading) {
     drop_twice(letters, boxes.size());
   }
   if (letters.size() != boxes.size()) return reading.text;
-  join_words(letters, boxes);
-  for (std::size_t i = 0; i < letters.size(); ++i)
-    if (!letters[i].is_known) letters[i].letter = by_shape(line(boxes[i]), letters[i].letter);
+  if (are_of(boxes, letters)) set_spaces(letters, boxes);
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    const bool is_alone =
+        letters[i].begins_word && (i + 1 == letters.size() || letters[i + 1].begins_word);
+    // A word of nothing but an upright stroke is no l.
+    if (upper_case ? !letters[i].is_known : is_alone && letters[i].letter == '1')
+      letters[i].letter = by_shape(line(boxes[i]), letters[i].letter);
+    else if (is_alone && letters[i].letter == 'l')
+      letters[i].letter = 'I';
+  }
   return text_of(letters);
 }
 

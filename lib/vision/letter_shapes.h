@@ -10,18 +10,19 @@
 
 namespace hc::vision {
 
-/// A letter that was read, of those that are one byte in UTF-8 (ASCII).
+/// A letter of ASCII that was read.
 struct Letter {
   char letter = ' ';
   double confidence = 0;     ///< [%]
   bool begins_word = false;  ///< preceded by a space, or nothing
   bool is_known = false;     ///< its word is in a dictionary
+  int x = 0;                 ///< its middle, about [px]
 };
 
 struct Reading {
   std::string text;             ///< UTF-8, without space around it; may be empty
   double confidence = 0;        ///< 0 … 1
-  std::vector<Letter> letters;  ///< of the text, without other characters
+  std::vector<Letter> letters;  ///< of the text; none where one is not ASCII
 };
 
 /// The boxes of the letters of a straight line, from left to right; what stands one above the
@@ -36,9 +37,9 @@ std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 char by_shape(const cv::Mat& glyph, char letter);
 
 /// A reading's text, set right: of a letter that was read twice, as two that look alike, the less
-/// sure one is dropped; a space no wider than the gaps between letters is none; and each letter of
-/// a word that is in no dictionary is by its shape. As it was read where letters cannot be counted.
+/// sure one is dropped; spaces are where gaps are wide; and in upper case, each letter of a word
+/// that is in no dictionary is by its shape. As it was read where letters cannot be counted.
 /// @param line  what was read, (H, W) u8, black on white.
-std::string by_shape(const cv::Mat& line, const Reading& reading);
+std::string by_shape(const cv::Mat& line, const Reading& reading, bool upper_case = true);
 
 }  // namespace hc::vision

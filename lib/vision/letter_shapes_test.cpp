@@ -67,9 +67,23 @@ TEST(Shapes, of_both_for_one_letter_the_surer_one_is_left) {
   EXPECT_EQ(by_shape(line, reading("A4B O0K")), "A4B O0K");
 }
 
-TEST(Shapes, take_out_a_space_where_none_is) {
+TEST(Shapes, set_spaces_where_gaps_are_wide) {
+  const auto spaced = [](const std::string& truth, const std::string& read, bool upper_case) {
+    const cv::Mat line = written(truth, cv::FONT_HERSHEY_DUPLEX, 5, 1);
+    auto letters = reading(read);
+    const auto boxes = find_letters(line);
+    for (std::size_t i = 0; i < std::min(boxes.size(), letters.letters.size()); ++i)
+      letters.letters[i].x = boxes[i].x + boxes[i].width / 2;
+    return by_shape(line, letters, upper_case);
+  };
+  EXPECT_EQ(spaced("KMKFJSA B", "KMKF JSA B", true), "KMKFJSA B");
+  EXPECT_EQ(spaced("I AM HERE", "IAM HERE", true), "I AM HERE");
+  EXPECT_EQ(spaced("I am here", "lam here", false), "I am here");
+}
+
+TEST(Shapes, spaces_stay_where_letters_are_not_where_they_were_read) {
   const cv::Mat line = written("KMKFJSA B", cv::FONT_HERSHEY_DUPLEX, 5, 1);
-  EXPECT_EQ(by_shape(line, reading("KMKF JSA B")), "KMKFJSA B");
+  EXPECT_EQ(by_shape(line, reading("KMKF JSA B")), "KMKF JSA B");
 }
 
 TEST(Shapes, leave_other_letters_as_they_are) {

@@ -45,7 +45,7 @@ double median(std::vector<double> values) {
 
 /// Measures what is in a piece's box and around it; nothing for what is too faint for a letter.
 std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const cv::Mat& dark,
-                             int label, const cv::Rect& box) {
+                             int label, const cv::Rect& box, double min_contrast) {
   const cv::Rect around =
       cv::Rect(box.x - 2, box.y - 2, box.width + 4, box.height + 4) & cv::Rect({}, grey.size());
   double ink = 0, ground = 0;
@@ -61,14 +61,15 @@ std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const c
   }
   if (inks == 0 || grounds == 0) return {};
   Piece piece{box, ink / inks, ground / grounds};
-  if (piece.ground - piece.ink < 0.25 * piece.ground) return {};
+  if (piece.ground - piece.ink < min_contrast) return {};
   return piece;
 }
 
 /// The dark pieces of an image that may be letters or stops.
 std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark) {
+  const double least = std::max(6.0, 3 * noise);
   cv::adaptiveThreshold(grey, dark, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, kWindow,
-                        std::max(12.0, 3 * noise));
+                        least);
   cv::Mat labels, stats, middles;
   const int count = cv::connectedComponentsWithStats(dark, labels, stats, middles, 8);
   std::vector<Piece> pieces;
@@ -84,7 +85,7 @@ std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark)
                            filled > 0.12 && area >= 10 && !is_solid;
     // Specks that noise makes are smaller than stops beside the least of letters.
     if (!is_letter && (box.height > kMostHeight / 2 || box.width > kMostHeight)) continue;
-    auto piece = look_at(grey, labels, dark, label, box);
+    auto piece = look_at(grey, labels, dark, label, box, 2 * least);
     if (!piece) continue;
     piece->is_letter = is_letter;
     piece->is_bar = filled > 0.85;
@@ -101,7 +102,7 @@ bool are_neighbours(const Piece& a, const Piece& b) {
   const float apart = std::abs(a.middle_x() - b.middle_x());
   if (std::abs(a.middle_y() - b.middle_y()) > 0.35F * high + 0.15F * apart) return false;
   const float gap = std::max(a.left(), b.left()) - std::min(a.right(), b.right());
-  if (gap > 1.4F * high || gap < -0.3F * high) return false;
+  if (gap > 2.0F * high || gap < -0.3F * high) return false;
   const double contrast = std::max(a.ground - a.ink, b.ground - b.ink);
   return std::abs(a.ground - b.ground) < 0.35 * contrast &&
          std::abs(a.ink - b.ink) < 0.5 * contrast;
@@ -122,7 +123,7 @@ std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces) {
   };
   for (std::size_t i = 0; i < letters.size(); ++i)
     for (std::size_t k = i + 1; k < letters.size(); ++k) {
-      if (letters[k].left() > letters[i].right() + 1.4F * kMostHeight) break;
+      if (letters[k].left() > letters[i].right() + 2.0F * kMostHeight) break;
       if (are_neighbours(letters[i], letters[k])) group_of[root(k)] = root(i);
     }
   std::vector<std::vector<Piece>> groups(letters.size());
@@ -146,6 +147,13 @@ Slant slant_of(const std::vector<cv::Point2d>& points, double slope) {
   offsets.reserve(points.size());
   for (const auto& point : points) offsets.push_back(point.y - slope * point.x);
   return {slope, median(std::move(offsets))};
+}
+
+/// Mean distance of points from a line [px].
+double spread_of(const std::vector<cv::Point2d>& points, const Slant& line) {
+  double sum = 0;
+  for (const auto& point : points) sum += std::abs(point.y - line.at(point.x));
+  return sum / static_cast<double>(points.size());
 }
 
 /// Stops, commas and dashes that belong to a line reach beyond its letters.
@@ -187,7 +195,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   for (const auto& letter : letters) heights.push_back(letter.height());
   const double usual = median(heights);
   std::vector<cv::Point2d> tops, bottoms;
-  std::vector<double> inks, grounds, unevenness;
+  std::vector<double> inks, grounds;
   double left = 1e9, right = -1e9;
   for (const auto& letter : letters) {
     left = std::min<double>(left, letter.left());
@@ -197,16 +205,22 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
     bottoms.emplace_back(letter.middle_x(), letter.bottom());
     inks.push_back(letter.ink);
     grounds.push_back(letter.ground);
-    unevenness.push_back(std::abs(letter.height() - usual));
   }
-  // Few letters say too little of a perspective.
+  // Few letters say too little of a perspective, and so do tops of which some are of small letters.
   double top_slope = slope_of(tops), base_slope = slope_of(bottoms);
-  if (tops.size() < 5) top_slope = base_slope = (top_slope + base_slope) / 2;
+  if (tops.size() < 5)
+    top_slope = base_slope = (top_slope + base_slope) / 2;
+  else if (spread_of(tops, slant_of(tops, top_slope)) > 0.08 * usual)
+    top_slope = base_slope;
   if (std::max(std::abs(top_slope), std::abs(base_slope)) > 0.36) return {};
   const Slant top = slant_of(tops, top_slope), base = slant_of(bottoms, base_slope);
   const double middle_x = (left + right) / 2, height = base.at(middle_x) - top.at(middle_x);
   if (height < kLeastHeight - 1) return {};
   const double ink = median(inks), ground = median(grounds);
+  std::vector<double> unevenness;  // letters stand on the base line, or hang from the top one
+  for (const auto& letter : letters)
+    unevenness.push_back(std::min(std::abs(letter.bottom() - base.at(letter.middle_x())),
+                                  std::abs(letter.top() - top.at(letter.middle_x()))));
   reach_for_stops(pieces, top, base, height, ground, left, right);
 
   TextLine line;
@@ -216,7 +230,9 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   };
   line.corners = {corner(left, top.at(left)), corner(right, top.at(right)),
                   corner(right, base.at(right)), corner(left, base.at(left))};
-  line.letters = static_cast<int>(letters.size());
+  // Letters that touch are one wide piece.
+  for (const auto& letter : letters)
+    line.letters += std::max(1, static_cast<int>(letter.box.width / height));
   line.height = height;
   // A margin of a third of the height is to be clean too.
   const int margin = static_cast<int>(height / 3);
@@ -229,10 +245,20 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   const auto [mean, deviation] = ground_of(grey, dark, box);
   const double contrast = std::max(1.0, ground - ink);
   const double rough = std::max(0.0, deviation - noise) / contrast;
-  const double uneven = median(unevenness) / usual;
-  line.score = std::min(1.0, 1.3 * contrast / std::max(1.0, ground)) * std::exp(-5 * rough) *
-               std::exp(-3 * uneven) * (1 - std::exp(-line.letters / 2.5));
+  const double uneven = std::accumulate(unevenness.begin(), unevenness.end(), 0.0) /
+                        static_cast<double>(letters.size()) / height;
+  line.score = contrast / (contrast + 20) * std::exp(-5 * rough) * std::exp(-5 * uneven) *
+               (1 - std::exp(-line.letters / 3.5));
   return line;
+}
+
+/// Whether one line stands right above or below another, as on the same board.
+bool are_above_each_other(const TextLine& a, const TextLine& b) {
+  const auto [low, high] = std::minmax(a.height, b.height);
+  const cv::Rect2f one = a.box(), other = b.box();
+  const float gap = std::max(one.y, other.y) - std::min(one.br().y, other.br().y);
+  const float shared = std::min(one.br().x, other.br().x) - std::max(one.x, other.x);
+  return a.is_bright == b.is_bright && high < 1.8 * low && gap < 2 * high && shared > 0;
 }
 
 void scale(TextLine& line, double by) {
@@ -280,14 +306,18 @@ std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score) {
       noise /= 2;
     }
     if (std::min(grey.rows, grey.cols) < 2 * kLeastHeight) break;
-    cv::Mat dark;
-    const auto pieces = find_pieces(grey, noise, dark);
-    for (const auto& letters : group(pieces))
-      if (auto line = line_of(letters, pieces, grey, dark, noise);
-          line && line->score >= min_score) {
-        scale(*line, by);
-        found.push_back(*line);
-      }
+    for (const bool is_bright : {false, true}) {
+      const cv::Mat seen = is_bright ? cv::Mat(255 - grey) : grey;
+      cv::Mat dark;
+      const auto pieces = find_pieces(seen, noise, dark);
+      for (const auto& letters : group(pieces))
+        if (auto line = line_of(letters, pieces, seen, dark, noise);
+            line && line->score >= min_score) {
+          line->is_bright = is_bright;
+          scale(*line, by);
+          found.push_back(*line);
+        }
+    }
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
@@ -297,6 +327,24 @@ std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score) {
                      [&](const auto& better) { return (line.box() & better.box()).area() > 0; }))
       kept.push_back(line);
   return kept;
+}
+
+std::vector<TextLine> block_of_best(const std::vector<TextLine>& lines) {
+  std::vector<TextLine> block;
+  std::vector<bool> is_taken(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool is_next =
+        !is_taken[i] && (block.empty() || std::any_of(block.begin(), block.end(), [&](auto& each) {
+                           return are_above_each_other(lines[i], each);
+                         }));
+    if (!is_next) continue;
+    block.push_back(lines[i]);
+    is_taken[i] = true;
+    i = 0;  // the best is taken; a line passed over may stand beside the one just added
+  }
+  std::sort(block.begin(), block.end(),
+            [](const auto& a, const auto& b) { return a.middle().y < b.middle().y; });
+  return block;
 }
 
 }  // namespace hc::vision

@@ -73,6 +73,24 @@ TEST(Letters, finds_large_letters_too) {
   EXPECT_NEAR(lines[0].height, text_box("DOOR", {250, 300}, 3.0).height, 6);
 }
 
+TEST(Letters, finds_what_is_bright_on_dark_and_says_so) {
+  const auto lines = find_text_lines(cv::Scalar::all(255) - scene("HELLO ROBOT"));
+  ASSERT_GE(lines.size(), 1U);
+  EXPECT_TRUE(lines[0].is_bright);
+  EXPECT_NEAR(lines[0].width(), text_box("HELLO ROBOT").width, 6);
+}
+
+TEST(Letters, a_block_has_its_lines_from_top_to_bottom) {
+  cv::Mat image = scene("HELLO ROBOT", {300, 200});
+  scene("HOW ARE YOU", {300, 255}).rowRange(232, 320).copyTo(image.rowRange(232, 320));
+  scene("FAR AWAY", {300, 400}).rowRange(350, 420).copyTo(image.rowRange(350, 420));
+  const auto block = block_of_best(find_text_lines(image));
+  ASSERT_EQ(block.size(), 2U);
+  EXPECT_NEAR(block[0].middle().y, 189, 5);
+  EXPECT_NEAR(block[1].middle().y, 244, 5);
+  EXPECT_TRUE(block_of_best({}).empty());
+}
+
 TEST(Letters, finds_nothing_where_nothing_is_written) {
   for (int seed = 0; seed < 5; ++seed) {
     cv::Mat image = scene("");
@@ -109,10 +127,10 @@ TEST(Letters, straightens_what_is_turned) {
   EXPECT_NEAR(lines[0].width(), text_box("HELLO ROBOT").width, 8);
   const cv::Mat straight = straighten(turned, lines[0], 40);
   // Level: the rows above and below the letters are white.
-  EXPECT_GT(cv::mean(straight.rowRange(2, 10))[0], 245);
-  EXPECT_GT(cv::mean(straight.rowRange(straight.rows - 10, straight.rows - 2))[0], 245);
-  EXPECT_LT(cv::mean(straight.rowRange(18, straight.rows - 18))[0], 220);
-  EXPECT_NEAR(straight.rows, 76, 1);
+  EXPECT_GT(cv::mean(straight.rowRange(2, 16))[0], 245);
+  EXPECT_GT(cv::mean(straight.rowRange(straight.rows - 16, straight.rows - 2))[0], 240);
+  EXPECT_LT(cv::mean(straight.rowRange(24, straight.rows - 24))[0], 220);
+  EXPECT_NEAR(straight.rows, 88, 1);
 }
 
 TEST(Letters, noise_is_measured_in_spite_of_edges) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads block letters in images, and says where they are.
+// Reads letters in images, and says where they are.
+#include <algorithm>
 #include <optional>
 
 #include <hc/module/module.h>
@@ -8,6 +9,7 @@
 #include <vision/messages.h>
 
 #include "announcer.h"
+#include "block.h"
 #include "recogniser.h"
 
 namespace {
@@ -17,7 +19,7 @@ constexpr std::int32_t kText = 30;
 }  // namespace
 
 int main(int argc, char** argv) {
-  hc::Module module{"read", "Reads a line of dark letters on a bright ground, as on a board."};
+  hc::Module module{"read", "Reads lines of letters on an even ground, as on a board."};
   auto image = module.input(
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
       "image with letters");
@@ -26,7 +28,7 @@ int main(int argc, char** argv) {
   auto confidence =
       module.output("confidence", hc::table<double>(), "of each reading, certain or not, 0 to 1");
   auto target = module.output("target", hc::position<double>(),
-                              "x, y, width of the line [px], in the image's coordinate system");
+                              "x, y, width of the lines [px], in the image's coordinate system");
   auto language = module.parameter("language", "eng", "", "Tesseract's name: eng, deu, eng+deu",
                                    {.fixed = true});
   auto upper_case = module.parameter(
@@ -62,19 +64,20 @@ int main(int argc, char** argv) {
 
   module.on(image, [&](const hc::Message& message) {
     const cv::Mat pixels = hc::value_or_end(hc::as_mat(message));
-    const auto lines = hc::vision::find_text_lines(pixels, *score);
-    if (lines.empty()) return;
-    const auto& line = lines.front();
+    const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(pixels, *score));
+    if (block.empty()) return;
     if (target.linked()) {
-      const auto middle = line.middle();
-      target.send(hc::position<double>(middle.x, middle.y, line.width()).in(message.header.coord));
+      cv::Rect2f box = block.front().box();
+      for (const auto& line : block) box |= line.box();
+      const double x = box.x + box.width / 2, y = box.y + box.height / 2;
+      target.send(hc::position<double>(x, y, box.width).in(message.header.coord));
     }
     const std::int64_t time = message.header.time != 0 ? message.header.time : module.now();
-    if (!line.is_whole || !is_due(time)) return;
+    const bool is_whole =
+        std::all_of(block.begin(), block.end(), [](const auto& line) { return line.is_whole; });
+    if (!is_whole || !is_due(time)) return;
     read_at = time;
-    const cv::Mat straight = hc::vision::straighten(pixels, line);
-    auto reading = recogniser->read(straight);
-    if (*upper_case) reading.text = hc::vision::by_shape(straight, reading);
+    const auto reading = read_block(*recogniser, pixels, block, *upper_case);
     confidence.send(hc::table({reading.confidence}));
     if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again},
                        module.has_focus()))

@@ -46,6 +46,8 @@ hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_
   api.SetPageSegMode(tesseract::PSM_SINGLE_LINE);
   if (upper_case)
     api.SetVariable("tessedit_char_whitelist", "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-.,!? ");
+  else  // plain characters look the same
+    api.SetVariable("tessedit_char_blacklist", "|—–‘’“”");
   // Names and codes are in no dictionary.
   api.SetVariable("load_system_dawg", "0");
   api.SetVariable("load_freq_dawg", "0");
@@ -64,17 +66,23 @@ hc::vision::Reading Recogniser::read(const cv::Mat& line) {
   const std::unique_ptr<tesseract::ResultIterator> letter(api.GetIterator());
   double sum = 0;
   int count = 0;
+  bool is_ascii = true;
   if (letter != nullptr) {
     do {
       const std::unique_ptr<char[]> symbol(letter->GetUTF8Text(tesseract::RIL_SYMBOL));
       const double sure = letter->Confidence(tesseract::RIL_SYMBOL);
       sum += sure;
       ++count;
-      if (symbol != nullptr && symbol[0] > ' ' && symbol[1] == '\0')
+      int left = 0, top = 0, right = 0, bottom = 0;
+      letter->BoundingBox(tesseract::RIL_SYMBOL, &left, &top, &right, &bottom);
+      if (symbol == nullptr || symbol[0] == '\0' || symbol[1] != '\0')
+        is_ascii = false;
+      else
         reading.letters.push_back({symbol[0], sure, letter->IsAtBeginningOf(tesseract::RIL_WORD),
-                                   letter->WordIsFromDictionary()});
+                                   letter->WordIsFromDictionary(), (left + right) / 2});
     } while (letter->Next(tesseract::RIL_SYMBOL));
   }
+  if (!is_ascii) reading.letters.clear();
   if (count > 0) reading.confidence = std::clamp(sum / count / 100, 0.0, 1.0);
   api.Clear();
   return reading;

@@ -23,7 +23,7 @@ class Recogniser {
   Recogniser& operator=(Recogniser&&) noexcept;
   ~Recogniser();
 
-  /// @param line  (H, W) u8, black letters about 40 pixels high on white, level, with a margin.
+  /// @param line  (H, W) u8, black letters about 36 pixels high on white, level, with a margin.
   /// Cost: 30 … 150 ms on one core.
   hc::vision::Reading read(const cv::Mat& line);
 
