@@ -90,9 +90,10 @@ std::vector<Marker> ArucoFinder::find(const cv::Mat& grey) const {
     else if (marker.mean_side() > known->mean_side())
       *known = marker;
   }
-  // Not as far as the inner edge of the rim, a cell of eight or so away.
+  // Not as far as the inner edge of the rim, a cell of eight or so away; the edges of a large
+  // marker that is not in focus are many pixels wide.
   for (auto& marker : markers)
-    refine_corners(grey, marker.corners, std::clamp(0.06 * marker.mean_side(), 1.5, 2.5));
+    refine_corners(grey, marker.corners, std::clamp(0.06 * marker.mean_side(), 1.5, 10.0));
   return markers;
 }
 

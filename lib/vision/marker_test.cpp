@@ -252,6 +252,27 @@ TEST(Aruco, CornersAreRightAtEverySizeWithAndWithoutAFrame) {
     }
 }
 
+TEST(Aruco, CornersAreRightWhereEdgesAreManyPixelsWide) {
+  for (const double times : {2.0, 4.0})
+    for (const double side : {40.0, 80.0, 150.0})
+      for (int i = 0; i < 3; ++i) {
+        const auto truth =
+            truth_at(0.0007 * i, 0.0011 * i, 600 * kSide / side, 0.1, -0.2, 0.5 - 0.4 * i);
+        cv::Mat image = view(framed(17 * i + 3, i == 1), truth, kCamera, 2);
+        cv::resize(image, image, {}, times, times, cv::INTER_CUBIC);
+        const auto found = find(MarkerKind::Aruco, image);
+        ASSERT_EQ(found.size(), 1) << side << " px, times " << times;
+        for (std::size_t k = 0; k < 4; ++k) {
+          const double right = k == 1 || k == 2 ? 0.5 : -0.5, down = k >= 2 ? 0.5 : -0.5;
+          const cv::Vec3d at = truth.R * cv::Vec3d(kSide * right, kSide * down, 0) + truth.t;
+          const cv::Point2d corner(600 * at[0] / at[2] + 400, 600 * at[1] / at[2] + 300);
+          const cv::Point2d seen = (found[0].corners[k] + cv::Point2d(0.5, 0.5)) / times;
+          EXPECT_LT(cv::norm(seen - corner), 0.2)
+              << side << " px, times " << times << ", id " << found[0].id << ", corner " << k;
+        }
+      }
+}
+
 TEST(Finders, ImagesWithoutMarkersAndUnknownDictionaries) {
   cv::Mat noise(480, 640, CV_8U);
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);
