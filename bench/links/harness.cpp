@@ -100,41 +100,14 @@ void expect_bytes(std::span<const std::byte> message, const Setup& setup) {
 }
 
 void ping(const Setup& setup, Publisher& publisher, Subscriber& subscriber) {
-  std::vector<std::uint64_t> rounds;
-  rounds.reserve(static_cast<std::size_t>(setup.rounds));
-  auto round = [&] {
+  publisher.resend();
+  expect_bytes(subscriber.receive(), setup);
+  Rounds rounds(setup);
+  do {
     publisher.resend();
-    return subscriber.receive();
-  };
-  const double warm_end = seconds_now() + kWarmSeconds;
-  for (int i = 0; i < setup.rounds / 10 && seconds_now() < warm_end; ++i)
-    expect_bytes(round(), setup);
-  const double begin = seconds_now();
-  const std::uint64_t begin_ticks = ticks();
-  // Of one stamp a round, so that nothing but the round is between two of them.
-  const auto limit = static_cast<std::uint64_t>(setup.rounds);
-  std::uint64_t last = begin_ticks;
-  while (rounds.size() < limit) {
-    static_cast<void>(round());
-    std::uint64_t now = ticks();
-    rounds.push_back(now - last);
-    last = now;
-    if (rounds.size() % 64 == 0 || !setup.is_small()) {
-      if (seconds_now() - begin > setup.seconds) break;
-      last = ticks();
-    }
-  }
-  const double nanoseconds_a_tick =
-      (seconds_now() - begin) * 1e9 / static_cast<double>(ticks() - begin_ticks);
-  std::sort(rounds.begin(), rounds.end());
-  auto half_trip = [&](double part) {  // [µs]
-    auto at = static_cast<std::size_t>(part * static_cast<double>(rounds.size() - 1));
-    return static_cast<double>(rounds[at]) * nanoseconds_a_tick / 2e3;
-  };
-  char line[200];
-  std::snprintf(line, sizeof line, R"({"rounds": %zu, "median_us": %.4f, "p99_us": %.4f})",
-                rounds.size(), half_trip(0.5), half_trip(0.99));
-  say(line);
+    static_cast<void>(subscriber.receive());
+  } while (rounds.next());
+  say(rounds.json());
   if (await_line()) publisher.resend();  // pong knows by now that it is the last
 }
 
@@ -199,6 +172,46 @@ void subscribe(const Setup& setup, Subscriber& subscriber) {
 }
 
 }  // namespace
+
+Rounds::Rounds(const Setup& setup)
+    : limit_(static_cast<std::size_t>(setup.rounds)),
+      look_every_(setup.is_small() ? 64 : 1),
+      seconds_(setup.seconds),
+      warm_end_(seconds_now() + kWarmSeconds),
+      warm_left_(limit_ / 10) {
+  rounds_.reserve(limit_);
+}
+
+bool Rounds::next() {
+  // Of one stamp a round, so that nothing but the round is between two of them.
+  const std::uint64_t now = ticks();
+  if (warm_left_ > 0) {
+    if (--warm_left_ > 0 && seconds_now() < warm_end_) return true;
+    warm_left_ = 0;
+    begin_ = seconds_now();
+    begin_ticks_ = last_ = ticks();
+    return true;
+  }
+  rounds_.push_back(now - last_);
+  last_ = now;
+  if (rounds_.size() < limit_ && rounds_.size() % look_every_ != 0) return true;
+  const double passed = seconds_now() - begin_;
+  last_ = ticks();
+  nanoseconds_a_tick_ = passed * 1e9 / static_cast<double>(last_ - begin_ticks_);
+  return rounds_.size() < limit_ && passed < seconds_;
+}
+
+std::string Rounds::json() {
+  std::sort(rounds_.begin(), rounds_.end());
+  auto half_trip = [&](double part) {  // [µs]
+    auto at = static_cast<std::size_t>(part * static_cast<double>(rounds_.size() - 1));
+    return static_cast<double>(rounds_[at]) * nanoseconds_a_tick_ / 2e3;
+  };
+  char line[200];
+  std::snprintf(line, sizeof line, R"({"rounds": %zu, "median_us": %.4f, "p99_us": %.4f})",
+                rounds_.size(), half_trip(0.5), half_trip(0.99));
+  return line;
+}
 
 void fail(std::string_view what) {
   std::fprintf(stderr, "%.*s\n", static_cast<int>(what.size()), what.data());

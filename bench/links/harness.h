@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bench {
 
@@ -61,6 +62,24 @@ class Subscriber {
 [[noreturn]] void fail(std::string_view what);
 /// Ends the program when a system call gave a negative number; else hands the number on.
 int require(int result, std::string_view what);
+
+/// The times of round trips, each between two calls of next(); the first are to warm up.
+class Rounds {
+ public:
+  /// Of Setup: at most so many rounds and seconds.
+  explicit Rounds(const Setup& setup);
+  /// A round has ended, and another begins; false: that was the last.
+  bool next();
+  /// How many there were, and half of their time: median, and 99 of 100 [µs].
+  [[nodiscard]] std::string json();
+
+ private:
+  std::size_t limit_, look_every_;
+  double seconds_, warm_end_, begin_ = 0, nanoseconds_a_tick_ = 1;
+  std::uint64_t begin_ticks_ = 0, last_ = 0;
+  std::size_t warm_left_;
+  std::vector<std::uint64_t> rounds_;  // [tick]
+};
 
 /// Waits a moment inside a loop that polls: first without leaving the processor, later with
 /// sched_yield, which others need where there are more processes than processors.

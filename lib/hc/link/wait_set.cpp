@@ -27,7 +27,8 @@ constexpr std::chrono::milliseconds kPollPeriod{1};  // of descriptors, while sp
 /// Spinning pays only where the next message comes soon: not after a wait longer than this many
 /// times the spin. A module with a camera at 30 Hz would burn 20 µs an image for nothing.
 constexpr int kShortWait = 4;
-constexpr std::uint64_t kStop = 0, kOther = 1;  // what an event is about
+// What an event is about, if not the number of a source.
+constexpr std::uint64_t kStop = 0, kOther = ~std::uint64_t{0};
 
 void relax() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -63,11 +64,11 @@ WaitSet::~WaitSet() {
   if (poll_ >= 0) ::close(poll_);
 }
 
-Status WaitSet::watch(int descriptor, std::uint32_t events) {
+Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t what) {
   if (descriptor < 0) return {};
   epoll_event event{};
   event.events = events;
-  event.data.u64 = descriptor == stop_ ? kStop : kOther;
+  event.data.u64 = what;
   const bool again = (events & EPOLLONESHOT) != 0;
   if (again && ::epoll_ctl(poll_, EPOLL_CTL_MOD, descriptor, &event) == 0) return {};
   if (::epoll_ctl(poll_, EPOLL_CTL_ADD, descriptor, &event) == 0 || errno == EEXIST) return {};
@@ -92,28 +93,46 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
       internal::system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
   poll_ = made ? *made : -1;
   if (!made) return made.error();
-  if (auto watched = watch(stop_, EPOLLIN); !watched) return watched;
+  if (auto watched = watch(stop_, EPOLLIN, kStop); !watched) return watched;
   for (const Source* source : sources) {
-    if (auto watched = watch(source->descriptor(), EPOLLIN); !watched) return watched;
-    if (auto watched = watch(source->wake_descriptor(), EPOLLIN | EPOLLET); !watched)
+    const auto number = source->number_;
+    if (auto watched = watch(source->descriptor(), EPOLLIN, number); !watched) return watched;
+    if (auto watched = watch(source->wake_descriptor(), EPOLLIN | EPOLLET, number); !watched)
       return watched;
   }
   for (const Source* source : sources) watched_.push_back(source->number_);
   return {};
 }
 
-/// Looks at what memory shows, until it is time to poll descriptors.
-bool WaitSet::look(nanoseconds spin, nanoseconds& passed, Clock::time_point begin) const {
-  for (const auto end = std::min(spin, passed + kPollPeriod); passed < end;) {
-    for (std::size_t looks = 0; looks < kSpinLooks; looks += spins_.size()) {
-      for (const auto& each : spins_)
-        if (each.word->load(std::memory_order_acquire) >= each.value) return true;
-      relax();
-    }
-    passed = Clock::now() - begin;
-    if (passed > kSpinAlone) ::sched_yield();
+/// Looks at what memory shows, some times.
+bool WaitSet::look() const {
+  for (std::size_t looks = 0; looks < kSpinLooks; looks += spins_.size()) {
+    for (const auto& each : spins_)
+      if (each.word->load(std::memory_order_acquire) >= each.value) return true;
+    relax();
   }
   return false;
+}
+
+/// Looks for so long, and now and then at the descriptors.
+Result<bool> WaitSet::spin(nanoseconds time) {
+  last_wait_ = nanoseconds(0);
+  if (look()) return true;
+  const auto begin = Clock::now();
+  auto next_poll = kPollPeriod;
+  for (nanoseconds passed(0); passed < time; passed = Clock::now() - begin) {
+    if (passed > next_poll) {
+      next_poll += kPollPeriod;
+      if (auto ready = sleep(nanoseconds(0)); !ready || *ready) return ready;
+    }
+    if (passed > kSpinAlone) ::sched_yield();
+    if (look()) return true;
+  }
+  return false;
+}
+
+bool WaitSet::was_woken_by(const Source& source) const {
+  return std::find(woken_by_.begin(), woken_by_.end(), source.number_) != woken_by_.end();
 }
 
 /// Waits for the descriptors.
@@ -123,35 +142,37 @@ Result<bool> WaitSet::sleep(nanoseconds timeout) {
                                      [&] { return wait_for_events(poll_, events, timeout); });
   if (!count) return count.error();
   for (const auto& event : std::span(events).first(static_cast<std::size_t>(*count)))
-    if (event.data.u64 == kStop) return Error{Code::Stopped, "asked to stop"};
+    if (event.data.u64 == kStop)
+      return Error{Code::Stopped, "asked to stop"};
+    else
+      woken_by_.push_back(event.data.u64);
   return *count > 0;
 }
 
 Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int> descriptors,
                            nanoseconds timeout) {
-  const auto begin = Clock::now();
-  if (sources.size() == 1 && descriptors.empty() && sources[0]->wake_descriptor() < 0)
-    return internal::wait_for(sources[0]->descriptor(), POLLIN, stop_,
-                              timeout.count() < 0 ? internal::Deadline::max() : begin + timeout);
+  woken_by_.clear();
+  if (sources.size() == 1 && descriptors.empty() && sources[0]->wake_descriptor() < 0) {
+    woken_by_.push_back(sources[0]->number_);
+    return internal::wait_for(
+        sources[0]->descriptor(), POLLIN, stop_,
+        timeout.count() < 0 ? internal::Deadline::max() : Clock::now() + timeout);
+  }
   if (auto prepared = prepare(sources); !prepared) return prepared.error();
   // Each time, since their owner may have closed one and opened another of the same number.
   for (int descriptor : descriptors)
-    if (auto watched = watch(descriptor, EPOLLIN | EPOLLONESHOT); !watched) return watched.error();
-  nanoseconds spin(0), passed(0);
+    if (auto watched = watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther); !watched) return watched.error();
+  nanoseconds longest(0);
   spins_.clear();
   for (const Source* source : sources)
     if (auto each = source->spin(); each.word != nullptr && each.time.count() > 0) {
-      spin = std::max<nanoseconds>(spin, each.time);
+      longest = std::max<nanoseconds>(longest, each.time);
       spins_.push_back(each);
     }
-  if (timeout.count() >= 0) spin = std::min(spin, timeout);
-  if (last_wait_ > kShortWait * spin) spin = nanoseconds(0);
-  while (passed < spin) {
-    last_wait_ = nanoseconds(0);
-    if (look(spin, passed, begin)) return true;
-    if (passed >= spin) break;
-    if (auto ready = sleep(nanoseconds(0)); !ready || *ready) return ready;
-  }
+  if (timeout.count() >= 0) longest = std::min(longest, timeout);
+  if (longest.count() > 0 && last_wait_ <= kShortWait * longest)
+    if (auto ready = spin(longest); !ready || *ready) return ready;
+  const auto begin = Clock::now();
   bool is_ready = never_sleeps_;
   for (Source* source : sources) is_ready = !source->prepare_wait() || is_ready;
   if (is_ready) timeout = nanoseconds(0);  // but the wish to stop comes first

@@ -38,6 +38,9 @@ class WaitSet {
     return wait(sources, {}, timeout);
   }
 
+  /// Whether the last wait slept, and a descriptor of this source ended it.
+  [[nodiscard]] bool was_woken_by(const Source& source) const;
+
   /// The descriptor that ends a wait.
   [[nodiscard]] int stop() const { return stop_; }
 
@@ -45,15 +48,16 @@ class WaitSet {
   using Clock = std::chrono::steady_clock;
 
   Status prepare(std::span<Source* const> sources);
-  Status watch(int descriptor, std::uint32_t events);
-  bool look(std::chrono::nanoseconds spin, std::chrono::nanoseconds& passed,
-            Clock::time_point begin) const;
+  Status watch(int descriptor, std::uint32_t events, std::uint64_t what);
+  [[nodiscard]] bool look() const;
+  Result<bool> spin(std::chrono::nanoseconds time);
   Result<bool> sleep(std::chrono::nanoseconds timeout);
 
   int stop_;
   int poll_ = -1;                       // an epoll instance of all that is waited for
   std::vector<std::uint64_t> watched_;  // the sources in it, by their numbers
   bool never_sleeps_ = false;           // one is a file, which is always readable
+  std::vector<std::uint64_t> woken_by_;  // the sources whose events ended the last sleep
   std::vector<Source::Spin> spins_;
   std::chrono::nanoseconds last_wait_{0};
 };

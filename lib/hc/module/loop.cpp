@@ -384,17 +384,10 @@ void Module::Loop::deliver(Inlet& link, const Message& message) {
       ++link.ignored;
       return;
     }
-    auto plain = input->is_raw ? Result<Message>(message) : expand(message);
+    if (input->is_raw || message.plain()) return call(*input, link, message);
+    auto plain = expand(message);
     if (!plain) fail(input->name, plain.error());
-    if (input->wants_finite() && !finite(*plain)) {
-      ++link.ignored;
-      module_.log_once("not finite", input->name + ": dropped: NaN or infinity");
-      return;
-    }
-    module_.handled_ = internal::Handled(message.header, &link.route.peer);
-    input->handler(*plain);
-    module_.handled_ = {};
-    return;
+    return call(*input, link, *plain);
   }
   const auto& only = *link.inputs.back();
   if (link.inputs.size() == 1 && only.types.size() == 1)
@@ -403,6 +396,16 @@ void Module::Loop::deliver(Inlet& link, const Message& message) {
   if (message.header.coord != 0)
     what += ", coordinate system " + std::to_string(message.header.coord);
   fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
+}
+
+void Module::Loop::call(const internal::InputState& input, Inlet& link, const Message& message) {
+  if (input.wants_finite() && !finite(message)) {
+    ++link.ignored;
+    return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
+  }
+  module_.handled_ = internal::Handled(message.header, &link.route.peer);
+  input.handler(message);
+  module_.handled_ = {};
 }
 
 /// Notes how old a message is, and how long after the one before it came.
@@ -430,9 +433,11 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (!lines_.empty()) until = std::min(until, lines_.front().due);
   auto timeout = std::chrono::nanoseconds(-1);
   if (until != MonotonicTime::max()) timeout = std::max(until - now_, std::chrono::nanoseconds(0));
-  auto ready = (for_messages ? waits_ : pauses_).wait(waited_for_, watched_, timeout);
+  auto& waits = for_messages ? waits_ : pauses_;
+  auto ready = waits.wait(waited_for_, watched_, timeout);
   if (!ready) fail("wait", ready.error());
-  attended_ = {};  // so that one looks what woke us
+  if (management_.commands() != nullptr && waits.was_woken_by(*management_.commands()))
+    attended_ = {};
 }
 
 void Module::Loop::pause(const std::function<MonotonicTime()>& due) {

@@ -90,6 +90,7 @@ struct Module::Loop {
   void measure(internal::Inlet& link, const Message& message);
   void handle(internal::Inlet& link, const Message& message);
   void deliver(internal::Inlet& link, const Message& message);
+  void call(const internal::InputState& input, internal::Inlet& link, const Message& message);
   void fire_timers();
   void read_watched();
   [[nodiscard]] MonotonicTime next_timer() const;

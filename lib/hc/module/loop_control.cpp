@@ -41,7 +41,8 @@ void Module::Loop::attend() {
   receive_focus();
   expire_focus();
   log_lines(now_);
-  if (now_ - attended_ < kLookPeriod) return;
+  const bool reports = management_.is_heard() && now_ - reported_ >= kReportPeriod;
+  if (now_ - attended_ < kLookPeriod && deferred_.empty() && !reports) return;
   attended_ = now_;
   for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);
