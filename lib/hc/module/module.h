@@ -91,9 +91,9 @@ class Module {
   template <typename K>
   Input<K> input(const std::string& name, const K& kind, const std::string& doc) {
     if constexpr (std::is_same_v<K, AnyKind>)
-      return {add_input(name, kind.types, doc)};
+      return Input<K>(add_input(name, kind.types, doc));
     else
-      return {add_input(name, {kind.type}, doc)};
+      return Input<K>(add_input(name, {kind.type}, doc));
   }
 
   /// Declares an output. All outputs go to standard output unless the command line links any; their
@@ -110,7 +110,7 @@ class Module {
   /// (`exclusive`, a router).
   template <typename K>
   void actor(const Input<K>& input) {
-    input.state->is_actor = true;
+    input.state_->is_actor = true;
   }
   /// Declares that the outputs route by address: a link gets the messages of its `--route` alone.
   void route_outputs() { routes_ = true; }
@@ -132,7 +132,7 @@ class Module {
   /// Calls a handler with each message of an input. Compressed elements have been expanded.
   template <typename K, typename Handler>
   void on(const Input<K>& input, Handler handler) {
-    input.state->handler = [handler = std::move(handler)](const Message& message) {
+    input.state_->handler = [handler = std::move(handler)](const Message& message) {
       handler(MessageOf<K>{message});
     };
   }
@@ -141,8 +141,8 @@ class Module {
   /// expanded.
   template <typename Handler>
   void on_raw(const Input<AnyKind>& input, Handler handler) {
-    input.state->handler = std::move(handler);
-    input.state->is_raw = true;
+    input.state_->handler = std::move(handler);
+    input.state_->is_raw = true;
   }
 
   /// Calls a handler with messages that belong together, one of each input, by their times: equal
@@ -160,7 +160,7 @@ class Module {
   void on(const Together<Kinds...>& inputs, Handler handler) {
     static_assert(std::is_invocable_v<Handler&, const MessageOf<Kinds>&...>,
                   "the handler takes one message of each input");
-    add_together(inputs.inputs, inputs.how,
+    add_together(inputs.inputs_, inputs.how_,
                  [handler = std::move(handler)](std::span<const Message> set) mutable {
                    auto message = set.begin();
                    // In braces, arguments are evaluated from left to right.

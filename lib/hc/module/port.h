@@ -109,30 +109,45 @@ std::size_t forward(OutputState& output, const Message& message);
 
 /// An input port of kind K.
 template <typename K>
-struct Input {
-  std::shared_ptr<internal::InputState> state;
+class Input {
+ private:
+  friend class Module;
+  template <typename... Kinds>
+  friend class Together;
+  explicit Input(std::shared_ptr<internal::InputState> state) : state_(std::move(state)) {}
+
+  std::shared_ptr<internal::InputState> state_;
 };
 
 /// Inputs whose messages are taken together, by their times; see Matcher for the rules.
 template <typename... Kinds>
-struct Together {
-  std::vector<std::shared_ptr<internal::InputState>> inputs;
-  Matching how;
+class Together {
+ public:
+  explicit Together(const Input<Kinds>&... inputs) : inputs_{inputs.state_...} {}
 
   /// The same with times that may differ by so much; otherwise they are equal.
   [[nodiscard]] Together within(std::chrono::nanoseconds difference) const {
-    return {inputs, {difference, how.max_waiting}};
+    Together together = *this;
+    together.how_.within = difference;
+    return together;
   }
   /// The same with so many messages of each input that may wait for others, 1 … 32; otherwise 16.
   [[nodiscard]] Together max_waiting(std::size_t messages) const {
-    return {inputs, {how.within, messages}};
+    Together together = *this;
+    together.how_.max_waiting = messages;
+    return together;
   }
+
+ private:
+  friend class Module;
+  std::vector<std::shared_ptr<internal::InputState>> inputs_;
+  Matching how_;
 };
 
 /// Two inputs or more, of any kinds, for Module::on().
 template <typename... Kinds>
 requires(sizeof...(Kinds) >= 2) Together<Kinds...> together(const Input<Kinds>&... inputs) {
-  return {{inputs.state...}, {}};
+  return Together<Kinds...>(inputs...);
 }
 
 /// An output port of kind K.
