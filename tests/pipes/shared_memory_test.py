@@ -61,7 +61,7 @@ class SharedMemory(harness.Pipes):
         got, said = (pathlib.Path(self.path(name)) for name in ("got.mtp", "said"))
         wait_until(lambda: got.exists() and got.stat().st_size > 100_000)
         os.kill(publisher.pid, signal.SIGKILL)
-        line = uri + ": the publisher has died; connecting again\n"
+        line = uri + ": the publisher has died; reconnecting\n"
         wait_until(lambda: line in said.read_text())
         before = got.stat().st_size
         self.shell("hc play --speed max many.mtp --out '%s?readers=1'" % self.uri)
@@ -96,7 +96,7 @@ class SharedMemory(harness.Pipes):
             ("hc cat '%s?spin=often'", 2, "option spin is a whole number"),
             ("hc cat '%s?keep=none'", 2, "keep is"),
             ("hc cat '%s?readers=1'", 2, 'no option "readers"'),
-            ("hc cat '%s'", 1, "nobody listens there"),
+            ("hc cat '%s'", 1, "connection refused (no listener)"),
             ("hc send 1 --out '%s?memory=1K'", 2, "memory is at least"),
         ):
             self.shell(command % self.uri, status)

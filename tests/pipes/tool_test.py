@@ -69,7 +69,7 @@ class Tool(Pipes):
         ):
             with self.subTest(command):
                 self.shell(command % uri, 1)
-                line = "%s: NotFound: %s: nobody was there for 1 s: Connection refused\n" % (
+                line = "%s: NotFound: %s: no peer for 1 s: Connection refused\n" % (
                     who,
                     uri,
                 )

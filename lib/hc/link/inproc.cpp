@@ -118,7 +118,7 @@ class InprocSink final : public Sink {
     while (true) {
       {
         std::lock_guard lock(channel_->mutex);
-        if (channel_->source_left) return Error{Code::Closed, "the reader has gone"};
+        if (channel_->source_left) return Error{Code::Closed, "the reader disconnected"};
         const auto& waiting = channel_->messages;
         if (!waits_ ||
             (waiting.size() < kCapacity && waiting.has_memory(message.elements.size()))) {

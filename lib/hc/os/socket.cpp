@@ -100,7 +100,7 @@ Result<Descriptor> connect_to(std::span<const Address> addresses, const std::str
     }
     if (!may_come && failed) return *failed;
     if (steady_clock::now() >= begin + wait)
-      return Error{Code::Closed, "connect(" + name + "): nobody listens there"};
+      return Error{Code::Closed, "connect(" + name + "): connection refused (no listener)"};
     if (auto waited = pauses.next(stop); !waited) return waited.error();
   }
 }

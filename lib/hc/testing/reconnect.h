@@ -75,7 +75,7 @@ TEST_P(SocketLink, WhoNeverFindsAnybodySaysSo) {
     Message message;
     auto got = receive(*source, message);
     ASSERT_FALSE(got);
-    EXPECT_TRUE(got.error().text().starts_with("NotFound: nobody was there for 1 s: "))
+    EXPECT_TRUE(got.error().text().starts_with("NotFound: no peer for 1 s: "))
         << got.error().text();
     EXPECT_EQ(*source->take(message), Got::End);
     EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::NotFound);
@@ -95,8 +95,8 @@ TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
   }
   EXPECT_FALSE(*receive(*source, message));
   ASSERT_EQ(warnings.lines.size(), 2U);
-  EXPECT_EQ(warnings.lines[0], dial() + "?reconnect=1: the writer has gone; connecting again");
-  EXPECT_TRUE(warnings.lines[1].starts_with(dial() + "?reconnect=1: nobody was there for 1 s: "));
+  EXPECT_EQ(warnings.lines[0], dial() + "?reconnect=1: sender closed; reconnecting");
+  EXPECT_TRUE(warnings.lines[1].starts_with(dial() + "?reconnect=1: no peer for 1 s: "));
   {
     auto reader = source_of(listen());
     sink = sink_of(dial() + "?reconnect=1");
@@ -119,7 +119,7 @@ TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
   while (warnings.lines.empty()) wait();
   for (int i = 0; i < 3; ++i) wait();
   EXPECT_EQ(warnings.lines.size(), 1U);
-  EXPECT_TRUE(warnings.lines[0].starts_with(dial() + "?reconnect=60: nobody is there yet: "))
+  EXPECT_TRUE(warnings.lines[0].starts_with(dial() + "?reconnect=60: no peer yet ("))
       << warnings.lines[0];
 }
 

@@ -157,7 +157,7 @@ TEST(ShmMeeting, AReaderThatReconnectsDoesNotWaitForAPublisherThatIsStopped) {
   ASSERT_EQ(warnings.lines.size(), 1U);
   EXPECT_EQ(warnings.lines[0], name +
                                    "?reconnect=60: the publisher has gone before it answered; "
-                                   "connecting again");
+                                   "reconnecting");
 }
 
 TEST(ShmMeeting, NobodyThereIsSaid) {

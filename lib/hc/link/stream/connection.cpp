@@ -142,7 +142,7 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
   look_due_ = TimePoint::max();
   blocked_ = false;
   if (dialer_ == nullptr) return fail(why);
-  remarks_.add(in_words(why) + "; connecting again");
+  remarks_.add(in_words(why) + "; reconnecting");
   writer_.start(Descriptor());
   dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime, in_words(why));
 }
@@ -159,7 +159,7 @@ void Connection::fail(const Error& why) {
 void Connection::look_at_reader(TimePoint now) {
   auto look = look_at_peer(writer_.descriptor());
   look_due_ = look.must_answer ? now + look.next : TimePoint::max();
-  if (look.vanished) lose_connection({Code::Closed, "the reader has vanished"}, now);
+  if (look.vanished) lose_connection({Code::Closed, "the reader does not respond"}, now);
 }
 
 /// Whether the connection has failed while nobody used it; asked, as an event may be an older
@@ -170,9 +170,9 @@ void Connection::check_connection(TimePoint now) {
   int number = 0;
   socklen_t size = sizeof number;
   ::getsockopt(writer_.descriptor(), SOL_SOCKET, SO_ERROR, &number, &size);
-  lose_connection(
-      number == 0 ? Error{Code::Closed, "the reader has gone"} : system_error("write", "", number),
-      now);
+  lose_connection(number == 0 ? Error{Code::Closed, "the reader disconnected"}
+                              : system_error("write", "", number),
+                  now);
 }
 
 /// The reactor calls.

@@ -35,17 +35,16 @@ Result<Descriptor> Dialer::dial(TimePoint now) {
     if (now < give_up_) try_next(now);
   }
   if (now >= give_up_)
-    return Error{was_there_ ? Code::Closed : Code::NotFound,
-                 "nobody was there for " +
-                     std::to_string((was_there_ ? patience_ : first_).count()) + " s: " + why_};
+    return Error{
+        was_there_ ? Code::Closed : Code::NotFound,
+        "no peer for " + std::to_string((was_there_ ? patience_ : first_).count()) + " s: " + why_};
   return Descriptor();
 }
 
 std::optional<std::string> Dialer::take_remark(TimePoint now) {
   if (was_there_ || why_.empty() || now < begin_ + kQuiet || std::exchange(told_, true))
     return std::nullopt;
-  return "nobody is there yet: " + why_ + "; it is given up after " +
-         std::to_string(first_.count()) + " s";
+  return "no peer yet (" + why_ + "); giving up after " + std::to_string(first_.count()) + " s";
 }
 
 TimePoint Dialer::due() const {

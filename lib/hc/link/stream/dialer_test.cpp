@@ -120,7 +120,7 @@ TEST_F(DialerTest, GivesUpWhenNobodyComesAndSaysWhy) {
   EXPECT_EQ(now_, end);  // due() says no later
   auto made = dialer.dial(now_);
   ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().text(), "NotFound: nobody was there for 10 s: Connection refused");
+  EXPECT_EQ(made.error().text(), "NotFound: no peer for 10 s: Connection refused");
 }
 
 TEST_F(DialerTest, GivesUpWhenNobodyComesBack) {
@@ -132,8 +132,7 @@ TEST_F(DialerTest, GivesUpWhenNobodyComesBack) {
   const auto end = now_ + seconds(10);
   for (; now_ < end; now_ = dialer.due()) EXPECT_FALSE(connects(dialer));
   EXPECT_EQ(now_, end);
-  EXPECT_EQ(dialer.dial(now_).error().text(),
-            "Closed: nobody was there for 10 s: Connection refused");
+  EXPECT_EQ(dialer.dial(now_).error().text(), "Closed: no peer for 10 s: Connection refused");
 }
 
 TEST_F(DialerTest, SaysOnceThatItsFirstConnectionIsLongInComing) {
@@ -142,7 +141,7 @@ TEST_F(DialerTest, SaysOnceThatItsFirstConnectionIsLongInComing) {
   EXPECT_FALSE(connects(dialer));
   EXPECT_FALSE(dialer.take_remark(now_ + Dialer::kQuiet - nanoseconds(1)));
   EXPECT_EQ(dialer.take_remark(now_ + Dialer::kQuiet),
-            "nobody is there yet: Connection refused; it is given up after 60 s");
+            "no peer yet (Connection refused); giving up after 60 s");
   EXPECT_FALSE(dialer.take_remark(now_ + 2 * Dialer::kQuiet));
 }
 
@@ -219,7 +218,7 @@ TEST_F(DialerTest, APeerThatIsNotWantedIsNoConnection) {
   EXPECT_GT(dialer.due(), now_);  // after a pause
   EXPECT_EQ(dialer.descriptor(), -1);
   EXPECT_EQ(dialer.dial(now_ + seconds(10)).error().text(),
-            "NotFound: nobody was there for 10 s: not of this user");
+            "NotFound: no peer for 10 s: not of this user");
 }
 
 TEST_F(DialerTest, AllAddressesAreTriedBeforeAPause) {
@@ -244,8 +243,7 @@ TEST_F(DialerTest, ATryWithoutAnAnswerIsFollowedByTheNextAtOnce) {
     EXPECT_FALSE(connects(dialer));  // is the same try still
     now_ = dialer.due();
   }
-  EXPECT_EQ(dialer.dial(now_).error().text(),
-            "NotFound: nobody was there for 3 s: Connection timed out");
+  EXPECT_EQ(dialer.dial(now_).error().text(), "NotFound: no peer for 3 s: Connection timed out");
 }
 
 }  // namespace

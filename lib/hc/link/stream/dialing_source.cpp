@@ -55,14 +55,14 @@ Status DialingSource::dial() {
   if (!connected) return connected.error();
   if (auto remark = dialer_->take_remark(now)) log(*remark);
   if (now >= tell_at_) {
-    log("the writer has gone; connecting again");
+    log("sender closed; reconnecting");
     tell_at_ = TimePoint::max();
   }
   if (*connected) {
     auto source = made_.open(std::move(*connected));
     if (!source) {
       if (source.error().code == Code::Stopped) return source.error();
-      log(in_words(source.error()) + "; connecting again");
+      log(in_words(source.error()) + "; reconnecting");
       dialer_->lost(now, false, in_words(source.error()));
     } else {
       source_ = std::move(*source);
@@ -88,9 +88,9 @@ void DialingSource::lose_connection(const std::string& why) {
   if (why.empty())
     tell_at_ = now + kTellAfter;
   else
-    log(why + "; connecting again");
+    log(why + "; reconnecting");
   dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime,
-                why.empty() ? "the writer has gone" : why);
+                why.empty() ? "sender closed" : why);
 }
 
 void DialingSource::watch(int descriptor, std::uint32_t events) {

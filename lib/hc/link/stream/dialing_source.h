@@ -61,7 +61,7 @@ class DialingSource final : public Source {
   LinkOptions options_;
   std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;
-  TimePoint tell_at_ = TimePoint::max();  // that the writer has gone
+  TimePoint tell_at_ = TimePoint::max();  // that the sender closed
   bool finishing_ = false;                // the peer will not come back
   bool ended_ = false;
   Traffic past_;  // of connections that were lost

@@ -72,7 +72,7 @@ Status ListeningSink::send(const Message& message) {
   Outgoing outgoing(encoder_.encode(message), message);
   while (true) {
     if (begun_ && readers_ > 0 && !stays_ && peers_.empty())
-      return Error{Code::Closed, "all readers have gone"};
+      return Error{Code::Closed, "all readers disconnected"};
     if (peers_.empty() && (readers_ == 0 || (begun_ && stays_ && !policy_.writer_waits()))) {
       let_in();
       if (peers_.empty()) {

@@ -87,7 +87,7 @@ Result<Peer> unix_peer(const Uri& uri) {
   peer.name = uri.rest;
   peer.addresses.emplace_back(&address->address, address->size);
   peer.longest_pause = kLocalPause;
-  if (is_abstract(uri)) peer.admit = refuser("who listens there is of ");
+  if (is_abstract(uri)) peer.admit = refuser("the listener is a process of ");
   return peer;
 }
 
