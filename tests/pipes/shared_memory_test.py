@@ -96,7 +96,7 @@ class SharedMemory(harness.Pipes):
             ("hc cat '%s?spin=often'", 2, "option spin is a whole number"),
             ("hc cat '%s?keep=none'", 2, "keep is"),
             ("hc cat '%s?readers=1'", 2, 'no option "readers"'),
-            ("hc cat '%s'", 1, "connection refused (no listener)"),
+            ("hc cat '%s'", 1, "Connection refused"),
             ("hc send 1 --out '%s?memory=1K'", 2, "memory is at least"),
         ):
             self.shell(command % self.uri, status)

@@ -10,37 +10,11 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <optional>
 
 namespace hc::internal {
 namespace {
 
 constexpr int kBacklog = 1024;  // who waits here costs no descriptor
-
-/// One try; none (-1) when nobody listens there, or answers before `deadline`.
-Result<Descriptor> try_to_connect(const Address& address, const std::string& name,
-                                  Deadline deadline, int stop) {
-  auto socket = open_socket(address);
-  if (!socket) return socket;
-  auto connected = [&] {
-    return is_with_itself(socket->get()) ? Descriptor() : std::move(*socket);
-  };
-  if (::connect(socket->get(), address.get(), address.size) == 0) return connected();
-  if (errno == EINPROGRESS) {
-    auto answered = wait_for(socket->get(), POLLOUT, stop, deadline);
-    if (!answered) return answered.error();
-    if (!*answered) return Descriptor();
-    int status = 0;
-    socklen_t status_size = sizeof status;
-    ::getsockopt(socket->get(), SOL_SOCKET, SO_ERROR, &status, &status_size);
-    if (status == 0) return connected();
-    errno = status;
-  }
-  // EAGAIN: the backlog of a Unix socket is full for now.
-  if (errno == ECONNREFUSED || errno == ENOENT || errno == EAGAIN || errno == ETIMEDOUT)
-    return Descriptor();
-  return system_error("connect", name);
-}
 
 }  // namespace
 
@@ -73,36 +47,6 @@ bool is_with_itself(int socket) {
 
 ListeningSocket::~ListeningSocket() {
   if (descriptor && !unlink_path.empty()) ::unlink(unlink_path.c_str());
-}
-
-Result<Descriptor> connect_to(std::span<const Address> addresses, const std::string& name,
-                              std::chrono::seconds wait, int stop) {
-  using std::chrono::steady_clock;
-  const auto begin = steady_clock::now();
-  const auto last_answer = begin + (wait > std::chrono::seconds(0) ? wait : kAnswerTime);
-  Pauses pauses;
-  while (true) {
-    std::optional<Error> failed;
-    bool may_come = false;  // somebody may listen there later
-    for (std::size_t i = 0; i < addresses.size(); ++i) {
-      auto now = steady_clock::now();
-      auto share = (last_answer - now) / static_cast<std::int64_t>(addresses.size() - i);
-      auto connected = try_to_connect(addresses[i], name, now + share, stop);
-      if (connected && *connected) {
-        set_up_connection(connected->get());
-        return connected;
-      }
-      if (!connected && connected.error().code == Code::Stopped) return connected;
-      if (connected)
-        may_come = true;
-      else
-        failed = connected.error();
-    }
-    if (!may_come && failed) return *failed;
-    if (steady_clock::now() >= begin + wait)
-      return Error{Code::Closed, "connect(" + name + "): connection refused (no listener)"};
-    if (auto waited = pauses.next(stop); !waited) return waited.error();
-  }
 }
 
 Result<Descriptor> listen_on(const Address& address, const std::string& name) {

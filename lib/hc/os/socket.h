@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <functional>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -49,16 +48,8 @@ Result<Descriptor> open_socket(const Address& address);
 /// and the port that it chose for this end happens to be the other's; it counts as refused.
 bool is_with_itself(int socket);
 
-/// How long a peer may take to answer when one does not wait for it to begin listening.
+/// How long a peer may take to answer where `wait` is 0.
 constexpr std::chrono::seconds kAnswerTime{4};
-
-/// Connects to the first of a name's addresses where somebody listens; tries all of them again,
-/// with growing pauses, while nobody does and `wait` has not passed.
-///
-/// Gives up when `wait` has passed, or kAnswerTime if `wait` is 0; addresses that do not answer
-/// share that time. Errors: Closed (refused, or no answer, to the end), Stopped, System.
-Result<Descriptor> connect_to(std::span<const Address> addresses, const std::string& name,
-                              std::chrono::seconds wait, int stop);
 
 /// A socket that listens on an address; its name is for error lines.
 Result<Descriptor> listen_on(const Address& address, const std::string& name);

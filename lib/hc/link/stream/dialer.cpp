@@ -63,7 +63,8 @@ void Dialer::try_next(TimePoint now) {
   auto socket = open_socket(address);
   if (!socket) return fail(errno, now);
   attempt_ = std::move(*socket);
-  answer_due_ = now + kAnswer;
+  const auto share = (give_up_ - now) / static_cast<std::int64_t>(peer_.addresses.size() - turn_);
+  answer_due_ = now + std::min<std::chrono::nanoseconds>(kAnswer, share);
   if (::connect(attempt_.get(), address.get(), address.size) != 0 && errno != EINPROGRESS)
     fail(errno, now);
 }
@@ -88,6 +89,8 @@ void Dialer::fail(int number, TimePoint now) {
   why_ = std::strerror(number);
   turn_ = (turn_ + 1) % peer_.addresses.size();
   bool all_tried = turn_ == 0;
+  was_silent_ = was_silent_ || number == ETIMEDOUT;
+  if (all_tried) is_refused_ = !std::exchange(was_silent_, false);
   next_try_ = now;
   if (!all_tried || number == ETIMEDOUT) return;
   auto pause = backoff_.next();

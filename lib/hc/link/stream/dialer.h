@@ -78,6 +78,10 @@ class Dialer {
   [[nodiscard]] int descriptor() const { return attempt_.get(); }
   /// When to dial() again at the latest.
   [[nodiscard]] TimePoint due() const;
+  /// Whether all addresses have been tried and have refused, so that nobody listens for now.
+  [[nodiscard]] bool is_refused() const { return is_refused_; }
+  /// Why the last attempt failed.
+  [[nodiscard]] const std::string& why() const { return why_; }
 
   /// A line for the log when the first connection is long in coming; once.
   std::optional<std::string> take_remark(TimePoint now);
@@ -99,6 +103,7 @@ class Dialer {
   Backoff backoff_;
   TimePoint begin_, give_up_, next_try_;
   std::size_t turn_ = 0;  // of the addresses
+  bool is_refused_ = false, was_silent_ = false;
   Descriptor attempt_;
   TimePoint answer_due_;
   std::string why_;  // the last try failed

@@ -28,10 +28,16 @@ Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
 Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
   auto wait = number_option(uri, "wait", 0, kMostSeconds);
   if (!wait) return wait.error();
-  auto connected = connect_to(peer.addresses, peer.name, std::chrono::seconds(*wait), options.stop);
-  if (!connected || !peer.admit) return connected;
-  if (auto admitted = peer.admit(connected->get()); !admitted) return admitted.error();
-  return connected;
+  const auto first = *wait > 0 ? std::chrono::seconds(*wait) : kAnswerTime;
+  Dialer dialer(peer, first, first, std::chrono::steady_clock::now());
+  while (true) {
+    auto connected = dialer.dial(std::chrono::steady_clock::now());
+    if (connected && *connected) return connected;
+    if (!connected || (*wait == 0 && dialer.is_refused()))
+      return Error{Code::Closed, "connect(" + peer.name + "): " + dialer.why()};
+    auto waited = wait_for(dialer.descriptor(), POLLOUT, options.stop, dialer.due());
+    if (!waited) return waited.error();
+  }
 }
 
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,

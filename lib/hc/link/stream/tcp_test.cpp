@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 
+#include <hc/link/stream/dialing.h>
 #include <hc/link/stream/listening_source.h>
 #include <hc/testing/reconnect.h>
 
@@ -57,8 +58,8 @@ TEST(Tcp, ListensOnLoopbackUnlessAskedOtherwise) {
 }
 
 /// A name that stands for two ports of 127.0.0.1.
-std::array<internal::Address, 2> both(std::uint16_t first, std::uint16_t second) {
-  return {loopback_address(first), loopback_address(second)};
+internal::Peer both(std::uint16_t first, std::uint16_t second) {
+  return {{loopback_address(first), loopback_address(second)}, "both", {}};
 }
 
 TEST(Tcp, WaitingEndsThoughNobodyAnswers) {
@@ -75,16 +76,16 @@ TEST(Tcp, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
   SilentPort silent;
   std::string place = free_port();
   auto source = source_of("tcp-listen:" + place);
-  auto addresses = both(silent.port(), parse_host_port(place)->port);
-  EXPECT_TRUE(internal::connect_to(addresses, "both", std::chrono::seconds(1), -1));
+  auto peer = both(silent.port(), parse_host_port(place)->port);
+  EXPECT_TRUE(internal::connect_now(peer, *parse_uri("tcp:both:1?wait=1"), {}));
 }
 
 TEST(Tcp, EveryAddressIsTriedAgain) {
   std::string place = free_port();
-  auto addresses = both(parse_host_port(place)->port, parse_host_port(free_port())->port);
+  auto peer = both(parse_host_port(place)->port, parse_host_port(free_port())->port);
   std::unique_ptr<Source> source;
   std::thread late([&] { source = source_of("tcp-listen:" + place); });
-  EXPECT_TRUE(internal::connect_to(addresses, "both", std::chrono::seconds(60), -1));
+  EXPECT_TRUE(internal::connect_now(peer, *parse_uri("tcp:both:1?wait=60"), {}));
   late.join();
 }
 
