@@ -329,23 +329,6 @@ TEST_F(HostileReader, IsOfAnotherUser) {
   expect_to_go_on();
 }
 
-/// What a link that has a pace says is said on the thread that uses it, too.
-TEST_F(HostileReader, IsToldOfAtAPaceToo) {
-  LinkOptions options;
-  const auto self = std::this_thread::get_id();
-  int told = 0;
-  options.log = [&](Severity, std::string_view) {
-    EXPECT_EQ(std::this_thread::get_id(), self);
-    ++told;
-  };
-  const auto name = fresh_name();
-  auto sink = std::move(*open_sink(*parse_uri(name + "?rate=1000&keep=4"), options));
-  auto source = std::move(*open_source(*parse_uri(name)));
-  auto stranger = connect_to_publisher(name);
-  hand_over(stranger.get(), "hello\n", {});
-  while (told == 0) ASSERT_TRUE(sink->send(make_checked(nullptr, 1, ++seq_, 24)));
-}
-
 TEST_F(HostileReader, CannotBeTooMany) {
   std::vector<std::unique_ptr<Source>> sources;
   while (sources.size() + 1 < internal::kMostReaders)

@@ -69,11 +69,11 @@ program = "seer"
   using Words = std::vector<std::string>;
   EXPECT_EQ(values_of(planned->modules[0], "--out"),
             (Words{"image=shm:t.eye.image?readers=2&stay=1",
-                   "image=shm:t.eye.image.a.more?readers=1&stay=1&keep=3&memory=8M&rate=10",
+                   "image=shm:t.eye.image.a.more?readers=1&stay=1&keep=3&memory=8M",
                    "image=unix-listen:@t.eye.image.any.in?readers=1&stay=1&keep=latest"}));
   EXPECT_EQ(values_of(planned->modules[1], "--in"),
             (Words{"in=shm:t.eye.image?wait=60&keep=latest",
-                   "more=shm:t.eye.image.a.more?wait=60&keep=3"}));
+                   "more=shm:t.eye.image.a.more?wait=60&keep=3&rate=10"}));
   EXPECT_EQ(values_of(planned->modules[2], "--in"), (Words{"in=shm:t.eye.image?wait=60"}));
   EXPECT_EQ(values_of(planned->modules[3], "--in"), (Words{"in=unix:@t.eye.image.any.in?wait=60"}));
   EXPECT_EQ(planned->links[0].sender_uri, planned->links[2].sender_uri);

@@ -64,7 +64,12 @@ TEST_P(LastingLink, WhoDropsGoesOnWithoutReadersAndCounts) {
   EXPECT_EQ(message_.header.seq, 2);
 }
 
-TEST_P(LastingLink, WhatWaitsWhenItIsAbandonedIsLost) {
+/// Of a sink with a queue.
+class QueuedLink : public LastingLink {};
+INSTANTIATE_TEST_SUITE_P(Schemes, QueuedLink, ::testing::Values("tcp", "unix"),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(QueuedLink, WhatWaitsWhenItIsAbandonedIsLost) {
   auto sink = sink_of(ends_.sink + "?keep=2&rate=1");
   auto source = source_of(ends_.source);
   Message message;

@@ -18,19 +18,23 @@ namespace {
 
 using internal::Transport;
 
-/// Every transport there is. `?` options that an end has are named here, so that one misspelt is
-/// refused and not overlooked; every sink has those of its policy beside.
+/// Every transport there is. The options that an end has are named here, so that one misspelt is
+/// refused and not overlooked.
 constexpr std::array<Transport, 8> kTransports = {{
-    {"-", "", "", internal::open_stdin, internal::open_stdout},
-    {"file", "", "", internal::open_file_source, internal::open_file_sink},
-    {"tcp", "wait reconnect", "wait reconnect", internal::open_tcp_source, internal::open_tcp_sink},
-    {"tcp-listen", "", "readers stay", internal::listen_tcp_source, internal::listen_tcp_sink},
-    {"unix", "wait reconnect", "wait reconnect", internal::open_unix_source,
+    {"-", "", "keep rate burst memory", internal::open_stdin, internal::open_stdout},
+    {"file", "", "keep rate burst memory", internal::open_file_source, internal::open_file_sink},
+    {"tcp", "wait reconnect", "wait reconnect keep rate burst memory", internal::open_tcp_source,
+     internal::open_tcp_sink},
+    {"tcp-listen", "", "readers stay keep rate burst memory", internal::listen_tcp_source,
+     internal::listen_tcp_sink},
+    {"unix", "wait reconnect", "wait reconnect keep rate burst memory", internal::open_unix_source,
      internal::open_unix_sink},
-    {"unix-listen", "", "readers stay", internal::listen_unix_source, internal::listen_unix_sink},
-    {"inproc", "", "", internal::open_inproc_source, internal::open_inproc_sink},
-    {"shm", "keep spin wait reconnect", "readers stay", internal::open_shm_source,
-     internal::open_shm_sink},
+    {"unix-listen", "", "readers stay keep rate burst memory", internal::listen_unix_source,
+     internal::listen_unix_sink},
+    {"inproc", "", "keep rate burst memory", internal::open_inproc_source,
+     internal::open_inproc_sink},
+    {"shm", "keep rate burst spin wait reconnect", "readers stay keep memory",
+     internal::open_shm_source, internal::open_shm_sink},
 }};
 
 std::vector<std::string> split(std::string_view words) {
@@ -45,7 +49,7 @@ std::vector<std::string> split(std::string_view words) {
 
 /// Whether some end of some transport has an option of that name: then it is not misspelt.
 bool is_option(const std::string& key) {
-  std::string all(internal::kPolicyOptions);
+  std::string all;
   for (const Transport& transport : kTransports)
     all.append(" ").append(transport.source_options).append(" ").append(transport.sink_options);
   auto words = split(all);
@@ -73,11 +77,6 @@ Status check_options(const Uri& uri, std::string_view allowed) {
     if (value.empty()) return Error{Code::Invalid, "option " + key + " has no value"};
   }
   return {};
-}
-
-std::string sink_options(const Transport& transport) {
-  std::string options(transport.sink_options);
-  return options.append(options.empty() ? "" : " ").append(internal::kPolicyOptions);
 }
 
 /// Whether an end can be where it says, and its options have values that they can have.
@@ -132,7 +131,7 @@ Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& o
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
   auto transport = find_transport(uri);
   if (!transport) return transport.error();
-  auto checked = check_options(uri, sink_options(**transport));
+  auto checked = check_options(uri, (*transport)->sink_options);
   if (!checked) return checked.error();
   return (*transport)->open_sink(uri, with_name(options, uri));
 }
@@ -144,7 +143,7 @@ Status check_source(const Uri& uri) {
 
 Status check_sink(const Uri& uri) {
   auto transport = find_transport(uri);
-  return transport ? check_end(uri, sink_options(**transport)) : transport.error();
+  return transport ? check_end(uri, (*transport)->sink_options) : transport.error();
 }
 
 Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,

@@ -174,7 +174,8 @@ struct LinkOptions {
 ///   once. Where none is dropped the writer waits for its turn.
 /// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be
 ///   larger, but not with shm, where it is all the memory that is shared.
-/// A source of shm may have a `keep` of its own; `all` makes no sink wait that drops.
+/// With shm, `rate` and `burst` are options of the source, since all readers share one memory; it
+/// may also have a `keep` of its own, of which `all` makes no sink wait that drops.
 /// Bytes may be written with K, M or G (of 1024).
 ///
 /// Errors: Invalid (no such scheme; an option that it does not have, or not with that value),

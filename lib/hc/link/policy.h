@@ -16,7 +16,7 @@ namespace hc::internal {
 
 using TimePoint = std::chrono::steady_clock::time_point;
 
-/// The options of a sink that say so.
+/// The options that say so, of a sink; of shm, `rate` and `burst` are its source's.
 struct Policy {
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
@@ -30,9 +30,6 @@ struct Policy {
   [[nodiscard]] bool writer_waits() const { return keep == kAll; }
   [[nodiscard]] bool is_paced() const { return rate > 0; }
 };
-
-/// The names of these options, as the table of transports needs them.
-constexpr std::string_view kPolicyOptions = "keep rate burst memory";
 
 /// Reads `keep=all|latest|N`, `rate=`, `burst=` (default 1) and `memory=`, which is bytes, perhaps
 /// with a suffix K, M or G (of 1024).

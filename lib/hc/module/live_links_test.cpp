@@ -219,13 +219,13 @@ TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
   auto in = module.input("in", table<double>(), "");
   auto out = module.output("out", table<double>(), "");
   module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
-  const std::string place = "shm:waits-" + std::to_string(::getpid());
+  const std::string name = "@waits-" + std::to_string(::getpid()), place = "unix-listen:" + name;
   auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
   auto reports = source_of(uri("reports"));
   ::testing::internal::CaptureStderr();
   start(module, {"--in=" + uri("in"), "--out=" + place + "?keep=100&rate=1",
                  "--manage=" + uri("reports"), "--control=" + uri("control")});
-  auto from = source_of(place + "?wait=60");
+  auto from = source_of("unix:" + name + "?wait=60");
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(table({static_cast<double>(i)})));
   while (next_counters(*reports).back()[0] < 100) {
   }

@@ -26,7 +26,7 @@ class LinkCheck {
     const PortDescription* from = end(link, link.from, false);
     const PortDescription* to = end(link, link.to, true);
     if (link.route) check_route(link);
-    if (!link.from.uri.empty()) check_outer_policy(link);
+    if (!link.from.uri.empty() || !link.to.uri.empty()) check_outer_policy(link);
     if (from == nullptr || to == nullptr) return true;
     const bool right = fits(from->types, to->types);
     if (!right)
@@ -90,12 +90,19 @@ class LinkCheck {
     return std::find(schemes.begin(), schemes.end(), uri.scheme) != schemes.end();
   }
 
-  /// A link from outside has its sender there; `keep` is its reader's affair in shared memory.
+  /// The policy of a link is its sender's affair but for `memory`, of shared memory its reader's.
   void check_outer_policy(const GraphLink& link) {
-    for (const auto& [key, value] : link.policy)
-      if (!value.value.empty() && (key != "keep" || !link.from.uri.starts_with("shm:")))
+    const bool is_input = !link.from.uri.empty();
+    const bool is_shared = (is_input ? link.from : link.to).uri.starts_with("shm:");
+    for (const auto& [key, value] : link.policy) {
+      if (value.value.empty()) continue;
+      const bool is_pace = key == "rate" || key == "burst";
+      if (is_input && (!is_shared || key == "memory"))
         problems_.add(value.place,
                       "a link from outside cannot have " + key + ": its sender sets it");
+      if (!is_input && is_shared && is_pace)
+        problems_.add(value.place, "a link to shm: cannot have " + key + ": its reader sets it");
+    }
   }
 
   void check_route(const GraphLink& link) {

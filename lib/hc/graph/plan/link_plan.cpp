@@ -22,12 +22,12 @@ std::string digest(std::string_view text) {
   return digits;
 }
 
-/// What one link of an output says to its sender, as options of a URI; `keep` is the reader's
-/// affair where memory is shared.
-std::string pace_of(const GraphLink& link) {
+/// Some options of a link's policy, as they are in a URI.
+std::string options_of(const GraphLink& link, std::initializer_list<std::string_view> keys) {
   std::string options;
   for (const auto& [key, value] : link.policy)
-    if (key != "keep") options.append("&").append(key).append("=").append(value.value);
+    if (std::find(keys.begin(), keys.end(), key) != keys.end())
+      options.append("&").append(key).append("=").append(value.value);
   return options;
 }
 
@@ -125,7 +125,7 @@ class LinkPlanner {
   /// Whether links of an output have an end in common with this one.
   bool is_common(std::size_t number) const {
     const GraphLink& link = graph_.links[number];
-    return shared(link) && pace_of(link).empty() && routes_[number].sender.empty();
+    return shared(link) && !link.policy.contains("memory") && routes_[number].sender.empty();
   }
 
   std::string name_of(std::size_t number) const {
@@ -149,23 +149,25 @@ class LinkPlanner {
   }
 
   /// The links of an output that share memory have one sending end in common, but for those that
-  /// have a pace, bound or route of their own; every other link has a socket. Senders wait for
-  /// their readers, so that it does not matter who starts first.
+  /// have a bound or a route of their own, and each reader keeps its rate; every other link has a
+  /// socket. Senders wait for their readers, so that it does not matter who starts first.
   PlannedLink plan_inside(std::size_t number) {
     const GraphLink& link = graph_.links[number];
     const bool by_memory = shared(link);
     const std::string name = name_of(number), keep = keep_of(link);
     const std::string and_keep = keep == "all" ? "" : "&keep=" + keep;
+    const std::string pace = options_of(link, {"rate", "burst"});
     Sender& sender = senders_[name];
     if (sender.uri.empty()) {
       sender.uri = (by_memory ? "shm:" : "unix-listen:@") + name +
                    "?readers=" + std::to_string(sender.readers) + "&stay=1" +
-                   (is_common(number) ? "" : and_keep) + pace_of(link);
+                   (is_common(number) ? "" : and_keep) + options_of(link, {"memory"}) +
+                   (by_memory ? "" : pace);
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }
     const std::string reader_uri = (by_memory ? "shm:" : "unix:@") + name +
                                    (lasts(link) ? "?reconnect=86400" : "?wait=60") +
-                                   (by_memory ? and_keep : "");
+                                   (by_memory ? and_keep + pace : "");
     add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
     return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
   }

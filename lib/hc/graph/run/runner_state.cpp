@@ -74,7 +74,7 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   if (reader == nullptr) return state;
   if (counts != reader) {
     Traffic lost = reader->traffic;
-    lost.messages = lost.bytes = lost.kept_back = 0;
+    lost.messages = lost.bytes = 0;
     state.traffic += lost;
   }
   state.left_out = reader->ignored;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // `shm:NAME`: how either end is opened; sink.h and source.h are what is opened.
 #include <algorithm>
-#include <charconv>
 
-#include <hc/link/paced_sink.h>
+#include <hc/link/paced_source.h>
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/shm/sink.h>
 #include <hc/link/shm/source.h>
@@ -24,19 +23,6 @@ struct Wishes {
   bool waits;  ///< for the publisher's answer, or else take() does without
   std::shared_ptr<const Descriptor> wakes;
 };
-
-/// How many messages wait: nothing, "all", "latest" or a number from 1 on. Errors: Invalid.
-Result<std::uint64_t> parse_keep(std::string_view text) {
-  if (text.empty()) return kPublishersKeep;
-  if (text == "all") return std::uint64_t{0};
-  if (text == "latest") return std::uint64_t{1};
-  std::uint64_t count = 0;
-  auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (status != std::errc() || end != text.data() + text.size() || count == 0)
-    return Error{Code::Invalid, R"(keep is "all", "latest" or a number from 1 on, not ")" +
-                                    std::string(text) + "\""};
-  return std::min(count, kPublishersKeep - 1);
-}
 
 /// Makes the reader of a publisher that has been connected to. Errors: as await_offer().
 Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
@@ -83,14 +69,11 @@ Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& o
   if (!socket) return socket.error();
   auto memory = SharedMemory::make(policy->memory / kPageBytes * kPageBytes, kSlotsBegin);
   if (!memory) return memory.error();
-  auto remarks = std::make_shared<Remarks>();
-  LinkOptions own = options;
-  if (policy->is_paced())  // it sends on the thread that serves links too
-    own.log = [remarks](Severity, std::string_view line) { remarks->add(std::string(line)); };
-  auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted, *stays == 1,
-                                        policy->writer_waits() ? 0 : policy->keep, std::move(own));
+  auto sink =
+      std::make_unique<ShmSink>(std::move(*memory), *counted, *stays == 1,
+                                policy->writer_waits() ? 0 : policy->keep, options);
   if (auto begun = sink->begin(std::move(*socket)); !begun) return begun.error();
-  return make_paced(std::move(sink), *policy, options, std::move(remarks));
+  return std::unique_ptr<Sink>(std::move(sink));
 }
 
 Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOptions& options) {
@@ -99,11 +82,14 @@ Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOption
   if (!spin) return spin.error();
   auto reconnect = number_option(uri, "reconnect", 0);
   if (!reconnect) return reconnect.error();
-  auto keep = parse_keep(uri.option("keep", ""));
-  if (!keep) return keep.error();
+  auto policy = parse_policy(uri);
+  if (!policy) return policy.error();
+  std::uint64_t keep = kPublishersKeep;
+  if (!uri.option("keep", "").empty())
+    keep = policy->writer_waits() ? 0 : std::min<std::uint64_t>(policy->keep, kPublishersKeep - 1);
   auto wakes = make_wake_pipe();
   if (!wakes) return wakes.error();
-  const Wishes wishes{*keep, std::chrono::microseconds(*spin), *reconnect == 0, std::move(*wakes)};
+  const Wishes wishes{keep, std::chrono::microseconds(*spin), *reconnect == 0, std::move(*wakes)};
   Uri place = meeting_place(uri);
   auto peer = unix_peer(place);
   if (!peer) return peer.error();
@@ -111,7 +97,9 @@ Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOption
   auto open = [wishes, options](Descriptor connection) {
     return attach(std::move(connection), wishes, options);
   };
-  return dial_source(*peer, uri, options, {open, wishes.wakes->get()});
+  auto source = dial_source(*peer, uri, options, {open, wishes.wakes->get()});
+  if (!source) return source.error();
+  return make_paced(std::move(*source), *policy);
 }
 
 }  // namespace hc::internal

@@ -21,6 +21,32 @@ INSTANTIATE_TEST_SUITE_P(Shm, LinkConformance,
                                                      true, true, true}),
                          [](const auto& test) { return test.param.name; });
 
+TEST(Shm, EachReaderHasARateOfItsOwn) {
+  auto name = fresh_name();
+  auto sink = sink_of(name + "?readers=2");
+  auto slow = source_of(name + "?rate=1&keep=latest"), fast = source_of(name);
+  Message message;
+  auto send = [&](int seq) {
+    ASSERT_TRUE(sink->send(numbered(seq, 10)));
+    ASSERT_TRUE(*receive(*fast, message));
+    EXPECT_EQ(message.header.seq, seq);
+  };
+  send(0);
+  ASSERT_TRUE(*receive(*slow, message));
+  EXPECT_EQ(message.header.seq, 0);
+  for (int i = 1; i < 4; ++i) send(i);
+  EXPECT_EQ(*slow->take(message), Got::Nothing);
+  EXPECT_TRUE(message.elements.empty());
+  ASSERT_TRUE(*receive(*slow, message));
+  EXPECT_EQ(message.header.seq, 3);
+  EXPECT_EQ(slow->traffic().messages, 2U);
+  EXPECT_EQ(slow->traffic().over_rate, 2U);
+  EXPECT_EQ(slow->traffic().kept_back, 1U);
+  EXPECT_EQ(fast->traffic().lost() + fast->traffic().kept_back, 0U);
+  ASSERT_TRUE(sink->close());
+  EXPECT_FALSE(*receive(*slow, message));
+}
+
 TEST(Shm, LargeElementsAreReadWhereTheyWereWritten) {
   auto name = fresh_name();
   auto sink = sink_of(name);

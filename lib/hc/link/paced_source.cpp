@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/paced_source.h>
+
+#include <hc/os/loop.h>
+
+namespace hc::internal {
+namespace {
+
+class PacedSource final : public Source {
+ public:
+  PacedSource(std::unique_ptr<Source> source, const Policy& policy, std::unique_ptr<Loop> loop)
+      : source_(std::move(source)), pace_(policy.rate, policy.burst), loop_(std::move(loop)) {}
+
+  Result<Got> take(Message& message) override {
+    // Its callbacks do nothing; but the descriptor announces again what comes from now on.
+    if (auto turned = loop_->turn(std::chrono::milliseconds(0)); !turned) return turned.error();
+    const auto now = std::chrono::steady_clock::now();
+    if (auto ready = pace_.ready_at(1, now); ready > now) {
+      message = {};
+      if (!timer_) hold(ready);
+      return Got::Nothing;
+    }
+    const bool was_held = static_cast<bool>(timer_);
+    if (auto watched = watch(); !watched) return watched.error();
+    const auto overtaken = source_->traffic().superseded;
+    auto got = source_->take(message);
+    if (was_held) overtaken_ += source_->traffic().superseded - overtaken;
+    if (!got || *got != Got::Message) return got;
+    pace_.take(1, now);
+    if (was_held) ++kept_back_;
+    return got;
+  }
+
+  [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
+  bool prepare_wait() override { return timer_ || source_->prepare_wait(); }
+  void finish() override { source_->finish(); }
+
+  [[nodiscard]] Traffic traffic() const override {
+    Traffic traffic = source_->traffic();
+    traffic.superseded -= overtaken_;
+    traffic.over_rate += overtaken_;
+    traffic.kept_back += kept_back_;
+    return traffic;
+  }
+
+ private:
+  /// Waits for the next turn alone.
+  void hold(TimePoint ready) {
+    socket_.reset();
+    wake_.reset();
+    timer_ = loop_->call_at(ready, [] {});
+  }
+
+  Status watch() {
+    timer_.reset();
+    for (auto [handle, descriptor, events] :
+         {std::tuple{&socket_, source_->descriptor(), std::uint32_t{EPOLLIN}},
+          {&wake_, source_->wake_descriptor(), EPOLLIN | EPOLLET}}) {
+      if (*handle || descriptor < 0) continue;
+      auto watched = loop_->watch(descriptor, events, [](auto) {});
+      if (!watched) return watched.error();
+      *handle = std::move(*watched);
+    }
+    return {};
+  }
+
+  std::unique_ptr<Source> source_;
+  TokenBucket pace_;
+  std::uint64_t overtaken_ = 0, kept_back_ = 0;  // messages, because of the rate
+  std::unique_ptr<Loop> loop_;                   // of what follows
+  Loop::Handle socket_, wake_;                   // of the source, while it may be asked
+  Loop::Handle timer_;                           // while it may not
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> make_paced(std::unique_ptr<Source> source, const Policy& policy) {
+  if (!policy.is_paced()) return source;
+  auto loop = Loop::make();
+  if (!loop) return loop.error();
+  return std::unique_ptr<Source>(new PacedSource(std::move(source), policy, std::move(*loop)));
+}
+
+}  // namespace hc::internal
