@@ -34,7 +34,7 @@ MEASURES = [
 @dataclasses.dataclass(frozen=True)
 class Case:
     name: str
-    kind: str  # bare, ours or peer
+    kind: str  # module, ours, peer or bare
     program: str
     about: str
     arguments: tuple = ()
@@ -52,6 +52,16 @@ def _bare(name, program, mode, about, **more):
 
 def _ours(name, sink, source, about, **more):
     return Case(name, "ours", "ours", about, ("sink=" + sink, "source=" + source), **more)
+
+
+_TURNS = {name: "modules measure round trips" for name in ("messages", "images", "fan_out")}
+
+
+def _module(name, about, spin, ports=1, rate=0.0, **more):
+    """Two modules under `hc run`; the links as `hc run` makes them, but for `spin`."""
+    arguments = ("spin=%d" % spin, "ports=%d" % ports, "rate=%g" % rate)
+    cannot = {**_TURNS, **more.pop("cannot", {})}
+    return Case(name, "module", "module", about, arguments, cannot=cannot, **more)
 
 
 def _peer(name, program, mode, about, **more):
@@ -93,20 +103,20 @@ CASES = [
     _bare("tcp", "floor_stream", "tcp", "TCP on loopback with TCP_NODELAY, one writev, read"),
     _ours(
         "shm_polled",
-        "shm:{link}?readers={readers}",
+        "shm:{link}?readers={readers}&memory=6M",
         "shm:{link}?wait=10&spin=1000000",
         "the reader looks for a second before it sleeps",
         cannot=_POLLS,
     ),
     _ours(
         "shm_waiting",
-        "shm:{link}?readers={readers}",
+        "shm:{link}?readers={readers}&memory=6M",
         "shm:{link}?wait=10&spin=0",
         "the reader sleeps at once",
     ),
     _ours(
         "shm",
-        "shm:{link}?readers={readers}",
+        "shm:{link}?readers={readers}&memory=6M",
         "shm:{link}?wait=10",
         "as it is unless one says otherwise: the reader looks for 20 µs, then sleeps",
     ),
@@ -122,11 +132,18 @@ CASES = [
         "tcp:127.0.0.1:{port}?wait=10",
         "the publisher listens",
     ),
+    _module("module", "two modules under hc run, an input each", 20),
+    _module("module_waiting", "the same, who sleep at once", 0),
+    _module("module_polled", "the same, who look for a second", 1_000_000, cannot=_POLLS),
+    _module(
+        "module_4_inputs", "as module_waiting, with four inputs that messages take in turn", 0, 4
+    ),
+    _module("module_timer", "as module_waiting, with a timer of 100 Hz", 0, 1, 100),
     _peer(
         "iceoryx_polled",
         "iceoryx",
         "poll",
-        "take() until there is one; queue of 256, of 2 images; WAIT_FOR_CONSUMER",
+        "take() until there is one; queue of 256, of 4 images; WAIT_FOR_CONSUMER",
         needs_roudi=True,
         cannot=_POLLS,
     ),

@@ -53,7 +53,8 @@ int main(int argc, char** argv) {
     setup.seconds = *seconds;
     const auto width = static_cast<std::int32_t>(*bytes) - (setup.is_small() ? kHeaderBytes : 0);
     if (setup.is_small())
-      own = hc::intensity_image<std::uint8_t>(width, 1, std::vector<std::uint8_t>(setup.bytes - kHeaderBytes));
+      own = hc::intensity_image<std::uint8_t>(
+          width, 1, std::vector<std::uint8_t>(setup.bytes - kHeaderBytes));
     else
       own = {outputs[0].loan(width, 1).finish()};
     own->header.time = module.now();

@@ -9,7 +9,7 @@ import subprocess
 
 from cases import CASES, MEASURES
 
-KINDS = {"ours": "ours", "peer": "peers", "bare": "floors"}
+KINDS = {"module": "modules in a graph", "ours": "ours", "peer": "peers", "bare": "floors"}
 PROGRAM_OF = {case.name: case.program for case in CASES}
 KEY_OF = {measure.name: measure.key for measure in MEASURES}
 
@@ -102,6 +102,9 @@ def targets(results):
     iceoryx = [name for name, program in PROGRAM_OF.items() if program == "iceoryx"]
     peers = [case.name for case in CASES if case.kind == "peer"]
     shm = ["shm_polled", "shm_waiting", "shm"]
+    for measure in ("latency_96", "latency_96_one", "latency_image"):
+        yield measure, ["module_waiting"], ["shm_waiting"], 1.3
+        yield measure, ["module_polled"], ["shm_polled"], 1.3
     yield "latency_96", ["shm_polled"], ["iceoryx_polled"], 1 / 3
     yield "latency_96", ["shm_waiting"], ["iceoryx_waitset"], 1
     yield "latency_96", ["shm_waiting"], ["bare_shm_futex"], 1.25
@@ -177,7 +180,7 @@ def plot(results, cases, measures, path):
         "set style fill solid; set boxwidth 0.7; set logscale y; set grid y; unset key",
         "set xtics rotate by -35 noenhanced; set rmargin 16",
     ]
-    colors = {"ours": "#c0392b", "peer": "#2c6fbb", "bare": "#999999"}
+    colors = {"module": "#2e8b57", "ours": "#c0392b", "peer": "#2c6fbb", "bare": "#999999"}
     for measure in measures:
         kind = "latency of " if measure.is_latency else "throughput of "
         lines = []

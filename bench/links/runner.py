@@ -87,6 +87,7 @@ class Process:
         """The next line that is ours, of what has come; peers print theirs between."""
         while b"\n" in self.pending:
             line, _, self.pending = self.pending.partition(b"\n")
+            line = line.removeprefix(b"ask: ")  # a module's
             if line == b"ready" or line.startswith(b"{"):
                 return line.decode()
         return None
@@ -175,6 +176,23 @@ class Runner:
             self.roudi.end(PATIENCE)
         self.roudi = None
 
+    def run_graph(self, case, measure):
+        """The numbers that a module logs as its result."""
+        name = "l%d_%d" % (os.getpid(), self.count)
+        path = os.path.join(self.folder, name + ".toml")
+        options = dict(argument.split("=") for argument in case.arguments)
+        program = os.path.join(self.programs, case.program)
+        with open(path, "w") as file:
+            file.write(graph_of(program, name, measure, self.seconds, **options))
+        hc = os.path.join(self.programs, "../../bin/hc")
+        process = Process(["sh", "-c", "exec %s run %s 2>&1 >/dev/null" % (hc, path)])
+        try:
+            deadline = time.monotonic() + 2 * self.seconds + PATIENCE
+            return json.loads(await_line(process, [process], deadline))
+        finally:
+            process.popen.terminate()
+            process.end(PATIENCE)
+
     def run(self, case, measure):
         """The numbers of one run. Raises Failed."""
         program = os.path.join(self.programs, case.program)
@@ -184,6 +202,8 @@ class Runner:
         if case.needs_roudi and not self.roudi:
             self.start_roudi()
         self.count += 1
+        if case.kind == "module":
+            return self.run_graph(case, measure)
         common = [
             "link=l%d_%d" % (os.getpid(), self.count),
             "folder=" + self.folder,
@@ -215,6 +235,30 @@ class Runner:
                 process.end(PATIENCE / 5)
             if failed and case.needs_roudi:
                 self.stop_roudi()  # it does not clean up after processes that were killed
+
+
+def graph_of(program, name, measure, seconds, spin, ports, rate):
+    """A graph file of two modules that send messages to and fro."""
+    text = "version = 1\n"
+    for module, other, processor in (("ask", "answer", 0), ("answer", "ask", 1)):
+        text += "[modules.%s]\nprogram = '%s'\n" % (module, program)
+        text += (
+            "parameters = { asks = %s, bytes = %d, seconds = %g, processor = %d, ports = %s, "
+            "rate = %s }\n"
+            % (
+                "true" if module == "ask" else "false",
+                measure.bytes,
+                seconds,
+                processor % measure.processors,
+                ports,
+                rate,
+            )
+        )
+        for port in range(int(ports)):
+            link = "shm:%s_%%s%d" % (name, port)
+            text += "outputs.out%d = '%s?readers=1&stay=1'\n" % (port, link % module)
+            text += "inputs.in%d = '%s?reconnect=60&spin=%s'\n" % (port, link % other, spin)
+    return text
 
 
 def await_line(process, processes, deadline):

@@ -108,7 +108,7 @@ TEST_F(HostileMemory, PositionsMakeNoSense) {
   struct Words {
     std::uint64_t published, oldest, stamp;
   };
-  for (const char* options : {"", "?keep=latest", "?keep=18446744073709551615"})
+  for (const char* options : {"", "?keep=latest", "?keep=4294967296"})
     for (auto begin : {std::uint64_t{0}, std::uint64_t{1000}, kMost - 1, kMost})
       for (auto keep : {std::uint64_t{0}, std::uint64_t{1}, kMost})
         for (auto words : {Words{kMost, 0, 0}, Words{kMost, kMost, kMost}, Words{5, kMost, 9},
@@ -147,7 +147,7 @@ TEST_F(HostileMemory, APublisherThatHasGoneIsTheEnd) {
 TEST_F(HostileMemory, AReaderThatCountsOnAHugeNumberLosesNothing) {
   auto name = fresh_name();
   auto sink = std::move(*open_sink(*parse_uri(name)));
-  source_ = std::move(*open_source(*parse_uri(name + "?keep=18446744073709551615")));
+  source_ = std::move(*open_source(*parse_uri(name + "?keep=4294967296")));
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(make_checked(nullptr, 1, i, 24)));
   for (int i = 0; i < 10; ++i) {
     ASSERT_EQ(*source_->take(message_), Got::Message);

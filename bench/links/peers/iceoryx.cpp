@@ -38,7 +38,7 @@ iox::popo::PublisherOptions publisher_options() {
 iox::popo::SubscriberOptions subscriber_options(const Setup& setup) {
   iox::popo::SubscriberOptions options;
   options.queueFullPolicy = iox::popo::QueueFullPolicy::BLOCK_PRODUCER;
-  options.queueCapacity = setup.is_small() ? 256 : 2;
+  options.queueCapacity = setup.is_small() ? 256 : 4;
   return options;
 }
 

@@ -161,7 +161,8 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
   if (auto prepared = prepare(sources); !prepared) return prepared.error();
   // Each time, since their owner may have closed one and opened another of the same number.
   for (int descriptor : descriptors)
-    if (auto watched = watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther); !watched) return watched.error();
+    if (auto watched = watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther); !watched)
+      return watched.error();
   nanoseconds longest(0);
   spins_.clear();
   for (const Source* source : sources)
