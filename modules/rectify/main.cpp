@@ -51,8 +51,8 @@ int main(int argc, char** argv) {
     if (size.area() == 0) return;
     auto& rectifier = rectifiers[eye == Eye::Left ? 0 : 1];
     if (!rectifier || rectifier->size() != size) {
-      const auto between_eyes = frames.fixed("left_eye", "right_eye").translation();
-      if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, between_eyes.norm());
+      const double baseline = frames.fixed("left_eye", "right_eye").translation().norm();
+      if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, baseline);
       if (calibration->size.area() == 0) calibration->size = size;
       if (has_message) hc::vision::turn(*calibration, mounting.R_left_right());
       rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
