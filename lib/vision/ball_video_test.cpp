@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -60,8 +62,10 @@ struct VideoScore {
 };
 
 /// @param far  a blob farther away is not the ball [px].
+/// @param change  is done to each image; is given where the ball is.
 VideoScore score_video(const std::string& path, const Labels& labels, const BlobColour& colour,
-                       double min_area, double far) {
+                       double min_area, double far,
+                       const std::function<void(cv::Mat&, cv::Point2d)>& change = {}) {
   VideoScore score;
   BlobFinder finder(colour);
   cv::VideoCapture capture(path);
@@ -71,6 +75,7 @@ VideoScore score_video(const std::string& path, const Labels& labels, const Blob
     const auto truth = labels.at(number);
     if (!truth) continue;
     ++score.in_view;
+    if (change) change(rgb, *truth);
     const auto blob = finder.find(rgb, min_area);
     if (!blob) continue;
     const double error = std::hypot(blob->x - truth->x, blob->y - truth->y);
@@ -106,9 +111,23 @@ TEST(BallVideo, TheRedBallInAClassroom) {
   if (path.empty()) GTEST_SKIP() << "python3-mecavideo is not there: ./dev test unpacks it";
   BlobColour red;
   red.min_saturation = 0.45;
-  const auto score = score_video(path, Labels("balle1-vp9.csv"), red, 40, 8);
+  const Labels labels("balle1-vp9.csv");
+  const auto score = score_video(path, labels, red, 40, 8);
   EXPECT_GE(score.in_view, 240);
   EXPECT_GE(score.found, 0.98 * score.in_view);
+  // A red band at the edge that is many times as large.
+  const auto beside = score_video(path, labels, red, 40, 8, [](cv::Mat& rgb, cv::Point2d at) {
+    const int wide = rgb.cols / 8;
+    rgb(cv::Rect(at.x > rgb.cols / 2.0 ? 0 : rgb.cols - wide, 0, wide, rgb.rows)) =
+        cv::Scalar(190, 25, 20);
+  });
+  EXPECT_GE(beside.found, 0.95 * beside.in_view);
+  // Half of the ball in shadow.
+  const auto dark = score_video(path, labels, red, 20, 8, [](cv::Mat& rgb, cv::Point2d at) {
+    const int x = std::clamp(cvRound(at.x), 0, rgb.cols - 1);
+    rgb.colRange(x, rgb.cols) *= 0.3;
+  });
+  EXPECT_GE(dark.found, 0.95 * dark.in_view);
 }
 
 }  // namespace

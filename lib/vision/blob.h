@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The largest blob of a colour in an image. No messages; plain cv::Mat in.
+// The blob of a colour in images: the roundest and largest, or the one that was seen before. No
+// messages; plain cv::Mat in.
 
 #include <cstdint>
 #include <optional>
@@ -39,32 +40,49 @@ struct Blob {
   double area = 0;      ///< [px²], holes filled
 };
 
-/// Finds the largest blob of a colour.
+/// Finds the blob of a colour, and follows it: of several, the one that is round and large, and
+/// near and of the size of the last one. What is in shadow belongs to it where it makes it rounder.
 class BlobFinder {
  public:
-  explicit BlobFinder(const BlobColour& colour) : colour_(colour) { fill_table(); }
+  explicit BlobFinder(const BlobColour& colour);
 
   [[nodiscard]] const BlobColour& colour() const { return colour_; }
 
-  /// @param rgb  (H, W, 3) u8.
+  /// @param rgb  (H, W, 3) u8, the next of a sequence.
   /// @param min_area  of what counts as found [px²].
-  /// @returns  nothing where no blob is as large.
+  /// @returns  nothing where no blob is as large, or for a second of 20 images, only one of more
+  /// than
+  ///     four times the last one's area.
   /// Cost: 1 ms at 800×600.
   std::optional<Blob> find(const cv::Mat& rgb, double min_area);
 
+  /// What a blob of the hue is like that is too dark or too pale to be found: its mean saturation
+  /// and value; nothing where there is none.
+  std::optional<BlobColour> find_faint(const cv::Mat& rgb, double min_area);
+
  private:
+  /// [px] of the image that it was found in.
   struct Region {
     double x = 0, y = 0, area = 0;
+    double fit = 0;  // share of the circle around it that it fills
     cv::Rect box;
   };
+  using Table = std::vector<std::uint8_t>;  // 255 where a colour is the one looked for
 
-  void fill_table();
-  std::optional<Region> largest(const cv::Mat& rgb);
+  static Table table_of(const BlobColour& colour);
+  void mark(const cv::Mat& rgb, const Table& table);  // in mask_
+  std::vector<Region> regions(const cv::Mat& rgb, const Table& table);
+  const cv::Mat& shrink(const cv::Mat& rgb, int scale);
+  [[nodiscard]] double score(const Region& region, int scale) const;
+  void remember(const std::optional<Blob>& blob);
 
   static constexpr int kBits = 6;  // of each of red, green, blue that the table distinguishes
-  BlobColour colour_;
-  std::vector<std::uint8_t> table_;  // 255 where a colour is the one looked for
+  BlobColour colour_, faint_;
+  Table table_, faint_table_;
   cv::Mat small_, smooth_, mask_, labels_, sizes_, middles_;
+  std::optional<Blob> last_;
+  cv::Point2d velocity_;  // of the last one [px an image]
+  int missed_ = 0;        // images since
 };
 
 }  // namespace hc::vision

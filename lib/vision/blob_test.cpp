@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include <opencv2/imgproc.hpp>
@@ -120,6 +121,83 @@ TEST(Blob, AreaHueAndSmallImagesCount) {
   ASSERT_TRUE(blob);
   EXPECT_NEAR(blob->x, 80, 0.3);
   EXPECT_FALSE(BlobFinder{green}.find(image, 2 * blob->area));
+}
+
+/// How many of some images of a ball that rolls have it found where it is.
+int follow(const std::function<void(cv::Mat&)>& behind,
+           const std::function<void(cv::Mat&, cv::Point2d)>& before) {
+  BlobFinder finder{BlobColour{}};
+  int right = 0;
+  for (int i = 0; i < 60; ++i) {
+    cv::Mat image = room();
+    behind(image);
+    const cv::Point2d at(120 + 9.3 * i, 250 + 60 * std::sin(0.1 * i));
+    draw_disc(image, at, 24, kRed);
+    before(image, at);
+    add_noise(image, 4, static_cast<std::uint64_t>(i));
+    const auto blob = finder.find(image, 60);
+    right += blob && std::hypot(blob->x - at.x, blob->y - at.y) < 4;
+  }
+  return right;
+}
+
+TEST(Blob, IsFollowedBesideLargerThingsOfItsColour) {
+  const auto nothing = [](cv::Mat&, cv::Point2d) {};
+  EXPECT_EQ(follow([](cv::Mat&) {}, nothing), 60);
+  EXPECT_EQ(follow(
+                [](cv::Mat& image) {
+                  cv::rectangle(image, {0, 480, 800, 120}, kRed, -1);
+                },
+                nothing),
+            60)
+      << "floor";
+  EXPECT_EQ(follow(
+                [](cv::Mat& image) {
+                  cv::rectangle(image, {300, 20, 120, 120}, kRed, -1);
+                },
+                nothing),
+            60)
+      << "square";
+  EXPECT_GE(follow(
+                [](cv::Mat& image) {
+                  draw_disc(image, {600, 500}, 20, kRed);
+                },
+                nothing),
+            60)
+      << "another ball";
+}
+
+TEST(Blob, IsFollowedThoughALargerBallIsSeenLater) {
+  BlobFinder finder{BlobColour{}};
+  for (int i = 0; i < 40; ++i) {
+    cv::Mat image = room();
+    const cv::Point2d at(120 + 9.3 * i, 250);
+    draw_disc(image, at, 24, kRed);
+    if (i > 10) draw_disc(image, {600, 480}, 45, kRed);
+    const auto blob = finder.find(image, 60);
+    ASSERT_TRUE(blob) << i;
+    EXPECT_LT(std::hypot(blob->x - at.x, blob->y - at.y), 1) << i;
+  }
+}
+
+TEST(Blob, IsWholeInShadow) {
+  const auto shadow = [](cv::Mat& image, cv::Point2d at) {
+    const cv::Rect half = cv::Rect(cvRound(at.x), 0, 800, 600) & cv::Rect({0, 0}, image.size());
+    image(half) *= 0.15;
+  };
+  EXPECT_GE(follow([](cv::Mat&) {}, shadow), 57);
+}
+
+TEST(Blob, ThatIsTooDarkIsNamed) {
+  cv::Mat image = room();
+  draw_disc(image, {400, 300}, 24, kRed);
+  image *= 0.2;
+  BlobFinder finder{BlobColour{}};
+  EXPECT_FALSE(finder.find(image, 60));
+  const auto faint = finder.find_faint(image, 60);
+  ASSERT_TRUE(faint);
+  EXPECT_NEAR(faint->min_value, 0.16, 0.02);
+  EXPECT_FALSE(finder.find_faint(room(), 60));
 }
 
 TEST(ColourAt, GivesWhatFindsTheThing) {

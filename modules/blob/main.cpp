@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The largest blob of a colour.
+// The blob of a colour.
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -9,7 +9,9 @@
 #include <vision/messages.h>
 
 int main(int argc, char** argv) {
-  hc::Module module{"blob", "Finds the largest blob of a colour in images."};
+  hc::Module module{
+      "blob",
+      "Finds the blob of a colour in images, and follows it: round, large, near the last one."};
   auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "images");
   auto point = module.input("point", hc::position<double>(),
                             "x, y in the next image [px]: its colour is searched from then on, "
@@ -60,6 +62,25 @@ int main(int argc, char** argv) {
     else
       pointed = {numbers[0], numbers[1]};
   });
+  // Once, and only while none was ever found: the light or the parameters are not right.
+  int misses = 0;
+  auto warn = [&](const cv::Mat& pixels) {
+    constexpr int kMany = 40;
+    if (misses < 0 || ++misses < kMany) return;
+    misses = -1;
+    const auto faint = finder->find_faint(pixels, *min_area);
+    if (!faint) return;
+    const auto& wanted = finder->colour();
+    char line[240];
+    std::snprintf(
+        line, sizeof line,
+        "no blob in %d images: what is of hue %.2f has a mean saturation of %.2f and a mean "
+        "value of %.2f, and must have %.2f and %.2f; raise the camera's exposure, or lower "
+        "the parameters saturation or value",
+        kMany, wanted.hue, faint->min_saturation, faint->min_value, wanted.min_saturation,
+        wanted.min_value);
+    module.log(line);
+  };
   module.on(image, [&](const auto& message) {
     const cv::Mat pixels = hc::as_mat(message);
     if (pointed) take(pixels);
@@ -68,7 +89,8 @@ int main(int argc, char** argv) {
         taken.value_or(hc::vision::BlobColour{*hue, *hue_width, *saturation, *value});
     if (!finder || !(finder->colour() == colour)) finder.emplace(colour);
     const auto blob = finder->find(pixels, *min_area);
-    if (!blob) return;
+    if (!blob) return warn(pixels);
+    misses = -1;
     target.send(hc::position(blob->x, blob->y, blob->radius).in(message.header.coord));
     area.send(hc::table({blob->area}));
   });
