@@ -19,7 +19,7 @@
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
 #include <hc/link/stream/dialing.h>
-#include <hc/link/stream/unix.h>
+#include <hc/link/stream/peers.h>
 #include <hc/os/descriptor.h>
 
 namespace hc::testing {

@@ -109,7 +109,8 @@ class Formatter {
     const auto points = std::count_if(piece.begin(), piece.end(), [](char c) {
       return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // begins a code point
     });
-    const auto missing = static_cast<std::size_t>(std::max<std::ptrdiff_t>(field.width - points, 0));
+    const auto missing =
+        static_cast<std::size_t>(std::max<std::ptrdiff_t>(field.width - points, 0));
     const bool is_right = field.align == 0 ? !is_text : field.align == '>';
     if (is_right) text_.append(missing, field.zeros ? '0' : ' ');
     text_ += piece;

@@ -16,15 +16,16 @@ TEST(Format, PutsValuesInTheirOrder) {
 }
 
 TEST(Format, PadsTextToTheRightAndNumbersToTheLeft) {
-  EXPECT_EQ(format("[{:4}] [{:4}] [{:<4}] [{:>4}]", "ab", 12, 12, "ab"), "[ab  ] [  12] [12  ] [  ab]");
+  EXPECT_EQ(format("[{:4}] [{:4}] [{:<4}] [{:>4}]", "ab", 12, 12, "ab"),
+            "[ab  ] [  12] [12  ] [  ab]");
   EXPECT_EQ(format("[{:<{}}] [{:.{}f}]", "ab", 3, 0.5, 2), "[ab ] [0.50]");
   EXPECT_EQ(format("[{:<5}]", "a→b"), "[a→b  ]") << "as wide as it has code points";
   EXPECT_EQ(format("[{:1}]", "abc"), "[abc]");
 }
 
 TEST(Format, WritesNumbersAsAsked) {
-  EXPECT_EQ(format("{:02} {:02x} {:.3f} {:3.0f} {:.3g} {:g} {:9.4f}", 7, 10u, 1.0 / 3, 5.0, 1234567.0,
-                   0.25, -1.5),
+  EXPECT_EQ(format("{:02} {:02x} {:.3f} {:3.0f} {:.3g} {:g} {:9.4f}", 7, 10u, 1.0 / 3, 5.0,
+                   1234567.0, 0.25, -1.5),
             "07 0a 0.333   5 1.23e+06 0.25   -1.5000");
   EXPECT_EQ(format("{} {}", 0.1, 1e300 * 10), "0.1 1e+301");
   EXPECT_EQ(format("{:.1f}", std::nan("")), "nan");

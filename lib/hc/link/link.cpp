@@ -10,6 +10,10 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/link/policy.h>
+#include <hc/link/stream/dialing.h>
+#include <hc/link/stream/listening_sink.h>
+#include <hc/link/stream/listening_source.h>
+#include <hc/link/stream/peers.h>
 #include <hc/link/transports.h>
 #include <hc/os/descriptor.h>
 
@@ -17,20 +21,48 @@ namespace hc {
 namespace {
 
 using internal::Transport;
+using Opened = Result<std::unique_ptr<Source>>;
+using OpenedSink = Result<std::unique_ptr<Sink>>;
+
+// The ends of links between sockets that connect, and that listen.
+
+template <Result<internal::Peer> find(const Uri&)>
+Opened connect_source(const Uri& uri, const LinkOptions& options) {
+  auto peer = find(uri);
+  return peer ? internal::dial_source(*peer, uri, options) : peer.error();
+}
+
+template <Result<internal::Peer> find(const Uri&)>
+OpenedSink connect_sink(const Uri& uri, const LinkOptions& options) {
+  auto peer = find(uri);
+  return peer ? internal::dial_sink(*peer, uri, options) : peer.error();
+}
+
+template <Result<internal::ListeningSocket> listen(const Uri&)>
+Opened listening_source(const Uri& uri, const LinkOptions& options) {
+  auto socket = listen(uri);
+  return socket ? internal::ListeningSource::make(std::move(*socket), options) : socket.error();
+}
+
+template <Result<internal::ListeningSocket> listen(const Uri&)>
+OpenedSink listening_sink(const Uri& uri, const LinkOptions& options) {
+  auto socket = listen(uri);
+  return socket ? internal::ListeningSink::make(std::move(*socket), uri, options) : socket.error();
+}
 
 /// Every transport there is. The options that an end has are named here, so that one misspelt is
 /// refused and not overlooked.
 constexpr std::array<Transport, 8> kTransports = {{
     {"-", "", "keep rate burst memory", internal::open_stdin, internal::open_stdout},
     {"file", "", "keep rate burst memory", internal::open_file_source, internal::open_file_sink},
-    {"tcp", "wait reconnect", "wait reconnect keep rate burst memory", internal::open_tcp_source,
-     internal::open_tcp_sink},
-    {"tcp-listen", "", "readers stay keep rate burst memory", internal::listen_tcp_source,
-     internal::listen_tcp_sink},
-    {"unix", "wait reconnect", "wait reconnect keep rate burst memory", internal::open_unix_source,
-     internal::open_unix_sink},
-    {"unix-listen", "", "readers stay keep rate burst memory", internal::listen_unix_source,
-     internal::listen_unix_sink},
+    {"tcp", "wait reconnect", "wait reconnect keep rate burst memory",
+     connect_source<internal::tcp_peer>, connect_sink<internal::tcp_peer>},
+    {"tcp-listen", "", "readers stay keep rate burst memory",
+     listening_source<internal::listen_tcp>, listening_sink<internal::listen_tcp>},
+    {"unix", "wait reconnect", "wait reconnect keep rate burst memory",
+     connect_source<internal::unix_peer>, connect_sink<internal::unix_peer>},
+    {"unix-listen", "", "readers stay keep rate burst memory",
+     listening_source<internal::listen_unix>, listening_sink<internal::listen_unix>},
     {"inproc", "", "keep rate burst memory", internal::open_inproc_source,
      internal::open_inproc_sink},
     {"shm", "keep rate burst spin wait reconnect", "readers stay keep memory",

@@ -62,12 +62,12 @@ Result<Descriptor> listen_on(const Address& address, const std::string& name) {
   return socket;
 }
 
-Result<Descriptor> accept_peer(const ListeningSocket& socket, const LogSink& log) {
+Result<Descriptor> ListeningSocket::accept(const LogSink& log) const {
   while (true) {
-    int number = ::accept4(socket.descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    int number = ::accept4(descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (number >= 0) {
       Descriptor peer(number);
-      auto admitted = socket.admit ? socket.admit(number) : Status();
+      auto admitted = admit ? admit(number) : Status();
       if (!admitted) {
         if (log) log(Severity::Warning, admitted.error().detail);
         continue;

@@ -2,6 +2,7 @@
 #pragma once
 // Stream sockets, TCP and Unix alike: connected, listening, and their peers. Internal.
 
+#include <sys/epoll.h>
 #include <sys/socket.h>
 
 #include <chrono>
@@ -20,6 +21,7 @@ struct ListeningSocket {
   /// Whether a peer that was accepted is wanted; an error says why not. May be empty.
   std::function<Status(int peer)> admit;
   std::string unlink_path;  ///< removed at the end; empty: nothing
+  bool is_paused = false;   ///< somebody waits who could not be let in
 
   ListeningSocket() = default;
   ListeningSocket(ListeningSocket&&) = default;
@@ -30,6 +32,18 @@ struct ListeningSocket {
     return *this;
   }
   ~ListeningSocket();
+
+  /// Lets in all who wait. Where one cannot be, as there is no room, descriptor or memory, the
+  /// socket, which stays readable, is left alone for 200 ms, so that this costs no time.
+  ///
+  /// @param watch  of the socket: Loop::Handle or Watch; it is to call this.
+  template <typename Handle>
+  void accept_all(Handle& watch, const LogSink& log, const std::function<bool()>& has_room,
+                  const std::function<Status(Descriptor peer)>& let_in);
+
+ private:
+  /// The next peer that has connected; none (-1) when there is none just now. Errors: System.
+  [[nodiscard]] Result<Descriptor> accept(const LogSink& log) const;
 };
 
 /// Where a peer may listen: a sockaddr of some family.
@@ -53,12 +67,6 @@ constexpr std::chrono::seconds kAnswerTime{4};
 
 /// A socket that listens on an address; its name is for error lines.
 Result<Descriptor> listen_on(const Address& address, const std::string& name);
-
-/// Takes the next peer that has connected; none (-1) when there is none just now.
-///
-/// Errors: System: descriptors or memory have run out, or the network has failed. None is for ever,
-/// and who waits may be let in later.
-Result<Descriptor> accept_peer(const ListeningSocket& socket, const LogSink& log);
 
 /// How long a TCP peer may leave what it must answer without an answer: so one that vanishes is
 /// noticed within 4 s, with what timers are late by.
@@ -84,5 +92,25 @@ struct PeerLook {
 /// Looks whether a peer of TCP that is sent something is still there; where the socket is not TCP,
 /// there is nothing to look after.
 PeerLook look_at_peer(int socket);
+
+template <typename Handle>
+void ListeningSocket::accept_all(Handle& watch, const LogSink& log,
+                                 const std::function<bool()>& has_room,
+                                 const std::function<Status(Descriptor peer)>& let_in) {
+  constexpr std::chrono::milliseconds kRetryTime{200};
+  bool must_wait = !has_room();
+  for (; !must_wait; must_wait = must_wait || !has_room()) {
+    auto peer = accept(log);
+    if (peer && !*peer) break;
+    auto done = peer ? let_in(std::move(*peer)) : Status(peer.error());
+    must_wait = !done;
+    if (must_wait && !is_paused && log)
+      log(Severity::Warning,
+          "not accepting connections: " + done.error().text() + "; retrying every 200 ms");
+  }
+  if (must_wait) watch.call_at(std::chrono::steady_clock::now() + kRetryTime);
+  if (std::exchange(is_paused, must_wait) != must_wait)
+    static_cast<void>(watch.want(must_wait ? 0U : EPOLLIN));
+}
 
 }  // namespace hc::internal

@@ -4,7 +4,7 @@
 #include <sys/socket.h>
 
 #include <hc/base/uri.h>
-#include <hc/link/stream/unix.h>
+#include <hc/link/stream/peers.h>
 #include <hc/mtp/codec.h>
 
 namespace hc::internal {
@@ -24,20 +24,19 @@ Result<std::unique_ptr<Announcer>> Announcer::make(Loop& loop, const std::string
 }
 
 void Announcer::let_in() {
-  while (true) {
-    auto accepted = accept_peer(socket_, {});
-    if (!accepted || !*accepted) break;
-    if (peers_.size() == kMostPeers) continue;
+  auto has_room = [this] { return peers_.size() < kMostPeers; };
+  socket_.accept_all(watch_, {}, has_room, [this](Descriptor accepted) -> Status {
     auto peer = std::make_unique<Peer>();
-    peer->socket = std::move(*accepted);
+    peer->socket = std::move(accepted);
     auto watched = loop_.watch(peer->socket.get(), EPOLLIN,
                                [this, each = peer.get()](auto events) { serve(*each, events); });
-    if (!watched) continue;
+    if (!watched) return watched.error();
     peer->watch = std::move(*watched);
     peers_.push_back(std::move(peer));
     if (welcome_)
       for (const auto& message : welcome_()) put(*peers_.back(), encode(message));
-  }
+    return {};
+  });
   forget_those_who_left();
 }
 

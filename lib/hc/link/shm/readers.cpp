@@ -7,15 +7,9 @@
 #include <algorithm>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/stream/unix.h>
+#include <hc/link/stream/peers.h>
 
 namespace hc::internal {
-namespace {
-
-constexpr std::chrono::milliseconds kRetry{200};  // until one is let in again who could not be
-
-}  // namespace
-
 Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
                                                      const SharedMemory& memory,
                                                      std::uint64_t keep) {
@@ -66,46 +60,34 @@ void ShmReaders::remark(std::string line) {
 }
 
 void ShmReaders::accept_all() {
-  while (true) {
-    auto peer = accept_peer(socket_,
-                            [this](Severity, std::string_view line) { remark(std::string(line)); });
-    if (peer && !*peer) {
-      static_cast<void>(watching_->want(EPOLLIN));
-      return;
-    }
+  auto log = [this](Severity, std::string_view line) { remark(std::string(line)); };
+  auto has_room = [] { return true; };
+  socket_.accept_all(*watching_, log, has_room, [this](Descriptor peer) -> Status {
     auto reader = std::make_shared<ShmReader>();
-    auto watch = peer ? Watch::make(peer->get(),
-                                    [this, each = reader.get()](std::uint32_t events) {
-                                      if ((events & (EPOLLHUP | EPOLLERR)) != 0)
-                                        let_go(*each);
-                                      else if (each->memory.data() == nullptr)
-                                        hear(*each);
-                                      else
-                                        note_leaving(*each);
-                                    })
-                      : Result<std::unique_ptr<Watch>>(peer.error());
-    if (!watch) {
-      // No descriptor or memory is to be had now: who waits is overlooked for a while.
-      remark("nobody is let in for now: " + watch.error().text());
-      static_cast<void>(watching_->want(0));
-      watching_->call_at(std::chrono::steady_clock::now() + kRetry);
-      return;
-    }
-    reader->socket = std::move(*peer);
+    auto watch = Watch::make(peer.get(), [this, each = reader.get()](std::uint32_t events) {
+      if ((events & (EPOLLHUP | EPOLLERR)) != 0)
+        let_go(*each);
+      else if (each->memory.data() == nullptr)
+        hear(*each);
+      else
+        note_leaving(*each);
+    });
+    if (!watch) return watch.error();
+    reader->socket = std::move(peer);
     reader->watch = std::move(*watch);
     reader->watching = reader->watch.get();
     std::shared_ptr<ShmReader> silent;
     {
       std::lock_guard lock(mutex_);
-      if (ending_) return;
+      if (ending_) return {};
       if (strangers_.size() == kMostReaders) {  // who says nothing cannot keep others out
         silent = strangers_.front();
         strangers_.erase(strangers_.begin());
       }
       strangers_.push_back(reader);
     }
-    static_cast<void>(reader->watching->want(EPOLLIN));
-  }
+    return reader->watching->want(EPOLLIN);
+  });
 }
 
 /// A stranger has said something.

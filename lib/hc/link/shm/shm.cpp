@@ -7,7 +7,7 @@
 #include <hc/link/shm/sink.h>
 #include <hc/link/shm/source.h>
 #include <hc/link/stream/dialing.h>
-#include <hc/link/stream/unix.h>
+#include <hc/link/stream/peers.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {

@@ -44,28 +44,20 @@ std::vector<Descriptor> Acceptor::take(std::size_t room) {
 }
 
 void Acceptor::accept_all() {
-  bool later = false;
-  while (!later) {
+  // No more than anybody wants to read: others may have us say much.
+  auto remark = [this](Severity, std::string_view line) {
+    if (remarks_.size() < Remarks::kMost) remarks_.emplace_back(line);
+  };
+  auto has_room = [this] {
     if (newcomers_.size() >= room_) std::erase_if(newcomers_, has_left);
-    if (later = newcomers_.size() >= room_; later) break;
-    // No more than anybody wants to read: others may have us say much.
-    auto remark = [this](Severity, std::string_view line) {
-      if (remarks_.size() < Remarks::kMost) remarks_.emplace_back(line);
-    };
-    auto peer = accept_peer(socket_, remark);
-    if (peer && !*peer) break;
-    later = !peer;
-    if (peer)
-      newcomers_.push_back(std::move(*peer));
-    else if (!later_)
-      remark(Severity::Warning,
-             "not accepting connections: " + peer.error().text() + "; retrying every 200 ms");
-  }
+    return newcomers_.size() < room_;
+  };
+  socket_.accept_all(*watching_, remark, has_room, [this](Descriptor peer) {
+    newcomers_.push_back(std::move(peer));
+    return Status();
+  });
   if (!newcomers_.empty()) ::eventfd_write(arrived_.get(), 1);
   has_news_ = !newcomers_.empty() || !remarks_.empty();
-  if (later) watching_->call_at(std::chrono::steady_clock::now() + kRetryTime);
-  if (std::exchange(later_, later) != later)
-    static_cast<void>(watching_->want(later ? 0U : EPOLLIN));
 }
 
 std::vector<std::string> Acceptor::take_remarks() {

@@ -14,13 +14,8 @@
 namespace hc::internal {
 
 /// Accepts the peers of a listening socket, by the reactor or by who asks for them.
-///
-/// Where one cannot be let in, as there is no descriptor or no room, the socket, which stays
-/// readable, is left alone for kRetryTime: so a full table costs no time.
 class Acceptor {
  public:
-  static constexpr std::chrono::milliseconds kRetryTime{200};
-
   /// Errors: System.
   static Result<std::unique_ptr<Acceptor>> make(ListeningSocket socket, std::size_t room);
   ~Acceptor() { watch_.reset(); }
@@ -50,7 +45,6 @@ class Acceptor {
   std::size_t room_;
   std::vector<Descriptor> newcomers_;
   std::vector<std::string> remarks_;
-  bool later_ = false;  // somebody waits who could not be let in
   std::atomic<bool> has_news_{false};
   Watch* watching_ = nullptr;  // for its callback, which may run while it is being destroyed
   std::unique_ptr<Watch> watch_;

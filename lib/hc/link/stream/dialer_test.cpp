@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include <hc/link/stream/unix.h>
+#include <hc/link/stream/peers.h>
 #include <hc/testing/loopback.h>
 
 namespace hc::testing {

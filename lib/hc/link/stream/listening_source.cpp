@@ -10,17 +10,6 @@
 #include <hc/link/transports.h>
 
 namespace hc::internal {
-namespace {
-
-constexpr std::chrono::milliseconds kRetryTime{200};  // until one is let in who could not be
-
-bool is_readable(int descriptor) {
-  pollfd polled{descriptor, POLLIN, 0};
-  return ::poll(&polled, 1, 0) > 0;
-}
-
-}  // namespace
-
 Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
                                                       const LinkOptions& options) {
   auto loop = Loop::make();
@@ -34,43 +23,26 @@ Result<std::unique_ptr<Source>> ListeningSource::make(ListeningSocket socket,
   return std::unique_ptr<Source>(std::move(source));
 }
 
-/// Lets in who waits, as far as there is room.
+/// Lets in who waits, as far as there is room or can be made.
 void ListeningSource::accept_all() {
-  while (true) {
-    bool full = peers_.size() == kMaxPeers;
-    if (full && !is_readable(socket_.descriptor.get())) return accept_later(false);
-    std::size_t idlest = full ? find_idlest() : peers_.size();
-    if (full && idlest == peers_.size()) return accept_later(true);
-    auto accepted = accept_peer(socket_, options_.log);
-    if (accepted && !*accepted) return accept_later(false);
+  auto is_full = [this] { return peers_.size() == kMaxPeers; };
+  auto has_room = [&] { return !is_full() || find_idlest() != peers_.size(); };
+  socket_.accept_all(listening_, options_.log, has_room, [&](Descriptor accepted) -> Status {
     auto peer = std::make_unique<Peer>();
-    auto watched = accepted ? loop_->watch(accepted->get(), EPOLLIN,
-                                           [this, each = peer.get()](auto) {
-                                             if (std::exchange(each->is_ready, true)) return;
-                                             ready_.push_back(each);
-                                           })
-                            : Result<Loop::Handle>(accepted.error());
-    if (!watched) {
-      if (!later_ && options_.log)
-        options_.log(Severity::Warning, "not accepting connections: " + in_words(watched.error()) +
-                                            "; retrying every 200 ms");
-      return accept_later(true);
-    }
-    if (full) leave(*peers_[idlest], "closed the peer that was silent longest, to let another in");
-    set_up_reader(accepted->get());
-    peer->source = std::make_unique<StreamSource>(std::move(*accepted), options_);
+    auto watched = loop_->watch(accepted.get(), EPOLLIN, [this, each = peer.get()](auto) {
+      if (std::exchange(each->is_ready, true)) return;
+      ready_.push_back(each);
+    });
+    if (!watched) return watched.error();
+    if (is_full())
+      leave(*peers_[find_idlest()], "closed the peer that was silent longest, to let another in");
+    set_up_reader(accepted.get());
+    peer->source = std::make_unique<StreamSource>(std::move(accepted), options_);
     peer->watch = std::move(*watched);
     peer->heard = ++count_;
     peers_.push_back(std::move(peer));
-  }
-}
-
-/// Whether a peer waits that cannot be accepted now: then the listening socket, which stays
-/// readable, is left alone until it is time to try again.
-void ListeningSource::accept_later(bool later) {
-  if (later) listening_.call_at(std::chrono::steady_clock::now() + kRetryTime);
-  static_cast<void>(listening_.want(later ? 0U : EPOLLIN));
-  later_ = later;
+    return {};
+  });
 }
 
 /// The peer whose last message was longest ago, of those that say nothing now; peers_.size() when

@@ -42,7 +42,6 @@ class ListeningSource final : public Source {
       : socket_(std::move(socket)), loop_(std::move(loop)), options_(std::move(options)) {}
 
   void accept_all();
-  void accept_later(bool later);
   [[nodiscard]] std::size_t find_idlest() const;
   void leave(const Peer& peer, std::string_view why);
   void rest(Peer& peer);
@@ -56,7 +55,6 @@ class ListeningSource final : public Source {
   std::size_t turn_ = 0;
   int takes_ = 0;            // since the others were last asked
   std::uint64_t count_ = 0;  // of messages and peers that have come
-  bool later_ = false;       // somebody waits who could not be let in
   Traffic left_;             // of the peers that have left
 };
 

@@ -3,13 +3,9 @@
 #include <netdb.h>
 #include <sys/socket.h>
 
-#include <vector>
+#include <memory>
 
-#include <hc/link/stream/dialing.h>
-#include <hc/link/stream/listening_sink.h>
-#include <hc/link/stream/listening_source.h>
-
-#include <hc/link/transports.h>
+#include <hc/link/stream/peers.h>
 
 namespace hc::internal {
 namespace {
@@ -33,8 +29,10 @@ Result<Addresses> resolve(const Uri& uri, int flags) {
   return Addresses(list);
 }
 
+}  // namespace
+
 /// A name may have several addresses; localhost has two.
-Result<Peer> peer_of(const Uri& uri) {
+Result<Peer> tcp_peer(const Uri& uri) {
   auto list = resolve(uri, 0);
   if (!list) return list.error();
   Peer peer;
@@ -52,32 +50,6 @@ Result<ListeningSocket> listen_tcp(const Uri& uri) {
   ListeningSocket socket;
   socket.descriptor = std::move(*descriptor);
   return socket;
-}
-
-}  // namespace
-
-Result<std::unique_ptr<Source>> open_tcp_source(const Uri& uri, const LinkOptions& options) {
-  auto peer = peer_of(uri);
-  if (!peer) return peer.error();
-  return dial_source(*peer, uri, options);
-}
-
-Result<std::unique_ptr<Sink>> open_tcp_sink(const Uri& uri, const LinkOptions& options) {
-  auto peer = peer_of(uri);
-  if (!peer) return peer.error();
-  return dial_sink(*peer, uri, options);
-}
-
-Result<std::unique_ptr<Source>> listen_tcp_source(const Uri& uri, const LinkOptions& options) {
-  auto socket = listen_tcp(uri);
-  if (!socket) return socket.error();
-  return ListeningSource::make(std::move(*socket), options);
-}
-
-Result<std::unique_ptr<Sink>> listen_tcp_sink(const Uri& uri, const LinkOptions& options) {
-  auto socket = listen_tcp(uri);
-  if (!socket) return socket.error();
-  return ListeningSink::make(std::move(*socket), uri, options);
 }
 
 }  // namespace hc::internal

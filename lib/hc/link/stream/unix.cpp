@@ -8,11 +8,7 @@
 #include <algorithm>
 #include <array>
 
-#include <hc/link/stream/dialing.h>
-#include <hc/link/stream/listening_sink.h>
-#include <hc/link/stream/listening_source.h>
-#include <hc/link/stream/unix.h>
-#include <hc/link/transports.h>
+#include <hc/link/stream/peers.h>
 
 namespace hc::internal {
 namespace {
@@ -104,30 +100,6 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
   socket.descriptor = std::move(*descriptor);
   if (!is_abstract(uri)) socket.unlink_path = uri.rest;
   return socket;
-}
-
-Result<std::unique_ptr<Source>> open_unix_source(const Uri& uri, const LinkOptions& options) {
-  auto peer = unix_peer(uri);
-  if (!peer) return peer.error();
-  return dial_source(*peer, uri, options);
-}
-
-Result<std::unique_ptr<Sink>> open_unix_sink(const Uri& uri, const LinkOptions& options) {
-  auto peer = unix_peer(uri);
-  if (!peer) return peer.error();
-  return dial_sink(*peer, uri, options);
-}
-
-Result<std::unique_ptr<Source>> listen_unix_source(const Uri& uri, const LinkOptions& options) {
-  auto socket = listen_unix(uri);
-  if (!socket) return socket.error();
-  return ListeningSource::make(std::move(*socket), options);
-}
-
-Result<std::unique_ptr<Sink>> listen_unix_sink(const Uri& uri, const LinkOptions& options) {
-  auto socket = listen_unix(uri);
-  if (!socket) return socket.error();
-  return ListeningSink::make(std::move(*socket), uri, options);
 }
 
 }  // namespace hc::internal
