@@ -196,7 +196,7 @@ double messages_a_second(const std::string& self, const std::string& sent_to,
   return std::atof(line);
 }
 
-/// The router's share of a processor at 1,200 messages a second, its start left out. [1]
+/// The router's share of a processor at 1,200 messages a second, without its start. [1]
 double processor_share(const std::string& self, const std::string& router) {
   constexpr std::int64_t kRate = 1200, kWarm = kRate, kLast = 6 * kRate;
   pid_t pid = start_router(router, true);

@@ -69,7 +69,7 @@ def _peer(name, program, mode, about, **more):
 
 
 def _cyclone(more=""):
-    """Its advice for large samples; loopback has no multicast, so it is told whom to look for."""
+    """Its advice for large samples; loopback has no multicast, so it gets the addresses of its peers."""
     text = """<CycloneDDS><Domain Id="any"><General>
 <Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast>

@@ -44,7 +44,7 @@ class Publisher {
   virtual std::span<std::byte> loan() = 0;
   /// Sends what loan() gave; waits while queues are full, so that nothing is lost.
   virtual void publish() = 0;
-  /// Sends a message of Setup::bytes whose bytes were not written anew.
+  /// Sends a message of Setup::bytes whose bytes were not rewritten.
   virtual void resend() = 0;
 };
 

@@ -98,7 +98,7 @@ class Process:
             raise Failed(self.why())
         self.pending += chunk
 
-    def tell(self):
+    def signal(self):
         try:
             self.popen.stdin.write(b"\n")
             self.popen.stdin.flush()
@@ -134,7 +134,7 @@ def free_ports(count=8, first=[20000]):
 
 
 class Runner:
-    """A context: what it made is gone when it is left."""
+    """A context: what it made is removed at its end."""
 
     def __init__(self, programs, seconds):
         self.programs, self.seconds = programs, seconds
@@ -281,13 +281,13 @@ def measure_once(processes, measure, seconds):
     for process in processes:
         await_line(process, processes, deadline)
     for process in reversed(processes):
-        process.tell()
+        process.signal()
     deadline = time.monotonic() + 2 * seconds + PATIENCE
     found = json.loads(await_line(first, processes, deadline))
     if measure.is_latency:
-        others[0].tell()
+        others[0].signal()
         await_line(others[0], processes, deadline)
-        first.tell()  # to send the last
+        first.signal()  # to send the last
         return found
     readers = [json.loads(await_line(other, processes, deadline)) for other in others]
     found = min(readers, key=lambda reader: reader["per_second"])

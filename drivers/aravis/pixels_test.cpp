@@ -55,7 +55,7 @@ TEST(Pixels, rgb_and_grey) {
             cv::Vec3b(2, 2, 2));
 }
 
-TEST(Pixels, what_stands_behind_the_rows_is_left_out) {
+TEST(Pixels, what_stands_behind_the_rows_is_dropped) {
   std::vector<std::uint8_t> values;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x)

@@ -20,7 +20,7 @@ TEST(HeadPoseSender, is_heard_by_a_head_tracker) {
   EXPECT_EQ(tracker->ignored(), 0U);
 }
 
-TEST(HeadPoseSender, goes_on_when_nobody_hears_it) {
+TEST(HeadPoseSender, continues_when_nobody_hears_it) {
   int port = 0;
   {
     auto tracker = hc::HeadTracker::open("127.0.0.1", 0);

@@ -19,7 +19,7 @@ TEST(Conversation, begins_as_drivers_do_and_asks_what_is_there) {
             "pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees");
 }
 
-TEST(Conversation, tells_where_the_unit_looks_and_when) {
+TEST(Conversation, reports_where_the_unit_looks_and_when) {
   Line line;
   line.delay = milliseconds(8);
   line.begin();
@@ -91,7 +91,7 @@ TEST(Conversation, a_command_that_is_the_same_is_not_sent_again) {
   EXPECT_EQ(line.commands(), "pp111 tp0 ");
 }
 
-TEST(Conversation, a_silent_unit_is_asked_anew_and_then_given_up) {
+TEST(Conversation, a_silent_unit_is_asked_again_and_then_given_up) {
   Line line;
   line.begin();
   line.is_silent = true;
@@ -152,7 +152,7 @@ TEST(Conversation, an_answer_to_an_older_question_is_found_out) {
   check_recovery(line);
 }
 
-TEST(Conversation, a_spoilt_answer_is_not_believed_for_ever) {
+TEST(Conversation, a_corrupted_answer_is_not_believed_for_ever) {
   Line line;
   line.unit.take(1, "ft ed ci ");
   line.host.begin(line.now);
@@ -164,7 +164,7 @@ TEST(Conversation, a_spoilt_answer_is_not_believed_for_ever) {
   check_recovery(line);
 }
 
-TEST(Conversation, garbage_is_told_and_got_over) {
+TEST(Conversation, garbage_is_reported_and_skipped) {
   Line line;
   line.unit = Unit(700, -300);
   line.begin();

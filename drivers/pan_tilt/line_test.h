@@ -42,8 +42,8 @@ struct Line {
     const double time = std::chrono::duration<double>(now).count();
     for (char byte : unit.take(time, bytes) + unit.pass(time)) {
       if (is_silent) continue;
-      const bool is_spoilt = static_cast<double>(random() % 1000) < garbage * 1000;
-      coming.emplace_back(now + delay, is_spoilt ? static_cast<char>(random() % 256) : byte);
+      const bool is_corrupted = static_cast<double>(random() % 1000) < garbage * 1000;
+      coming.emplace_back(now + delay, is_corrupted ? static_cast<char>(random() % 256) : byte);
     }
   }
   void step() {

@@ -36,8 +36,8 @@ class NeckTest : public ::testing::Test {
   std::optional<PseudoTerminal> terminal_;
   Unit unit_;
   bool is_silent_ = false;
-  std::vector<std::string> told_;
-  Neck neck_{[this](std::string_view line) { told_.emplace_back(line); }};
+  std::vector<std::string> log_;
+  Neck neck_{[this](std::string_view line) { log_.emplace_back(line); }};
 };
 
 TEST_F(NeckTest, finds_the_unit_and_commands_it) {
@@ -48,15 +48,15 @@ TEST_F(NeckTest, finds_the_unit_and_commands_it) {
   run(milliseconds(1000));
   EXPECT_NEAR(unit_.pan(9), 557, 0.5);
   EXPECT_NEAR(unit_.tilt(9), -111, 0.5);
-  EXPECT_EQ(told_, std::vector<std::string>{
-                       path() +
-                       ": pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees"});
+  EXPECT_EQ(log_, std::vector<std::string>{
+                      path() +
+                      ": pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees"});
 }
 
 TEST_F(NeckTest, logs_once_that_there_is_no_device_and_retries) {
   neck_.set_device(now_, "/no/such/device", true);
   run(milliseconds(10'000));
-  EXPECT_EQ(told_, std::vector<std::string>{"/no/such/device: open: No such file or directory"});
+  EXPECT_EQ(log_, std::vector<std::string>{"/no/such/device: open: No such file or directory"});
 }
 
 TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
@@ -72,46 +72,46 @@ TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
   EXPECT_EQ(neck_.descriptor(), -1);
   open(false);
   run(milliseconds(1500));
-  ASSERT_EQ(told_.size(), 3U);
-  EXPECT_EQ(told_[1], old + ": disconnected");
-  EXPECT_EQ(told_[2], path() + ": reconnected");
+  ASSERT_EQ(log_.size(), 3U);
+  EXPECT_EQ(log_[1], old + ": disconnected");
+  EXPECT_EQ(log_[2], path() + ": reconnected");
 }
 
 TEST_F(NeckTest, a_silent_unit_is_logged_once_and_so_is_its_return) {
   plug();
   open();
   run(milliseconds(100));
-  told_.clear();
+  log_.clear();
   is_silent_ = true;
   run(milliseconds(20'000));
-  EXPECT_EQ(told_, (std::vector<std::string>{path() + ": the unit does not answer",
-                                             path() + ": reopening"}));
-  told_.clear();
+  EXPECT_EQ(log_, (std::vector<std::string>{path() + ": the unit does not answer",
+                                            path() + ": reopening"}));
+  log_.clear();
   is_silent_ = false;
   run(milliseconds(5000));
-  EXPECT_EQ(told_, std::vector<std::string>{path() + ": reconnected"});
+  EXPECT_EQ(log_, std::vector<std::string>{path() + ": reconnected"});
 }
 
 TEST_F(NeckTest, an_answer_that_came_while_nothing_was_read_is_no_silence) {
   plug();
   open();
   run(milliseconds(1500));
-  told_.clear();
+  log_.clear();
   neck_.look(now_);
   terminal_->write(unit_.take(2.6, terminal_->read()));
   now_ += milliseconds(1000);  // as long as the process was stopped
   neck_.pass(now_);
   run(milliseconds(1000));
-  EXPECT_TRUE(told_.empty()) << told_[0];
+  EXPECT_TRUE(log_.empty()) << log_[0];
 }
 
-TEST_F(NeckTest, a_new_rate_opens_the_line_anew) {
+TEST_F(NeckTest, a_new_rate_reopens_the_line) {
   plug();
   open();
   run(milliseconds(100));
   neck_.set_baud(now_, 38400);
   run(milliseconds(1500));
-  EXPECT_EQ(told_.back(), path() + ": reconnected");
+  EXPECT_EQ(log_.back(), path() + ": reconnected");
 }
 
 TEST_F(NeckTest, halts_what_it_has_begun_when_it_leaves) {

@@ -33,7 +33,7 @@ TEST(Unit, commands_may_come_byte_by_byte_and_end_in_space_or_return) {
   EXPECT_EQ(said, "*\r\n*\r\n* 100\r\n");
 }
 
-TEST(Unit, tells_resolution_limits_and_pace) {
+TEST(Unit, reports_resolution_limits_and_pace) {
   Unit unit = quiet_unit();
   EXPECT_EQ(unit.take(0, "pr tr pn px tn tx "),
             "* 185.1428\r\n* 185.1428\r\n* -3090\r\n* 3090\r\n* -907\r\n* 604\r\n");
@@ -45,7 +45,7 @@ TEST(Unit, tells_resolution_limits_and_pace) {
             "* PTU is in Independent Mode\r\n");
 }
 
-TEST(Unit, turns_where_it_is_told_to) {
+TEST(Unit, turns_where_it_is_sent) {
   Unit unit = quiet_unit();
   EXPECT_EQ(unit.take(0, "pp500 tp-200 "), "*\r\n*\r\n");
   EXPECT_EQ(unit.take(0.1, "pp tp po to pd "), "* 100\r\n* -100\r\n* 500\r\n* -200\r\n* 1000\r\n");
@@ -73,7 +73,7 @@ TEST(Unit, refuses_what_is_no_command) {
     EXPECT_EQ(unit.take(0, words), "! Illegal command entered\r\n") << words;
 }
 
-TEST(Unit, a_word_that_is_too_long_is_left_out_and_the_next_one_is_obeyed) {
+TEST(Unit, a_word_that_is_too_long_is_dropped_and_the_next_one_is_obeyed) {
   Unit unit = quiet_unit();
   for (std::size_t size : {255U, 256U, 257U, 1000U}) {
     unit.take(0, std::string(size, 'x'));

@@ -73,7 +73,7 @@ TEST_F(DefaultHead, without_any_pose_nothing_is_waited_for) {
   EXPECT_EQ(answers_, std::vector<double>{-1});
 }
 
-TEST_F(DefaultHead, a_clock_that_was_set_back_begins_anew) {
+TEST_F(DefaultHead, a_clock_that_was_set_back_starts_over) {
   feed_at(3'600'000);
   feed_at(0);
   feed_at(10);

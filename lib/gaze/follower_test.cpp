@@ -37,7 +37,7 @@ TEST(Follower, is_quieter_than_what_it_sees) {
   EXPECT_LT(std::sqrt(followed), 0.8 * std::sqrt(seen));
 }
 
-TEST(Follower, begins_anew_after_a_gap_and_leaves_the_past_alone) {
+TEST(Follower, starts_over_after_a_gap_and_leaves_the_past_alone) {
   Follower follower({});
   EXPECT_FALSE(follower.at(1));
   for (int i = 0; i < 10; ++i) follower.see(0.05 * i, {0.02 * i, 0});
@@ -59,7 +59,7 @@ TEST(Follower, what_is_not_seen_stops_at_the_horizon) {
   EXPECT_EQ(later->pan_rate, 0);
 }
 
-TEST(Follower, a_clock_that_is_set_back_begins_anew) {
+TEST(Follower, a_clock_that_is_set_back_starts_over) {
   Follower follower({});
   follower.see(1000, {0.1, 0});
   follower.see(990, {0.5, 0});

@@ -6,7 +6,7 @@
 namespace hc::gaze {
 namespace {
 
-TEST(Stick, goes_on_from_how_the_head_stands_while_it_is_pushed) {
+TEST(Stick, continues_from_how_the_head_stands_while_it_is_pushed) {
   Stick stick;
   EXPECT_FALSE(stick.at(5, {}));
   EXPECT_FALSE(stick.last());

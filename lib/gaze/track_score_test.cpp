@@ -6,7 +6,7 @@
 namespace hc::gaze {
 namespace {
 
-TEST(TrackScore, tells_when_a_ball_is_acquired_and_how_well_it_is_followed) {
+TEST(TrackScore, reports_when_a_ball_is_acquired_and_how_well_it_is_followed) {
   std::vector<TrackSample> samples;
   for (int i = 0; i < 100; ++i) samples.push_back({0.1 * i, i < 5 ? 0.5 : 0.02, 1});
   const auto score = score_track(samples, 0.05);
@@ -28,7 +28,7 @@ TEST(TrackScore, a_ball_that_hides_is_acquired_again) {
   EXPECT_NEAR(score.rms, 0.01, 1e-9);
 }
 
-TEST(TrackScore, one_that_is_never_found_is_told_and_counts) {
+TEST(TrackScore, one_that_is_never_found_is_reported_and_counts) {
   std::vector<TrackSample> samples;
   for (int i = 0; i < 30; ++i) samples.push_back({0.1 * i, 0.4, 1});
   const auto score = score_track(samples, 0.05);
@@ -37,7 +37,7 @@ TEST(TrackScore, one_that_is_never_found_is_told_and_counts) {
   EXPECT_EQ(score.samples, 19U);  // after the first second
 }
 
-TEST(TrackScore, one_that_does_not_come_into_the_middle_again_is_told) {
+TEST(TrackScore, one_that_does_not_come_into_the_middle_again_is_reported) {
   std::vector<TrackSample> samples{{0, 0.01, 1}, {1, 0.01, 0}, {2, 0.3, 1}, {4, 0.3, 1}};
   const auto score = score_track(samples, 0.05);
   ASSERT_EQ(score.again.size(), 1U);

@@ -46,10 +46,10 @@ cv::Vec3d lit(const cv::Mat& rgb) {
 }
 
 TEST_F(Drawing, a_thing_is_seen_where_the_camera_projects_it) {
-  const auto plate = renderer->add(make_rectangle(0.4F, 0.3F), plain({255, 255, 255}));
+  const auto panel = renderer->add(make_rectangle(0.4F, 0.3F), plain({255, 255, 255}));
   for (const Eigen::Vector3d& p :
        {Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(0.5, -0.3, 2.5), Eigen::Vector3d(-0.6, 0.4, 3)}) {
-    const auto found = lit(draw({at(plate, float(p.x()), float(p.y()), float(p.z()))}));
+    const auto found = lit(draw({at(panel, float(p.x()), float(p.y()), float(p.z()))}));
     const auto expected = camera.project(p);
     EXPECT_NEAR(found[0], expected.x(), 0.5) << p;  // pixels are whole
     EXPECT_NEAR(found[1], expected.y(), 0.5) << p;
@@ -60,12 +60,12 @@ TEST_F(Drawing, a_thing_is_seen_where_the_camera_projects_it) {
 
 TEST_F(Drawing, its_depth_is_metric) {
   const auto wall = renderer->add(make_rectangle(50, 50), plain({255, 255, 255}));
-  const auto plate = renderer->add(make_rectangle(0.2F, 0.2F), plain({255, 0, 0}));
+  const auto panel = renderer->add(make_rectangle(0.2F, 0.2F), plain({255, 0, 0}));
   cv::Mat depth;
-  draw({at(wall, 0, 0, 8), at(plate, 0, 0, 1.5F)}, &depth);
+  draw({at(wall, 0, 0, 8), at(panel, 0, 0, 1.5F)}, &depth);
   EXPECT_NEAR(depth.at<float>(111, 150), 1.5, 1e-4);
   EXPECT_NEAR(depth.at<float>(10, 10), 8, 1e-3);
-  draw({at(plate, 0, 0, 1.5F)}, &depth);
+  draw({at(panel, 0, 0, 1.5F)}, &depth);
   EXPECT_EQ(depth.at<float>(10, 10), 0);  // nothing there
 }
 

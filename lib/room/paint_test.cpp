@@ -10,7 +10,7 @@ namespace hc::room {
 
 namespace {
 
-TEST(Paint, a_plate_is_found_by_who_looks_for_it) {
+TEST(Paint, a_tag_is_found_by_its_detector) {
   for (const auto& [name, id] : {std::pair("aruco", 23), std::pair("aruco", 40)}) {
     cv::Mat image, around(400, 400, CV_8UC3, cv::Scalar::all(255));
     cv::resize(paint_tag(name, id), image, {200, 200}, 0, 0, cv::INTER_NEAREST);

@@ -83,7 +83,7 @@ TEST_F(Room, the_screen_hides_the_ball_as_its_truth_says) {
   }
 }
 
-TEST_F(Room, every_plate_is_seen_from_the_neck) {
+TEST_F(Room, every_marker_is_seen_from_the_neck) {
   ASSERT_EQ(world->markers().size(), 7U);
   for (const auto& marker : world->markers()) {
     const Eigen::Vector3d p = marker.T_world_marker.translation();

@@ -99,7 +99,7 @@ TEST_F(Device, none_is_an_error_that_says_so) {
   EXPECT_TRUE(Playback::open("", {16000, 1}));
 }
 
-TEST_F(Device, one_that_is_missing_is_told_by_its_error_alone) {
+TEST_F(Device, one_that_is_missing_is_reported_by_its_error_alone) {
   testing::internal::CaptureStderr();
   ::setenv("SDL_AUDIODRIVER", "alsa", 1);
   EXPECT_FALSE(Playback::open("no such device", {16000, 1}));
@@ -107,7 +107,7 @@ TEST_F(Device, one_that_is_missing_is_told_by_its_error_alone) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(FrameClock, counts_frames_and_begins_anew_after_a_gap) {
+TEST(FrameClock, counts_frames_and_starts_over_after_a_gap) {
   FrameClock clock(16000);
   constexpr std::int64_t kStart = 1'763'683'200'000'000'000, kPiece = 20'000'000;
   EXPECT_EQ(clock.stamp(320, kStart), kStart - kPiece);

@@ -90,7 +90,7 @@ TEST_F(Wav, the_header_is_as_specified) {
   EXPECT_EQ(bytes, riff(format(1, 1, 8000, 16) + chunk("data", "\x02\x01")));
 }
 
-TEST_F(Wav, a_file_of_the_same_format_is_gone_on_with) {
+TEST_F(Wav, a_file_of_the_same_format_is_appended_to) {
   const std::vector<std::int16_t> some = {1, 2, 3, 4};
   auto write = [&](const Format& format) {
     auto writer = WavWriter::append(path, format);
@@ -108,7 +108,7 @@ TEST_F(Wav, a_file_of_the_same_format_is_gone_on_with) {
   EXPECT_EQ(WavReader::open(path)->format(), (Format{16000, 1}));
 }
 
-TEST_F(Wav, a_file_whose_writer_was_killed_is_mended_and_gone_on_with) {
+TEST_F(Wav, a_file_whose_writer_was_killed_is_repaired_and_appended_to) {
   const std::vector<std::int16_t> some = {1, 2, 3, 4};
   const std::string begin = format(1, 2, 8000, 16) + "data";
   const auto riff_size = [&](std::uint32_t bytes) { return "RIFF" + le(36 + bytes, 4) + "WAVE"; };
@@ -129,7 +129,7 @@ TEST_F(Wav, a_file_whose_writer_was_killed_is_mended_and_gone_on_with) {
   }
 }
 
-TEST_F(Wav, what_is_no_such_file_is_begun_anew) {
+TEST_F(Wav, what_is_no_such_file_is_begun_again) {
   const std::vector<std::int16_t> some = {1, 2, 3, 4};
   for (const std::string& bytes : {
            std::string(),
@@ -188,7 +188,7 @@ TEST_F(Wav, refuses_what_is_none) {
   EXPECT_EQ(why_not("RIFX" + riff("").substr(4)), "no WAV file");
   EXPECT_EQ(why_not(riff("")), "has no samples");
   EXPECT_EQ(why_not(riff(format(1, 1, 8000, 16))), "has no samples");
-  EXPECT_EQ(why_not(riff(chunk("data", "abcd"))), "samples stand before their format");
+  EXPECT_EQ(why_not(riff(chunk("data", "abcd"))), "samples before their format");
   EXPECT_EQ(why_not(riff("LIST" + le(0xFFFFFFFF, 4))), "a part is larger than the file");
   EXPECT_EQ(why_not(riff(chunk("fmt ", "short") + chunk("data", ""))), "its format is cut");
   EXPECT_EQ(why_not(riff(format(1, 0, 8000, 16) + chunk("data", ""))), "0 channels, not 1 to 8");

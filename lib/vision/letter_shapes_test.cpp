@@ -25,7 +25,7 @@ Reading reading(const std::string& text, double confidence = 99, bool is_known =
   return reading;
 }
 
-TEST(Shapes, tell_what_looks_alike_apart) {
+TEST(Shapes, distinguish_what_looks_alike_apart) {
   const std::string text = "0O 5S I1 9Q", wrong = "O0 S5 1I Q9";
   for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
     for (int stroke : {5, 6})
@@ -36,7 +36,7 @@ TEST(Shapes, tell_what_looks_alike_apart) {
       }
 }
 
-TEST(Shapes, tell_by_its_holes_what_was_taken_for_a_letter_without) {
+TEST(Shapes, distinguish_by_its_holes_what_was_taken_for_a_letter_without) {
   for (int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_DUPLEX})
     for (double blur : {0.0, 1.0, 1.5}) {
       EXPECT_EQ(

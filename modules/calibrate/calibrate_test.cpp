@@ -105,7 +105,7 @@ TEST(Calibrate, finds_how_the_eyes_sit_and_which_is_the_left) {
   }
 }
 
-TEST(Calibrate, a_stand_that_shows_little_is_left_out) {
+TEST(Calibrate, a_pose_that_shows_little_is_dropped) {
   const Crooked head;
   auto views = head.views(false);
   views[4].second.setTo(0);

@@ -73,7 +73,7 @@ TEST(LiveCameras, gives_pairs_of_the_same_time_and_says_nothing) {
   EXPECT_TRUE(take_until(cameras, pair()).empty());
 }
 
-TEST(LiveCameras, one_that_is_lost_is_told_once_and_once_when_it_is_back) {
+TEST(LiveCameras, one_that_is_lost_is_reported_once_and_once_when_it_is_back) {
   Plug plug;
   LiveCameras cameras({camera("eye", plug)}, true, {});
   auto any = [](const LiveCameras::Taken& taken) { return taken.left.has_value(); };
@@ -92,7 +92,7 @@ TEST(LiveCameras, one_that_is_lost_is_told_once_and_once_when_it_is_back) {
   take_until(cameras, any);
 }
 
-TEST(LiveCameras, the_other_one_goes_on_alone) {
+TEST(LiveCameras, the_other_one_continues_alone) {
   Plug left, right;
   LiveCameras cameras({camera("left", left), camera("right", right)}, true, {});
   take_until(cameras, pair());
@@ -157,7 +157,7 @@ TEST(Thinning, keeps_a_rate_and_holds_nothing_back) {
   EXPECT_TRUE(thinning.takes(5'000'000'000, 10));  // by a clock that was set back
 }
 
-TEST(LiveCameras, what_it_does_otherwise_is_told_once) {
+TEST(LiveCameras, what_differs_is_reported_once) {
   Plug plug;
   plug.is_small = true;
   LiveCameras cameras({camera("eye", plug)}, true, {});
@@ -177,7 +177,7 @@ TEST(LiveCameras, is_set_to_its_own_choice_from_the_beginning) {
   EXPECT_EQ(plug.adjusted, 1);
 }
 
-TEST(LiveCameras, what_cannot_be_set_is_told_and_images_go_on) {
+TEST(LiveCameras, what_cannot_be_set_is_reported_and_images_continue) {
   Plug plug;
   LiveCameras cameras({camera("eye", plug)}, true, {0, 11});
   auto adjusted = [&](const auto&) { return plug.adjusted > 0; };

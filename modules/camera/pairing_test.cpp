@@ -52,7 +52,7 @@ TEST(Pairing, an_image_that_is_missing_costs_one_pair) {
   EXPECT_EQ(pairs, (Pairs{{20, 20}, {40, 40}, {80, 80}, {100, 100}, {120, 120}}));
 }
 
-TEST(Pairing, a_clock_that_goes_back_begins_anew) {
+TEST(Pairing, a_clock_that_goes_back_starts_over) {
   EXPECT_EQ(pairs_of({}, {}), Pairs{});
   Pairing pairing;
   pairing.add(0, {{}, 100 * kMs});

@@ -39,7 +39,7 @@ TEST(V4l2, refuses_a_format_that_is_no_fourcc) {
   EXPECT_EQ(settings_to_open({0, 0, 0, "BayerRG8"}).error().code, hc::Code::Unsupported);
 }
 
-TEST(V4l2, an_exposure_and_a_gain_are_set_and_refusals_told) {
+TEST(V4l2, an_exposure_and_a_gain_are_set_and_refusals_reported) {
   const auto settings = settings_of({0.02, 5}, {100, 1});
   EXPECT_EQ(pairs(settings), (Pairs{{cv::CAP_PROP_AUTO_EXPOSURE, 1},
                                     {cv::CAP_PROP_EXPOSURE, 200},
@@ -60,7 +60,7 @@ TEST(V4l2, its_own_choice_is_automatic_or_what_it_was) {
             (Pairs{{cv::CAP_PROP_AUTO_EXPOSURE, 0}, {cv::CAP_PROP_AUTO_EXPOSURE, 3}}));
 }
 
-TEST(V4l2, what_it_gives_otherwise_is_told) {
+TEST(V4l2, what_differs_is_reported) {
   const CaptureMode mode{800, 600, 30, "MJPG"};
   const double mjpg = cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
   EXPECT_EQ(difference(mode, 800, 600, mjpg), "");

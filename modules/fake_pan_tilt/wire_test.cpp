@@ -55,7 +55,7 @@ TEST(Wire, carries_so_many_bytes_a_second) {
 
 TEST(Wire, spoils_its_share_the_same_with_the_same_seed) {
   const std::string all(100'000, 'x');
-  auto spoilt = [&](std::uint64_t seed, double share) {
+  auto corrupted = [&](std::uint64_t seed, double share) {
     Wire wire(seed);
     std::string taken;
     for (int i = 0; i < 10; ++i) {
@@ -64,13 +64,13 @@ TEST(Wire, spoils_its_share_the_same_with_the_same_seed) {
     }
     return taken;
   };
-  const auto some = spoilt(3, 0.1);
+  const auto some = corrupted(3, 0.1);
   const auto left = std::count(some.begin(), some.end(), 'x');
   EXPECT_NEAR(static_cast<double>(left), 90'000, 500);  // five standard deviations
-  EXPECT_EQ(some, spoilt(3, 0.1));
-  EXPECT_NE(some, spoilt(4, 0.1));
-  EXPECT_EQ(spoilt(3, 0), all);
-  EXPECT_EQ(spoilt(3, 1).find('x'), std::string::npos);
+  EXPECT_EQ(some, corrupted(3, 0.1));
+  EXPECT_NE(some, corrupted(4, 0.1));
+  EXPECT_EQ(corrupted(3, 0), all);
+  EXPECT_EQ(corrupted(3, 1).find('x'), std::string::npos);
 }
 
 TEST(Wire, holds_no_more_than_it_may) {

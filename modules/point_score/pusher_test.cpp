@@ -45,7 +45,7 @@ TEST(Pusher, finds_when_a_head_begins_to_move) {
   }
 }
 
-TEST(Pusher, tells_of_pushes_without_effect) {
+TEST(Pusher, reports_pushes_without_effect) {
   Pusher::Options options;
   options.count = 3;
   const auto pusher = play(options, 1e9);

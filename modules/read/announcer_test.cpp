@@ -72,7 +72,7 @@ TEST(Announcer, a_clock_that_went_back_does_not_silence_it) {
   EXPECT_TRUE(announcer.take("A", 1, 5 * kSecond, {0, 1, 10}));
 }
 
-TEST(Announcer, says_anew_what_was_not_heard_when_it_is_heard) {
+TEST(Announcer, repeats_what_was_not_heard_when_it_is_heard) {
   Announcer announcer;
   const Announcer::Rules rules{0, 1, 10};
   EXPECT_TRUE(announcer.take("A", 1, 1 * kSecond, rules, false));

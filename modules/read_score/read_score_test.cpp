@@ -31,7 +31,7 @@ TEST(RandomText, is_a_word_or_two_of_letters_and_digits) {
   EXPECT_EQ(*lengths.begin(), 5);
 }
 
-TEST(RandomText, a_seed_gives_the_same_anew) {
+TEST(RandomText, a_seed_gives_the_same_again) {
   std::mt19937_64 random(7), again(7), other(8);
   const auto text = random_text(random);
   EXPECT_EQ(text, random_text(again));

@@ -24,7 +24,7 @@ TEST(Schedule, has_pair_n_at_n_periods_from_the_start) {
   EXPECT_DOUBLE_EQ(schedule.seconds(), 0.1);
 }
 
-TEST(Schedule, tells_the_first_pair_of_each_second) {
+TEST(Schedule, reports_the_first_pair_of_each_second) {
   for (const auto& [rate, expected] : {std::pair{3.0, 4}, {0.1, 10}, {1.4, 10}, {20.0, 1}}) {
     Schedule schedule(kStart, rate);
     int first = 0;
@@ -54,7 +54,7 @@ TEST(Schedule, waits_for_its_time_and_for_the_gaze) {
   EXPECT_FALSE(schedule.is_due(kStart, true));
 }
 
-TEST(Schedule, a_second_begins_though_its_first_pair_is_left_out) {
+TEST(Schedule, a_second_begins_though_its_first_pair_is_dropped) {
   Schedule schedule(kStart, 10);
   schedule.next();
   EXPECT_FALSE(schedule.begins_second());

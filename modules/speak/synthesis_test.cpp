@@ -91,7 +91,7 @@ TEST_F(SynthesisTest, says_which_voice_there_is_not) {
     ASSERT_FALSE(said) << name;
     EXPECT_EQ(said.error().code, hc::Code::NotFound);
   }
-  EXPECT_FALSE(say("one").samples.empty());  // and goes on
+  EXPECT_FALSE(say("one").samples.empty());  // and continues
 }
 
 TEST_F(SynthesisTest, markup_is_text) {

@@ -28,7 +28,7 @@ class PlayerTest : public testing::Test {
   ~PlayerTest() override { std::filesystem::remove_all(folder); }
 
   Player player(PlayerOptions options) {
-    return {std::move(options), [this](std::string_view line) { told.emplace_back(line); }, -1};
+    return {std::move(options), [this](std::string_view line) { log.emplace_back(line); }, -1};
   }
   [[nodiscard]] std::vector<std::int16_t> written(const Format& format) const {
     auto reader = hc::audio::WavReader::open(wav);
@@ -43,7 +43,7 @@ class PlayerTest : public testing::Test {
   }
   std::filesystem::path folder;
   std::string wav, raw;
-  std::vector<std::string> told;
+  std::vector<std::string> log;
 };
 
 const std::vector<std::int16_t> kSome = {1, 2, 3, 4, 5, 6};
@@ -58,7 +58,7 @@ TEST_F(PlayerTest, writes_a_file_that_is_whole_at_once) {
   EXPECT_EQ(to_file.dropped(), 0);
 }
 
-TEST_F(PlayerTest, one_that_is_started_again_goes_on_with_its_file) {
+TEST_F(PlayerTest, one_that_is_started_again_continues_with_its_file) {
   for (std::size_t i = 1; i <= 3; ++i) {
     auto to_file = player({.plays = false, .device = "", .file = wav});
     ASSERT_TRUE(to_file.play<std::int16_t>(kSome, {8000, 2}));
@@ -96,7 +96,7 @@ TEST_F(PlayerTest, what_is_played_plays_and_written) {
   const std::string sent(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
   EXPECT_NE(bytes.find(sent + sent), std::string::npos);
   EXPECT_EQ(written({16000, 1}).size(), 8000);
-  EXPECT_TRUE(told.empty());
+  EXPECT_TRUE(log.empty());
 }
 
 TEST_F(PlayerTest, drops_and_counts_while_there_is_no_device) {
@@ -105,11 +105,11 @@ TEST_F(PlayerTest, drops_and_counts_while_there_is_no_device) {
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(both.play<std::int16_t>(kSome, {16000, 1}));
   EXPECT_EQ(both.dropped(), 3);
   EXPECT_EQ(written({16000, 1}).size(), 18);  // what is not heard is written all the same
-  ASSERT_EQ(told.size(), 1);
-  EXPECT_TRUE(told[0].ends_with("; dropping sound")) << told[0];
+  ASSERT_EQ(log.size(), 1);
+  EXPECT_TRUE(log[0].ends_with("; dropping sound")) << log[0];
   ::setenv("SDL_AUDIODRIVER", "disk", 1);
-  while (told.size() == 1) both.look();
-  EXPECT_EQ(told[1], "loudspeaker connected; dropped 3 messages");
+  while (log.size() == 1) both.look();
+  EXPECT_EQ(log[1], "loudspeaker connected; dropped 3 messages");
   ASSERT_TRUE(both.play<std::int16_t>(kSome, {16000, 1}));
   ASSERT_TRUE(both.finish());
   EXPECT_EQ(both.dropped(), 3);

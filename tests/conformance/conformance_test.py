@@ -66,7 +66,7 @@ def python(*words, data=b""):
     return run(sys.executable, str(HERE / "mtp1.py"), *words, data=data)
 
 
-class Told:
+class Report:
     """What a reader makes of a stream: JSON lines, and how it refuses what follows them."""
 
     def __init__(self, text, refusal, reason=""):
@@ -83,27 +83,27 @@ def flat(item):
     return [number for each in item for number in flat(each)] if isinstance(item, list) else [item]
 
 
-def told_by_hc(data):
+def reported_by_hc(data):
     shown = hc("cat", "--json", data=data)
     text, error = shown.stdout.decode(), shown.stderr.decode().strip()
     if shown.returncode == 0:
-        return Told(text, {}, error)
+        return Report(text, {}, error)
     found = REFUSED.search(error)
     if shown.returncode != 1 or "\n" in error or not found:
-        return Told(text, None, error)
+        return Report(text, None, error)
     refusal = {"rule": found[1], "field": found[2], "byte": int(found[3])}
     refusal["messages"] = text.count("\n")
-    return Told(text, refusal, error)
+    return Report(text, refusal, error)
 
 
-def told_by_python(data):
+def reported_by_python(data):
     lines = []
     try:
         for message in mtp1.read(data):
             lines.append(mtp1.to_json(message) + "\n")
     except mtp1.Refused as refused:
-        return Told("".join(lines), refused.told(), refused.reason)
-    return Told("".join(lines), {})
+        return Report("".join(lines), refused.reported(), refused.reason)
+    return Report("".join(lines), {})
 
 
 def wanted(path):
@@ -127,8 +127,8 @@ class Pieces:
 def npy(scalar, shape, data):
     """A NumPy file."""
     letters = ("<" if scalar[1:] != "8" else "|") + scalar[0] + str(int(scalar[1:]) // 8)
-    told = "{'descr': '%s', 'fortran_order': False, 'shape': %s, }" % (letters, shape)
-    return b"\x93NUMPY\1\0" + struct.pack("<H", len(told)) + told.encode() + data
+    given = "{'descr': '%s', 'fortran_order': False, 'shape': %s, }" % (letters, shape)
+    return b"\x93NUMPY\1\0" + struct.pack("<H", len(given)) + given.encode() + data
 
 
 def send(header, data, *words):
@@ -187,17 +187,17 @@ class Vectors(unittest.TestCase):
 
     def test_both_read_valid(self):
         for path in VALID:
-            for told in (told_by_hc, told_by_python):
-                with self.subTest(path.name, reader=told.__name__):
-                    read = told(path.read_bytes())
+            for given in (reported_by_hc, reported_by_python):
+                with self.subTest(path.name, reader=given.__name__):
+                    read = given(path.read_bytes())
                     self.assertEqual((read.text, read.refusal), wanted(path))
                     self.assertEqual(read.reason, "")
 
     def test_both_refuse_invalid(self):
         for path in INVALID:
-            for told in (told_by_hc, told_by_python):
-                with self.subTest(path.name, reader=told.__name__):
-                    read = told(path.read_bytes())
+            for given in (reported_by_hc, reported_by_python):
+                with self.subTest(path.name, reader=given.__name__):
+                    read = given(path.read_bytes())
                     self.assertEqual(read.refusal, wanted(path), read.reason)
 
     def test_valid_is_canonical_unless_loose(self):
@@ -222,7 +222,7 @@ class Vectors(unittest.TestCase):
         for path in VALID + INVALID:
             with self.subTest(path.name):
                 data = path.read_bytes()
-                self.assertEqual(told_by_python(Pieces(data, rng)), told_by_python(data))
+                self.assertEqual(reported_by_python(Pieces(data, rng)), reported_by_python(data))
 
     def test_command_line(self):
         path = ROOT / "spec/vectors/valid/stream_mixed.mtp"
@@ -243,7 +243,7 @@ class RandomMessages(unittest.TestCase):
             with self.subTest(seed):
                 data = b"".join(mtp1.random_stream(seed, COUNT))
                 self.assertTrue(hc("cat", "--raw", data=data).stdout == data)
-                self.assertTrue(told_by_hc(data) == told_by_python(data))
+                self.assertTrue(reported_by_hc(data) == reported_by_python(data))
 
     def test_both_read_loose_spellings_alike(self):
         for seed in SEEDS:
@@ -300,7 +300,7 @@ class RandomMessages(unittest.TestCase):
 
         Returns the refusal of mtp1.py.
         """
-        shown, read = told_by_hc(data), told_by_python(data)
+        shown, read = reported_by_hc(data), reported_by_python(data)
         refusal = read.refusal
         if LET_PASS.search(read.reason) and len(shown.text) > len(read.text):
             self.assertTrue(shown.text.startswith(read.text))

@@ -344,7 +344,7 @@ def refusal(stream, expand):
         for _ in read(stream, expand=expand):
             pass
     except Refused as refused:
-        return json.dumps(refused.told(), separators=(",", ":"))
+        return json.dumps(refused.reported(), separators=(",", ":"))
     return "{}"
 
 
@@ -372,17 +372,17 @@ def parse(arguments):
 
 def main(arguments):
     """Runs a command line; returns the exit status."""
-    told = parse(arguments)
+    given = parse(arguments)
     output = sys.stdout.buffer
     try:
-        if told.verb == "random":
-            output.writelines(random_stream(told.seed, told.count, told.loose))
+        if given.verb == "random":
+            output.writelines(random_stream(given.seed, given.count, given.loose))
             return 0
-        with sys.stdin.buffer if told.file == "-" else open(told.file, "rb") as stream:
-            if told.verb == "refusal":
-                output.write(refusal(stream, not told.basic).encode() + b"\n")
+        with sys.stdin.buffer if given.file == "-" else open(given.file, "rb") as stream:
+            if given.verb == "refusal":
+                output.write(refusal(stream, not given.basic).encode() + b"\n")
             else:
-                show_messages(told.verb, stream, not told.basic, output)
+                show_messages(given.verb, stream, not given.basic, output)
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 1

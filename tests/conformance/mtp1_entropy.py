@@ -83,7 +83,7 @@ def read_chances(source, max_accuracy):
             chance, used = (chance - spare if chance >= 1 << bits - 1 else chance), used + bits
         chances.append(chance - 1)
         left -= abs(chance - 1)
-        if chance == 1:  # a zero: two bits say how many more, three that it goes on
+        if chance == 1:  # a zero: two bits say how many more, three that it continues
             again = 3
             while again == 3:
                 again = value >> used & 3

@@ -60,7 +60,7 @@ class Refused(Exception):
         self.rule, self.field, self.byte, self.reason = rule, field, byte, reason
         self.messages = 0
 
-    def told(self):
+    def reported(self):
         """What the twin of a vector says (section 8)."""
         return {name: getattr(self, name) for name in ("rule", "field", "byte", "messages")}
 

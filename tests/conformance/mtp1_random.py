@@ -155,8 +155,8 @@ def random_frame(rng, data):
         window = (1 << 10 + log) * (8 + eighths) // 8
         frame += bytes([log << 3 | eighths])
     frame += bytes((0, 1, 2, 4)[dictionary])  # dictionary 0 is none
-    told = size - 256 if flag == 1 else size
-    frame += told.to_bytes(8, "little")[: (is_single, 2, 4, 8)[flag]]
+    given = size - 256 if flag == 1 else size
+    frame += given.to_bytes(8, "little")[: (is_single, 2, 4, 8)[flag]]
     frame += random_blocks(rng, data, min(window, MOST_BLOCK))
     return frame + (xxh64(data) & 0xFFFFFFFF).to_bytes(4, "little") * has_checksum
 

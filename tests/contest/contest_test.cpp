@@ -67,7 +67,7 @@ class Running {
   std::thread thread_;
 };
 
-/// Where a thread is held up until another lets it go on.
+/// Where a thread is held up until another lets it continue.
 class Gate {
  public:
   void pass() {
@@ -156,7 +156,7 @@ class Contest {
         "--expiry=" + in_seconds(options_.expiry),
         "--person_expiry=" + in_seconds(options_.person_expiry), "--control=" + uri("control"),
         "--in=person=" + uri("person"),
-        // In this order: what the test has been told of has reached the actor.
+        // In this order: what the test has learned of has reached the actor.
         "--out=focus=" + uri("focus-actor?keep=latest"), "--out=focus=" + uri("focus-test")};
     for (std::size_t i = 0; i < bids_.size(); ++i) {
       const std::string name = "bids-" + std::to_string(i);
@@ -199,7 +199,7 @@ class Contest {
       offered_.push_back(mode);
       hc::Message message = hc::table({0.0});
       message.header.mode = mode;
-      message.header.time = static_cast<std::int64_t>(offered_.size());  // the actor tells it too
+      message.header.time = static_cast<std::int64_t>(offered_.size());  // the actor reports it too
       if (last_holds && mode == modes.back())
         message = at_last(std::move(message), [this] { gate_.pass(); });
       EXPECT_TRUE(command_->send(message));
@@ -210,14 +210,14 @@ class Contest {
     due_ += kPeriod;
     clock_.advance(due_ - clock_.monotonic());
     EXPECT_TRUE(control_->send(hc::make_rows(std::vector<std::string>{""})));  // wakes it
-    hc::Message told;
-    ASSERT_TRUE(*hc::receive(*told_, told));
-    focus_ = told.view<std::int32_t>()->at(0, 0);
+    hc::Message got;
+    ASSERT_TRUE(*hc::receive(*reported_, got));
+    focus_ = got.view<std::int32_t>()->at(0, 0);
     rules_.decided(focus_, clock_.monotonic());
   }
 
   /// Of the commands that were offered before the last decision and behind it, the actor has
-  /// handled those of the mode that the workspace told of, in their order, and no others.
+  /// handled those of the mode that the workspace granted, in their order, and no others.
   void check_actor() {
     std::vector<std::size_t> in_focus, handled;
     for (; checked_ < offered_.size(); ++checked_)
@@ -236,7 +236,7 @@ class Contest {
   FocusRules rules_;
   hc::ManualClock clock_;
   hc::MonotonicTime due_;              // of the last decision
-  std::int32_t focus_ = 0;             // as the workspace told
+  std::int32_t focus_ = 0;             // of the workspace
   std::vector<std::int32_t> offered_;  // modes of the commands, by their numbers
   std::size_t checked_ = 0;            // of these
   Gate gate_;
@@ -244,7 +244,7 @@ class Contest {
   std::array<std::unique_ptr<hc::Sink>, kModes> bids_;
   std::unique_ptr<hc::Sink> person_ = sink_of("person"), command_ = sink_of("command"),
                             control_ = sink_of("control");
-  std::unique_ptr<hc::Source> told_ = source_of("focus-test"), done_ = source_of("done");
+  std::unique_ptr<hc::Source> reported_ = source_of("focus-test"), done_ = source_of("done");
   std::optional<Running> workspace_, actor_;
 };
 

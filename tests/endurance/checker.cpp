@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A consumer for the tests of endurance: notes each message in a file, and fails where told to.
+// A consumer for the tests of endurance: notes each message in a file, and fails where set to.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   auto fails = module.parameter("fails", false, "", "end with status 1 at once");
   hc::internal::Descriptor file;
   module.on_start([&] {
-    if (*fails) throw hc::ModuleError("fails, as it was told to");
+    if (*fails) throw hc::ModuleError("fails, as it was set to");
     file = hc::internal::Descriptor(
         ::open(log->c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
     if (!file) throw hc::ModuleError(*log + ": cannot be opened");

@@ -17,7 +17,7 @@ if os.environ.pop("HC_ALONE", None) is None and shutil.which("unshare"):
         os.environ["HC_ALONE"] = "1"
         os.execvp(ALONE[0], [*ALONE, sys.executable, *sys.argv])
 
-from endurance import Endurance, IS_FULL, processes_of, ring, tell  # noqa: E402
+from endurance import Endurance, IS_FULL, processes_of, ring, report  # noqa: E402
 from harness import wait_until  # noqa: E402
 
 COUNT, CYCLES = 10, 1000 if IS_FULL else 20
@@ -68,7 +68,7 @@ class Cycles(Endurance):
             process.communicate()
         after = sockets(), shared_memory(), holdings(os.getpid())[:2]
         self.assertEqual((before[0], before[2]), (after[0], after[2]))
-        tell(
+        report(
             "%d graphs of %d modules, %.0f ms each: %d sockets before, %d after; shared memory of "
             "the machine %+.1f MB",
             *(CYCLES, COUNT, (time.monotonic() - begun) / CYCLES * 1e3, before[0], after[0]),
@@ -85,12 +85,12 @@ class Cycles(Endurance):
                 before, memory = self.settled(counted), holdings(process.pid)[2]
             pids = {each["name"]: each["pid"] for each in state["modules"]}
             self.assertEqual(self.ask(process, *("restart " + name for name in NAMES)), ["ok"])
-            is_anew = lambda state: self.is_running(state) and all(
+            is_again = lambda state: self.is_running(state) and all(
                 each["pid"] not in (0, pids[each["name"]]) for each in state["modules"]
             )
-            state = self.state(observed, is_anew)
+            state = self.state(observed, is_again)
         wait_until(lambda: counted() == before)
-        tell(
+        report(
             "%d restarts of %d modules in one graph: hc run has %d descriptors and %d threads, with "
             "%d sockets and %d processes in all, as before; its own memory %d kB before, %d after",
             *(CYCLES, COUNT, *before, memory, holdings(process.pid)[2]),

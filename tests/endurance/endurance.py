@@ -52,7 +52,7 @@ def ring(names):
     return "".join(modules + links) + "rate = 30\n"  # a loop has a rate somewhere (hc check)
 
 
-def tell(text, *values):
+def report(text, *values):
     """One figure, with how busy the machine was."""
     print("%s  (load %.1f)" % (text % values, os.getloadavg()[0]), flush=True)
 

@@ -7,7 +7,7 @@ import signal
 import time
 import unittest
 
-from endurance import CHECKER, Endurance, IMAGES, IS_FULL, processor_time, quantile, tell
+from endurance import CHECKER, Endurance, IMAGES, IS_FULL, processor_time, quantile, report
 
 PERIOD = 10 if IS_FULL else 1  # [s]
 STOPS = 10 if IS_FULL else 1  # of each module
@@ -50,7 +50,7 @@ class Failing(Endurance):
                 self.assertEqual((module["status"], module["restarts"]), ("running", 0), module)
         cpu = [(b - a) / (d - c) for a, b, c, d in zip(used, used[1:], moments, moments[1:])]
         rates = [self.rates(*pair) for pair in zip(moments, moments[1:])]
-        tell(
+        report(
             "hc run %.2f %% before, %.2f %% with a module that fails at once; others %.1f and "
             "%.1f/s before, %.1f and %.1f/s then",
             *(100 * cpu[0], 100 * cpu[1], *rates[0], *rates[1]),
@@ -82,7 +82,7 @@ class Failing(Endurance):
         self.state(self.observed(process), self.is_running)
         self.halt(process)
         self.check_noted("near", "far")
-        tell(
+        report(
             "stopped %d times: shown as stalled after %.2f s, %.2f at most",
             *(len(took), quantile(took, 0.5), max(took)),
         )

@@ -6,7 +6,7 @@ import resource
 import time
 import unittest
 
-from endurance import Endurance, IS_FULL, memory, processes_of, processor_time, ring, tell
+from endurance import Endurance, IS_FULL, memory, processes_of, processor_time, ring, report
 
 COUNT = 200 if IS_FULL else 20
 RING = ring(["relay_%d" % i for i in range(COUNT)])
@@ -32,21 +32,21 @@ class Many(Endurance):
         with self.observing(process) as observed:
             self.state(observed, self.is_running)
             took = time.monotonic() - begun
-            tell("%d modules run after %.2f s", COUNT, took)
+            report("%d modules run after %.2f s", COUNT, took)
             self.limit(took, 5, "start")
             seen = self.cost(process)
         alone = self.cost(process)
         for what, (runner, module) in (("watched", seen), ("not watched", alone)):
-            tell("%s: hc run %.2f %%, a module %.3f %%", what, 100 * runner, 100 * module)
+            report("%s: hc run %.2f %%, a module %.3f %%", what, 100 * runner, 100 * module)
             self.limit(module, 0.001, what)
         modules = [each for each in processes_of(process.pid) if each != process.pid]
-        tell(
+        report(
             "memory: hc run %.1f MB, a module with its guard %.2f MB",
             memory(process.pid) / 1e6,
             sum(map(memory, modules)) / COUNT / 1e6,
         )
         took = self.halt(process)
-        tell("all ended after %.2f s", took)
+        report("all ended after %.2f s", took)
         self.assertEqual(processes_of(process.pid), [])
 
     def test_as_many_descriptors_as_a_login_shell_allows_are_enough(self):

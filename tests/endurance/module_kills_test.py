@@ -7,7 +7,7 @@ import signal
 import time
 import unittest
 
-from endurance import Endurance, IMAGES, IS_FULL, quantile, tell
+from endurance import Endurance, IMAGES, IS_FULL, quantile, report
 
 KILLS = 100 if IS_FULL else 2  # of each module
 BETWEEN = 2.6  # of the same module: five starts within 10 s are not put off (G40) [s]
@@ -45,7 +45,7 @@ class ModuleKills(Endurance):
         self.halt(process)
         self.check_noted("near", "far")
         for name in names:
-            tell(
+            report(
                 "%s killed %d times: runs again after %.0f ms (at most %.0f); then the next "
                 "message at each consumer within %.0f ms p99, %.0f at most; from the kill %.0f, %.0f",
                 *(name, KILLS, 1e3 * quantile(ready[name], 0.5), 1e3 * max(ready[name])),
@@ -55,7 +55,7 @@ class ModuleKills(Endurance):
         for other, name in (("far", "near"), ("near", "far")):
             times = [each[0] for each in self.noted(name)]
             gaps = [b - a for a, b in zip(times, times[1:])]
-            tell("%s: %d messages, longest gap %.0f ms", name, len(times), 1e3 * max(gaps))
+            report("%s: %d messages, longest gap %.0f ms", name, len(times), 1e3 * max(gaps))
         for name in names:
             self.limit(quantile(first[name], 0.99), 0.25, name)
             self.limit(max(first[name]), 1, name)

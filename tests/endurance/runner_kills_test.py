@@ -7,7 +7,7 @@ import signal
 import time
 import unittest
 
-from endurance import Endurance, IMAGES, IS_FULL, processes_of, quantile, tell
+from endurance import Endurance, IMAGES, IS_FULL, processes_of, quantile, report
 from harness import wait_until
 
 KILLS = 50 if IS_FULL else 3
@@ -31,7 +31,7 @@ class RunnerKills(Endurance):
             ended.append(time.monotonic() - killed)
             process.wait()
         self.check_noted("near", "far")
-        tell(
+        report(
             "hc run killed %d times: all gone after %.0f ms, %.0f at most; the next graph's first "
             "messages after %.0f ms, %.0f at most",
             *(KILLS, 1e3 * quantile(ended, 0.5), 1e3 * max(ended)),

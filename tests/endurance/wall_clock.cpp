@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For LD_PRELOAD: the wall clock is off by as many seconds as the file $WALL_CLOCK says now. The
-// kernel goes on by its own, so who waits for a moment of this clock waits wrongly, and is found.
+// kernel continues by its own, so who waits for a moment of this clock waits wrongly, and is found.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/time.h>

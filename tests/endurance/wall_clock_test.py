@@ -6,7 +6,7 @@ import pathlib
 import time
 import unittest
 
-from endurance import BUILD, CHECKER, Endurance, IMAGES, IS_FULL, tell
+from endurance import BUILD, CHECKER, Endurance, IMAGES, IS_FULL, report
 
 HOUR = 3600
 PERIOD = 5 if IS_FULL else 0.5  # between two steps [s]
@@ -45,7 +45,7 @@ class WallClock(Endurance):
         """How far from now the last message was stamped [s]."""
         return int(self.lines(name)[-1][3]) / 1e9 - time.time()
 
-    def test_a_graph_goes_on_whatever_the_clock_says(self):
+    def test_a_graph_continues_whatever_the_clock_says(self):
         process = self.begin(GRAPH)
         observed = self.observed(process)
         ready = lambda state: self.is_running({"modules": state["modules"][:4]})
@@ -73,7 +73,7 @@ class WallClock(Endurance):
         self.halt(process)
         self.check_noted("near", "far")
         self.assertNotIn("stalled", self.said())
-        tell(
+        report(
             "steps of %s s: messages a second %s; uptime %.2f s after %.2f s; %d restarts of one "
             "that fails, %s",
             ", ".join("%+d" % seconds for seconds in self.steps()),
@@ -110,7 +110,7 @@ class WallClock(Endurance):
                 self.step(steps[number * 5 // count + 1])
         self.assertEqual(process.wait(), 0)
         earliest, latest = 1e3 * min(late), 1e3 * max(late)
-        tell("played: messages came between %.0f and %.0f ms late", earliest, latest)
+        report("played: messages came between %.0f and %.0f ms late", earliest, latest)
         self.limit(max(map(abs, late)), 0.05, "play")
 
 

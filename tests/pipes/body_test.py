@@ -84,7 +84,7 @@ class Sound(Bodies):
         heard = self.read_bytes("heard.raw")
         self.assertIn(samples.tobytes(), heard)
 
-    def test_a_file_is_whole_after_the_speaker_was_killed_and_gone_on_with(self):
+    def test_a_file_is_whole_after_the_speaker_was_killed_and_appended_to(self):
         samples = tone(8000, 0.2)
         self.write_wav("in.wav", samples, 8000)
         path = pathlib.Path(self.path("out.wav"))
@@ -128,7 +128,7 @@ class Sound(Bodies):
         self.assertIn("speaker: 5 messages were dropped without a loudspeaker", self.err)
         self.assertEqual(len(self.read_wav("out.wav")[2]), 1600)
 
-    def test_sound_without_a_rate_is_left_out_and_told_once(self):
+    def test_sound_without_a_rate_is_dropped_and_told_once(self):
         message = b"1 1 0 0 8 0 100130 0 0 1 1\n7\n"
         self.shell("hc speaker --device none --save out.wav", data=2 * message)
         self.assertEqual(
@@ -213,7 +213,7 @@ class SoundServer(Bodies):
         self.stop(speaker)
         self.stop(ears)
 
-    def test_a_device_that_hangs_and_goes_on(self):
+    def test_a_device_that_hangs_and_continues(self):
         server = self.start_server()
         speaker = self.start_tone(free_port())
         ears = self.start("exec hc microphone --out mono=file:heard.mtp 2>ears", stdout=-3)

@@ -106,7 +106,7 @@ class CameraDevices(Pipes):
             "mkfifo commands; hc camera aravis:127.0.0.1 --exposure 0.01 --gain 1 --width 8"
             " --height 8 --out - --control commands 2>said | hc cat >seen"
         )
-        # What cannot be set is told, and images go on.
+        # What cannot be set is reported, and images continue.
         command = self.start("hc send --text 'set gain=9999' >commands")
         wait_until(self.said)
         self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: gain must be from ")
@@ -133,7 +133,7 @@ class CameraDevices(Pipes):
         wait_until(lambda: self.seen() > count)
         self.assertEqual(len(self.said()), 2)
 
-    def test_a_camera_that_hangs_and_goes_on(self):
+    def test_a_camera_that_hangs_and_continues(self):
         fake = self.fake(1)
         camera = self.camera("aravis:127.0.0.1")
         wait_until(lambda: os.path.exists(self.path("seen")) and self.seen() > 3)
@@ -175,7 +175,7 @@ class CameraDevices(Pipes):
         self.assertGreater(len(paired), 20)
         self.assertEqual(len(both[1]), len(set(both[1])))
 
-    def test_when_one_of_a_pair_is_lost_the_other_goes_on(self):
+    def test_when_one_of_a_pair_is_lost_the_other_continues(self):
         self.fake(1)
         second = self.fake(2)
         self.camera("aravis:127.0.0.1 aravis:127.0.0.2")

@@ -115,7 +115,7 @@ class Check(Pipes):
             self.err, 'hc check: error: parts/ring.toml:6: no module "x_c", did you mean "x_a"?\n'
         )
 
-    def test_what_is_no_text_file_is_told_in_one_line(self):
+    def test_what_is_no_text_file_is_reported_in_one_line(self):
         for verb in "check", "run":
             self.shell("hc %s ." % verb, 1)
             self.assertEqual(self.err, "hc %s: NotFound: .: is a folder, not a file\n" % verb)

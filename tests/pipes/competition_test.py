@@ -140,9 +140,9 @@ class Demonstrations(Graphs):
             r"gateway: %d passed; dropped: 0 ttl, %d not listed, 0 without a route"
             % (len(sent) + 3, len(self.recorded("spy.command"))),
         )
-        told = self.shell("hc info router.out.mtp")
-        self.assertRegex(told, "rgb_image.*jpeg")
-        self.assertNotIn("116 binary", told)
+        got = self.shell("hc info router.out.mtp")
+        self.assertRegex(got, "rgb_image.*jpeg")
+        self.assertNotIn("116 binary", got)
 
     def test_in_a_contest_the_actor_takes_commands_of_the_mode_in_focus_alone(self):
         self.write_copy("contest.toml", "actor.done", "workspace.focus", "looking.command")

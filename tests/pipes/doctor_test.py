@@ -67,9 +67,9 @@ class Doctor(Pipes):
     def test_what_is_wrong_with_a_graph_is_said_as_check_does(self):
         said = self.examine(GRAPH.replace("source", "sorce").replace(".image", ".imag") % "0", 1)
         self.shell("hc check g.toml", 2)
-        told = [line.split("error: ")[1] for line in self.err.splitlines()]
-        self.assertEqual(said["wrong"], ["graph " + line for line in told])
-        self.assertEqual(len(told), 2)
+        got = [line.split("error: ")[1] for line in self.err.splitlines()]
+        self.assertEqual(said["wrong"], ["graph " + line for line in got])
+        self.assertEqual(len(got), 2)
         self.assertEqual(self.shell("hc doctor none.toml", 1), "")
         self.assertEqual(self.err, "hc doctor: NotFound: none.toml: cannot be read\n")
 

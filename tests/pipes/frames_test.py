@@ -69,12 +69,12 @@ def image(number, time):
 
 class Frames(Pipes):
     def run_graph(self, poses, times, parameters=""):
-        """The poses that whereabouts tells, by time; `told` is what the graph logs then."""
+        """The poses that whereabouts prints, by time; `logged` is what the graph logs then."""
         self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", parameters))
         self.write("poses", "".join(map(pose, poses)))
         self.write("images", "".join(image(*each) for each in enumerate(times)))
         self.shell("exec hc run graph.toml")
-        self.told = self.err
+        self.logged = self.err
         lines = self.shell("hc cat --raw found").splitlines()
         found = {}
         for begin in range(0, len(lines), 5):
@@ -102,10 +102,12 @@ class Frames(Pipes):
         self.assertEqual(list(found), [START + STEP])
         self.expect(found[START + STEP], world_left_eye(1))
         known = "frames: head in robot is known from %d to " % START
-        self.assertRegex(self.told, known + r"\d+ ns, asked for %d ns: 5.0 ms too early" % times[0])
+        self.assertRegex(
+            self.logged, known + r"\d+ ns, asked for %d ns: 5.0 ms too early" % times[0]
+        )
         last = START + 9 * STEP
         self.assertIn(
-            known + "%d ns, asked for %d ns: 100.0 ms too late" % (last, times[2]), self.told
+            known + "%d ns, asked for %d ns: 100.0 ms too late" % (last, times[2]), self.logged
         )
 
     def test_a_gap_is_not_bridged(self):
@@ -116,7 +118,7 @@ class Frames(Pipes):
             self.assertIn(
                 "frames: head in robot is not known between %d and %d ns, asked for %d ns: a gap "
                 "of 1.1 s" % (START + STEP, START + 12 * STEP, time),
-                self.told,
+                self.logged,
             )
         found = self.run_graph([0, 1, 3, 13], times[:3])  # 1 s is none
         self.assertEqual(sorted(found), times[:3])

@@ -79,7 +79,7 @@ from = "camera.left"
             self.assertEqual(os.path.dirname(program), str(BUILD / "libexec/hypercolumn"))
         return guards, modules
 
-    def test_what_was_lost_is_told_with_its_reason(self):
+    def test_what_was_lost_is_reported_with_its_reason(self):
         self.write(
             "slow.toml",
             """version = 1

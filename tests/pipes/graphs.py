@@ -11,7 +11,7 @@ import time
 
 from harness import DATA, Pipes, WATCHDOG
 
-# Its modules go on until they are told to end.
+# Its modules continue until they are stopped.
 GRAPH = (
     """
 [modules.camera]

@@ -180,7 +180,7 @@ class Read(Head):
         said = pathlib.Path(self.path("said.wav")).read_bytes()
         self.assertGreater(len(said), 22050)  # half a second of 16 bits, at least
 
-    def test_what_is_not_read_is_wrong_and_is_told(self):
+    def test_what_is_not_read_is_wrong_and_is_reported(self):
         line = self.score(
             "read", "read_score.count=2", "read_score.time_out=0.5", "read.confidence=1"
         )

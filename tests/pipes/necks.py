@@ -107,10 +107,10 @@ class Necks(Pipes):
         self.motion = Reader(name + "motion")
 
     def start_neck(self, words="", age=10, device=None):
-        """Starts the driver; `device` is its name, else the fake tells it."""
+        """Starts the driver; `device` is its name, else the fake sends it."""
         name = self.name
-        told = "--in 'device=unix:@%sdevice?reconnect=600'" % name
-        device = told if device is None else "--device " + device
+        link = "--in 'device=unix:@%sdevice?reconnect=600'" % name
+        device = link if device is None else "--device " + device
         self.neck = Program(
             self.start(
                 "exec %span_tilt --age %g --control unix-listen:@%scontrol_neck"

@@ -71,7 +71,7 @@ class PanTilt(Necks):
         self.assertEqual(self.neck.process.wait(), 0)
 
     def stop_for(self, nanoseconds, program, meanwhile):
-        """Stops a program as a debugger does, does something, and lets it go on later."""
+        """Stops a program as a debugger does, does something, and lets it continue later."""
         program.process.send_signal(signal.SIGSTOP)
         meanwhile()
         end = self.motion.wait()[0] + nanoseconds
@@ -126,15 +126,15 @@ class PanTilt(Necks):
         self.neck.wait_line("neck: open: No such file")
         self.command(1.0, 0.0)
         self.neck.wait_line("pan-tilt unit not connected")
-        self.start_fake(device=self.path("told"))
+        self.start_fake(device=self.path("devices"))
 
-        def told():
-            file = pathlib.Path(self.path("told"))
+        def devices():
+            file = pathlib.Path(self.path("devices"))
             return re.findall(r"(/dev/\S+)\n", file.read_text()) if file.exists() else []
 
         def plug(before):
-            wait_until(lambda: len(told()) > before)
-            os.symlink(told()[-1], link + ".new")
+            wait_until(lambda: len(devices()) > before)
+            os.symlink(devices()[-1], link + ".new")
             os.rename(link + ".new", link)
 
         plug(0)
@@ -143,7 +143,7 @@ class PanTilt(Necks):
             begin = len(self.neck.lines)
             self.fake.set("unplugged=true")
             self.neck.wait_line("disconnected", begin)
-            before = len(told())
+            before = len(devices())
             self.fake.set("unplugged=false")
             plug(before)
             self.answers_again(begin)

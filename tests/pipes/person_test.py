@@ -68,7 +68,7 @@ class HeadTracker(Bodies):
         self.assertNotIn("first pose", self.said())
         self.stop(process)
 
-    def test_what_the_first_pose_makes_the_zero_is_told(self):
+    def test_what_the_first_pose_makes_the_zero_is_reported(self):
         process = self.start_tracker()
         self.feed(0, 0, 0, -40, 0, 0)
         self.feed(0, 0, 0, -50, 0, 0)
@@ -76,7 +76,7 @@ class HeadTracker(Bodies):
         self.assertEqual(self.said().count(zero), 1, self.said())
         self.stop(process)
 
-    def test_a_port_in_use_is_told_once_and_waited_for(self):
+    def test_a_port_in_use_is_reported_once_and_waited_for(self):
         self.socket.bind(("127.0.0.1", 0))
         self.port = self.socket.getsockname()[1]
         process = self.run_module(
@@ -129,7 +129,7 @@ class HeadTracker(Bodies):
         self.assertEqual(self.said().count("ignored a packet"), 1, self.said())
         self.assertRegex(self.said(), r"head_tracker: in all: invalid packet \d+ times")
 
-    def test_silence_and_return_are_told_once_each(self):
+    def test_silence_and_return_are_reported_once_each(self):
         process = self.start_tracker("--silence 0.1")
         self.wait_for("no packets received on UDP", 1)
         self.feed(0, 0, 0, 0, 0, 0)

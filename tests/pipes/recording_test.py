@@ -181,9 +181,9 @@ class Recording(Pipes):
         self.assertIn(re.search("of 4 of . pushes", line)[0], again)
         pushes = []
         for folder in ("kept", "again"):
-            told = self.messages(folder, "point_score.stick")
-            told = [(each.time, numbers(each)) for each in told]
-            pushes.append([b for a, b in zip([(0, None)] + told, told) if a[1] != b[1]])
+            got = self.messages(folder, "point_score.stick")
+            got = [(each.time, numbers(each)) for each in got]
+            pushes.append([b for a, b in zip([(0, None)] + got, got) if a[1] != b[1]])
         self.assertEqual(len(pushes[0]), 8)  # and let go
         for (kept, stick), (replayed, other) in zip(*pushes):
             self.assertEqual(stick, other)
@@ -226,7 +226,7 @@ class Recording(Pipes):
         self.replay_eyes(12)
         self.replay("read")
         self.assert_same("read.target", 10)
-        # Which image decides depends on those that were left out while it read.
+        # Which image decides depends on those that were dropped while it read.
         texts = [[m.elements for m in self.messages(f, "read.text")] for f in ("kept", "again")]
         self.assertGreaterEqual(len(texts[0]), 2)
         self.assertEqual(*texts)
@@ -247,7 +247,7 @@ class Recording(Pipes):
         self.fed.add("head_neck")
         self.assert_all_were_fed()
 
-    def test_the_eyes_go_on_when_the_neck_falls_silent(self):
+    def test_the_eyes_continue_when_the_neck_falls_silent(self):
         def write(name, header, elements, until):
             with open(self.path(name), "w") as file:
                 for time in range(10**9, 10**9 + until, 10**7):

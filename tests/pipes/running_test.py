@@ -228,7 +228,7 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         os.kill(pid, signal.SIGSTOP)
         self.stop(process)
 
-    def test_a_running_module_is_told_and_not_restarted(self):
+    def test_a_running_module_is_reported_and_not_restarted(self):
         self.write_graph(GRAPH)
         process = self.run_graph()
         observed = self.observe(process)
@@ -243,7 +243,7 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         self.assertEqual(self.module(state, "camera")["parameters"]["rate"], "100")
         self.stop(process)
 
-    def test_nobody_needs_to_read_what_is_told(self):
+    def test_nobody_needs_to_read_what_is_reported(self):
         """A pager, or a terminal after Ctrl-S, keeps no module from being seen to."""
         self.write(
             "talker",
@@ -258,7 +258,7 @@ exec sleep 1000
 
         def await_state(process, condition):
             def is_so():
-                messages = self.observe(process)  # anew, so that no lines come first
+                messages = self.observe(process)  # again, so that no lines come first
                 state = self.module(self.state(messages), "talker")
                 messages.close()
                 return condition(state) and state

@@ -82,14 +82,14 @@ class SharedMemory(harness.Pipes):
         self.assertGreater(int(out), 20000 * 20000)
         publisher.terminate()
 
-    def test_who_keeps_the_latest_is_told_what_it_lost(self):
+    def test_who_keeps_the_latest_is_reported_what_it_lost(self):
         self.many(2000)
         slow = self.start("exec hc cat --raw '%s?wait=60&keep=latest'" % self.uri)
         self.shell("hc play --speed max many.mtp --out '%s?readers=1'" % self.uri)
         out, err = slow.communicate(timeout=WATCHDOG)
         count = out.count(b"1 5 0 ")
         self.assertIn(b": %d dropped (newer arrived)" % (2000 - count), err)
-        self.assertIn(b"\n1 5 0 1999 8 0 40101 ", out)  # the newest one is never left out
+        self.assertIn(b"\n1 5 0 1999 8 0 40101 ", out)  # the newest one is never dropped
 
     def test_options_that_make_no_sense_are_refused(self):
         for command, status, words in (

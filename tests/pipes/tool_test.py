@@ -100,18 +100,18 @@ class Tool(Pipes):
         self.shell("hc check depht.toml", 1)
         self.assertIn("depht.toml: cannot be read", self.err)
 
-    def test_send_makes_what_it_is_told(self):
+    def test_send_makes_what_it_is_asked_for(self):
         out = self.shell(
             "hc send --src 3 --dst -1 --seq 9 --ttl 2 --time 5 --mode 4 --coord 1003 --encoding zstd"
             " --type transformation --scalar f32 --width 2 1 0 0 1 | hc cat --json"
         )
-        told = json.loads(out)
+        got = json.loads(out)
         for key, value in dict(
             src=3, dst=-1, seq=9, ttl=2, time=5, mode=4, coord=1003, width=2, height=2
         ).items():
-            self.assertEqual(told[key], value)
-        self.assertEqual((told["encoding"], told["scalar"]), ("zstd", "f32"))
-        self.assertEqual(told["elements"], [[1, 0], [0, 1]])
+            self.assertEqual(got[key], value)
+        self.assertEqual((got["encoding"], got["scalar"]), ("zstd", "f32"))
+        self.assertEqual(got["elements"], [[1, 0], [0, 1]])
 
     def test_send_takes_images_and_arrays(self):
         self.shell(
@@ -173,7 +173,7 @@ class Tool(Pipes):
             "R2 stream: truncated after 18 messages, at byte %d" % (len(whole) - 3), self.err
         )
 
-    def test_skip_goes_on_behind_damage(self):
+    def test_skip_continues_after_damage(self):
         self.record()
         whole = self.read("r.mtp").splitlines(True)
         whole[4] = whole[4].replace("10390", "99999")
@@ -183,7 +183,7 @@ class Tool(Pipes):
         self.assertIn("R20 info", self.err)
         self.assertEqual(self.shell("hc cat --json bad.mtp", 1).count("\n"), 2)
 
-    def test_output_that_fails_is_told(self):
+    def test_output_that_fails_is_reported(self):
         self.record()
         for command in (
             "hc cat r.mtp >/dev/full",
@@ -243,7 +243,7 @@ class Tool(Pipes):
 
     def test_hostile_messages_end_with_one_line(self):
         head = "1 7 0 0 8 0 "
-        for line, told in [
+        for line, got in [
             (head + "30301 1 7 9223372036854775808 1", "R15 width"),
             (head + "30301 1 7 -1 1", "R15 width"),
             (head + "30301 1 7 2147483647 2147483647", "R24 width"),
@@ -254,17 +254,17 @@ class Tool(Pipes):
             (head + "30301 1 7 1\0 1", "R5 width"),
             (head + "40102 1 7 16000 16000\n22\n" + "x" * 22, "R36 elements"),
         ]:
-            with self.subTest(told):
+            with self.subTest(got):
                 self.shell("hc cat", 1, line.encode() + b"\n")
-                self.assertRegex(self.err, r"^hc cat: [A-Za-z]+: -: %s: .*, at byte \d+\n$" % told)
+                self.assertRegex(self.err, r"^hc cat: [A-Za-z]+: -: %s: .*, at byte \d+\n$" % got)
         self.shell("head -c 1000000000 /dev/zero | tr '\\0' 1 | hc cat; exit ${PIPESTATUS[2]}", 1)
         self.assertIn("R3 header", self.err)
 
     def test_describe_is_json(self):
         for module in ("camera", "depth", "view", "brightness", "depth_score"):
-            told = json.loads(self.shell("hc describe " + module))
-            self.assertEqual(told["name"], module)
-            self.assertIn(told["summary"], self.shell("hc %s --help" % module))
+            got = json.loads(self.shell("hc describe " + module))
+            self.assertEqual(got["name"], module)
+            self.assertIn(got["summary"], self.shell("hc %s --help" % module))
 
     def test_interrupt_ends_a_verb_cleanly(self):
         port = free_port()

@@ -220,7 +220,7 @@ class Watching(Graphs):
         self.assertEqual(asking.wait(timeout=WATCHDOG), 0)
         self.stop_named(name, process)
 
-    def test_what_does_not_run_is_told(self):
+    def test_what_does_not_run_is_reported(self):
         name, process = self.run_named("here")
         self.assertIn(
             'did you mean "%s"?' % name, self.hc("top " + name.replace("here", "hree"), 1)
@@ -242,7 +242,7 @@ class Watching(Graphs):
             while piece := os.read(terminal, 65536):
                 shown += piece
         except OSError:
-            pass  # how the end of a terminal is told
+            pass  # how the end of a terminal is reported
         self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), 0)
         self.assertTrue(shown.startswith(b"\x1b[?1049h"))
         self.assertTrue(shown.endswith(b"\x1b[?1049l"))

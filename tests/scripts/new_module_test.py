@@ -56,8 +56,10 @@ class NewModule(unittest.TestCase):
         self.succeed(*[other.get(word, word) for word in words], cwd=BUILD)
 
         target = "libexec/hypercolumn/" + MODEL
-        told = subprocess.run(["ninja", "-t", "commands", target], cwd=BUILD, stdout=-1, check=True)
-        command = told.stdout.decode().splitlines()[-1]
+        listed = subprocess.run(
+            ["ninja", "-t", "commands", target], cwd=BUILD, stdout=-1, check=True
+        )
+        command = listed.stdout.decode().splitlines()[-1]
         self.assertIn(" -o %s " % target, command)
         command = command.replace(" %s " % model_object, " %s " % shlex.quote(new_object))
         command = command.replace(" -o %s " % target, " -o %s " % shlex.quote(str(program)))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ends of `shm:NAME` that are killed, at random moments and at each crash point: what others get is
-// whole and right, they go on, and nothing is left behind. In full, for some minutes:
+// whole and right, they continue, and nothing is left behind. In full, for some minutes:
 //
 //     HC_SHM_KILLS=1000 HC_SHM_POINT_KILLS=20 build/tests/shm/shm_crash
 #include <gtest/gtest.h>
@@ -120,7 +120,7 @@ class ShmCrash : public ::testing::TestWithParam<Point> {
   }
 
   /// Both readers get messages that were sent from now on.
-  void expect_to_go_on() {
+  void expect_to_continue() {
     for (Child* reader : {&steady_, &latest_}) reader->first_behind(reader->first_behind(0) + 100);
   }
   void expect_the_next_to_be_heard() {
@@ -166,17 +166,17 @@ void expect_killed(Child& child) {
 TEST_F(ShmCrash, ReadersAreKilledAtRandomMoments) {
   publisher_ = make_publisher("readers=2");
   make_readers();
-  expect_to_go_on();
+  expect_to_continue();
   const auto memories = publisher_.shared_memories(), descriptors = publisher_.descriptors();
   for (int i = 0; i < random_kills(); ++i) {
     auto victim = make_reader(i % 3 == 0 ? "newest" : "gapless", 10);
     if (i % 2 == 0) victim.first_behind(0);
     victim.look(below(20'000));
     victim.kill();
-    expect_to_go_on();
+    expect_to_continue();
   }
   while (publisher_.shared_memories() != memories || publisher_.descriptors() != descriptors)
-    expect_to_go_on();
+    expect_to_continue();
   expect_a_good_end();
 }
 
@@ -192,7 +192,8 @@ TEST_F(ShmCrash, PublishersAreKilledAtRandomMoments) {
   expect_the_next_to_be_heard();
 }
 
-/// A publisher that cannot go on as a reader holds all of its memory goes on when that reader dies.
+/// A publisher that cannot continue as a reader holds all of its memory continues when that reader
+/// dies.
 TEST_F(ShmCrash, SlotsComeBack) {
   constexpr auto kSlots = ((2 << 20) - internal::kSlotsBegin) / 100'032;  // of 100,000 bytes
   publisher_ = make_publisher("readers=1&memory=2M", "", 0, "100000");
@@ -225,7 +226,7 @@ TEST_P(ShmReaderCrash, OthersGoOn) {
                    ? make_publisher("readers=2&memory=3M", "", 0, "100000")
                    : make_publisher("readers=2");
   make_readers();
-  expect_to_go_on();
+  expect_to_continue();
   for (int i = 0; i < point_kills(); ++i) {
     auto victim = make_reader("gapless", 10, crash_at(GetParam()));
     if (std::string_view(GetParam().name) == "reader left") {
@@ -233,7 +234,7 @@ TEST_P(ShmReaderCrash, OthersGoOn) {
       victim.stop();
     }
     expect_killed(victim);
-    expect_to_go_on();
+    expect_to_continue();
   }
   expect_a_good_end();
 }

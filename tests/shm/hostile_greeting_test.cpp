@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who answers at a shared memory link's socket with what it should not: one clear error, and those
-// who keep the rules go on.
+// who keep the rules continue.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/syscall.h>
@@ -187,12 +187,12 @@ class HostileReader : public ::testing::Test {
   ~HostileReader() override { sink_.reset(); }
 
   std::string next_line() {
-    while (lines_.empty()) expect_to_go_on();
+    while (lines_.empty()) expect_to_continue();
     auto line = lines_.front();
     lines_.pop_front();
     return line;
   }
-  void expect_to_go_on() {
+  void expect_to_continue() {
     for (auto bytes : {24, 100'000}) {
       ASSERT_TRUE(sink_->send(make_checked(sink_.get(), 1, ++seq_, bytes)));
       Message message;
@@ -212,7 +212,7 @@ class HostileReader : public ::testing::Test {
     for (char letter : line) EXPECT_GE(letter, ' ') << line;
     auto answer = rest_of(socket.get());
     EXPECT_TRUE(answer.empty() || answer.starts_with("HCSHM/2\n")) << answer;
-    expect_to_go_on();
+    expect_to_continue();
   }
 
   const std::string name_ = fresh_name();
@@ -263,7 +263,7 @@ TEST_F(HostileReader, SaysNothing) {
   for (auto& each : silent) each = connect_to_publisher(name_);
   auto late = open_source(*parse_uri(name_));
   ASSERT_TRUE(late) << late.error().text();
-  expect_to_go_on();
+  expect_to_continue();
   Message message;
   EXPECT_TRUE(*receive(**late, message));
 }
@@ -276,7 +276,7 @@ TEST_F(HostileReader, GoesAtOnce) {
     if (i % 3 > 0) hand_over(socket.get(), hello(), {page.get(), pipe.get()});
     if (i % 3 > 1) ::shutdown(socket.get(), SHUT_WR);
   }
-  expect_to_go_on();
+  expect_to_continue();
 }
 
 /// Neither a pipe that is full nor one whose open file is set to wait keeps the publisher.
@@ -293,7 +293,7 @@ TEST_F(HostileReader, NeverTakesWhatWakesIt) {
   ASSERT_EQ(::poll(&polled, 1, -1), 1);
   for (std::uint32_t i = 0; i < 5000; ++i) {  // more than the pipe takes
     page.page().armed.store(2 * i + 3);
-    expect_to_go_on();
+    expect_to_continue();
   }
   int unread = 0;
   ASSERT_EQ(::ioctl(reader.get(), FIONREAD, &unread), 0);
@@ -310,7 +310,7 @@ TEST_F(HostileReader, ClosesThePipeThatWakesIt) {
   pipe.reset();
   for (std::uint32_t i = 1; i < 10; ++i) {
     page.page().armed.store(i);
-    expect_to_go_on();  // without a signal
+    expect_to_continue();  // without a signal
   }
 }
 
@@ -326,7 +326,7 @@ TEST_F(HostileReader, IsOfAnotherUser) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().text(), "Closed: the publisher refuses: another user");
   EXPECT_EQ(next_line(), name_ + ": refused a reader of another user (uid 65534)");
-  expect_to_go_on();
+  expect_to_continue();
 }
 
 TEST_F(HostileReader, CannotBeTooMany) {
@@ -337,7 +337,7 @@ TEST_F(HostileReader, CannotBeTooMany) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().text(), "Closed: the publisher refuses: it has 64 readers already");
   EXPECT_EQ(next_line(), name_ + ": refused a reader: it has 64 readers already");
-  expect_to_go_on();
+  expect_to_continue();
 }
 
 }  // namespace

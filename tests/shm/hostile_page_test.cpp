@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers of shared memory whose page says what cannot be: the publisher goes on, and its other
+// Readers of shared memory whose page says what cannot be: the publisher continues, and its other
 // readers get what they should.
 #include <atomic>
 
@@ -146,7 +146,7 @@ TEST(HostileReaderPage, TheCursorGoesBackwards) {
   writer.join();
 }
 
-/// Whatever it asks for, and however it goes on.
+/// Whatever it asks for, and however it continues.
 TEST(HostileReaderPage, ItDoesNotStallAPublisherThatDrops) {
   for (std::uint64_t keep : {std::uint64_t{0}, std::uint64_t{1}, ~std::uint64_t{0} - 1}) {
     auto name = fresh_name();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reader of `shm:NAME` that is stopped, as by a debugger, while messages go on: nobody waits for
-// it, it takes no memory, and afterwards it has the newest message at once. bench/stopped_reader
-// measures the same for a minute.
+// A reader of `shm:NAME` that is stopped, as by a debugger, while messages continue: nobody waits
+// for it, it takes no memory, and afterwards it has the newest message at once.
+// bench/stopped_reader measures the same for a minute.
 #include <gtest/gtest.h>
 
 #include <csignal>

@@ -24,7 +24,7 @@ void* socket_of(const Setup& setup, int kind) {
   }
   if (kind == ZMQ_XPUB) {
     zmq_setsockopt(socket, ZMQ_XPUB_NODROP, &yes, sizeof yes);
-    // Each subscription is told, not only the first, so that await_readers() can count.
+    // Each subscription is reported, not only the first, so that await_readers() can count.
     zmq_setsockopt(socket, ZMQ_XPUB_VERBOSE, &yes, sizeof yes);
   }
   if (kind == ZMQ_SUB) zmq_setsockopt(socket, ZMQ_SUBSCRIBE, "", 0);

@@ -42,7 +42,7 @@ hc::Result<Script> Script::parse(std::string_view text) {
     else
       script.steps_.push_back({*seconds, *salience});
     script.again_ = what == "again";
-    if (script.again_ && *seconds == 0) return wrong("begins anew at once");
+    if (script.again_ && *seconds == 0) return wrong("starts over at once");
   }
 }
 

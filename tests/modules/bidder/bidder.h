@@ -12,7 +12,7 @@
 ///
 ///     0:0.2 1.5:0.9 3:0           SECONDS:SALIENCE, before the first one 0
 ///     0:0.2 1.5:0.9 3:end         ends behind 3 s
-///     0:0.2 1.5:0.9 3:again       begins anew each 3 s
+///     0:0.2 1.5:0.9 3:again       starts over each 3 s
 class Script {
  public:
   /// Errors: Invalid (another form; seconds that do not grow; something behind `end` or `again`).

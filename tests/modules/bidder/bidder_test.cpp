@@ -16,7 +16,7 @@ TEST(Script, holds_each_salience_until_the_next) {
   EXPECT_EQ(Script::parse("")->at(1), 0);
 }
 
-TEST(Script, ends_or_begins_anew) {
+TEST(Script, ends_or_starts_over) {
   auto once = *Script::parse("0:0.2 3:end");
   EXPECT_EQ(once.at(2.99), 0.2);
   EXPECT_FALSE(once.at(3).has_value());
