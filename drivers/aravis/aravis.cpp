@@ -128,7 +128,7 @@ struct Camera::Handles {
     if (camera != nullptr) {
       if (handler != 0) g_signal_handler_disconnect(arv_camera_get_device(camera), handler);
       if (!*is_lost && stream != nullptr) {
-        Failure ignored;  // it may be gone
+        Failure ignored;  // it may be disconnected
         arv_camera_stop_acquisition(camera, ignored.out());
       }
     }

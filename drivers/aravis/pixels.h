@@ -26,7 +26,7 @@ bool is_known(std::uint32_t format);
 
 /// An image of a camera's pixels, in memory of its own.
 ///
-/// @param pixels  more than an image is passed over.
+/// @param pixels  more than an image is ignored.
 /// @param padding  after each row [byte].
 /// @returns  (height, width, 3) u8: blue, green, red. Bayer's colours are interpolated.
 ///

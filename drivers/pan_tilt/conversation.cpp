@@ -30,7 +30,7 @@ void Conversation::begin(MonotonicTime now) {
   end();
   tries_ = 0;
   is_known_ = false;
-  try_anew(now);
+  try_again(now);
 }
 
 void Conversation::end() {
@@ -43,7 +43,7 @@ void Conversation::end() {
   has_halted_ = halt_follows_ = false;
 }
 
-void Conversation::try_anew(MonotonicTime now) {
+void Conversation::try_again(MonotonicTime now) {
   end();
   if (++tries_ > kTries) {
     phase_ = Phase::Lost;
@@ -72,7 +72,7 @@ void Conversation::halt_unheard(MonotonicTime now) {
 void Conversation::fail(MonotonicTime now, Error error) {
   const bool is_silent = error.code == Code::Closed;
   fault_ = std::move(error);
-  if (is_silent) return try_anew(now);
+  if (is_silent) return try_again(now);
   end();
   phase_ = Phase::Begins;
   quiet_at_ = now + kQuiet;
@@ -271,7 +271,7 @@ void Conversation::pass(MonotonicTime now) {
     const bool is_quiet = quiet_at_ && now >= *quiet_at_;
     if (!quiet_at_ && now >= overdue_) fault_ = Error{Code::Closed, "the unit does not answer"};
     if (is_quiet || now >= overdue_) {
-      try_anew(now);
+      try_again(now);
     } else if (!has_halted_) {
       halt_unheard(now);
       halt_follows_ = has_halted_ && !quiet_at_;

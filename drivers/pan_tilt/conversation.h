@@ -85,7 +85,7 @@ class Conversation {
   using Pace = std::array<int, 4>;    // PS TS PA TA
 
   void fail(MonotonicTime now, Error error);
-  void try_anew(MonotonicTime now);
+  void try_again(MonotonicTime now);
   void hear_at_begin(MonotonicTime now, const Reply& reply);
   void become_ready(MonotonicTime now);
   void hear(MonotonicTime now, const Reply& reply);

@@ -118,7 +118,7 @@ inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& mess
 }
 
 /// The rotation in a `rotation` of one element: roll φ, pitch θ, yaw ψ [rad], right-handed,
-/// R = Rz(ψ) Ry(θ) Rx(φ) (see frames::rotation); rates and accelerations are left out. Of the gaze
+/// R = Rz(ψ) Ry(θ) Rx(φ) (see frames::rotation); rates and accelerations are ignored. Of the gaze
 /// (coord 13), which is roll, tilt and pan, it turns vectors of the head into the pan-tilt unit's
 /// frame: pan > 0 looks to the left, tilt > 0 looks down.
 ///

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where a pan-tilt head has to stand to look at a place. Pure.
+// The orientation in which a pan-tilt head looks at a place. Pure.
 
 #include <Eigen/Geometry>
 
@@ -25,7 +25,7 @@ struct Sight {
   Eigen::Vector3d direction;  ///< of length 1
 };
 
-/// How the head has to stand for an eye in it to look at a place.
+/// The orientation of the head in which an eye of it looks at a place.
 ///
 /// @param p_robot  the place, in the frame whose origin is where the unit's axes meet [m].
 /// A place nearer to the axes than the eye cannot be looked at; the result is then of no use, and

@@ -6,6 +6,8 @@
 
 #include <hc/base/check.h>
 
+#include <hc/base/format.h>
+
 namespace hc::gaze {
 namespace {
 
@@ -66,6 +68,16 @@ FollowScore score_follow(const std::vector<TimedAngles>& wanted,
   }
   score.behind = best;
   return score;
+}
+
+std::array<double, 4> FollowScore::numbers() const {
+  return {rms, max, behind, static_cast<double>(samples)};
+}
+
+std::string FollowScore::text() const {
+  constexpr double kDegrees = 180 / M_PI, kMilliseconds = 1000;
+  return format("error {:.2f}° RMS, {:.2f}° at most, behind by {:.0f} ms", rms * kDegrees,
+                max * kDegrees, behind * kMilliseconds);
 }
 
 }  // namespace hc::gaze

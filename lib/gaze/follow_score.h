@@ -2,6 +2,8 @@
 #pragma once
 // How well one gaze follows another, and by how much it is behind. Pure.
 
+#include <array>
+#include <string>
 #include <vector>
 
 #include <gaze/aim.h>
@@ -19,6 +21,11 @@ struct FollowScore {
   /// The delay of the follower that fits best; < 0: it is ahead [s].
   double behind = 0;
   std::size_t samples = 0;  ///< of those, all in the order of time
+
+  /// rms, max, behind, samples.
+  [[nodiscard]] std::array<double, 4> numbers() const;
+  /// "error 0.27° RMS, 0.63° at most, behind by 5 ms".
+  [[nodiscard]] std::string text() const;
 };
 
 /// What a gaze is between its samples: a straight line in each angle; before and after them the

@@ -67,7 +67,7 @@ struct Brakes {
 };
 
 /// By how much a command has to be ahead of a place that moves at `rate`, for a unit that brakes to
-/// stand still where it is sent: its braking distance. [rad]
+/// stop where it is sent: its braking distance. [rad]
 ///
 /// @param rate  [rad/s].
 /// Source: (v² - base²) / 2a.

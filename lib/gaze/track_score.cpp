@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gaze/track_score.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include <hc/base/format.h>
 
 namespace hc::gaze {
 
@@ -43,6 +46,30 @@ TrackScore score_track(const std::vector<TrackSample>& samples, double within) {
   give_up();
   if (score.samples > 0) score.rms = std::sqrt(sum / static_cast<double>(score.samples));
   return score;
+}
+
+double TrackScore::longest() const {
+  if (again.empty()) return 0;
+  return *std::ranges::min_element(again) < 0 ? -1 : *std::ranges::max_element(again);
+}
+
+std::array<double, 5> TrackScore::numbers() const {
+  return {rms, acquired.value_or(-1), static_cast<double>(again.size()), longest(),
+          static_cast<double>(samples)};
+}
+
+std::string TrackScore::text() const {
+  const double degrees = rms * 180 / M_PI;
+  if (!acquired)
+    return format(
+        "the ball was never acquired, RMS error {:.2f}° of {} images: can the finder see it "
+        "(exposure, colour)?",
+        degrees, samples);
+  return format(
+      "RMS error {:.2f}°, acquired after {:.2f} s, came back {} times, acquired again after {:.2f} "
+      "s "
+      "at most, of {} images",
+      degrees, *acquired, again.size(), longest(), samples);
 }
 
 }  // namespace hc::gaze

@@ -2,8 +2,10 @@
 #pragma once
 // How well a ball is followed, of which is known where it is and whether it can be seen. Pure.
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace hc::gaze {
@@ -20,6 +22,13 @@ struct TrackScore {
   std::optional<double> acquired;  ///< from the first time that the ball is seen [s]
   std::vector<double> again;       ///< the same each time that it comes back; below 0: never [s]
   std::size_t samples = 0;         ///< of which rms is
+
+  /// The longest of `again`; below 0: never once; 0 without any [s].
+  [[nodiscard]] double longest() const;
+  /// rms, acquired (-1: never), how often it came back, longest(), samples.
+  [[nodiscard]] std::array<double, 5> numbers() const;
+  /// "RMS error 0.30°, acquired after 0.45 s, came back 0 times, …".
+  [[nodiscard]] std::string text() const;
 };
 
 /// @param samples  in the order of time.

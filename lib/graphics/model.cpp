@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostVertices = 10'000'000;
 
-// assimp knows more, but some of its readers believe a file's counts and go on for hours.
+// assimp knows more, but some of its readers believe a file's counts and run for hours.
 constexpr std::array<std::string_view, 4> kFormats = {".obj", ".stl", ".gltf", ".glb"};
 
 Mesh mesh_of(const aiMesh& from) {

@@ -16,7 +16,7 @@ namespace hc::room {
 
 class World {
  public:
-  /// Builds the room. @param seed  of colours, and of where things stand. @param text  on the
+  /// Builds the room. @param seed  of colours and places. @param text  on the
   /// board.
   World(graphics::Renderer& renderer, std::uint64_t seed, const std::string& text);
 

@@ -78,7 +78,7 @@ Status WavReader::read_header(std::int64_t file_size) {
     at += static_cast<std::int64_t>(head.size());
     const std::int64_t size = number(head, 4, 4);
     if (name_of(head) == "data") {
-      if (sample_bytes_ == 0) return malformed(path_, "samples stand before their format");
+      if (sample_bytes_ == 0) return malformed(path_, "samples before their format");
       // Who writes a file as it goes often leaves 0 or the largest number there.
       const std::int64_t left = file_size - at;
       const std::int64_t there = size == 0 ? left : std::min(size, left);

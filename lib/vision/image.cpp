@@ -78,4 +78,12 @@ cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
   return coloured;
 }
 
+cv::Mat displayable(const cv::Mat& image, double least, double most) {
+  if (image.depth() == CV_8U && image.channels() == 1) return image;
+  cv::Mat bgr;
+  cv::cvtColor(image.depth() == CV_8U ? image : colour_coded(image, least, most), bgr,
+               cv::COLOR_RGB2BGR);
+  return bgr;
+}
+
 }  // namespace hc::vision

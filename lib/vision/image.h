@@ -6,7 +6,7 @@
 
 namespace hc::vision {
 
-/// Scales an image so that it covers width × height and cuts what stands over, equally on both
+/// Scales an image so that it covers width × height and crops what protrudes, equally on both
 /// sides. Where one of them is 0, it follows from the other; where both are, nothing changes.
 ///
 /// @param smooth  average over the pixels (area) when shrinking; false takes the nearest pixel,
@@ -27,5 +27,9 @@ cv::Mat grey_of(const cv::Mat& image);
 ///     of the known values.
 /// @returns  (H, W, 3) u8, red, green, blue.
 cv::Mat colour_coded(const cv::Mat& values, double least = 0, double most = 0);
+
+/// An image as windows and files take it, (H, W) u8 or (H, W, 3) u8 in blue, green, red: of u8 as
+/// it is, other numbers by colour_coded().
+cv::Mat displayable(const cv::Mat& image, double least, double most);
 
 }  // namespace hc::vision

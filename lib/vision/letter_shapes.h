@@ -25,8 +25,8 @@ struct Reading {
   std::vector<Letter> letters;  ///< of the text; none where one is not ASCII
 };
 
-/// The boxes of the letters of a straight line, from left to right; what stands one above the
-/// other, as the parts of a !, is one. @param line (H, W) u8, black on white.
+/// The boxes of the letters of a straight line, from left to right; parts above one
+/// another, as the parts of a !, is one. @param line (H, W) u8, black on white.
 /// @param darker  what is darker is ink.
 std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 

@@ -108,7 +108,7 @@ bool are_neighbours(const Piece& a, const Piece& b) {
          std::abs(a.ink - b.ink) < 0.5 * contrast;
 }
 
-/// Letters by the line that they stand in.
+/// Letters by their line.
 std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces) {
   std::vector<Piece> letters;
   for (const auto& piece : pieces)

@@ -13,7 +13,7 @@ namespace hc::vision {
 /// A line of letters in an image.
 struct TextLine {
   /// Around the letters without a margin, as one who reads calls them: top left, top right, bottom
-  /// right, bottom left [px]. Letters with a descender may stand out below.
+  /// right, bottom left [px]. Letters with a descender may protrude below.
   std::array<cv::Point2f, 4> corners;
   int letters = 0;    ///< about; pieces that look like letters, wide ones as several that touch
   double height = 0;  ///< of capital letters [px]

@@ -180,4 +180,14 @@ std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camer
   return best;
 }
 
+EyeCamera camera_of(const StereoCalibration& pair, Eye eye, bool is_rectified) {
+  const bool is_right = eye == Eye::Right;
+  if (is_rectified) {
+    const auto& P = is_right ? pair.P2 : pair.P1;
+    return {{{P(0, 0), P(1, 1), P(0, 2), P(1, 2)}, {}}, (is_right ? pair.R2 : pair.R1).t()};
+  }
+  const auto& M = is_right ? pair.M2 : pair.M1;
+  return {{{M(0, 0), M(1, 1), M(0, 2), M(1, 2)}, is_right ? pair.D2 : pair.D1}};
+}
+
 }  // namespace hc::vision

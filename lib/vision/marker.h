@@ -31,6 +31,15 @@ struct Camera {
   std::vector<double> distortion;  ///< as StereoCalibration::D1; empty: none
 };
 
+/// A camera, and the turn from its images' axes to those of its eye.
+struct EyeCamera {
+  Camera camera;
+  cv::Matx33d R_eye_camera = cv::Matx33d::eye();
+};
+
+/// An eye's camera, or the one that its rectified images seem to be of.
+EyeCamera camera_of(const StereoCalibration& pair, Eye eye, bool is_rectified);
+
 /// Where a marker is. Its frame: x right, y down, z into the marker as seen by who looks at it,
 /// origin in its middle.
 struct MarkerPose {

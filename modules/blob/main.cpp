@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The blob of a colour.
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <vision/blob.h>
 #include <vision/messages.h>
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
       "blob",
       "Finds the blob of a colour in images, and follows it: round, large, near the last one."};
   auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "images");
-  auto point = module.input("point", hc::position<double>(),
+  auto point = module.input("point", hc::position<double>().of(1, 1),
                             "x, y in the next image [px]: its colour is searched from then on, "
                             "until the parameter hue changes");
   auto target = module.output("target", hc::position<double>(),
@@ -37,30 +37,22 @@ int main(int argc, char** argv) {
     const cv::Point at(static_cast<int>(std::lround(pointed->x)),
                        static_cast<int>(std::lround(pointed->y)));
     pointed.reset();
-    char line[120];
-    if (!cv::Rect(0, 0, pixels.cols, pixels.rows).contains(at)) {
-      module.log("point: outside the image");
-      return;
-    }
+    if (!cv::Rect(0, 0, pixels.cols, pixels.rows).contains(at))
+      return module.log("point: outside the image");
     auto colour = hc::vision::colour_at(pixels, at);
-    if (!colour) {
-      std::snprintf(line, sizeof line, "point: no colour at %d, %d", at.x, at.y);
-    } else {
-      colour->hue_width = *hue_width;
-      taken = colour;
-      hue_then = *hue;
-      std::snprintf(line, sizeof line, "point: hue %.3f, saturation %.2f and value %.2f at least",
-                    colour->hue, colour->min_saturation, colour->min_value);
-    }
-    module.log(line);
+    if (!colour) return module.log(hc::format("point: no colour at {}, {}", at.x, at.y));
+    colour->hue_width = *hue_width;
+    taken = colour;
+    hue_then = *hue;
+    module.log(hc::format("point: hue {:.3f}, saturation {:.2f} and value {:.2f} at least",
+                          colour->hue, colour->min_saturation, colour->min_value));
   };
   module.on(point, [&](const auto& message) {
-    auto numbers = message.matrix().numbers();
     constexpr double kFar = 1e6;
-    if (numbers.empty() || !(std::abs(numbers[0]) < kFar) || !(std::abs(numbers[1]) < kFar))
-      module.log("point: outside the image");
-    else
-      pointed = {numbers[0], numbers[1]};
+    const auto numbers = message.numbers();
+    if (!(std::abs(numbers[0]) < kFar) || !(std::abs(numbers[1]) < kFar))
+      return module.log("point: outside the image");
+    pointed = {numbers[0], numbers[1]};
   });
   // Once, and only while none was ever found: the light or the parameters are not right.
   int misses = 0;

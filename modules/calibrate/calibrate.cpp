@@ -105,7 +105,7 @@ hc::vision::Matches matches_of_eyes(const HeadView& view, const hc::vision::Intr
 }
 
 /// Whether the first image is the right eye's: the right eye is on the right of the left one.
-hc::Result<bool> tell_apart(const HeadView& view, const hc::vision::Intrinsics& camera) {
+hc::Result<bool> find_swapped(const HeadView& view, const hc::vision::Intrinsics& camera) {
   const auto eyes = hc::vision::relative_pose(matches_of_eyes(view, camera), camera,
                                               Matrix3d::Identity(), Vector3d::UnitX());
   if (!eyes) return too_little("of the eyes");
@@ -166,7 +166,7 @@ hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
   // Which camera took which images is not known before the eyes are identified.
   const auto first = straightened({views[0]}, cameras, false, ideal);
   if (!first) return first.error();
-  const auto is_swapped = tell_apart(first->front(), ideal);
+  const auto is_swapped = find_swapped(first->front(), ideal);
   if (!is_swapped) return is_swapped.error();
   const auto straight = straightened(views, cameras, *is_swapped, ideal);
   if (!straight) return straight.error();

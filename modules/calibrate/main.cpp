@@ -3,7 +3,6 @@
 #include "calibrate.h"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <future>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
 #include <opencv2/imgproc.hpp>
@@ -20,7 +20,6 @@ namespace {
 
 using hc::gaze::Angles;
 
-constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kGaze = 13;
 constexpr double kSecond = 1e9;                  // [ns]
 constexpr std::int64_t kSilent = 1'000'000'000;  // nothing comes for so long: disconnected [ns]
 constexpr double kNear = 0.004;                  // of where it was sent: it is there [rad]
@@ -30,11 +29,11 @@ constexpr std::int64_t kRests = 300'000'000;     // it is at rest after this tim
 
 int main(int argc, char** argv) {
   hc::Module module{"calibrate", "Finds how a head's eyes are mounted, by turning it."};
-  auto left = module.input("left", hc::rgb_image<std::uint8_t>().in(kLeftImage),
+  auto left = module.input("left", hc::rgb_image<std::uint8_t>().in(hc::Coord::kLeftImage),
                            "image of the left camera");
-  auto right =
-      module.input("right", hc::rgb_image<std::uint8_t>().in(kRightImage), "of the right one");
-  auto command = module.output("command", hc::rotation<double>().in(kGaze),
+  auto right = module.input("right", hc::rgb_image<std::uint8_t>().in(hc::Coord::kRightImage),
+                            "of the right one");
+  auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
   auto bid = module.output("bid", hc::table<double>(), "salience while it looks, else 0");
   auto result = module.output("result", hc::table<double>().of(7, 1),
@@ -74,19 +73,17 @@ int main(int argc, char** argv) {
     const auto numbers = found->numbers();
     result.send(hc::table<double>(std::span(numbers)));
   };
-  auto finish = [&](const hc::gaze::HeadCalibration& calibration, const char* how) {
+  auto finish = [&](const hc::gaze::HeadCalibration& calibration, const std::string& how) {
     is_done = true;
     found = calibration;
     publish();
     constexpr double kDegrees = 180 / M_PI;
-    char line[200];
-    std::snprintf(line, sizeof line,
-                  "%scameras %s; gaze offset pan %.2f°, tilt %.2f°; right-to-left rotation roll "
-                  "%.2f°, pitch %.2f°, yaw %.2f°",
-                  how, found->swapped ? "swapped" : "not swapped", found->zero.pan * kDegrees,
-                  found->zero.tilt * kDegrees, found->offset.z() * kDegrees,
-                  found->offset.x() * kDegrees, found->offset.y() * kDegrees);
-    module.log(line);
+    module.log(
+        hc::format("{}cameras {}; gaze offset pan {:.2f}°, tilt {:.2f}°; right-to-left rotation "
+                   "roll {:.2f}°, pitch {:.2f}°, yaw {:.2f}°",
+                   how, found->swapped ? "swapped" : "not swapped", found->zero.pan * kDegrees,
+                   found->zero.tilt * kDegrees, found->offset.z() * kDegrees,
+                   found->offset.x() * kDegrees, found->offset.y() * kDegrees));
   };
   auto fail = [&](const std::string& why) {
     views.clear();
@@ -116,8 +113,7 @@ int main(int argc, char** argv) {
     if (file->empty() || !std::filesystem::exists(*file)) return;
     cameras = hc::value_or_end(hc::vision::read_calibration(*file));
     if (!cameras.head.empty())
-      finish(hc::value_or_end(hc::gaze::HeadCalibration::of(cameras.head)),
-             ("from " + *file + ": ").c_str());
+      finish(hc::value_or_end(hc::gaze::HeadCalibration::of(cameras.head)), "from " + *file + ": ");
   });
   /// A pair of images, the head being turned so.
   auto look = [&](std::int64_t time, const Angles& measured, const hc::Message& one,

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a head has been calibrated, compared with what a simulation was set to.
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <string>
 
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {
@@ -31,11 +29,9 @@ int main(int argc, char** argv) {
     const double offset =
         std::hypot(found[3] - *offset_roll, found[4] - *offset_pitch, found[5] - *offset_yaw);
     score.send(hc::table({is_right ? 1.0 : 0.0, zero, offset}));
-    char line[160];
-    std::snprintf(line, sizeof line, "left and right %s, zero off by %.3f°, camera offset by %.3f°",
-                  is_right ? "identified correctly" : "MIXED UP", zero * 180 / M_PI,
-                  offset * 180 / M_PI);
-    module.log(std::string("result: ") + line);
+    module.log(hc::format(
+        "result: left and right {}, zero off by {:.3f}°, camera offset by {:.3f}°",
+        is_right ? "identified correctly" : "MIXED UP", zero * 180 / M_PI, offset * 180 / M_PI));
     is_done = true;
   });
   std::int64_t looks = 0;

@@ -24,7 +24,7 @@ bool Thinning::takes(std::int64_t time, double rate) {
 struct LiveCameras::Camera {
   std::size_t side = 0;
   LiveCamera how;
-  std::optional<Frame> newest;  // of one that is alone
+  std::optional<Frame> newest;  // of a camera that is alone
   bool is_missing = false;      // and it is logged
   std::string remark;           // as it was logged
   hc::Backoff backoff;

@@ -4,13 +4,12 @@
 #include <optional>
 
 #include <frames/module_frames.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
 #include <vision/stereo.h>
 
 namespace {
-
-constexpr std::int32_t kLeftRectified = 9, kRightRectified = 10, kDepth = 11, kDisparity = 12;
 
 hc::AnyKind image(std::int32_t coord) {
   return hc::any_of(hc::rgb_image<std::uint8_t>().in(coord),
@@ -21,14 +20,17 @@ hc::AnyKind image(std::int32_t coord) {
 
 int main(int argc, char** argv) {
   hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair."};
-  auto left = module.input("left", image(kLeftRectified), "rectified image of the left eye");
-  auto right = module.input("right", image(kRightRectified), "rectified image of the right eye");
+  auto left =
+      module.input("left", image(hc::Coord::kLeftRectified), "rectified image of the left eye");
+  auto right =
+      module.input("right", image(hc::Coord::kRightRectified), "rectified image of the right eye");
   auto intrinsics = module.input("intrinsics", hc::table<double>(),
                                  "fx, fy, cx, cy [px], baseline [m] of the rectified pair, from "
                                  "rectify; until then focal and baseline apply");
-  auto disparity = module.output("disparity", hc::intensity_image<float>().in(kDisparity),
-                                 "disparity of the left image's pixels [px], 0 unknown");
-  auto depth = module.output("depth", hc::intensity_image<float>().in(kDepth),
+  auto disparity =
+      module.output("disparity", hc::intensity_image<float>().in(hc::Coord::kDisparity),
+                    "disparity of the left image's pixels [px], 0 unknown");
+  auto depth = module.output("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),
                              "depth along the optical axis [m], 0 unknown");
   auto disparities = module.parameter("disparities", 128, "px", "disparities searched",
                                       {.min = 16, .max = 1024, .step = 16, .fixed = true});
@@ -66,30 +68,24 @@ int main(int argc, char** argv) {
   module.on(hc::together(left, right), [&](const hc::Message& left_image,
                                            const hc::Message& right_image) {
     const auto& size = left_image.header;
-    if (size.width != right_image.header.width || size.height != right_image.header.height)
-      throw hc::ModuleError("the left image is " + std::to_string(size.width) + " x " +
-                            std::to_string(size.height) + ", the right one " +
-                            std::to_string(right_image.header.width) + " x " +
-                            std::to_string(right_image.header.height));
+    const auto& other = right_image.header;
+    if (size.width != other.width || size.height != other.height)
+      throw hc::ModuleError(hc::format("the left image is {} x {}, the right one {} x {}",
+                                       size.width, size.height, other.width, other.height));
     if (!matcher->takes({size.width, size.height}))
-      throw hc::ModuleError("images of " + std::to_string(size.width) + " x " +
-                            std::to_string(size.height) + " are not wider than " +
-                            std::to_string(*disparities) + " disparities");
+      throw hc::ModuleError(hc::format("images of {} x {} are not wider than {} disparities",
+                                       size.width, size.height, *disparities));
     auto found = disparity.loan(size.width, size.height);
     cv::Mat found_mat = hc::as_mat(found);
     matcher->match(hc::value_or_end(hc::as_mat(left_image)),
                    hc::value_or_end(hc::as_mat(right_image)), found_mat);
-    if (depth.linked()) {
-      auto metres = depth.loan(size.width, size.height);
-      cv::Mat metres_mat = hc::as_mat(metres);
-      hc::vision::depth_of(found_mat,
-                           {measured.focal > 0 ? measured.focal : *focal, distance(), *offset},
-                           metres_mat);
-      disparity.send(std::move(found));
-      depth.send(std::move(metres));
-    } else {
-      disparity.send(std::move(found));
-    }
+    if (!depth.linked()) return disparity.send(std::move(found));
+    auto metres = depth.loan(size.width, size.height);
+    cv::Mat metres_mat = hc::as_mat(metres);
+    hc::vision::depth_of(
+        found_mat, {measured.focal > 0 ? measured.focal : *focal, distance(), *offset}, metres_mat);
+    disparity.send(std::move(found));
+    depth.send(std::move(metres));
   });
   module.background();
   return module.run(argc, argv);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a head follows another head, by the truth of a simulation.
-#include <cmath>
-#include <cstdio>
-#include <string>
+#include <algorithm>
 
 #include <frames/messages.h>
 #include <gaze/follow_score.h>
@@ -16,50 +14,38 @@ int main(int argc, char** argv) {
   auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
   auto result = module.output("score", hc::table<double>().of(4, 1),
-                              "RMS error [rad], greatest error [rad], by how much it is "
-                              "behind [s], samples");
-  auto settle = module.parameter("settle", 2.0, "s", "from the first of both until it counts",
+                              "RMS error [rad], maximum error [rad], delay [s], samples");
+  auto settle = module.parameter("settle", 2.0, "s", "delay of the scoring after the first of both",
                                  {.min = 0, .max = 1e6});
   auto duration =
-      module.parameter("duration", 10.0, "s", "how long it counts", {.min = 0.1, .max = 1e6});
-
+      module.parameter("duration", 10.0, "s", "how long it is scored", {.min = 0.1, .max = 1e6});
   auto timeout =
       module.parameter("timeout", 60.0, "s", "to wait for a gaze of each", {.min = 1, .max = 3600});
 
   std::vector<hc::gaze::TimedAngles> wanted, turned;
   std::int64_t waits[2] = {};  // looks since one of each
-  auto take = [](auto& samples, const auto& message) {
+  auto take = [](auto& samples, auto& wait, const auto& message) {
+    wait = 0;
     const double time = static_cast<double>(message.header.time) * 1e-9;
     const auto q = hc::value_or_end(hc::rotation_of(message));
     if (samples.empty() || time > samples.back().time)
       samples.push_back({time, hc::gaze::angles_of(q)});
   };
-  module.on(setpoint, [&](const auto& message) {
-    waits[0] = 0;
-    take(wanted, message);
-  });
-  module.on(motion, [&](const auto& message) {
-    waits[1] = 0;
-    take(turned, message);
-  });
+  module.on(setpoint, [&](const auto& message) { take(wanted, waits[0], message); });
+  module.on(motion, [&](const auto& message) { take(turned, waits[1], message); });
   module.generate([&] {
     constexpr double kLook = 20;  // [Hz]
     module.keep_rate(kLook);
     for (auto& wait : waits)
       if (static_cast<double>(++wait) > *timeout * kLook)
-        throw hc::ModuleError("there was no gaze of both");
+        throw hc::ModuleError("no gaze of both within timeout");
     if (wanted.empty() || turned.empty()) return true;
     const double begin = std::max(wanted.front().time, turned.front().time) + *settle;
     const double end = begin + *duration;
     if (wanted.back().time < end || turned.back().time < end) return true;
     const auto score = hc::gaze::score_follow(wanted, turned, begin, end);
-    result.send(
-        hc::table({score.rms, score.max, score.behind, static_cast<double>(score.samples)}));
-    constexpr double kDegrees = 180 / M_PI, kMilliseconds = 1000;
-    char line[120];
-    std::snprintf(line, sizeof line, "error %.2f° RMS, %.2f° at most, behind by %.0f ms",
-                  score.rms * kDegrees, score.max * kDegrees, score.behind * kMilliseconds);
-    module.log(std::string("result: ") + line);
+    result.send(hc::table<double>(score.numbers()));
+    module.log("result: " + score.text());
     return false;
   });
   return module.run(argc, argv);

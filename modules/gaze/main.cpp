@@ -13,8 +13,6 @@
 
 namespace {
 
-constexpr std::int32_t kGaze = 13;
-
 /// How often a push is repeated: the first time may come before the head is granted.
 constexpr std::chrono::milliseconds kSteer{5};
 
@@ -36,7 +34,7 @@ int main(int argc, char** argv) {
   auto stick = module.input("stick", hc::table<double>().of(2, 1).finite(),
                             "turn to the left, turn down, -1 … 1 of stick_rate");
   auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
-  auto command = module.output("command", hc::rotation<double>().in(kGaze),
+  auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
   auto bid = module.output("bid", hc::table<double>(),
                            "salience while there is a target, else that of rest");

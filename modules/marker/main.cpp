@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the markers are that an eye sees.
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <vector>
 
+#include <frames/messages.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
 #include <vision/image.h>
@@ -16,34 +18,21 @@
 
 namespace {
 
-using hc::vision::Camera;
+using hc::Coord;
 using hc::vision::Marker;
-
-constexpr std::int32_t kLeftEye = 4, kRightEye = 5;
-constexpr std::int32_t kRightImage = 8, kLeftRectified = 9, kRightRectified = 10;
-
-/// A camera, and the turn from its images' axes to those of its eye.
-struct View {
-  Camera camera;
-  cv::Matx33d R_eye_camera = cv::Matx33d::eye();
-};
-
-/// What took images of a coordinate system (spec/mtp-1.md, R44), by a calibration.
-View view_of(const hc::vision::StereoCalibration& c, std::int32_t coord) {
-  const bool is_right = coord == kRightImage || coord == kRightRectified;
-  if (coord == kLeftRectified || coord == kRightRectified) {
-    const auto& P = is_right ? c.P2 : c.P1;
-    return {{{P(0, 0), P(1, 1), P(0, 2), P(1, 2)}, {}}, (is_right ? c.R2 : c.R1).t()};
-  }
-  const auto& M = is_right ? c.M2 : c.M1;
-  return {{{M(0, 0), M(1, 1), M(0, 2), M(1, 2)}, is_right ? c.D2 : c.D1}};
-}
 
 struct Found {
   Marker marker;
   double side = 0;
   hc::vision::MarkerPose pose;
   std::int32_t frame = 0;
+
+  [[nodiscard]] Eigen::Isometry3d T_eye_marker() const {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.R.val);
+    T.translation() = Eigen::Map<const Eigen::Vector3d>(pose.t.val);
+    return T;
+  }
 };
 
 }  // namespace
@@ -53,7 +42,7 @@ int main(int argc, char** argv) {
                     "Finds ArUco, AprilTag and coloured square markers, and their poses."};
   auto image = module.input(
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "image of an eye: the left one unless its coordinate system is the right one's");
+      "image of the left eye, unless its coordinate system is the right one's");
   auto poses = module.output("poses", hc::transformation<double>(4, 4),
                              "T_eye_marker, one a marker: x right, y down, z into the marker as "
                              "seen by the viewer, origin in its middle [m]; coord = 1000 · eye + "
@@ -118,40 +107,21 @@ int main(int argc, char** argv) {
     return all;
   };
   auto send_poses = [&](const std::vector<Found>& all, std::int32_t eye) {
-    for (const auto& found : all) {
-      auto draft = poses.loan(4, 4);
-      for (int row = 0; row < 4; ++row) {
-        auto numbers = draft.matrix().row(static_cast<std::size_t>(row));
-        for (int column = 0; column < 3; ++column)
-          numbers[static_cast<std::size_t>(column)] = row < 3 ? found.pose.R(row, column) : 0;
-        numbers[3] = row < 3 ? found.pose.t[row] : 1;
-      }
-      draft.header.coord = 1000 * eye + found.frame;
-      poses.send(std::move(draft));
-    }
+    for (const auto& found : all)
+      poses.send(hc::transformation(found.T_eye_marker()).in(1000 * eye + found.frame));
   };
   auto send_table = [&](const std::vector<Found>& all, std::int32_t eye) {
-    constexpr std::size_t kColumns = 12;
-    auto draft = markers.loan(kColumns, static_cast<std::int32_t>(all.size()));
+    auto draft = markers.loan(12, static_cast<std::int32_t>(all.size()));
     draft.header.coord = eye;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto& [marker, metres, pose, frame] = all[i];
-      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(pose.R.val);
-      Eigen::Quaterniond q(Eigen::Matrix3d{R});
+      Eigen::Quaterniond q(all[i].T_eye_marker().linear());
       if (q.w() < 0) q.coeffs() *= -1;
-      const double row[kColumns] = {static_cast<double>(marker.kind),
-                                    double(marker.id),
-                                    metres,
-                                    pose.t[0],
-                                    pose.t[1],
-                                    pose.t[2],
-                                    q.x(),
-                                    q.y(),
-                                    q.z(),
-                                    q.w(),
-                                    pose.error,
-                                    marker.mean_side()};
-      std::copy(std::begin(row), std::end(row), draft.matrix().row(i).begin());
+      const auto& t = pose.t;
+      const double kind = static_cast<double>(marker.kind), id = marker.id;
+      const std::array row = {kind,  id,    metres, t[0],  t[1],       t[2],
+                              q.x(), q.y(), q.z(),  q.w(), pose.error, marker.mean_side()};
+      std::ranges::copy(row, draft.matrix().row(i).begin());
     }
     markers.send(std::move(draft));
   };
@@ -160,14 +130,17 @@ int main(int argc, char** argv) {
     read_parameters();
     const cv::Mat pixels = hc::value_or_end(hc::as_mat(message));
     if (pixels.empty()) return;
-    const auto& header = message.header;
-    View view{{{*focal, *focal, *cx < 0 ? (pixels.cols - 1) / 2.0 : *cx,
-                *cy < 0 ? (pixels.rows - 1) / 2.0 : *cy},
-               {}}};
+    const auto coord = message.header.coord;
+    const bool is_rectified = coord == Coord::kLeftRectified || coord == Coord::kRightRectified;
+    const bool is_right = coord == Coord::kRightImage || coord == Coord::kRightRectified;
+    const auto eye = is_right ? hc::vision::Eye::Right : hc::vision::Eye::Left;
+    hc::vision::EyeCamera view{{{*focal, *focal, *cx < 0 ? (pixels.cols - 1) / 2.0 : *cx,
+                                 *cy < 0 ? (pixels.rows - 1) / 2.0 : *cy},
+                                {}}};
     if (calibration) {
       if (calibration->size.area() > 0 && calibration->size != pixels.size())
         throw hc::ModuleError("the calibration is for images of another size");
-      view = view_of(*calibration, header.coord);
+      view = hc::vision::camera_of(*calibration, eye, is_rectified);
     }
     std::vector<Found> all;
     for (auto& marker : look(pixels)) {
@@ -187,10 +160,9 @@ int main(int argc, char** argv) {
       all.push_back(found);
     }
     if (all.empty()) return;
-    const bool is_right = header.coord == kRightImage || header.coord == kRightRectified;
-    const std::int32_t eye = is_right ? kRightEye : kLeftEye;
-    if (poses.linked()) send_poses(all, eye);
-    if (markers.linked()) send_table(all, eye);
+    const std::int32_t frame = is_right ? Coord::kRightEye : Coord::kLeftEye;
+    if (poses.linked()) send_poses(all, frame);
+    if (markers.linked()) send_table(all, frame);
   });
   return module.run(argc, argv);
 }

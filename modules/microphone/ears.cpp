@@ -8,17 +8,17 @@ using hc::Result;
 using hc::audio::Converter;
 using hc::audio::WavReader;
 
-Result<FileEar> FileEar::open(const std::string& path, const hc::audio::Format& format) {
+Result<FileEar> FileEar::open(const std::string& path, const hc::audio::Format& format,
+                              std::int64_t start) {
   auto reader = WavReader::open(path);
   if (!reader) return reader.error();
   auto converter = Converter::make(Converter::Scalar::I16, reader->format(), format);
   if (!converter) return converter.error();
-  return FileEar(std::move(*reader), std::move(*converter),
-                 static_cast<std::size_t>(format.channels));
+  return FileEar(std::move(*reader), std::move(*converter), format, start);
 }
 
-Result<std::vector<std::int16_t>> FileEar::next(std::size_t frames) {
-  const std::size_t wanted = frames * channels_;
+Result<Piece> FileEar::next(std::size_t frames) {
+  const std::size_t wanted = frames * static_cast<std::size_t>(format_.channels);
   std::vector<std::int16_t> read(frames * static_cast<std::size_t>(reader_.format().channels));
   while (ready_.size() < wanted && !is_finished_) {
     auto got = reader_.read(read);
@@ -34,7 +34,11 @@ Result<std::vector<std::int16_t>> FileEar::next(std::size_t frames) {
     ready_.insert(ready_.end(), more.begin(), more.end());
   }
   const auto end = ready_.begin() + static_cast<std::ptrdiff_t>(std::min(wanted, ready_.size()));
-  std::vector<std::int16_t> piece(ready_.begin(), end);
+  constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
+  const std::int64_t rate = format_.rate;
+  Piece piece{{ready_.begin(), end},
+              start_ + sent_ / rate * kSecond + sent_ % rate * kSecond / rate};
+  sent_ += static_cast<std::int64_t>(piece.samples.size()) / format_.channels;
   ready_.erase(ready_.begin(), end);
   return piece;
 }

@@ -26,19 +26,25 @@ struct Piece {
 /// A WAV file as sound of another format, in pieces of one length; the last may be shorter.
 class FileEar {
  public:
-  /// Errors: as WavReader::open and Converter::make.
-  static hc::Result<FileEar> open(const std::string& path, const hc::audio::Format& format);
+  /// @param start  time of its first frame [ns]. Errors: as WavReader::open and Converter::make.
+  static hc::Result<FileEar> open(const std::string& path, const hc::audio::Format& format,
+                                  std::int64_t start = 0);
 
   /// The next piece, empty at the end. Errors: System.
-  hc::Result<std::vector<std::int16_t>> next(std::size_t frames);
+  hc::Result<Piece> next(std::size_t frames);
 
  private:
-  FileEar(hc::audio::WavReader reader, hc::audio::Converter converter, std::size_t channels)
-      : reader_(std::move(reader)), converter_(std::move(converter)), channels_(channels) {}
+  FileEar(hc::audio::WavReader reader, hc::audio::Converter converter,
+          const hc::audio::Format& format, std::int64_t start)
+      : reader_(std::move(reader)),
+        converter_(std::move(converter)),
+        format_(format),
+        start_(start) {}
 
   hc::audio::WavReader reader_;
   hc::audio::Converter converter_;
-  std::size_t channels_;
+  hc::audio::Format format_;
+  std::int64_t start_, sent_ = 0;  // [ns]; frames
   std::vector<std::int16_t> ready_;
   bool is_finished_ = false;
 };

@@ -35,8 +35,9 @@ TEST_F(Ears, a_file_comes_whole_in_pieces) {
   for (const std::size_t size : {320U, 320U, 320U, 40U, 0U, 0U}) {
     auto piece = ear->next(320);
     ASSERT_TRUE(piece);
-    EXPECT_EQ(piece->size(), size);
-    all.insert(all.end(), piece->begin(), piece->end());
+    EXPECT_EQ(piece->samples.size(), size);
+    EXPECT_EQ(piece->time, static_cast<std::int64_t>(all.size()) * 62'500);
+    all.insert(all.end(), piece->samples.begin(), piece->samples.end());
   }
   for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i % 1000);
 }
@@ -49,8 +50,8 @@ TEST_F(Ears, a_file_is_given_in_the_format_asked_for) {
   while (true) {
     auto piece = ear->next(320);
     ASSERT_TRUE(piece);
-    if (piece->empty()) break;
-    frames += piece->size();
+    if (piece->samples.empty()) break;
+    frames += piece->samples.size();
   }
   EXPECT_NEAR(static_cast<double>(frames), 16000, 200);
 }
@@ -59,7 +60,7 @@ TEST_F(Ears, an_empty_file_is_at_its_end_at_once) {
   save({16000, 2}, 0);
   auto ear = FileEar::open(path, {16000, 1});
   ASSERT_TRUE(ear);
-  EXPECT_TRUE(ear->next(320)->empty());
+  EXPECT_TRUE(ear->next(320)->samples.empty());
 }
 
 TEST_F(Ears, a_missing_microphone_is_logged_once_and_found_later) {

@@ -8,7 +8,6 @@ namespace {
 
 constexpr int kPiecesPerSecond = 50;             // of 20 ms
 constexpr std::chrono::milliseconds kLook{100};  // how often the device is checked
-constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
 
 }  // namespace
 
@@ -32,7 +31,6 @@ int main(int argc, char** argv) {
   std::optional<FileEar> from_file;
   std::optional<DeviceEar> from_device;
   std::int32_t coord = 0;
-  std::int64_t start = 0, sent = 0;
 
   auto send = [&](const Piece& piece) {
     const auto channel_count = static_cast<int>(*channels);
@@ -41,14 +39,11 @@ int main(int argc, char** argv) {
     (channel_count == 1 ? mono : stereo).send(message);
   };
   auto send_from_file = [&] {
-    // At the end of a piece it has been heard, as by a microphone.
+    // A piece is sent at its end, as by a microphone.
     if (*paced) module.keep_rate(kPiecesPerSecond);
-    Piece piece;
-    piece.samples =
+    const auto piece =
         hc::value_or_end(from_file->next(static_cast<std::size_t>(*rate / kPiecesPerSecond)));
     if (piece.samples.empty()) return false;
-    piece.time = start + sent / *rate * kSecond + sent % *rate * kSecond / *rate;
-    sent += static_cast<std::int64_t>(piece.samples.size()) / *channels;
     send(piece);
     return true;
   };
@@ -60,9 +55,8 @@ int main(int argc, char** argv) {
           hc::Error{hc::Code::Invalid, "parameter rate: " + std::to_string(*rate) +
                                            " is not 8000, 16000, 22050, 44100 or 48000"});
     coord = *known;
-    start = module.now();
     if (!file->empty()) {
-      from_file.emplace(hc::value_or_end(FileEar::open(*file, format)));
+      from_file.emplace(hc::value_or_end(FileEar::open(*file, format, module.now())));
       return module.generate(send_from_file);
     }
     from_device.emplace(*device, format, format.rate / kPiecesPerSecond,

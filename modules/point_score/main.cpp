@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // How soon a head obeys a stick, by the truth of a simulation.
-#include <algorithm>
-#include <cstdio>
 #include <optional>
-#include <string>
 
 #include <frames/messages.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 
 #include "pusher.h"
 
 int main(int argc, char** argv) {
-  constexpr std::int32_t kGaze = 13;
   hc::Module module{"point_score", "Pushes a stick and measures when the head begins to move."};
-  auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
+  auto motion = module.input("motion", hc::rotation<double>().in(hc::Coord::kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
-  auto report = module.input("gaze", hc::rotation<double>().in(kGaze),
+  auto report = module.input("gaze", hc::rotation<double>().in(hc::Coord::kGaze),
                              "measured head orientation; with the first one it starts");
   auto stick = module.output("stick", hc::table<double>().of(2, 1), "left > 0, down > 0, -1 to 1");
   auto result = module.output("score", hc::table<double>().of(4, 1),
-                              "median and greatest time from the stick to the motion [s], "
+                              "median and maximum time from the stick to the motion [s], "
                               "pushes that moved the head, pushes");
   auto count = module.parameter("count", 20, "", "pushes", {.min = 1, .max = 1e6, .fixed = true});
   auto seed = module.parameter("seed", 1, "", "of when, how far and how long it is pushed",
@@ -36,11 +33,9 @@ int main(int argc, char** argv) {
   std::optional<Pusher> pusher;
   std::int64_t sent = 0;  // when `stick` was last sent [ns]
   module.on_start([&] {
-    Pusher::Options options;
-    options.count = static_cast<int>(*count);
-    options.seed = static_cast<std::uint64_t>(*seed);
-    options.unit = {*acceleration, *base_speed};
-    pusher.emplace(options);
+    pusher.emplace(Pusher::Options{.count = static_cast<int>(*count),
+                                   .seed = static_cast<std::uint64_t>(*seed),
+                                   .unit = {*acceleration, *base_speed}});
   });
   module.on(motion, [&](const auto& message) {
     const auto q = hc::value_or_end(hc::rotation_of(message));
@@ -63,18 +58,12 @@ int main(int argc, char** argv) {
     module.keep_rate(kLook);
     repeat();
     if (!pusher->is_done()) return true;
-    auto delays = pusher->delays();
-    std::sort(delays.begin(), delays.end());
-    const std::size_t n = delays.size();
-    const double median = n == 0 ? -1 : (delays[(n - 1) / 2] + delays[n / 2]) / 2;
-    const double most = n == 0 ? -1 : delays.back();
-    result.send(
-        hc::table({median, most, static_cast<double>(n), static_cast<double>(pusher->pushes())}));
-    char line[120];
-    std::snprintf(line, sizeof line,
-                  "stick to first motion %.1f ms median, %.1f ms at most, of %zu of %d pushes",
-                  1000 * median, 1000 * most, n, pusher->pushes());
-    module.log(std::string("result: ") + line);
+    const auto score = pusher->score();
+    result.send(hc::table({score.median, score.max, static_cast<double>(score.moved),
+                           static_cast<double>(pusher->pushes())}));
+    module.log(hc::format(
+        "result: stick to first motion {:.1f} ms median, {:.1f} ms at most, of {} of {} pushes",
+        1000 * score.median, 1000 * score.max, score.moved, pusher->pushes()));
     return false;
   });
   return module.run(argc, argv);

@@ -34,26 +34,26 @@ Pusher::Stick Pusher::look(double time) {
     stick_ = {0, 0, true};
     return stick_;
   }
-  if (!stands_ || pushes_ >= options_.count || time - still_since_ < rest_ ||
+  if (!rests_at_ || pushes_ >= options_.count || time - still_since_ < rest_ ||
       heard_ < still_since_ + rest_ / 2)
     return stick_;
   // Back towards the middle, so that the unit never comes to its limits.
   const double size = random(0.3, 1), share = random(-0.5, 0.5);
-  stick_.left = stands_->pan > 0 ? -size : size;
-  stick_.down = (stands_->tilt > 0 ? -1 : 1) * std::abs(share) * size;
+  stick_.left = rests_at_->pan > 0 ? -size : size;
+  stick_.down = (rests_at_->tilt > 0 ? -1 : 1) * std::abs(share) * size;
   stick_.changed = true;
   pushed_ = time;
   release_ = time + random(0.2, 0.5);
   moved_ = false;
-  from_ = *stands_;
+  from_ = *rests_at_;
   ++pushes_;
   return stick_;
 }
 
 void Pusher::hear(double time, const hc::gaze::Angles& angles) {
   heard_ = time;
-  if (!stands_ || way(angles, *stands_) > kStill) {
-    stands_ = angles;
+  if (!rests_at_ || way(angles, *rests_at_) > kStill) {
+    rests_at_ = angles;
     still_since_ = std::max(still_since_, time);
   }
   if (!pushed_ || moved_ || time <= *pushed_) return;
@@ -61,4 +61,12 @@ void Pusher::hear(double time, const hc::gaze::Angles& angles) {
   if (moved < options_.min_motion) return;
   moved_ = true;
   delays_.push_back(time - moving_since(moved, options_.unit) - *pushed_);
+}
+
+Pusher::Score Pusher::score() const {
+  if (delays_.empty()) return {};
+  auto sorted = delays_;
+  std::ranges::sort(sorted);
+  const std::size_t n = sorted.size();
+  return {(sorted[(n - 1) / 2] + sorted[n / 2]) / 2, sorted.back(), n};
 }

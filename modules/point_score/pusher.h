@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Pushes a stick and releases it, and measures when the head begins to move. Pure: who uses it
-// tells the time. Times are seconds of any origin.
+// Pushes a stick and releases it, and measures when the head begins to move. Pure: the caller
+// gives the time. Times are seconds of any origin.
 
 #include <cstdint>
 #include <optional>
@@ -36,6 +36,12 @@ class Pusher {
   /// From a push to the first motion, each but those that had no effect. [s]
   [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
   [[nodiscard]] int pushes() const { return pushes_; }
+  /// Of the delays.
+  struct Score {
+    double median = -1, max = -1;  ///< [s]
+    std::size_t moved = 0;         ///< pushes that moved the head
+  };
+  [[nodiscard]] Score score() const;
 
   /// How long a unit has moved from rest when it has come so far [s].
   /// @param way  not below 0 [rad].
@@ -47,7 +53,7 @@ class Pusher {
 
   Options options_;
   std::mt19937_64 random_;
-  std::optional<hc::gaze::Angles> stands_;  // since still_since_
+  std::optional<hc::gaze::Angles> rests_at_;  // since still_since_
   double still_since_ = 0, heard_ = 0;
   double rest_ = 0.5;             // for which it has to be at rest before the next push [s]
   std::optional<double> pushed_;  // when

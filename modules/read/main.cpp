@@ -12,18 +12,12 @@
 #include "block.h"
 #include "recogniser.h"
 
-namespace {
-
-constexpr std::int32_t kText = 30;
-
-}  // namespace
-
 int main(int argc, char** argv) {
   hc::Module module{"read", "Reads lines of letters on an even ground, as on a board."};
   auto image = module.input(
       "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
       "image with letters");
-  auto text = module.output("text", hc::string().in(kText),
+  auto text = module.output("text", hc::string().in(hc::Coord::kText),
                             "the text, once it is certain, and when it changes");
   auto confidence =
       module.output("confidence", hc::table<double>(), "of each reading, certain or not, 0 to 1");

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a robot reads aloud what is written before it.
-#include <cstdio>
 #include <string>
 
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 
 #include "read_score.h"
 
 namespace {
 
-constexpr std::int32_t kSound22k = 22, kText = 30;
 constexpr double kSoundRate = 22050;             // of coordinate system 22 [Hz]
 constexpr double kLook = 100;                    // [Hz]
 constexpr std::int64_t kSettle = 1'000'000'000;  // from the first text until the first test [ns]
@@ -22,10 +21,12 @@ std::int64_t nanoseconds(double seconds) {
 
 int main(int argc, char** argv) {
   hc::Module module{"read_score", "Writes texts for a robot to read aloud, and scores it."};
-  auto text = module.input("text", hc::string().in(kText), "what was read, with the image's time");
-  auto sound = module.input("sound", hc::sound<std::int16_t>(1).in(kSound22k),
+  auto text = module.input("text", hc::string().in(hc::Coord::kText),
+                           "what was read, with the image's time");
+  auto sound = module.input("sound", hc::sound<std::int16_t>(1).in(hc::Coord::kSound22k),
                             "what is spoken, with the time of the text");
-  auto writing = module.output("writing", hc::string().in(kText), "what is to be read next");
+  auto writing =
+      module.output("writing", hc::string().in(hc::Coord::kText), "what is to be read next");
   auto result =
       module.output("score", hc::table<double>().of(6, 1),
                     "letters that are wrong, of 1; seen to spoken, median and most [s]; of "
@@ -65,15 +66,12 @@ int main(int argc, char** argv) {
     const auto score = score_of(texts);
     result.send(hc::table({score.error_rate, score.median, score.most, score.work,
                            static_cast<double>(score.texts), static_cast<double>(score.unspoken)}));
-    char line[200];
-    int used = std::snprintf(line, sizeof line,
-                             "character error rate %.1f %%, seen to spoken %.2f s median, %.2f s "
-                             "at most, of %zu texts",
-                             100 * score.error_rate, score.median, score.most, score.texts);
-    if (score.unspoken > 0)
-      std::snprintf(line + used, sizeof line - static_cast<std::size_t>(used),
-                    "; %zu not spoken in time", score.unspoken);
-    module.log(std::string("result: ") + line);
+    auto line = hc::format(
+        "character error rate {:.1f} %, seen to spoken {:.2f} s median, {:.2f} s at most, of {} "
+        "texts",
+        100 * score.error_rate, score.median, score.most, score.texts);
+    if (score.unspoken > 0) line += hc::format("; {} not spoken in time", score.unspoken);
+    module.log("result: " + line);
   };
   module.generate([&] {
     module.keep_rate(kLook);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot head and the world before it: what its eyes see and its ears hear, and how it really is.
+// A robot head in a room: what its eyes see and its ears hear, and the ground truth.
 #include <limits>
 #include <memory>
 #include <optional>
@@ -19,7 +19,6 @@
 
 namespace {
 
-constexpr std::int32_t kLeftImage = 7, kRightImage = 8, kGaze = 13, kSound16k = 21;
 constexpr double kTick = 250;  // how often it is looked whether an image is due [Hz]
 const Eigen::Vector3d kUnderground(0, 0, -10);  // where an absent ball is [m]
 
@@ -39,12 +38,14 @@ struct Scene {
 
 int main(int argc, char** argv) {
   hc::Module module{"simulator", "A robot head in a furnished room: eyes, ears and ground truth."};
-  auto gaze = module.input("gaze", hc::rotation<double>().in(kGaze),
+  auto gaze = module.input("gaze", hc::rotation<double>().in(hc::Coord::kGaze),
                            "roll, tilt, pan of the pan-tilt unit [rad]; straight ahead without");
-  auto text = module.input("text", hc::string(), "what is to stand on the board");
-  auto left = module.output("left", hc::rgb_image<std::uint8_t>().in(kLeftImage), "left eye");
-  auto right = module.output("right", hc::rgb_image<std::uint8_t>().in(kRightImage), "right eye");
-  auto sound = module.output("sound", hc::sound<std::int16_t>(2).in(kSound16k),
+  auto text = module.input("text", hc::string(), "text to write on the board");
+  auto left =
+      module.output("left", hc::rgb_image<std::uint8_t>().in(hc::Coord::kLeftImage), "left eye");
+  auto right =
+      module.output("right", hc::rgb_image<std::uint8_t>().in(hc::Coord::kRightImage), "right eye");
+  auto sound = module.output("sound", hc::sound<std::int16_t>(2).in(hc::Coord::kSound16k),
                              "what the ears hear, left and right");
   Truth truth(module);
   const Parameters parameters{module};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A voice. This program is linked with eSpeak NG, which is under the GPL, version 3; the others are
 // not.
-#include <charconv>
 #include <optional>
 
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <hc/mtp/rows.h>
 
@@ -12,17 +12,8 @@
 
 namespace {
 
-constexpr std::int32_t kSound22k = 22, kText = 30;
 constexpr int kRate = 22050;                    // of eSpeak NG's voices [Hz]
 constexpr std::chrono::milliseconds kLook{20};  // how much later than it could a text begins
-
-/// "0.120": seconds with three places.
-std::string seconds(double time) {
-  char digits[32];
-  const auto end =
-      std::to_chars(std::begin(digits), std::end(digits), time, std::chars_format::fixed, 3);
-  return {digits, end.ptr};
-}
 
 }  // namespace
 
@@ -30,9 +21,9 @@ int main(int argc, char** argv) {
   hc::Module module{"speak", "Speaks text aloud, by eSpeak NG."};
   auto text =
       module.input("text", hc::string(), "what to say; UTF-8, at most 2000 characters of it");
-  auto sound =
-      module.output("sound", hc::sound<std::int16_t>(1).in(kSound22k), "a message for each text");
-  auto words = module.output("words", hc::string().in(kText),
+  auto sound = module.output("sound", hc::sound<std::int16_t>(1).in(hc::Coord::kSound22k),
+                             "a message for each text");
+  auto words = module.output("words", hc::string().in(hc::Coord::kText),
                              "a message for each text, with the sound's time, and in it a row for "
                              "each word: START END WORD [s since the sound begins]; words that "
                              "eSpeak NG joins share their time by their letters");
@@ -56,8 +47,7 @@ int main(int argc, char** argv) {
   module.on_start([&] {
     synthesis.emplace(hc::value_or_end(Synthesis::start()));
     if (synthesis->rate() != kRate)
-      throw hc::ModuleError("eSpeak NG gives " + std::to_string(synthesis->rate()) + " Hz, not " +
-                            std::to_string(kRate));
+      throw hc::ModuleError(hc::format("eSpeak NG gives {} Hz, not {}", synthesis->rate(), kRate));
   });
   std::size_t said = 0;
   std::string last;
@@ -78,7 +68,7 @@ int main(int argc, char** argv) {
     std::copy(speech->samples.begin(), speech->samples.end(), draft.matrix().numbers().begin());
     std::vector<std::string> rows;
     for (const auto& word : speech->words)
-      rows.push_back(seconds(word.start) + " " + seconds(word.end) + " " + utf8(word.word));
+      rows.push_back(hc::format("{:.3f} {:.3f} {}", word.start, word.end, utf8(word.word)));
     auto table = hc::make_rows(rows);
     table.header.time = time;
     table.header.mode = next.mode;
@@ -109,8 +99,8 @@ int main(int argc, char** argv) {
   });
   const int status = module.run(argc, argv);
   if (said > 0)
-    module.log("result: said " + std::to_string(said) + (said == 1 ? " text" : " texts") +
-               ", the last \"" + last + "\"");
-  if (dropped > 0) module.log(std::to_string(dropped) + " texts dropped");
+    module.log(
+        hc::format("result: said {} text{}, the last \"{}\"", said, said == 1 ? "" : "s", last));
+  if (dropped > 0) module.log(hc::format("{} texts dropped", dropped));
   return status;
 }

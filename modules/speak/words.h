@@ -10,7 +10,7 @@
 
 /// Text as it may be given to the synthesiser: what is not UTF-8, controls (which would command
 /// it), and line ends become spaces; a word longer than 60 characters is broken, and what is behind
-/// `most` characters is left out.
+/// `most` characters is cut off.
 std::u32string speakable(std::string_view text, std::size_t most = 2000);
 
 /// A part of it as UTF-8.

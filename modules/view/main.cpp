@@ -10,7 +10,6 @@
 #include <vision/messages.h>
 #include <vision/window.h>
 #include <opencv2/highgui.hpp>
-#include <opencv2/imgproc.hpp>
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;
@@ -47,13 +46,7 @@ int main(int argc, char** argv) {
   module.on(image, [&](const hc::Message& message) {
     const hc::Header& header = message.header;
     if (header.empty()) return;
-    cv::Mat mat = hc::value_or_end(hc::as_mat(message)), bgr;
-    if (mat.depth() != CV_8U)
-      cv::cvtColor(hc::vision::colour_coded(mat, *min, *max), bgr, cv::COLOR_RGB2BGR);
-    else if (mat.channels() == 3)
-      cv::cvtColor(mat, bgr, cv::COLOR_RGB2BGR);
-    else
-      bgr = mat;
+    const cv::Mat bgr = hc::vision::displayable(hc::value_or_end(hc::as_mat(message)), *min, *max);
     if (!save->empty()) {
       bool all = save->ends_with('/');
       std::string file = std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";

@@ -93,9 +93,9 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
     if (workspace.decide(now)) module.log("focus: " + workspace.last_change(names_of(*modes)));
     const std::int64_t time = module.now();
-    auto told = hc::table({workspace.focus()});
-    told.header.time = time;
-    focus.send(told);
+    auto message = hc::table({workspace.focus()});
+    message.header.time = time;
+    focus.send(message);
     auto rows = workspace.standings(now);
     auto draft = standings.loan(5, static_cast<std::int32_t>(rows.size()));
     draft.header.time = time;

@@ -30,7 +30,7 @@ struct WorkspaceOptions {
   std::chrono::nanoseconds person_expiry{60'000'000'000};  ///< of a person's bid
 };
 
-/// How a mode stands.
+/// The state of a mode.
 struct Standing {
   std::int32_t mode = 0;
   double salience = 0;             ///< the person's where the bid is a person's
@@ -69,7 +69,7 @@ class Workspace {
   bool decide(hc::MonotonicTime now);
 
   /// The last change of focus and the bids behind it: "track (0.60) over read (0.40), margin 0.10".
-  /// @param names  of modes; those that have none are told by their numbers.
+  /// @param names  of modes; those that have none are named by their numbers.
   [[nodiscard]] std::string last_change(const std::map<std::int32_t, std::string>& names) const;
 
   /// The mode in focus as decide() left it; 0: none.

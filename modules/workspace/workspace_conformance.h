@@ -24,17 +24,17 @@ class FocusRules {
 
   /// To be called for every decision, with the focus that it left.
   void decided(std::int32_t focus, hc::MonotonicTime now) {
-    const bool is_held = person_.stands(now);
+    const bool is_held = person_.is_valid(now);
     const bool any = std::any_of(tasks_.begin(), tasks_.end(),
-                                 [&](const auto& task) { return task.second.stands(now); });
+                                 [&](const auto& task) { return task.second.is_valid(now); });
     if (is_held) {
       EXPECT_EQ(focus, person_mode_);  // within one period
     } else {
       // An expired bid never holds focus; and none is in focus only where none bids.
-      EXPECT_TRUE(focus == 0 ? !any : tasks_[focus].stands(now));
+      EXPECT_TRUE(focus == 0 ? !any : tasks_[focus].is_valid(now));
     }
     if (focus != focus_) {
-      if (!is_held && tasks_[focus_].stands(now)) {  // so neither by expiry nor by a person
+      if (!is_held && tasks_[focus_].is_valid(now)) {  // so neither by expiry nor by a person
         EXPECT_GE(now - changed_, options_.dwell);
         EXPECT_GT(tasks_[focus].salience, tasks_[focus_].salience + options_.margin);
       }
@@ -44,7 +44,7 @@ class FocusRules {
     // Nobody is kept out behind the dwell time.
     if (is_held || !any || now - changed_ < options_.dwell) return;
     for (const auto& [mode, task] : tasks_) {
-      if (!task.stands(now)) continue;
+      if (!task.is_valid(now)) continue;
       EXPECT_LE(task.salience, tasks_[focus].salience + options_.margin);
     }
   }
@@ -54,7 +54,9 @@ class FocusRules {
     double salience = 0;
     hc::MonotonicTime expires{};
 
-    [[nodiscard]] bool stands(hc::MonotonicTime now) const { return salience > 0 && now < expires; }
+    [[nodiscard]] bool is_valid(hc::MonotonicTime now) const {
+      return salience > 0 && now < expires;
+    }
   };
 
   WorkspaceOptions options_;
