@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
                             "each second: messages passed; dropped for ttl, as not listed, "
                             "without a route, as damaged");
   auto numbers = module.parameter("numbers", "", "",
-                                  "what src and dst become, e.g. \"12=112 -2=-5\"; others stay",
+                                  "map of src and dst, e.g. \"12=112 -2=-5\"; others stay",
                                   {.fixed = true});
   auto only = module.parameter("only", "", "", "dst that pass, e.g. \"12 13 -1\"; none: all",
                                {.fixed = true});

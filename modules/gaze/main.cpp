@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
   auto bid = module.output("bid", hc::table<double>(),
-                           "salience while there is a target, else that of rest");
+                           "salience while there is a target, else idle_salience");
   hc::ModuleFrames frames{module};
   const Parameters parameters{module};
 

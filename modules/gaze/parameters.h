@@ -20,7 +20,7 @@ struct Parameters {
       "idle_salience", 0.0, "",
       "salience of looking straight ahead while there is no target, 0: idle", {.min = 0, .max = 1});
   hc::Parameter<double> timeout =
-      module.parameter("timeout", 0.5, "s", "how long a target that is lost is still followed",
+      module.parameter("timeout", 0.5, "s", "how long a lost target keeps the head",
                        {.min = 0.01, .max = 60});
   hc::Parameter<double> noise =
       module.parameter("noise", 0.003, "rad", "measurement noise: σ of the target's angles",
@@ -44,7 +44,7 @@ struct Parameters {
       "dead_zone", 0.0, "rad", "no command for a target so near to where the head looks",
       {.min = 0, .max = 1});
   hc::Parameter<double> stick_rate = module.parameter(
-      "stick_rate", 1.0, "rad/s", "of a stick that is pushed fully", {.min = 0.01, .max = 10});
+      "stick_rate", 1.0, "rad/s", "speed of the head at full deflection", {.min = 0.01, .max = 10});
   hc::Parameter<double> pan_max =
       module.parameter("pan_max", 2.77, "rad", "to either side", {.min = 0, .max = 3.2});
   hc::Parameter<double> tilt_max =

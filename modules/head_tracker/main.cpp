@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kLook{20};  // how often a closed port is tried for
+constexpr std::chrono::milliseconds kLook{20};  // how often a port in use is tried again
 
 }  // namespace
 
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
       module.parameter("port", 4242, "", "UDP port", {.min = 0, .max = 65535, .fixed = true});
   auto centre_first =
       module.parameter("centre_first", true, "", "the first pose is the zero; else the tracker's");
-  auto silence = module.parameter("silence", 1.0, "s", "without packets for so long it is logged",
+  auto silence = module.parameter("silence", 1.0, "s", "time without packets until it is logged",
                                   {.min = 0.01, .max = 3600});
 
   const hc::SystemClock clock;

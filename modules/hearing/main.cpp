@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
                                  "too quiet or comes from several sides");
   auto base =
       module.parameter("base", 0.18, "m", "distance between the ears", {.min = 0.01, .max = 1});
-  auto min_level = module.parameter("min_level", 0.005, "", "lowest level that has a direction",
+  auto min_level = module.parameter("min_level", 0.005, "", "minimum level for a direction",
                                     {.min = 0, .max = 1});
 
   module.on(sound, [&](const auto& message) {

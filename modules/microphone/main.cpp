@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   auto channels =
       module.parameter("channels", 1, "", "1 or 2", {.min = 1, .max = 2, .fixed = true});
   auto paced =
-      module.parameter("paced", true, "", "a file in real time; false: as fast as it is taken");
+      module.parameter("paced", true, "", "a file in real time; false: as fast as it is read");
 
   std::optional<FileEar> from_file;
   std::optional<DeviceEar> from_device;

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   hc::Module module{"pan_tilt", "Turns the head by a FLIR pan-tilt unit; reports where it looks."};
   auto command =
       module.input("command", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze).finite(),
-                   "roll (ignored), tilt, pan to take [rad]; the newest counts");
+                   "roll (ignored), tilt, pan to take [rad]; the newest is used");
   auto device_input = module.input("device", hc::string(), "device to open; none when empty");
   auto gaze = module.output("gaze", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze),
                             "0, tilt, pan as measured [rad]");
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   auto age = module.parameter("age", 0.2, "s", "maximum age of a command; older ones are dropped",
                               {.min = 0.001, .max = 60});
   auto hold = module.parameter("hold", 0.2, "s",
-                               "the unit is halted when no command comes for so long, 0: never",
+                               "the unit is halted after this time without a command, 0: never",
                                {.min = 0, .max = 60});
   auto speed = module.parameter("speed", 0.0, "rad/s", "maximum of each axis, 0: the unit's own",
                                 {.min = 0, .max = 100});

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
                               "median and maximum time from the stick to the motion [s], "
                               "pushes that moved the head, pushes");
   auto count = module.parameter("count", 20, "", "pushes", {.min = 1, .max = 1e6, .fixed = true});
-  auto seed = module.parameter("seed", 1, "", "of when, how far and how long it is pushed",
+  auto seed = module.parameter("seed", 1, "", "of the times, directions and lengths of the pushes",
                                {.min = 0, .max = 1e9, .fixed = true});
   auto rate = module.parameter("rate", 50.0, "Hz",
                                "how often the stick is repeated while it is out of its middle",
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   auto acceleration = module.parameter("acceleration", 1.795, "rad/s²", "of the unit",
                                        {.min = 0.01, .max = 1000, .fixed = true});
   auto base_speed =
-      module.parameter("base_speed", 0.8976, "rad/s", "with which the unit starts at once",
+      module.parameter("base_speed", 0.8976, "rad/s", "up to which the unit starts and stops at once",
                        {.min = 0, .max = 100, .fixed = true});
 
   std::optional<Pusher> pusher;

@@ -26,17 +26,17 @@ int main(int argc, char** argv) {
   auto sound = module.input("sound", hc::sound<std::int16_t>(1).in(hc::Coord::kSound22k),
                             "what is spoken, with the time of the text");
   auto writing =
-      module.output("writing", hc::string().in(hc::Coord::kText), "what is to be read next");
+      module.output("writing", hc::string().in(hc::Coord::kText), "the next text for the board");
   auto result =
       module.output("score", hc::table<double>().of(6, 1),
-                    "letters that are wrong, of 1; seen to spoken, median and most [s]; of "
+                    "character error rate; seen to spoken, median and maximum [s]; of "
                     "it since the image that decided, median [s]; texts; texts not spoken");
   auto seed = module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9});
   auto count = module.parameter("count", 5, "", "texts", {.min = 1, .max = 100'000});
-  auto time_out = module.parameter("time_out", 10.0, "s", "for a text, then comes the next",
+  auto time_out = module.parameter("time_out", 10.0, "s", "maximum time for a text",
                                    {.min = 0.1, .max = 1000});
   auto pause =
-      module.parameter("pause", 0.3, "s", "from the end of what is spoken to the next text",
+      module.parameter("pause", 0.3, "s", "from the end of the speech to the next text",
                        {.min = 0, .max = 1000});
 
   std::mt19937_64 random;

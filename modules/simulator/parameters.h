@@ -18,9 +18,9 @@ struct Parameters {
   hc::Parameter<double> rate = module.parameter("rate", 20.0, "Hz", "pairs of images a second",
                                                 {.min = 0.1, .max = 1000, .fixed = true});
   hc::Parameter<std::int64_t> count =
-      module.parameter("count", 0, "", "pairs to give, 0: all", {.min = 0});
+      module.parameter("count", 0, "", "pairs to send, 0: all", {.min = 0});
   hc::Parameter<bool> paced = module.parameter(
-      "paced", true, "", "in real time; false: as fast as they are drawn and gazes come",
+      "paced", true, "", "in real time; false: as fast as images are drawn and poses arrive",
       {.fixed = true});
   hc::Parameter<std::int64_t> start = module.parameter(
       "start", 0, "ns", "time of the first image, 0: now", {.min = 0, .fixed = true});
@@ -36,9 +36,9 @@ struct Parameters {
   hc::Parameter<double> blur =
       module.parameter("blur", 0.0, "px", "standard deviation of the blur", {.min = 0, .max = 20});
   hc::Parameter<double> exposure =
-      module.parameter("exposure", 1.0, "", "1 is as it should be", {.min = 0, .max = 10});
+      module.parameter("exposure", 1.0, "", "brightness of the images, 1: nominal", {.min = 0, .max = 10});
   hc::Parameter<double> latency = module.parameter(
-      "latency", 0.0, "s", "from taking an image to giving it", {.min = 0, .max = 2});
+      "latency", 0.0, "s", "from taking an image to sending it", {.min = 0, .max = 2});
   hc::Parameter<bool> swapped =
       module.parameter("swapped", false, "", "the cables of the eyes are mixed up");
 

@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
                               "back, longest time to acquire it then [s], samples");
   auto duration =
       module.parameter("duration", 20.0, "s", "how long it is scored", {.min = 0.1, .max = 1e6});
-  auto within = module.parameter("within", 0.0524, "rad", "an error up to this has acquired it",
+  auto within = module.parameter("within", 0.0524, "rad", "maximum error of an acquired ball",
                                  {.min = 1e-4, .max = 1});
   hc::ModuleFrames frames{module, {.input = false}};
   auto timeout =
