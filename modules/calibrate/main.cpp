@@ -49,8 +49,9 @@ int main(int argc, char** argv) {
   auto salience = module.parameter("salience", 0.9, "", "of the bid", {.min = 0, .max = 1});
   auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes, without a file",
                                 {.min = 1, .fixed = true});
-  auto timeout = module.parameter("timeout", 5.0, "s", "to wait for the head to rest where it is sent",
-                                  {.min = 0.5, .max = 600});
+  auto timeout =
+      module.parameter("timeout", 5.0, "s", "to wait for the head to rest where it is sent",
+                       {.min = 0.5, .max = 600});
   auto pause = module.parameter("pause", 30.0, "s", "after a failed attempt", {.min = 0});
   auto tries = module.parameter("tries", 3, "", "failed attempts until it gives up", {.min = 1});
   hc::ModuleFrames frames{module};

@@ -13,9 +13,8 @@ int main(int argc, char** argv) {
   auto sent = module.output("counts", hc::table<std::int64_t>().of(5, 1),
                             "each second: messages passed; dropped for ttl, as not listed, "
                             "without a route, as damaged");
-  auto numbers = module.parameter("numbers", "", "",
-                                  "map of src and dst, e.g. \"12=112 -2=-5\"; others stay",
-                                  {.fixed = true});
+  auto numbers = module.parameter(
+      "numbers", "", "", "map of src and dst, e.g. \"12=112 -2=-5\"; others stay", {.fixed = true});
   auto only = module.parameter("only", "", "", "dst that pass, e.g. \"12 13 -1\"; none: all",
                                {.fixed = true});
   auto only_from =

@@ -19,9 +19,8 @@ struct Parameters {
   hc::Parameter<double> idle_salience = module.parameter(
       "idle_salience", 0.0, "",
       "salience of looking straight ahead while there is no target, 0: idle", {.min = 0, .max = 1});
-  hc::Parameter<double> timeout =
-      module.parameter("timeout", 0.5, "s", "how long a lost target keeps the head",
-                       {.min = 0.01, .max = 60});
+  hc::Parameter<double> timeout = module.parameter(
+      "timeout", 0.5, "s", "how long a lost target keeps the head", {.min = 0.01, .max = 60});
   hc::Parameter<double> noise =
       module.parameter("noise", 0.003, "rad", "measurement noise: σ of the target's angles",
                        {.min = 1e-6, .max = 1, .fixed = true});

@@ -14,9 +14,9 @@ int main(int argc, char** argv) {
   auto buttons = module.output("buttons", hc::table<std::uint8_t>(),
                                "1 where one is pressed: A, B, X, Y, back, guide, start, left and "
                                "right stick, left and right shoulder, up, down, left, right, …");
-  auto dead_zone = module.parameter("dead_zone", 0.1, "",
-                                    "of the stick: positions nearer to the middle are 0",
-                                    {.min = 0, .max = 0.9});
+  auto dead_zone =
+      module.parameter("dead_zone", 0.1, "", "of the stick: positions nearer to the middle are 0",
+                       {.min = 0, .max = 0.9});
   auto rate = module.parameter("rate", 50.0, "Hz",
                                "how often the stick is repeated while out of its middle",
                                {.min = 0, .max = 1000});

@@ -26,9 +26,9 @@ int main(int argc, char** argv) {
                                {.min = 1, .max = 1000});
   auto acceleration = module.parameter("acceleration", 1.795, "rad/s²", "of the unit",
                                        {.min = 0.01, .max = 1000, .fixed = true});
-  auto base_speed =
-      module.parameter("base_speed", 0.8976, "rad/s", "up to which the unit starts and stops at once",
-                       {.min = 0, .max = 100, .fixed = true});
+  auto base_speed = module.parameter("base_speed", 0.8976, "rad/s",
+                                     "up to which the unit starts and stops at once",
+                                     {.min = 0, .max = 100, .fixed = true});
 
   std::optional<Pusher> pusher;
   std::int64_t sent = 0;  // when `stick` was last sent [ns]

@@ -33,11 +33,10 @@ int main(int argc, char** argv) {
                     "it since the image that decided, median [s]; texts; texts not spoken");
   auto seed = module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9});
   auto count = module.parameter("count", 5, "", "texts", {.min = 1, .max = 100'000});
-  auto time_out = module.parameter("time_out", 10.0, "s", "maximum time for a text",
-                                   {.min = 0.1, .max = 1000});
-  auto pause =
-      module.parameter("pause", 0.3, "s", "from the end of the speech to the next text",
-                       {.min = 0, .max = 1000});
+  auto time_out =
+      module.parameter("time_out", 10.0, "s", "maximum time for a text", {.min = 0.1, .max = 1000});
+  auto pause = module.parameter("pause", 0.3, "s", "from the end of the speech to the next text",
+                                {.min = 0, .max = 1000});
 
   std::mt19937_64 random;
   std::vector<ReadText> texts;

@@ -35,8 +35,8 @@ struct Parameters {
       "noise", 2.0, "", "standard deviation of the noise, of 255", {.min = 0, .max = 40});
   hc::Parameter<double> blur =
       module.parameter("blur", 0.0, "px", "standard deviation of the blur", {.min = 0, .max = 20});
-  hc::Parameter<double> exposure =
-      module.parameter("exposure", 1.0, "", "brightness of the images, 1: nominal", {.min = 0, .max = 10});
+  hc::Parameter<double> exposure = module.parameter(
+      "exposure", 1.0, "", "brightness of the images, 1: nominal", {.min = 0, .max = 10});
   hc::Parameter<double> latency = module.parameter(
       "latency", 0.0, "s", "from taking an image to sending it", {.min = 0, .max = 2});
   hc::Parameter<bool> swapped =
