@@ -27,7 +27,7 @@ ALLOWED = {
     "sound": {"base"},
     "drivers": {"base"},
     "modules": {"base", "os", "mtp", "contract", "compress", "module", "drivers"} | PACKAGES,
-    "tools": {"base", "os", "mtp", "contract", "compress", "link", "graph"},
+    "tools": {"base", "os", "mtp", "contract", "compress", "link", "graph", "frames"},
 }
 CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "graph"}
 # The mtp layer is pure: no input or output, no threads, no clock.

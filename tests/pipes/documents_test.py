@@ -132,6 +132,9 @@ class Documents(Pipes):
     def test_routing(self):
         self.run_document("doc/routing.md")
 
+    def test_frames(self):
+        self.run_document("doc/frames.md")
+
     def test_body(self):
         self.run_document("doc/body.md")
 

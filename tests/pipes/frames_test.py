@@ -3,9 +3,11 @@
 """Frames of a graph file: fixed ones and moving ones, at the times of messages."""
 
 import math
+import os
+import time
 import unittest
 
-from harness import BUILD, Pipes
+from harness import BUILD, Pipes, wait_until
 
 START = 1763683200_000000000  # [ns]
 STEP = 100_000_000  # [ns] between poses
@@ -129,6 +131,62 @@ class Frames(Pipes):
         module = BUILD / "tests/whereabouts"
         self.shell("%s --frames 'head 5 robot a.b 1' <images" % module, status=1)
         self.assertIn("frames: frame 1, head: its number is 3, not 5", self.err)
+
+    def expect_near(self, numbers, wanted):
+        for number, each in zip(numbers, wanted):
+            self.assertAlmostEqual(number, each, delta=1e-4)  # as printed
+
+    def test_a_transform_is_printed_from_a_recording(self):
+        self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", ""))
+        self.write("poses", "".join(map(pose, range(10))))
+        self.write("pictures", picture(1, START + STEP))
+        self.shell("exec hc run graph.toml --record kept")
+        at = START + int(1.25 * STEP)
+        out = self.shell("hc frames graph.toml left_eye world --in kept --at %d" % at).splitlines()
+        wanted = world_left_eye(1.25)
+        self.assertEqual(out[0], "left_eye to world, at %d ns" % at)
+        numbers = [[float(word) for word in line.split()[-3:]] for line in out[1:6]]
+        self.expect_near(numbers[0], [row[3] for row in wanted[:3]])
+        for row, wanted_row in zip(numbers[1:4], wanted):
+            self.expect_near(row, wanted_row[:3])
+        self.expect_near(numbers[4], [0, 0, 90 + math.degrees(1.25 * TURN)])
+        self.assertEqual(out[6].split()[1:], "world -> robot -> head -> left_eye".split()[::-1])
+        # The latest pose that is known, without a time.
+        out = self.shell("hc frames graph.toml left_eye world --in kept")
+        self.assertIn("left_eye to world, at %d ns\n" % (START + 9 * STEP), out)
+        # A fixed one needs no recording.
+        self.assertIn("robot to world, fixed\n", self.shell("hc frames graph.toml robot world"))
+        self.shell("hc frames graph.toml left_eye word --in kept", status=1)
+        self.assertIn('there is no frame "word", did you mean "world"?', self.err)
+        self.shell("hc frames graph.toml left_eye nose", status=1)
+        self.assertIn('there is no frame "nose"; known: head, left_eye, robot, world', self.err)
+        self.shell("hc frames graph.toml left_eye world --in kept --at %d" % (START - 1), status=1)
+        self.assertIn("too early", self.err)
+
+    def test_a_transform_is_printed_from_a_running_graph(self):
+        self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", ""))
+        for name in ("poses", "pictures"):
+            os.mkfifo(self.path(name))
+        name = "seen_%d" % os.getpid()
+        self.shell("hc frames graph.toml left_eye world --of " + name, status=1)
+        self.assertIn('no graph "%s" is running' % name, self.err)
+        self.start("exec hc run graph.toml --as " + name)
+        wait_until(lambda: name in self.shell("hc ps"))
+        with open(self.path("poses"), "w") as poses, open(self.path("pictures"), "w"):
+            asked = self.start("exec hc frames graph.toml left_eye world --of " + name)
+            step = 0
+            while asked.poll() is None:  # until it has seen one
+                poses.write(pose(step))
+                poses.flush()
+                step += 1
+                time.sleep(0.01)
+            out, err = asked.communicate()
+            self.assertEqual(asked.returncode, 0, err)
+            out = out.decode().splitlines()
+            seen = (int(out[0].split()[4]) - START) // STEP
+            self.assertIn(seen, range(step))
+            numbers = [float(word) for word in out[1].split()[-3:]]
+            self.expect_near(numbers, [row[3] for row in world_left_eye(seen)[:3]])
 
 
 if __name__ == "__main__":

@@ -85,6 +85,7 @@ int main(int argc, char** argv) {
   tool::add_run(app);
   tool::add_check(app);
   tool::add_doctor(app);
+  tool::add_frames(app);
   tool::add_graph(app);
   tool::add_ps(app);
   tool::add_top(app);

@@ -44,6 +44,7 @@ void add_cat(CLI::App& app);
 void add_check(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_doctor(CLI::App& app);
+void add_frames(CLI::App& app);
 void add_graph(CLI::App& app);
 void add_info(CLI::App& app);
 void add_manual(CLI::App& app);

@@ -67,6 +67,7 @@ struct Plan {
   std::map<std::string, std::int64_t> sources;    ///< of outputs, "MODULE.PORT": their `src`
   std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
   std::set<std::string> workspaces;               ///< modules that publish the focus
+  std::string frames;                             ///< as text (G31), by the names of the file
 };
 
 /// Gives what `program --describe` prints.

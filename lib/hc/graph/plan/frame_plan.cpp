@@ -32,6 +32,7 @@ class Frames {
       if (frame.moved_by) check_mover(*frame.moved_by);
     check_numbers_of_moved();
     if (!planning_.problems.empty() || graph_.frames.empty()) return;
+    planning_.plan.frames = text_for("");
     for (const auto& [name, description] : planning_.described)
       if (takes_frames(planning_, name))
         planning_.planned(name)->parameters.try_emplace(kFrames, text_for(name));

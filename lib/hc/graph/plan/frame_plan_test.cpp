@@ -30,6 +30,7 @@ coord = 200
             "head 3 robot 0 0.5 1.25 0 0 0 1; left_eye 4 head source.left 11; "
             "nose 200 head 0 0 0 1 0 0 0");
   EXPECT_EQ(planned->modules[1].parameters.at("frames"), "mine");
+  EXPECT_EQ(planned->frames, planned->modules[0].parameters.at("frames"));
   EXPECT_TRUE(planned->modules[2].parameters.empty());
   EXPECT_EQ(planned->modules[0].fixed, (std::set<std::string>{"file"}));
 }
