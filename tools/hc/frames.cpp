@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using hc::frames::GraphFrames;
 
 constexpr std::chrono::milliseconds kRenewal{1000};  // of an observation; a graph wants one in 5 s
-constexpr std::chrono::seconds kSilence{5};           // so long a pose is awaited
+constexpr std::chrono::seconds kSilence{5};          // so long a pose is awaited
 
 struct Options {
   hc::LoadOptions graph;
@@ -71,9 +71,8 @@ void observe(GraphFrames& frames, const Options& options, const std::vector<std:
     descriptors.push_back(sources.back()->descriptor());
   }
   auto is_known = [&] {
-    return options.time > 0
-               ? !frames.tree.is_ahead(options.target, options.source, options.time)
-               : frames.tree.known(options.target, options.source).has_value();
+    return options.time > 0 ? !frames.tree.is_ahead(options.target, options.source, options.time)
+                            : frames.tree.known(options.target, options.source).has_value();
   };
   using Clock = std::chrono::steady_clock;
   auto renewed = Clock::now(), heard = renewed;

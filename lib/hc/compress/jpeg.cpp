@@ -21,7 +21,7 @@ constexpr int kMaxScans = 100;  // of a progressive image; each costs the decode
 constexpr int kFullColourQuality = 90;
 /// Most bytes that one compressed byte can stand for: a component of a JPEG image has all pixels,
 /// in blocks of 64 that take a bit each at least (ITU-T T.81, A.1.1 and F.1.2).
-constexpr std::uint64_t kMaxRatio = std::uint64_t{64} * 8;
+constexpr std::uint64_t kMaxImageExpansion = std::uint64_t{64} * 8;
 
 /// libjpeg reports errors by a call that must not come back; these go back to where we began.
 /// No object with a destructor lives between setjmp and longjmp.
@@ -110,7 +110,7 @@ std::optional<std::string> read(std::span<const std::byte> bytes, const Header& 
 
 Result<Message> expand_jpeg(const Message& message) {
   const std::uint64_t promised = message.header.element_bytes();
-  if (promised / message.header.info.components / kMaxRatio > message.elements.size())
+  if (promised / message.header.info.components / kMaxImageExpansion > message.elements.size())
     return too_few_bytes(37, message);
   SharedBytes pixels = allocate_bytes(promised);
   if (auto fault = read(message.elements, message.header, pixels.get()))

@@ -13,14 +13,14 @@ namespace {
 /// Most bytes that one compressed byte can stand for, so that no memory is reserved for a promise
 /// that the bytes cannot keep. A block of zstd takes 4 bytes at least, 3 of them its header, and
 /// holds 128 KiB at most (RFC 8878, 3.1.1.2).
-constexpr std::uint64_t kMaxRatio = (std::uint64_t{128} << 10) / 4;
+constexpr std::uint64_t kMaxExpansion = (std::uint64_t{128} << 10) / 4;
 
 }  // namespace
 
 Result<Message> expand_zstd(const Message& message) {
   std::uint64_t promised = message.header.element_bytes();
   if (message.elements.empty()) return damaged(36, "no zstd frame", message);
-  if (promised / kMaxRatio > message.elements.size()) return too_few_bytes(36, message);
+  if (promised / kMaxExpansion > message.elements.size()) return too_few_bytes(36, message);
   // All in one call: it writes into our bytes alone, needs no window, and stops at their end.
   SharedBytes bytes = allocate_bytes(promised);
   std::size_t size =

@@ -52,14 +52,8 @@ std::optional<std::pair<std::string, std::string>> pair_of(const std::string& wo
   return std::nullopt;
 }
 
-std::vector<std::string> names_of(const Graph& graph) {
-  std::vector<std::string> names;
-  for (const auto& module : graph.modules) names.push_back(module.name);
-  return names;
-}
-
 void add_no_module(const Graph& graph, const std::string& name, Problems& problems) {
-  problems.add({}, "no module \"" + name + "\"" + suggestion(name, names_of(graph)));
+  problems.add({}, "no module \"" + name + "\"" + suggestion(name, graph.module_names()));
 }
 
 void add_module(Graph& graph, const Command& command, Problems& problems) {

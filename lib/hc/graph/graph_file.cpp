@@ -16,12 +16,6 @@ using internal::quoted_name;
 constexpr std::size_t kMaxIncludedDepth = 16;                  // of files that include files
 constexpr std::size_t kMaxIncludedBytes = 4 * kMaxGraphBytes;  // of all that is included
 
-std::vector<std::string> names_of(const Graph& graph) {
-  std::vector<std::string> names;
-  for (const auto& module : graph.modules) names.push_back(module.name);
-  return names;
-}
-
 /// Reads a file and those that it includes, and goes on after what is wrong.
 class GraphReader {
  public:
@@ -104,7 +98,7 @@ class GraphReader {
                   {"modules", [&](const Node& modules) { overrides = &modules; }}});
     if (file.value.empty()) return;
     auto text = read_included(graph.file, file);
-    if (!text) return;
+    if (!text) return graph.unread.push_back(name);
     Graph included = internal::with_prefix(
         read(*text, problems_.add_file(path_of(graph.file, file.value))), name);
     if (overrides != nullptr)
@@ -120,7 +114,7 @@ class GraphReader {
     const std::string name = prefix + "_" + node.key;
     if (included.find(name) != nullptr) return internal::read_module(fields_, node, name, included);
     if (included.modules.empty() && !problems_.empty()) return;  // nothing was read
-    auto known = names_of(included);
+    auto known = included.module_names();
     for (auto& each : known) each.erase(0, prefix.size() + 1);
     fields_.add(node, "graph " + prefix + " has no module " + quoted_name(node.key) +
                           suggestion(node.key, known));
@@ -172,6 +166,12 @@ GraphModule* Graph::find(std::string_view name) {
   return found == modules.end() ? nullptr : &*found;
 }
 
+std::vector<std::string> Graph::module_names() const {
+  std::vector<std::string> names;
+  for (const auto& module : modules) names.push_back(module.name);
+  return names;
+}
+
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
                   const ReadFile& read_file) {
   Graph graph = GraphReader(environment, problems, read_file).read(text, 0);
@@ -208,7 +208,7 @@ void set_parameter(Graph& graph, std::string_view assignment, Problems& problems
   if (module == nullptr && graph.modules.empty() && !problems.empty()) return;  // nothing was read
   if (module == nullptr)
     return problems.add({}, "no module " + quoted_name(name) + " in " + graph.file +
-                                suggestion(name, names_of(graph)));
+                                suggestion(name, graph.module_names()));
   module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] = {
       std::string(assignment.substr(equals + 1)), {}};
 }

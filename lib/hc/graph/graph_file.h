@@ -98,12 +98,14 @@ struct Graph {
   std::vector<GraphLink> links;
   std::vector<GraphMode> modes;
   std::vector<GraphFrame> frames;
+  std::vector<std::string> unread;  ///< [graphs.NAME] whose file cannot be read, as is reported
   /// Modules that publish which mode is in focus, the graph's own first, each for the modules of
   /// its file and of what that includes; empty: it is wrong, and has been reported.
   std::vector<Lined<std::string>> workspaces;
 
   /// The module of that name; null where there is none.
   [[nodiscard]] GraphModule* find(std::string_view name);
+  [[nodiscard]] std::vector<std::string> module_names() const;
 };
 
 /// Looks a variable of the environment up; null where it is not set.

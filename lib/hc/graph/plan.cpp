@@ -123,6 +123,8 @@ std::string suggest(const Planning& planning, std::string_view name,
 }
 
 void add_no_module(Planning& planning, const Place& place, const std::string& module) {
+  for (const auto& graph : planning.graph.unread)
+    if (module.starts_with(graph + "_")) return;  // it may be there
   const std::vector<std::string> known(planning.names.begin(), planning.names.end());
   planning.problems.add(place, "no module \"" + module + "\"" + suggest(planning, module, known));
 }
@@ -182,6 +184,9 @@ Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Pr
   internal::check_links(planning);
   internal::check_loops(planning);
   internal::check_actors(planning);
+  internal::check_together(planning);
+  internal::check_bids(planning);
+  internal::check_destinations(planning);
   internal::plan_frames(planning);
   if (problems.empty()) internal::plan_links(planning);
   return std::move(planning.plan);

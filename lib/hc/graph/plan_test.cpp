@@ -136,6 +136,24 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
   }
 }
 
+TEST(Plan, TwoLinksCannotListenAtThePortOfOneHost) {
+  auto listening = [](const std::string& first, const std::string& second) {
+    return wrong("[modules.source]\noutputs.left = \"" + first + "\"\noutputs.right = \"" + second +
+                 "\"\n");
+  };
+  EXPECT_EQ(listening("tcp-listen:7000", "tcp-listen:127.0.0.1:7000"),
+            "g.toml:4: another link listens at tcp-listen:127.0.0.1:7000 too");
+  EXPECT_EQ(listening("tcp-listen:0.0.0.0:7000", "tcp-listen:7000"),
+            "g.toml:4: another link listens at tcp-listen:7000 too");
+  EXPECT_EQ(listening("tcp-listen:192.0.2.1:7000", "tcp-listen:7000"), "");
+}
+
+TEST(Plan, InputsThatAreTakenTogetherAreAllLinked) {
+  EXPECT_EQ(wrong("[modules.source]\n[modules.pair]\ninputs.left = \"source.left\"\n"),
+            "g.toml:3: module pair takes left together with right, which has no link");
+  EXPECT_EQ(wrong("[modules.pair]\n"), "");
+}
+
 TEST(Plan, AnInputThatTakesAnythingFits) {
   EXPECT_TRUE(plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n"));
 }

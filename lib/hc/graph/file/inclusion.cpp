@@ -42,6 +42,7 @@ Graph with_prefix(Graph graph, const std::string& name) {
     if (frame.moved_by) rename(frame.moved_by->value.module);
   }
   for (auto& workspace : graph.workspaces) rename(workspace.value);
+  for (auto& unread : graph.unread) rename(unread);
   return graph;
 }
 
@@ -67,6 +68,7 @@ void append(Graph& graph, Graph included, Problems& problems) {
   move_all(graph.frames, included.frames);
   move_all(graph.modes, included.modes);
   move_all(graph.workspaces, included.workspaces);
+  move_all(graph.unread, included.unread);
 }
 
 }  // namespace hc::internal

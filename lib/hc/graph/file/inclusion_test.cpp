@@ -8,7 +8,7 @@ namespace hc {
 namespace {
 
 const std::string kEye = R"([modules.camera]
-program = "source"
+program = "posed"
 parameters.rate = 1
 [modules.follow]
 program = "task"
@@ -20,7 +20,7 @@ track = 1
 parent = "mount"
 [frames.chip]
 parent = "lens"
-moved_by = "camera.left"
+moved_by = "camera.pose"
 )" + link_text("camera.left", "follow.image");
 
 TEST(Inclusion, NamesGetThatOfTheGraphBeforeThem) {
@@ -37,14 +37,14 @@ file = "parts/eye.toml"
   for (const auto& module : planned->modules) names.push_back(module.name);
   EXPECT_EQ(names, (std::vector<std::string>{"sink", "left_camera", "left_follow", "right_camera",
                                              "right_follow"}));
-  EXPECT_EQ(planned->modules[1].program, "source");
+  EXPECT_EQ(planned->modules[1].program, "posed");
   EXPECT_EQ(planned->modules[1].parameters.at("rate"), "5");
   EXPECT_EQ(planned->modules[3].parameters.at("rate"), "1");
   ASSERT_EQ(planned->links.size(), 3U);
   EXPECT_EQ(planned->links[1].from, "left_camera.left");
   EXPECT_EQ(planned->links[2].to, "right_follow.image");
   EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"track", 1}}));
-  EXPECT_EQ(values_of(planned->modules[4], "--to").front(), "command=10");
+  EXPECT_EQ(values_of(planned->modules[4], "--to").front(), "command=12");
 }
 
 TEST(Inclusion, WhatIsIncludedIsOverridden) {
@@ -88,6 +88,8 @@ modes = ["track"]
 track = 1
 [workspace]
 module = "judge"
+[modules.judge.inputs]
+bids = "track.bid"
 )";
   auto planned = plan(R"([modules.neck]
 program = "actor"
@@ -106,7 +108,8 @@ file = "head.toml"
   std::string links;
   for (const auto& link : planned->links) links += link.from + " " + link.to + "\n";
   EXPECT_EQ(links,
-            "judge.focus neck.focus\na_judge.focus a_neck.focus\na_judge.focus a_track.focus\n"
+            "a_track.bid a_judge.bids\nb_track.bid b_judge.bids\njudge.focus "
+            "neck.focus\na_judge.focus a_neck.focus\na_judge.focus a_track.focus\n"
             "b_judge.focus b_neck.focus\nb_judge.focus b_track.focus\n");
   EXPECT_EQ(planned->workspaces, (std::set<std::string>{"a_judge", "b_judge", "judge"}));
 }
@@ -119,6 +122,10 @@ TEST(Inclusion, ErrorsNameTheFileAndTheLineInIt) {
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\n", {{"b.toml", "\nx = \n"}}).substr(0, 9),
             "b.toml:3:");
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"none.toml\"\n"), "g.toml:3: none.toml: cannot be read");
+  EXPECT_EQ(
+      wrong("[graphs.a]\nfile = \"none.toml\"\n[modules.filter]\ninputs.in = \"a_eye.left\"\n"),
+      "g.toml:3: none.toml: cannot be read")
+      << "one cause, one error";
   EXPECT_EQ(wrong("[graphs.a]\n"), "g.toml:2: \"file\" is missing in graph a");
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"./x/../g.toml\"\n"), "g.toml:3: g.toml includes itself");
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"b/b.toml\"\n",

@@ -144,4 +144,32 @@ void plan_modes(Planning& planning) {
   Attention(planning).run();
 }
 
+/// A mode gets the focus by the bids of a module that has it, which go to a workspace, perhaps
+/// through routers. One of a graph that runs may be linked later.
+void check_bids(Planning& planning) {
+  const Graph& graph = planning.graph;
+  if (planning.before != nullptr || !planning.problems.empty()) return;
+  std::set<std::string> bidding = planning.plan.workspaces;  // they, and who sends to them
+  if (bidding.empty()) return;
+  for (bool is_more = true; is_more;) {
+    is_more = false;
+    for (const auto& link : graph.links) {
+      const bool passes =
+          planning.plan.workspaces.contains(link.to.module) || planning.is_router(link.to.module);
+      if (!passes || !bidding.contains(link.to.module)) continue;
+      if (!link.from.uri.empty()) return;  // who bids from outside is not known
+      is_more = bidding.insert(link.from.module).second || is_more;
+    }
+  }
+  for (const auto& mode : graph.modes) {
+    auto bids = [&](const GraphModule& module) {
+      return module.mode && module.mode->value == mode.name && bidding.contains(module.name);
+    };
+    if (std::none_of(graph.modules.begin(), graph.modules.end(), bids))
+      planning.problems.add(mode.place, "mode " + mode.name +
+                                            " never gets the focus: no module with mode = \"" +
+                                            mode.name + "\" sends bids to a workspace");
+  }
+}
+
 }  // namespace hc::internal

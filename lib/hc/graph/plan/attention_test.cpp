@@ -25,10 +25,12 @@ read = 3
 [workspace]
 module = "workspace"
 )" + link_text("track.command", "actor.command") +
-                           link_text("read.command", "actor.command");
+                           link_text("read.command", "actor.command") +
+                           link_text("read.bid", "workspace.bids");
+const std::string kBid = link_text("track.bid", "workspace.bids");
 
 TEST(Attention, ModulesAreToldTheirModes) {
-  auto planned = plan(kModes);
+  auto planned = plan(kModes + kBid);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"read", 3}, {"track", 1}}));
   EXPECT_EQ(planned->workspaces, std::set<std::string>{"workspace"});
@@ -42,7 +44,7 @@ TEST(Attention, ModulesAreToldTheirModes) {
 }
 
 TEST(Attention, TheFocusIsLinkedToWhoFollowsIt) {
-  auto planned = plan(kModes);
+  auto planned = plan(kModes + kBid);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(
       values_of(planned->modules[3], "--out"),
@@ -50,15 +52,19 @@ TEST(Attention, TheFocusIsLinkedToWhoFollowsIt) {
              "focus=unix-listen:@t.workspace.focus.actor.focus?readers=1&stay=1&keep=latest"}));
   EXPECT_EQ(values_of(planned->modules[1], "--in"),
             (Words{"focus=unix:@t.workspace.focus.read.focus?reconnect=86400"}));
-  ASSERT_EQ(planned->links.size(), 4U);
-  EXPECT_EQ(planned->links[3].from, "workspace.focus");
-  EXPECT_EQ(planned->links[3].to, "actor.focus");
+  ASSERT_EQ(planned->links.size(), 6U);
+  EXPECT_EQ(planned->links[5].from, "workspace.focus");
+  EXPECT_EQ(planned->links[5].to, "actor.focus");
   // Bids go round by the focus, which makes no messages.
-  EXPECT_EQ(wrong(kModes + link_text("track.bid", "workspace.bids")), "");
+  EXPECT_EQ(wrong(kModes + kBid), "");
+  EXPECT_EQ(
+      wrong(kModes),
+      "g.toml:13: mode track never gets the focus: no module with mode = \"track\" sends bids "
+      "to a workspace");
   // A link of one's own stays the only one.
-  auto own = plan(kModes + link_text("workspace.focus", "actor.focus"));
+  auto own = plan(kModes + kBid + link_text("workspace.focus", "actor.focus"));
   ASSERT_TRUE(own) << own.error().detail;
-  EXPECT_EQ(own->links.size(), 4U);
+  EXPECT_EQ(own->links.size(), 6U);
 }
 
 TEST(Attention, ErrorsNameTheLineAndWhatWouldBeRight) {

@@ -100,8 +100,17 @@ class Frames {
     if (!planning_.names.contains(port.module))
       return add_no_module(planning_, mover.place, port.module);
     const Description* description = planning_.description_of(port.module);
-    if (description != nullptr && find_named(description->outputs, port.port) == nullptr)
-      add_no_port(planning_, mover.place, port, "output", description->outputs);
+    if (description == nullptr) return;
+    const PortDescription* output = find_named(description->outputs, port.port);
+    if (output == nullptr)
+      return add_no_port(planning_, mover.place, port, "output", description->outputs);
+    auto is_pose = [](const PortType& type) {
+      return type.info.type == MatrixType::Transformation && type.info.components == 1 &&
+             (type.width == 0 || type.width == 4) && (type.height == 0 || type.height == 4);
+    };
+    if (planning_.problems.empty() && !output->types.empty() && !is_pose(output->types.front()))
+      planning_.problems.add(mover.place, port.text() + " sends " + in_words(output->types) +
+                                              ", not a pose, transformation 4 x 4");
   }
 
   /// Of frames that one output moves, its messages tell which is meant by their numbers.

@@ -12,14 +12,14 @@ TEST(Frames, ModulesGetThemAsText) {
 [modules.own]
 program = "framed"
 parameters.frames = "mine"
-[modules.source]
-addresses.left = 11
+[modules.neck]
+addresses.pose = 11
 [frames.head]
 parent = "robot"
 translation = [0, 0.5, 1.25]
 [frames.left_eye]
 parent = "head"
-moved_by = "source.left"
+moved_by = "neck.pose"
 [frames.nose]
 parent = "head"
 quaternion = [1, 0, 0, 0]
@@ -27,7 +27,7 @@ coord = 200
 )");
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modules[0].parameters.at("frames"),
-            "head 3 robot 0 0.5 1.25 0 0 0 1; left_eye 4 head source.left 11; "
+            "head 3 robot 0 0.5 1.25 0 0 0 1; left_eye 4 head neck.pose 11; "
             "nose 200 head 0 0 0 1 0 0 0");
   EXPECT_EQ(planned->modules[1].parameters.at("frames"), "mine");
   EXPECT_EQ(planned->frames, planned->modules[0].parameters.at("frames"));
@@ -122,6 +122,10 @@ TEST(Frames, WhatMovesThemTellsPoses) {
                   "moved_by = \"source.left\"\n"),
             "g.toml:6: source.left sends map 1 x f32 in coordinate system 7, seeker.frames takes "
             "transformation 1 x f64, width 4, height 4");
+  EXPECT_EQ(wrong("[modules.source]\n[frames.head]\nparent = \"robot\"\n"
+                  "moved_by = \"source.left\"\n"),
+            "g.toml:5: source.left sends map 1 x f32 in coordinate system 7, not a pose, "
+            "transformation 4 x 4");
   EXPECT_EQ(wrong("[modules.neck]\n[frames.a]\nparent = \"root\"\nmoved_by = \"neck.pose\"\n"
                   "[frames.b]\nparent = \"a\"\nmoved_by = \"neck.pose\"\n"),
             "g.toml:8: neck.pose moves a and b, so they and their parents need a \"coord\"");

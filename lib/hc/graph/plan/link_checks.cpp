@@ -65,7 +65,7 @@ class LinkCheck {
   /// The world outside; its other end is a module.
   void check_uri(const GraphLink& link, const GraphPort& outside, bool is_input) {
     const Uri uri = *parse_uri(outside.uri);
-    if (uri.scheme.ends_with("-listen") && !listening_.insert(uri.scheme + ":" + uri.rest).second)
+    if (uri.scheme.ends_with("-listen") && !may_listen(uri))
       problems_.add(link.place, "another link listens at " + outside.uri + " too");
     for (const auto& [key, value] : link.policy)
       if (!uri.option(key, "").empty() && !value.value.empty())
@@ -82,6 +82,22 @@ class LinkCheck {
     else if (auto checked = is_input ? check_sink(uri) : check_source(uri);
              !checked && is_ours(uri))
       problems_.add(link.place, outside.uri + ": " + checked.error().detail);
+  }
+
+  /// Whether nobody else listens there. A TCP port alone is that of the loopback address, and
+  /// 0.0.0.0 takes the port of all.
+  bool may_listen(const Uri& uri) {
+    if (uri.scheme != "tcp-listen") return listening_.insert(uri.scheme + ":" + uri.rest).second;
+    const auto colon = uri.rest.rfind(':');
+    std::string host = colon == std::string::npos ? "127.0.0.1" : uri.rest.substr(0, colon);
+    if (host == "localhost") host = "127.0.0.1";
+    auto& hosts = tcp_hosts_[colon == std::string::npos ? uri.rest : uri.rest.substr(colon + 1)];
+    const auto all = [](const std::string& each) { return each == "0.0.0.0"; };
+    const bool is_free =
+        all(host) ? hosts.empty()
+                  : !hosts.contains(host) && std::none_of(hosts.begin(), hosts.end(), all);
+    hosts.insert(host);
+    return is_free;
   }
 
   /// A program in another language may know transports that we do not.
@@ -119,6 +135,7 @@ class LinkCheck {
   Planning& planning_;
   Problems& problems_;
   std::set<std::string> linked_, listening_;
+  std::map<std::string, std::set<std::string>> tcp_hosts_;  // by port, where a link listens
 };
 
 bool is_paced(const GraphLink& link) {
@@ -181,6 +198,29 @@ void check_loops(Planning& planning) {
                               "loop without a rate: " + way_in_words(way, link->to.module) +
                                   "; give one of its links a rate, for example rate = 30");
       }
+    }
+  }
+}
+
+/// Of inputs whose messages are taken together, all are linked or none. Commands link one after the
+/// other, so this is asked of a graph that does not run yet.
+void check_together(Planning& planning) {
+  if (planning.before != nullptr) return;
+  std::set<std::string> linked;
+  for (const auto& link : planning.graph.links) linked.insert(link.to.text());
+  for (const auto& module : planning.graph.modules) {
+    const Description* description = planning.description_of(module.name);
+    if (description == nullptr) continue;
+    for (const auto& group : description->together) {
+      std::string there, missing;
+      for (const auto& input : group) {
+        auto& list = linked.contains(module.name + "." + input) ? there : missing;
+        list += (list.empty() ? "" : ", ") + input;
+      }
+      if (!there.empty() && !missing.empty())
+        planning.problems.add(module.place, "module " + module.name + " takes " + there +
+                                                " together with " + missing +
+                                                ", which has no link");
     }
   }
 }

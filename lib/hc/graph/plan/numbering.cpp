@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include <hc/graph/plan/planning.h>
+#include <hc/graph/plan/routes.h>
 
 namespace hc::internal {
 namespace {
-
-constexpr std::int64_t kAll = -1;
 
 class Numbering {
  public:
@@ -116,6 +115,9 @@ class Numbering {
     if (name == "all") address = kAll;
     if (auto input = input_named(name)) address = address_of(*input);
     if (!address) {
+      const std::string whose = name.substr(0, name.find('.'));
+      for (const auto& graph : graph_.unread)
+        if (whose.starts_with(graph + "_")) return;  // it may be there
       auto known = names_of_inputs();
       known.emplace_back("all");
       return planning_.problems.add(to.place,
@@ -137,6 +139,23 @@ class Numbering {
 
 void number_ports(Planning& planning) {
   Numbering(planning).run();
+}
+
+/// A number that is the address of no input here, and that no link carries to the outside.
+void check_destinations(Planning& planning) {
+  if (!planning.problems.empty()) return;
+  std::set<std::int64_t> known;
+  for (const auto& [input, address] : planning.plan.addresses) known.insert(address);
+  for (const auto& link : planning.graph.links) {
+    const std::string& outside = link.from.uri + link.to.uri;
+    if (link.routes_all || !(outside.empty() || outside.starts_with("file:"))) return;
+    if (link.route) known.insert(link.route->value.begin(), link.route->value.end());
+  }
+  for (const auto& module : planning.graph.modules)
+    for (const auto& [port, to] : module.to)
+      if (to.value.name.empty() && to.value.number > 0 && !known.contains(to.value.number))
+        planning.problems.add(to.place,
+                              "no input has the address " + std::to_string(to.value.number));
 }
 
 }  // namespace hc::internal

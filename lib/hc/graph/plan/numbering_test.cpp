@@ -36,12 +36,13 @@ TEST(Numbering, InputsGroupsAndRoutesReachTheModules) {
 }
 
 TEST(Numbering, AddresseesAreNumbersGroupsInputsOrAll) {
-  auto to = [](const std::string& value) {
-    auto planned = plan("[modules.task]\nto.command = " + value + "\n");
+  auto to = [](const std::string& value, const std::string& more = "") {
+    auto planned = plan("[modules.task]\nto.command = " + value + "\n" + more);
     if (!planned) return planned.error().detail;
     return values_of(planned->modules[0], "--to").front();
   };
-  EXPECT_EQ(to("21"), "command=21");
+  EXPECT_EQ(to("21", "addresses.image = 21\n"), "command=21");
+  EXPECT_EQ(to("21"), "g.toml:3: no input has the address 21");
   EXPECT_EQ(to("-5"), "command=-5");
   EXPECT_EQ(to("\"all\""), "command=-1");
   EXPECT_EQ(to("\"task.image\""), "command=3");

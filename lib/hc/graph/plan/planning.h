@@ -71,6 +71,11 @@ void check_links(Planning& planning);
 /// Loops without a rate, and actors that several command.
 void check_loops(Planning& planning);
 void check_actors(Planning& planning);
+/// Inputs that are taken together and not all linked, modes that can never have the focus,
+/// destinations that nobody has.
+void check_together(Planning& planning);
+void check_bids(Planning& planning);
+void check_destinations(Planning& planning);
 
 /// Gives each link its two ends.
 void plan_links(Planning& planning);

@@ -28,6 +28,10 @@ inline Result<std::string> describe(const std::string& program) {
     return module("", port("left", "map", 7) + "," + port("right", "map", 8));
   if (program == "filter") return module(port("in", "map", 0), port("out", "map", 0));
   if (program == "sink") return module(port("in", "map", 8) + "," + port("text", "string", 0), "");
+  if (program == "pair") {
+    std::string text = module(port("left", "map", 0) + "," + port("right", "map", 0), "");
+    return text.replace(text.size() - 1, 1, R"(,"together":[["left","right"]]})");
+  }
   if (program == "any") return module(R"({"name":"in","types":[]})", "");
   const std::string transports = R"(,"transports":["-","unix","shm"]})";
   auto shares = [&](std::string text) { return text.replace(text.size() - 1, 1, transports); };
@@ -65,6 +69,9 @@ inline Result<std::string> describe(const std::string& program) {
   const std::string pose =
       R"("types":[{"type":"transformation","components":1,"scalar":"f64","width":4,"height":4,)"
       R"("coord":0}]})";
+  if (program == "posed")
+    return module(
+        "", port("left", "map", 7) + "," + port("right", "map", 8) + R"(,{"name":"pose",)" + pose);
   if (program == "neck")
     return shares(module(port("command", "map", 0), R"({"name":"pose",)" + pose));
   if (program == "seeker")  // moves something itself too

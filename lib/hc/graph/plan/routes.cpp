@@ -9,8 +9,6 @@
 namespace hc::internal {
 namespace {
 
-constexpr std::int64_t kAll = -1;
-
 class Routes {
  public:
   Routes(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router)
@@ -40,6 +38,22 @@ class Routes {
     return first;
   }
 
+  /// By address, how many routers are passed from this one on.
+  [[nodiscard]] std::map<std::int64_t, std::size_t> hops(std::size_t router) const {
+    std::map<std::int64_t, std::size_t> hops;
+    std::map<std::size_t, std::size_t> distance = {{router, 1}};
+    std::deque<std::size_t> next = {router};
+    for (; !next.empty(); next.pop_front())
+      for (std::size_t i : leaving_[next.front()]) {
+        const RoutedLink& link = links_[i];
+        const std::size_t passed = distance.at(next.front());
+        if (link.reaches > 0) hops.emplace(link.reaches, passed);
+        if (is_router_at(link.to) && distance.emplace(link.to, passed + 1).second)
+          next.push_back(link.to);
+      }
+    return hops;
+  }
+
  private:
   const std::vector<RoutedLink>& links_;
   const std::vector<bool>& is_router_;
@@ -47,6 +61,15 @@ class Routes {
 };
 
 }  // namespace
+
+std::size_t longest_way(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router) {
+  const Routes routes(links, is_router);
+  std::size_t longest = 0;
+  for (std::size_t router = 0; router < is_router.size(); ++router)
+    if (is_router[router])
+      for (const auto& [address, hops] : routes.hops(router)) longest = std::max(longest, hops);
+  return longest;
+}
 
 std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLink>& links,
                                                       const std::vector<bool>& is_router) {

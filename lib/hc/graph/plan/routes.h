@@ -18,6 +18,9 @@ struct RoutedLink {
   std::optional<std::vector<std::int64_t>> given;
 };
 
+/// The address of messages that are for all.
+inline constexpr std::int64_t kAll = -1;
+
 /// The number of a link's end that is no module.
 inline constexpr std::size_t kOutside = static_cast<std::size_t>(-1);
 
@@ -32,5 +35,9 @@ inline constexpr std::size_t kOutside = static_cast<std::size_t>(-1);
 /// Cost: the number of routers times that of links and addresses.
 std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLink>& links,
                                                       const std::vector<bool>& is_router);
+
+/// The most routers that a message passes on its way to an address, by the ways of
+/// compute_routes().
+std::size_t longest_way(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router);
 
 }  // namespace hc::internal

@@ -73,5 +73,12 @@ TEST(Routes, AnInputThatTwoRoutersReachIsReachedByTheNearer) {
   EXPECT_EQ(routes, (Routes{{-1}, {-1, 20}, {-1, 20}}));
 }
 
+TEST(Routes, TheLongestWayIsCountedInRouters) {
+  EXPECT_EQ(longest_way({{0, 1, 0, {}}, {1, 2, 0, {}}, {2, 10, 20, {}}, {0, 10, 21, {}}},
+                        {true, true, true}),
+            3U);
+  EXPECT_EQ(longest_way({{0, 10, 20, {}}}, {false}), 0U);
+}
+
 }  // namespace
 }  // namespace hc::internal

@@ -11,11 +11,6 @@ using MonotonicClock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kTick{250};
 constexpr int kTicksOfState = 2, kTicksOfMemory = 8;
-constexpr int kSignal = 128;  // the status of who was killed by one is above
-
-MonotonicTime now() {
-  return SystemClock().monotonic();
-}
 
 /// A line with its module's name before it, where that is not there yet.
 std::string with_name(const std::string& module, const std::string& line) {

@@ -20,15 +20,10 @@ constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;      // a pipe can be made to hold a MiB; source: man 7 pipe
 constexpr int kCannotExecute = 127;  // as shells say it
 constexpr int kCutOff = 1;           // a failure, as far as restarts go
-constexpr int kSignal = 128;         // the status of who was killed by one is above
 constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
 // Observers never make a module wait: with or without one, it keeps a few messages for them.
 constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
-
-MonotonicTime now() {
-  return MonotonicClock::now().time_since_epoch();
-}
 
 std::string seconds_in_words(std::chrono::nanoseconds time) {
   char text[32];

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <hc/base/clock.h>
 #include <hc/graph/limits.h>
 #include <hc/graph/run/announcer.h>
 #include <hc/graph/run/change.h>
@@ -23,6 +24,12 @@
 #include <hc/os/procfs.h>
 
 namespace hc::internal {
+
+inline constexpr int kSignal = 128;  ///< the status of who was killed by one is above
+
+inline MonotonicTime now() {
+  return SystemClock().monotonic();
+}
 
 /// How a process has ended, by its status: "failed with status 1".
 std::string end_in_words(int status);
