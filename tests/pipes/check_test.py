@@ -21,6 +21,7 @@ OTHER = {
 }
 TYPE = '{"type":"table","components":1,"scalar":"f64","width":0,"height":0,"coord":0}'
 FOCUS = TYPE.replace("f64", "i32")
+POSE = TYPE.replace("table", "transformation")
 
 
 def program(inputs, outputs, more=""):
@@ -41,7 +42,7 @@ def port(name, kind=TYPE, more=""):
 CONTROL = ',"control":true'
 PROGRAMS = {
     "relay": program(port("in"), port("out")),
-    "actor": program(port("command", more=',"actor":true'), port("pose"), CONTROL),
+    "actor": program(port("command", more=',"actor":true'), port("pose", POSE), CONTROL),
     "workspace": program(port("bids"), port("focus", FOCUS), CONTROL),
 }
 LIAR = '#!/bin/sh\necho \'{"inputs":[{}],"outputs":[{"name":3,"types":[]}],"parameters":"none"}\'\n'

@@ -139,7 +139,7 @@ class Frames(Pipes):
     def test_a_transform_is_printed_from_a_recording(self):
         self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", ""))
         self.write("poses", "".join(map(pose, range(10))))
-        self.write("pictures", picture(1, START + STEP))
+        self.write("images", image(1, START + STEP))
         self.shell("exec hc run graph.toml --record kept")
         at = START + int(1.25 * STEP)
         out = self.shell("hc frames graph.toml left_eye world --in kept --at %d" % at).splitlines()
@@ -165,28 +165,31 @@ class Frames(Pipes):
 
     def test_a_transform_is_printed_from_a_running_graph(self):
         self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", ""))
-        for name in ("poses", "pictures"):
+        ends = []
+        for name in ("poses", "images"):
             os.mkfifo(self.path(name))
+            # Also a reader, so that opening it waits for nobody and it does not end.
+            ends.append(os.fdopen(os.open(self.path(name), os.O_RDWR), "w"))
+            self.addCleanup(ends[-1].close)
         name = "seen_%d" % os.getpid()
         self.shell("hc frames graph.toml left_eye world --of " + name, status=1)
         self.assertIn('no graph "%s" is running' % name, self.err)
         self.start("exec hc run graph.toml --as " + name)
         wait_until(lambda: name in self.shell("hc ps"))
-        with open(self.path("poses"), "w") as poses, open(self.path("pictures"), "w"):
-            asked = self.start("exec hc frames graph.toml left_eye world --of " + name)
-            step = 0
-            while asked.poll() is None:  # until it has seen one
-                poses.write(pose(step))
-                poses.flush()
-                step += 1
-                time.sleep(0.01)
-            out, err = asked.communicate()
-            self.assertEqual(asked.returncode, 0, err)
-            out = out.decode().splitlines()
-            seen = (int(out[0].split()[4]) - START) // STEP
-            self.assertIn(seen, range(step))
-            numbers = [float(word) for word in out[1].split()[-3:]]
-            self.expect_near(numbers, [row[3] for row in world_left_eye(seen)[:3]])
+        asked = self.start("exec hc frames graph.toml left_eye world --of " + name)
+        step = 0
+        while asked.poll() is None:  # until it has seen one
+            ends[0].write(pose(step))
+            ends[0].flush()
+            step += 1
+            time.sleep(0.01)
+        out, err = asked.communicate()
+        self.assertEqual(asked.returncode, 0, err)
+        out = out.decode().splitlines()
+        seen = (int(out[0].split()[4]) - START) // STEP
+        self.assertIn(seen, range(step))
+        numbers = [float(word) for word in out[1].split()[-3:]]
+        self.expect_near(numbers, [row[3] for row in world_left_eye(seen)[:3]])
 
 
 if __name__ == "__main__":
