@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
     pointed = {numbers[0], numbers[1]};
   });
   // Once, and only while none was ever found: the light or the parameters are not right.
-  int misses = 0;
+  int misses = 0, images = 0, seen = 0;
   auto warn = [&](const cv::Mat& pixels) {
     constexpr int kMany = 40;
     if (misses < 0 || ++misses < kMany) return;
@@ -81,10 +81,17 @@ int main(int argc, char** argv) {
         taken.value_or(hc::vision::BlobColour{*hue, *hue_width, *saturation, *value});
     if (!finder || !(finder->colour() == colour)) finder.emplace(colour);
     const auto blob = finder->find(pixels, *min_area);
+    ++images;
     if (!blob) return warn(pixels);
     misses = -1;
+    ++seen;
     target.send(hc::position(blob->x, blob->y, blob->radius).in(message.header.coord));
     area.send(hc::table({blob->area}));
   });
-  return module.run(argc, argv);
+  const int status = module.run(argc, argv);
+  constexpr int kFew = 20;  // images that a person looks at
+  if (images > kFew)
+    module.log("result: saw its target in " + std::to_string(seen) + " of " +
+               std::to_string(images) + " images");
+  return status;
 }

@@ -74,8 +74,10 @@ int main(int argc, char** argv) {
     const auto numbers = found->numbers();
     result.send(hc::table<double>(std::span(numbers)));
   };
+  std::string how_found;  // for the end
   auto finish = [&](const hc::gaze::HeadCalibration& calibration, const std::string& how) {
     is_done = true;
+    how_found = how.empty() ? "by turning the head" : "from " + *file;
     found = calibration;
     publish();
     constexpr double kDegrees = 180 / M_PI;
@@ -180,5 +182,9 @@ int main(int argc, char** argv) {
   });
   const int status = module.run(argc, argv);
   stop.request_stop();
+  if (found)
+    module.log("result: it is known how the eyes are mounted, " + how_found);
+  else if (tried > 0)
+    module.log("result: how the eyes are mounted was not found");
   return status;
 }

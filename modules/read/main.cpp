@@ -45,6 +45,8 @@ int main(int argc, char** argv) {
   std::optional<Recogniser> recogniser;
   Announcer announcer;
   std::optional<std::int64_t> read_at;
+  int texts = 0;
+  std::string last;
   module.on_start(
       [&] { recogniser.emplace(hc::value_or_end(Recogniser::make(*language, *upper_case))); });
 
@@ -74,9 +76,16 @@ int main(int argc, char** argv) {
     const auto reading = read_block(*recogniser, pixels, block, *upper_case);
     confidence.send(hc::table({reading.confidence}));
     if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again},
-                       module.has_focus()))
-      text.send(hc::string(reading.text));
+                       module.has_focus())) {
+      ++texts;
+      last = reading.text;
+      text.send(hc::string(last));
+    }
   });
   module.background();
-  return module.run(argc, argv);
+  const int status = module.run(argc, argv);
+  if (texts > 0)
+    module.log("result: read " + std::to_string(texts) + (texts == 1 ? " text" : " texts") +
+               ", the last \"" + last + "\"");
+  return status;
 }
