@@ -3,18 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/LU>
 
 namespace hc::gaze {
 
-void Follower::Axis::begin(double angle, const FollowerOptions& options) {
+void Follower::Filter::begin(double angle, const FollowerOptions& options) {
   state = {angle, 0};
   // Of the rate nothing is known yet: anything up to some rad/s.
   covariance << options.noise * options.noise, 0, 0, 4;
 }
 
-void Follower::Axis::step(double dt, const FollowerOptions& options) {
+void Follower::Filter::step(double dt, const FollowerOptions& options) {
   Eigen::Matrix2d move;
   move << 1, dt, 0, 1;
   state = move * state;
@@ -25,47 +26,104 @@ void Follower::Axis::step(double dt, const FollowerOptions& options) {
   covariance = move * covariance * move.transpose() + q * disturbance;
 }
 
-bool Follower::Axis::can_be(double angle, const FollowerOptions& options) const {
+bool Follower::Filter::can_be(double angle, const FollowerOptions& options) const {
   constexpr double kSigmas = 8;
   constexpr double kAlways = 0.05;  // [rad]
   const double variance = covariance(0, 0) + options.noise * options.noise;
   return std::abs(angle - state(0)) <= std::max(kAlways, kSigmas * std::sqrt(variance));
 }
 
-void Follower::Axis::correct(double angle, const FollowerOptions& options) {
+void Follower::Filter::correct(double angle, const FollowerOptions& options) {
   const double variance = covariance(0, 0) + options.noise * options.noise;
   const Eigen::Vector2d gain = covariance.col(0) / variance;
   state += gain * (angle - state(0));
   covariance -= gain * covariance.row(0);
 }
 
+namespace {
+
+/// A filter that averages over about half a second.
+FollowerOptions slow(const FollowerOptions& options) {
+  auto slow = options;
+  slow.acceleration = options.acceleration / 20;
+  slow.noise = std::max(0.05, options.noise);
+  return slow;
+}
+
+}  // namespace
+
+const Follower::Filter& Follower::Axis::better() const {
+  constexpr double kGood = 0.02;   // so well, the quick one needs no help [rad]
+  constexpr double kMargin = 0.6;  // of two that are nearly as good, the quick one
+  const bool is_slow = quick_error > kGood * kGood && slow_error < kMargin * quick_error;
+  return is_slow ? slow : quick;
+}
+
+void Follower::begin(double angle, Axis& axis) const {
+  axis = {};
+  axis.quick.begin(angle, options_);
+  axis.slow.begin(angle, slow(options_));
+}
+
+void Follower::step(double dt, Axis& axis) const {
+  axis.quick.step(dt, options_);
+  axis.slow.step(dt, slow(options_));
+}
+
+void Follower::correct(double angle, Axis& axis) const {
+  axis.quick.correct(angle, options_);
+  axis.slow.correct(angle, slow(options_));
+}
+
+void Follower::judge(double time, const Angles& angles) {
+  constexpr double kAhead = 0.1;   // as far as a head has to predict [s]
+  constexpr double kMemory = 1.0;  // [s]
+  while (known_.size() > 1 && known_[1].time <= time - kAhead) known_.pop_front();
+  if (known_.empty() || known_.front().time > time - kAhead) return;
+  const auto& then = known_.front();
+  const double dt = time - then.time, weight = 1 - std::exp(-(time - *last_) / kMemory);
+  for (auto [axis, before, angle] :
+       {std::tuple(&pan_, &then.pan, angles.pan), {&tilt_, &then.tilt, angles.tilt}}) {
+    const double quick = angle - before->quick.after(dt), slow = angle - before->slow.after(dt);
+    axis->quick_error += weight * (quick * quick - axis->quick_error);
+    axis->slow_error += weight * (slow * slow - axis->slow_error);
+  }
+}
+
 void Follower::see(double time, const Angles& angles) {
   if (last_ && time <= *last_ && *last_ - time <= options_.gap) return;
   bool is_same = last_ && std::abs(time - *last_) <= options_.gap;
   // Half a turn to either side is the same place.
-  const double pan =
-      is_same ? pan_.state(0) + std::remainder(angles.pan - pan_.state(0), 2 * M_PI) : angles.pan;
+  const double here = pan_.quick.state(0);
+  const double pan = is_same ? here + std::remainder(angles.pan - here, 2 * M_PI) : angles.pan;
+  // What the slow filters know may be of the same target though it has turned round at once.
   if (is_same) {
-    for (auto* axis : {&pan_, &tilt_}) axis->step(time - *last_, options_);
-    is_same = pan_.can_be(pan, options_) && tilt_.can_be(angles.tilt, options_);
+    for (auto* axis : {&pan_, &tilt_}) step(time - *last_, *axis);
+    const auto slowly = slow(options_);
+    is_same = pan_.slow.can_be(pan, slowly) && tilt_.slow.can_be(angles.tilt, slowly);
+  }
+  if (is_same) {
+    judge(time, {pan, angles.tilt});
+    for (auto [axis, angle] : {std::pair(&pan_, pan), {&tilt_, angles.tilt}}) {
+      const bool has_jumped = !axis->quick.can_be(angle, options_);
+      correct(angle, *axis);
+      if (has_jumped) axis->quick.begin(angle, options_);
+    }
+  } else {
+    known_.clear();
+    begin(angles.pan, pan_);
+    begin(angles.tilt, tilt_);
   }
   last_ = time;
-  if (is_same) {
-    pan_.correct(pan, options_);
-    tilt_.correct(angles.tilt, options_);
-  } else {
-    pan_.begin(angles.pan, options_);
-    tilt_.begin(angles.tilt, options_);
-  }
+  known_.push_back({time, pan_, tilt_});
 }
 
 std::optional<Motion> Follower::at(double time) const {
   if (!last_) return std::nullopt;
   const double dt = std::min(time - *last_, options_.horizon);
   const double moves = time - *last_ > options_.horizon ? 0 : 1;
-  return Motion{{pan_.state(0) + dt * pan_.state(1), tilt_.state(0) + dt * tilt_.state(1)},
-                moves * pan_.state(1),
-                moves * tilt_.state(1)};
+  const auto &pan = pan_.better(), &tilt = tilt_.better();
+  return Motion{{pan.after(dt), tilt.after(dt)}, moves * pan.state(1), moves * tilt.state(1)};
 }
 
 }  // namespace hc::gaze

@@ -2,6 +2,7 @@
 #pragma once
 // What moves, as it is seen with noise and late: where it is now and will be. Pure.
 
+#include <deque>
 #include <optional>
 
 #include <Eigen/Core>
@@ -24,8 +25,11 @@ struct Motion {
   double pan_rate = 0, tilt_rate = 0;  ///< [rad/s]
 };
 
-/// Follows one target: a Kalman filter of constant velocity for each axis.
-/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking, 2001, 6.2.
+/// Follows one target: for each axis a Kalman filter of constant velocity, and a slow one, which is
+/// taken while its predictions of the last second were the better ones: of what goes to and fro
+/// faster than can be predicted, as a ball that bounces, the middle is nearer than the last
+/// velocity. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking,
+/// 2001, 6.2.
 class Follower {
  public:
   explicit Follower(const FollowerOptions& options) : options_(options) {}
@@ -46,18 +50,36 @@ class Follower {
 
  private:
   /// One angle and its rate.
-  struct Axis {
+  struct Filter {
     Eigen::Vector2d state = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
     void begin(double angle, const FollowerOptions& options);
     void step(double dt, const FollowerOptions& options);
     [[nodiscard]] bool can_be(double angle, const FollowerOptions& options) const;
     void correct(double angle, const FollowerOptions& options);
+    [[nodiscard]] double after(double dt) const { return state(0) + dt * state(1); }
   };
+  /// A quick filter and a slow one, and how well they predict.
+  struct Axis {
+    Filter quick, slow;
+    double quick_error = 0, slow_error = 0;  // mean squares [rad²]
+    [[nodiscard]] const Filter& better() const;
+  };
+  /// What was known at a time.
+  struct Known {
+    double time;  // [s]
+    Axis pan, tilt;
+  };
+
+  void begin(double angle, Axis& axis) const;
+  void step(double dt, Axis& axis) const;
+  void correct(double angle, Axis& axis) const;
+  void judge(double time, const Angles& angles);
 
   FollowerOptions options_;
   std::optional<double> last_;
   Axis pan_, tilt_;
+  std::deque<Known> known_;
 };
 
 /// How a unit stops: with `base` at once, and faster than that only with an even acceleration.

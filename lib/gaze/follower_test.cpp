@@ -89,5 +89,35 @@ TEST(Follower, braking_is_what_a_unit_needs_to_stand_still) {
   EXPECT_DOUBLE_EQ(braking(-1, {4, 1}), 0);
 }
 
+/// RMS error of predictions 0.1 s ahead, of tilt, at 20 images a second [rad].
+double prediction_error(double (*tilt)(double)) {
+  Follower follower{FollowerOptions{}};
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.05 * i;
+    follower.see(t, {0.1 * t, tilt(t)});
+    if (t < 3) continue;
+    const double off = follower.at(t + 0.1)->angles.tilt - tilt(t + 0.1);
+    sum += off * off;
+    ++count;
+    EXPECT_NEAR(follower.at(t + 0.1)->angles.pan, 0.1 * (t + 0.1), 0.01);
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(Follower, what_bounces_faster_than_can_be_predicted_is_followed_by_its_middle) {
+  // A ball that bounces 0.3 m high, 2.4 m away: staying at the mean would be 0.037 off.
+  const double error = prediction_error([](double t) {
+    const double rise = std::sqrt(2 * 0.3 / 9.81), since_top = std::fmod(t, 2 * rise) - rise;
+    return (0.3 - 9.81 * since_top * since_top / 2) / 2.4;
+  });
+  EXPECT_LT(error, 0.05);
+}
+
+TEST(Follower, what_swings_slowly_is_followed) {
+  EXPECT_LT(prediction_error([](double t) { return 0.2 * std::sin(2 * t); }), 0.01);
+}
+
 }  // namespace
 }  // namespace hc::gaze
