@@ -58,6 +58,14 @@ class Watching(Graphs):
         self.stop_named(name, process)
         self.assertNotIn(name, self.hc("ps"))
 
+    def test_a_name_that_is_given_is_refused_when_taken(self):
+        name, process = self.run_named("taken")
+        self.assertEqual(
+            self.hc("run g.toml --as " + name, 2),
+            "hc run: Invalid: --as %s: %s.%d is running\n" % (name, name, process.pid),
+        )
+        self.stop_named(name, process)
+
     def test_a_file_is_drawn_without_running(self):
         self.write_graph(GRAPH + "keep = 3\n")
         self.assertIn("  left → brightness.image  keep 3\n", self.hc("graph g.toml"))

@@ -100,6 +100,22 @@ TEST(Screen, ShowsModulesAndLinks) {
       "30/s, 2 throttled, 1 dropp…\n");
 }
 
+TEST(Screen, ShowsTheModeOfWhoContributesToTheTaskInFocus) {
+  auto state = some_state(3);
+  state.links.clear();
+  auto link = [&](const std::string& from, const std::string& to) {
+    state.links.emplace_back().from = from;
+    state.links.back().to = to;
+  };
+  link("module_0.out", "module_1.in");  // which is the task
+  link("module_1.out", "module_2.in");
+  const auto text = draw(state, {}, {120, 0, true});
+  EXPECT_NE(text.find("module_0   3.1%  1.23 MB        0  (track) running\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("module_1   3.1%  1.23 MB        1  track   running\n"), std::string::npos);
+  EXPECT_NE(text.find("module_2   3.1%  1.23 MB        2          idle"), std::string::npos);
+}
+
 TEST(Screen, IsScrolledAndHasTroubleFirst) {
   const auto state = some_state(50);
   auto some = draw(state, {}, {80, 24, true, 0});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc run: runs a graph.
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -82,6 +83,20 @@ std::string name_of(const Options& options) {
   return name.empty() ? "graph" : name;
 }
 
+/// A name that a person gives is theirs alone; one that a file gives is told apart by the process.
+void check_name(const Options& options) {
+  const auto name = name_of(options);
+  for (const auto& graph : find_running()) {
+    if (graph.name != name) continue;
+    if (!options.name.empty())
+      throw Failure({hc::Code::Invalid, "--as " + name + ": " + graph.text() + " is running"});
+    if (!options.quiet && ::isatty(STDERR_FILENO) == 1)
+      say(hc::format("hc run: {} is running too; this one is {}.{} (--as gives it a name)",
+                     graph.text(), name, ::getpid()));
+    return;
+  }
+}
+
 /// Each module takes several descriptors, and a login shell allows 1024; the system allows more to
 /// who asks. Not all of it: there are programs that close every number up to their limit.
 void allow_descriptors() {
@@ -100,6 +115,7 @@ void allow_descriptors() {
 
 void run(const Options& options) {
   allow_descriptors();
+  check_name(options);
   if (const auto& folder = options.graph.record; !folder.empty()) {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);

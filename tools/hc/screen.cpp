@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <hc/base/format.h>
@@ -94,6 +95,30 @@ std::string names(const std::vector<Column<Row>>& columns) {
   return text;
 }
 
+/// The modules that work for the task in focus: those of its mode, and those without a mode whose
+/// messages lead to them.
+std::set<std::string> contributors(const hc::GraphState& state) {
+  std::map<std::string, const hc::ModuleState*> modules;
+  std::set<std::string> found;
+  for (const auto& module : state.modules) {
+    modules[module.name] = &module;
+    if (!module.mode.empty() && module.mode == state.focus_name()) found.insert(module.name);
+  }
+  for (bool is_more = true; is_more;) {
+    is_more = false;
+    for (const auto& link : state.links) {
+      const auto from = modules.find(link.from.substr(0, link.from.find('.')));
+      if (from == modules.end() || !from->second->mode.empty() ||
+          std::find(state.workspaces.begin(), state.workspaces.end(), from->first) !=
+              state.workspaces.end())
+        continue;
+      if (found.contains(link.to.substr(0, link.to.find('.'))))
+        is_more = found.insert(from->first).second || is_more;
+    }
+  }
+  return found;
+}
+
 void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Line>& lines) {
   const std::vector<Column<hc::ModuleState>> columns = {
       {"CPU", 7, [](const auto& m) { return hc::format("{:.1f}%", 100 * m.processor); }},
@@ -102,9 +127,14 @@ void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Lin
   };
   constexpr std::size_t kMaxName = 24, kMaxMode = 12;
   std::size_t name = 6, mode = 4;
+  const auto contributing = contributors(state);
+  auto mode_of = [&](const hc::ModuleState& module) {
+    const bool is_borrowed = module.mode.empty() && contributing.contains(module.name);
+    return is_borrowed ? "(" + state.focus_name() + ")" : module.mode;
+  };
   for (const auto& module : state.modules) {
     name = std::max(name, std::min(kMaxName, length(module.name)));
-    mode = std::max(mode, std::min(kMaxMode, length(module.mode)));
+    mode = std::max(mode, std::min(kMaxMode, length(mode_of(module))));
   }
   lines.push_back(
       {fitted("MODULE", name) + names(columns) + "  " + fitted("MODE", mode) + " STATUS", false,
@@ -115,7 +145,7 @@ void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Lin
       status += hc::format(" | {} ({} ago)", module.last_line,
                            seconds_in_words(std::max(0.0, module.last_line_age)));
     const auto text = fitted(module.name, name) + cells(columns, module) + "  " +
-                      fitted(module.mode, mode) + " " + status;
+                      fitted(mode_of(module), mode) + " " + status;
     lines.push_back({fitted(text, width), module.in_workspace, is_in_trouble(module),
                      !module.in_focus && !is_in_trouble(module)});
   }
