@@ -12,7 +12,7 @@
 namespace tool {
 namespace {
 
-struct Options {
+struct CatOptions {
   std::string uri = "-", of;
   bool json = false, raw = false, skip = false;
   std::uint64_t count = 0;
@@ -20,13 +20,14 @@ struct Options {
 };
 
 /// Takes the next message, its elements expanded unless they go out as they came; false at the end.
-bool take(const Options& options, hc::Source& source, hc::Message& message, hc::Message& expanded) {
+bool take(const CatOptions& options, hc::Source& source, hc::Message& message,
+          hc::Message& expanded) {
   if (!receive(source, message, options.uri)) return false;
   if (!options.raw) expanded = value_or_fail(hc::expand(message), options.uri);
   return true;
 }
 
-void run(const Options& options) {
+void run(const CatOptions& options) {
   auto source = open_source(source_uri(options.uri, options.of), options.limit);
   std::unique_ptr<hc::Sink> raw;
   if (options.raw) raw = open_sink("-");
@@ -55,7 +56,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_cat(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CatOptions>();
   auto* verb = app.add_subcommand("cat", "Print messages of a port, link or file");
   add_source(*verb, options->uri, options->of);
   auto* json = verb->add_flag("--json", options->json, "one JSON object a line");

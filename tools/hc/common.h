@@ -15,7 +15,8 @@
 
 namespace tool {
 
-inline constexpr std::uint64_t kDefaultLimit = std::uint64_t{256} << 20;  ///< of elements [byte]
+inline constexpr std::string_view kBold = "\x1b[1m", kNormal = "\x1b[0m";  ///< of a terminal
+inline constexpr std::uint64_t kDefaultLimit = std::uint64_t{256} << 20;   ///< of elements [byte]
 
 /// Ends a verb with one line on standard error and an exit status; quietly with 0 when it was asked
 /// to stop.

@@ -9,14 +9,13 @@
 
 #include <hc/base/format.h>
 
+#include "common.h"
 #include "screen.h"
 
 namespace tool {
 namespace {
 
 constexpr const char *kWorking = "#e8f4e8", *kIdle = "#eeeeee", *kTrouble = "#ffc8c8";
-
-constexpr std::string_view kBold = "\x1b[1m", kNormal = "\x1b[0m";
 
 /// MODULE and PORT; a URI stands for itself.
 std::pair<std::string, std::string> split(const std::string& end) {

@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 using hc::frames::GraphFrames;
 
 constexpr std::chrono::milliseconds kRenewal{1000};  // of an observation; a graph wants one in 5 s
-constexpr std::chrono::seconds kSilence{5};          // so long a pose is awaited
+constexpr std::chrono::seconds kPatience{5};         // so long a pose is awaited
 
-struct Options {
+struct FramesOptions {
   hc::LoadOptions graph;
   std::string source, target, recording, of;
   std::int64_t time = 0;  // [ns]; 0: the latest that is known
@@ -36,7 +36,7 @@ void feed(GraphFrames& frames, const hc::Message& message, const std::string& ou
 }
 
 /// The outputs that move a frame between the two.
-std::vector<std::string> outputs_between(const GraphFrames& frames, const Options& options) {
+std::vector<std::string> outputs_between(const GraphFrames& frames, const FramesOptions& options) {
   const auto chain = value_or_fail(frames.tree.chain(options.target, options.source), "frames");
   auto is_between = [&](const std::string& frame) {
     return std::find(chain.begin(), chain.end(), frame) != chain.end();
@@ -59,7 +59,8 @@ void read_recording(GraphFrames& frames, const std::string& folder,
 }
 
 /// Takes poses of a running graph until the transform is known.
-void observe(GraphFrames& frames, const Options& options, const std::vector<std::string>& outputs) {
+void observe(GraphFrames& frames, const FramesOptions& options,
+             const std::vector<std::string>& outputs) {
   const auto stem = fs::path(options.graph.file).stem().string();
   const auto graph = choose_running(options.of.empty() ? stem : options.of);
   std::vector<Observation> observations;
@@ -83,7 +84,7 @@ void observe(GraphFrames& frames, const Options& options, const std::vector<std:
            heard = Clock::now())
         feed(frames, message, outputs[i]);
     // What is missing at an end, the transform's error tells.
-    if (is_known() || Clock::now() - heard > kSilence) return;
+    if (is_known() || Clock::now() - heard > kPatience) return;
     if (Clock::now() - renewed > kRenewal) {
       renewed = Clock::now();
       for (auto& observation : observations)
@@ -94,7 +95,7 @@ void observe(GraphFrames& frames, const Options& options, const std::vector<std:
   }
 }
 
-std::string text_of(const GraphFrames& frames, const Options& options) {
+std::string text_of(const GraphFrames& frames, const FramesOptions& options) {
   const auto known = frames.tree.known(options.target, options.source);
   const bool is_fixed = known && *known == hc::frames::TimeSpan{};
   const auto time = options.time > 0 || !known ? options.time : is_fixed ? 0 : known->last;
@@ -117,7 +118,7 @@ std::string text_of(const GraphFrames& frames, const Options& options) {
          hc::format("  {:<28} {}\n", "chain", words);
 }
 
-void run(const Options& options) {
+void run(const FramesOptions& options) {
   const auto plan = load_plan("frames", options.graph);
   // A whole recording is remembered.
   const hc::frames::Memory memory{.span = std::chrono::hours(24 * 365), .poses = 10'000'000};
@@ -133,7 +134,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_frames(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FramesOptions>();
   auto* verb = app.add_subcommand("frames", "Print where a frame of a graph is in another");
   add_graph_options(*verb, options->graph);
   verb->add_option("source", options->source, "frame in which points are given")->required();

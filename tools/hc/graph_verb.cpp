@@ -21,7 +21,7 @@
 namespace tool {
 namespace {
 
-struct Options {
+struct GraphOptions {
   hc::LoadOptions file;
   std::string running;  ///< --of
   std::string svg;
@@ -41,7 +41,7 @@ void write_svg(const std::string& dot, const std::string& path) {
     throw Failure(hc::Error{hc::Code::System, hc::format("dot failed: {} not written", path)});
 }
 
-void draw(const Options& options) {
+void draw(const GraphOptions& options) {
   auto drawing = [&] {
     if (!options.file.file.empty())
       return drawing_of(load_plan("graph", options.file), options.file.file);
@@ -161,8 +161,9 @@ struct Word {
 
 /// A verb of `hc graph` whose words go to the running graph as they are.
 /// @param more_words  of which there may be any number; without a name: there are none.
-void add_change(CLI::App& verb, Options& options, const std::string& name, const std::string& doc,
-                const std::vector<Word>& words, const Word& more_words = {}) {
+void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
+                const std::string& doc, const std::vector<Word>& words,
+                const Word& more_words = {}) {
   auto given = std::make_shared<std::vector<std::string>>(words.size());
   auto more = std::make_shared<std::vector<std::string>>();
   auto* change = verb.add_subcommand(name, doc);
@@ -187,7 +188,7 @@ void add_change(CLI::App& verb, Options& options, const std::string& name, const
 }  // namespace
 
 void add_graph(CLI::App& app) {
-  static Options options;  // lives as long as the verbs that refer to it
+  static GraphOptions options;  // lives as long as the verbs that refer to it
   auto* verb = app.add_subcommand("graph", "Draw a graph, or inspect and change a running one");
   verb->add_option("graph", options.file.file, "a graph file (default: the running graph)");
   verb->add_option("--set", options.file.settings, "MODULE.PARAMETER=VALUE; may be repeated");

@@ -44,7 +44,7 @@ struct Sender {
   }
 };
 
-struct Options {
+struct InfoOptions {
   std::string uri = "-", of;
   std::uint64_t limit = kDefaultLimit;
   bool skip = false;
@@ -71,7 +71,7 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
   print(text);
 }
 
-void run(const Options& options) {
+void run(const InfoOptions& options) {
   auto source = open_source(source_uri(options.uri, options.of), options.limit);
   std::map<std::int32_t, Sender> senders;
   hc::Message message;
@@ -107,7 +107,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_info(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   auto* verb = app.add_subcommand("info", "Summarise a recording, port or stream");
   add_source(*verb, options->uri, options->of);
   verb->add_flag("--skip", options->skip, "skip corrupt messages (files only)");

@@ -13,7 +13,7 @@ std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* verb) { return verb->get_group() != kHidden; });
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string with_blanks(const std::vector<std::string>& words) {
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
   return text;
@@ -25,7 +25,7 @@ std::string words_of(const CLI::App& verb) {
   for (const auto* each : verbs_of(verb)) words.push_back(each->get_name());
   for (const auto* option : verb.get_options())
     for (const auto& name : option->get_lnames()) words.push_back("--" + name);
-  return joined(words);
+  return with_blanks(words);
 }
 
 std::string bash_completion(const CLI::App& app) {

@@ -15,16 +15,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxName = 40;
+constexpr std::size_t kMaxModuleName = 40;
 
-struct Options {
+struct NewOptions {
   std::string name;
   std::string folder = ".";
   bool is_python = false;
 };
 
 bool is_snake_case(const std::string& name) {
-  return !name.empty() && name.size() <= kMaxName && name[0] >= 'a' && name[0] <= 'z' &&
+  return !name.empty() && name.size() <= kMaxModuleName && name[0] >= 'a' && name[0] <= 'z' &&
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
 }
 
@@ -62,12 +62,12 @@ std::string prefix_option() {
          (is_installed ? prefix.string() : "WHERE_HYPERCOLUMN_IS_INSTALLED");
 }
 
-void begin(const Options& options) {
+void begin(const NewOptions& options) {
   if (!is_snake_case(options.name))
     throw Failure(hc::Error{hc::Code::Invalid,
                             hc::format("a module's name is snake_case, of at most {} letters, "
                                        "not \"{}\"",
-                                       kMaxName, options.name)});
+                                       kMaxModuleName, options.name)});
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))
@@ -91,7 +91,7 @@ void begin(const Options& options) {
 }  // namespace
 
 void add_new(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NewOptions>();
   auto* verb = app.add_subcommand("new", "Create a module from a template");
   verb->require_subcommand(1);
   auto* module = verb->add_subcommand("module", "Create a folder with a module and its test");

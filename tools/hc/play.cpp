@@ -17,7 +17,7 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 using MonotonicClock = std::chrono::steady_clock;
 
-struct Options {
+struct PlayOptions {
   std::string file, out = "-", speed = "1";
   bool loop = false;
   double from = 0, to = std::numeric_limits<double>::infinity();
@@ -67,7 +67,7 @@ double parse_speed(const std::string& text) {
 
 /// Plays the file once; false when it is not to be repeated: no reader, nothing to play, or asked
 /// to stop.
-bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& progress) {
+bool play_once(const PlayOptions& options, double speed, hc::Sink& sink, Progress& progress) {
   auto source = options.file == "-" ? open_source("-", options.limit)
                                     : open_file_source(options.file, options.limit);
   std::error_code unknown;
@@ -95,7 +95,7 @@ bool play_once(const Options& options, double speed, hc::Sink& sink, Progress& p
   return any && !hc::stop_requested();
 }
 
-void run(const Options& options) {
+void run(const PlayOptions& options) {
   double speed = parse_speed(options.speed);
   auto sink = open_sink(options.out);
   Progress progress("hc play " + options.file);
@@ -110,7 +110,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_play(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlayOptions>();
   auto* verb = app.add_subcommand("play", "Play a recording back at its own speed");
   verb->add_option("file", options->file, "a recording, or -")->required();
   verb->add_option("--out", options->out, "where messages go")->capture_default_str();

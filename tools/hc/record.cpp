@@ -14,7 +14,7 @@
 namespace tool {
 namespace {
 
-struct Options {
+struct RecordOptions {
   std::string file, of;
   std::vector<std::string> links = {"-"};
   std::uint64_t count = 0;
@@ -36,7 +36,7 @@ struct Link {
   std::unique_ptr<hc::Source> source;  // null once it has ended
 };
 
-void run(const Options& options) {
+void run(const RecordOptions& options) {
   std::vector<std::string> uris;  // all before the first link is opened
   for (const auto& uri : options.links) {
     if (is_file(uri, options.file))
@@ -80,7 +80,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_record(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordOptions>();
   auto* verb = app.add_subcommand("record", "Record ports or links to a file");
   verb->add_option("file", options->file, "output file (overwritten)")->required();
   verb->add_option("--in", options->links,

@@ -19,7 +19,7 @@
 namespace tool {
 namespace {
 
-struct Options {
+struct RunOptions {
   hc::LoadOptions graph;
   std::string name;
   bool quiet = false, links = false;
@@ -30,7 +30,7 @@ std::string counted(std::uint64_t number, std::string_view what) {
 }
 
 /// What a run came to, for a person: a few lines, the modules' results among them.
-void print_summary(const Options& options, const hc::RunReport& report) {
+void print_summary(const RunOptions& options, const hc::RunReport& report) {
   hc::Traffic sum;
   std::uint64_t restarts = 0, ignored = 0;
   for (const auto& link : report.state.links) {
@@ -73,7 +73,7 @@ void print_links(const hc::GraphState& state) {
 }
 
 /// A graph's name, of letters, digits, `_` and `-` alone.
-std::string name_of(const Options& options) {
+std::string name_of(const RunOptions& options) {
   std::string name = options.name.empty()
                          ? std::filesystem::path(options.graph.file).stem().string()
                          : options.name;
@@ -84,7 +84,7 @@ std::string name_of(const Options& options) {
 }
 
 /// A name that a person gives is theirs alone; one that a file gives is told apart by the process.
-void check_name(const Options& options) {
+void check_name(const RunOptions& options) {
   const auto name = name_of(options);
   for (const auto& graph : find_running()) {
     if (graph.name != name) continue;
@@ -113,7 +113,7 @@ void allow_descriptors() {
   throw Failure(Failure(error).status);
 }
 
-void run(const Options& options) {
+void run(const RunOptions& options) {
   allow_descriptors();
   check_name(options);
   if (const auto& folder = options.graph.record; !folder.empty()) {
@@ -150,7 +150,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_run(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   auto* verb = app.add_subcommand("run", "Run a graph of modules");
   add_graph_options(*verb, options->graph);
   verb->add_option("--as", options->name, "name of the running graph (default: the file's)");

@@ -14,8 +14,7 @@
 namespace tool {
 namespace {
 
-constexpr std::string_view kBold = "\x1b[1m", kRed = "\x1b[31m", kDim = "\x1b[2m",
-                           kNormal = "\x1b[0m";
+constexpr std::string_view kRed = "\x1b[31m", kDim = "\x1b[2m";
 
 struct Line {
   std::string text;

@@ -23,7 +23,7 @@
 namespace tool {
 namespace {
 
-struct Options {
+struct SendOptions {
   std::string out = "-";
   std::string type = "table", scalar = "f64", encoding, text, picture, npy;
   int components = 0;  // 0: the least that the type has
@@ -43,7 +43,7 @@ E named(std::optional<E> value, const std::string& kind, const std::string& name
   return *value;
 }
 
-hc::Message message_of_text(const Options& options) {
+hc::Message message_of_text(const SendOptions& options) {
   hc::Header header;
   header.info = {hc::MatrixType::String, 1, hc::Scalar::U8, hc::Encoding::Text};
   header.width = static_cast<std::int32_t>(options.text.size());
@@ -54,7 +54,7 @@ hc::Message message_of_text(const Options& options) {
   return std::move(draft).finish();
 }
 
-hc::Message message_of_numbers(const Options& options) {
+hc::Message message_of_numbers(const SendOptions& options) {
   hc::Header header;
   header.info.type = named(hc::matrix_type_of(options.type), "matrix type", options.type);
   header.info.scalar = named(hc::scalar_of(options.scalar), "scalar", options.scalar);
@@ -89,7 +89,7 @@ hc::Message message_of_numbers(const Options& options) {
   return std::move(draft).finish();
 }
 
-hc::Message message_of_npy(const Options& options) {
+hc::Message message_of_npy(const SendOptions& options) {
   std::ifstream file(options.npy, std::ios::binary);
   if (!file) throw Failure(hc::Error{hc::Code::NotFound, options.npy + ": cannot be read"});
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -102,7 +102,7 @@ hc::Message message_of_npy(const Options& options) {
 
 /// The camera module reads images, with libraries that hc does not link: its one message, over a
 /// pipe that becomes our standard input.
-hc::Message message_of_picture(const Options& options) {
+hc::Message message_of_picture(const SendOptions& options) {
   std::string program = find_program("camera");
   std::vector<std::string> words = {program, "--count=1", "--source=" + options.picture,
                                     "--name=hc send"};
@@ -137,7 +137,7 @@ hc::Message message_of_picture(const Options& options) {
 }
 
 /// Refuses options that exclude each other, before anything is sent.
-void check(const Options& options) {
+void check(const SendOptions& options) {
   std::vector<std::string> given;
   if (options.has_text) given.emplace_back("--text");
   if (!options.picture.empty()) given.emplace_back("--picture");
@@ -153,7 +153,7 @@ void check(const Options& options) {
     refuse("--type is for numbers and --npy, not for " + given[0]);
 }
 
-void run(const Options& options) {
+void run(const SendOptions& options) {
   check(options);
   hc::Message message = !options.picture.empty() ? message_of_picture(options)
                         : !options.npy.empty()   ? message_of_npy(options)
@@ -183,7 +183,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_send(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SendOptions>();
   auto* verb = app.add_subcommand("send", "Send one message: numbers, text, an image, a .npy file");
   verb->add_option("--out", options->out, "where it goes")->capture_default_str();
   verb->add_option("--text", options->text, "send this as a string");

@@ -108,7 +108,7 @@ class Bids {
   std::vector<Workspace> all_;
 };
 
-struct Options {
+struct TopOptions {
   std::string graph;
   bool once = false, json = false;
 };
@@ -140,7 +140,7 @@ void show(Observer& observer, Bids& bids) {
   }
 }
 
-void top(const Options& options) {
+void top(const TopOptions& options) {
   const auto graph = choose_running(options.graph);
   Observer observer(graph);
   auto state = observer.next_measured();
@@ -159,7 +159,7 @@ void top(const Options& options) {
 }  // namespace
 
 void add_top(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TopOptions>();
   auto* verb = app.add_subcommand("top", "Show a running graph live: modules, links, focus");
   verb->add_option("graph,--of", options->graph,
                    "name of the running graph, where there are several");
