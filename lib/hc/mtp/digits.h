@@ -5,8 +5,11 @@
 
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 namespace hc::internal {
 
@@ -54,6 +57,42 @@ inline constexpr std::array<char, 200> kPairs = [] {
     pairs[i] = static_cast<char>('0' + (i % 2 == 0 ? i / 20 : i / 2 % 10));
   return pairs;
 }();
+
+/// How reading a number went; the rule's number when it did not (R27, R28).
+enum class Outcome { Good, NotANumber = 27, OutOfRange = 28 };
+
+/// Reads a number at the start of [first, last); `next` is the byte behind it. With NotANumber the
+/// whole token is at fault, wherever the spelling broke.
+template <typename T>
+Outcome read_integer(const char* first, const char* last, T& value, const char*& next) {
+  const char* at = first;
+  bool negative = at != last && *at == '-';
+  if (negative) ++at;
+  const char* digits = at;
+  std::uint64_t magnitude = 0;
+  while (at != last) {
+    auto digit = static_cast<unsigned char>(*at - '0');
+    if (digit > 9) break;
+    magnitude = magnitude * 10 + digit;
+    ++at;
+  }
+  next = at;
+  auto length = at - digits;
+  if (length == 0 || (*digits == '0' && (length > 1 || negative))) return Outcome::NotANumber;
+  if (length < 20 && magnitude < std::uint64_t{1} << 63) [[likely]] {
+    auto exact = static_cast<std::int64_t>(magnitude);
+    if (negative) exact = -exact;
+    if (exact < 0 ? static_cast<std::int64_t>(std::numeric_limits<T>::min()) > exact
+                  : static_cast<std::uint64_t>(std::numeric_limits<T>::max()) <
+                        static_cast<std::uint64_t>(exact))
+      return Outcome::OutOfRange;
+    value = static_cast<T>(exact);
+    return Outcome::Good;
+  }
+  if (negative && std::is_unsigned_v<T>) return Outcome::OutOfRange;
+  auto status = std::from_chars(first, at, value).ec;
+  return status == std::errc() ? Outcome::Good : Outcome::OutOfRange;
+}
 
 // The writers below give back where they ended. Those of few digits go by branches, which are
 // mostly foretold right, so that what comes next need not wait for the value.

@@ -14,48 +14,13 @@ namespace hc {
 namespace {
 
 using internal::in_quotes;
+using internal::Outcome;
 using internal::refusal;
 
 constexpr std::size_t kMaxWritten = 32;  // bytes of a number in canonical form, and room behind it
 
 bool is_end(char c) {
   return c == ' ' || c == '\n';
-}
-
-/// How reading a number went; the rule's number when it did not.
-enum class Outcome { Good, NotANumber = 27, OutOfRange = 28 };
-
-/// Reads a number at the start of [first, last); `next` is the byte behind it. With NotANumber the
-/// whole token is at fault, wherever the spelling broke.
-template <typename T>
-Outcome read_integer(const char* first, const char* last, T& value, const char*& next) {
-  const char* at = first;
-  bool negative = at != last && *at == '-';
-  if (negative) ++at;
-  const char* digits = at;
-  std::uint64_t magnitude = 0;
-  while (at != last) {
-    auto digit = static_cast<unsigned char>(*at - '0');
-    if (digit > 9) break;
-    magnitude = magnitude * 10 + digit;
-    ++at;
-  }
-  next = at;
-  auto length = at - digits;
-  if (length == 0 || (*digits == '0' && (length > 1 || negative))) return Outcome::NotANumber;
-  if (length < 19) [[likely]] {  // fits into i64
-    auto exact = static_cast<std::int64_t>(magnitude);
-    if (negative) exact = -exact;
-    if (exact < 0 ? static_cast<std::int64_t>(std::numeric_limits<T>::min()) > exact
-                  : static_cast<std::uint64_t>(std::numeric_limits<T>::max()) <
-                        static_cast<std::uint64_t>(exact))
-      return Outcome::OutOfRange;
-    value = static_cast<T>(exact);
-    return Outcome::Good;
-  }
-  if (negative && std::is_unsigned_v<T>) return Outcome::OutOfRange;
-  auto status = std::from_chars(first, at, value).ec;
-  return status == std::errc() ? Outcome::Good : Outcome::OutOfRange;
 }
 
 /// Whether a well-spelled number that fits no float is too small for one, rather than too large:
@@ -97,7 +62,7 @@ Outcome read_float(const char* first, const char* last, T& value, const char*& n
 template <typename T>
 Outcome read_number(const char* first, const char* last, T& value, const char*& next) {
   if constexpr (std::is_integral_v<T>)
-    return read_integer(first, last, value, next);
+    return internal::read_integer(first, last, value, next);
   else
     return read_float(first, last, value, next);
 }
