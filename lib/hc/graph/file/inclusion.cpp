@@ -11,7 +11,7 @@ namespace hc::internal {
 namespace {
 
 template <typename List>
-std::set<std::string> names_of(const List& list) {
+std::set<std::string> name_set(const List& list) {
   std::set<std::string> names;
   for (const auto& each : list) names.insert(each.name);
   return names;
@@ -21,7 +21,7 @@ std::set<std::string> names_of(const List& list) {
 
 Graph with_prefix(Graph graph, const std::string& name) {
   const std::string prefix = name + "_";
-  const std::set<std::string> frames = names_of(graph.frames);
+  const std::set<std::string> frames = name_set(graph.frames);
   auto rename = [&](std::string& module) {
     if (!module.empty()) module = prefix + module;
   };
@@ -51,7 +51,7 @@ void append(Graph& graph, Graph included, Problems& problems) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
   };
   auto refuse_duplicates = [&](const auto& there, const auto& more, const std::string& what) {
-    const std::set<std::string> names = names_of(there);
+    const std::set<std::string> names = name_set(there);
     for (const auto& each : more)
       if (names.contains(each.name))
         problems.add(each.place, "duplicate " + what + " " + quoted_name(each.name));

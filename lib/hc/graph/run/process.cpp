@@ -13,8 +13,6 @@
 namespace hc::internal {
 namespace {
 
-constexpr int kCannotExecute = 127;
-
 /// What a guard and its program get from us. Between fork and exec, and in a guard all its life,
 /// nothing may allocate: another thread of ours may have held a lock when we forked.
 struct Start {

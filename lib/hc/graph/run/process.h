@@ -22,6 +22,9 @@
 
 namespace hc::internal {
 
+/// Status of a program that could not be executed, as shells have it.
+inline constexpr int kCannotExecute = 127;
+
 /// A child process. It is killed, with all that it has started, when the object goes.
 class Process {
  public:

@@ -17,9 +17,8 @@ namespace {
 using MonotonicClock = std::chrono::steady_clock;
 
 constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
-constexpr int kLastPieces = 16;      // a pipe can be made to hold a MiB; source: man 7 pipe
-constexpr int kCannotExecute = 127;  // as shells say it
-constexpr int kCutOff = 1;           // a failure, as far as restarts go
+constexpr int kLastPieces = 16;  // a pipe can be made to hold a MiB; source: man 7 pipe
+constexpr int kCutOff = 1;       // a failure, as far as restarts go
 constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
 // Observers never make a module wait: with or without one, it keeps a few messages for them.
 constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
