@@ -36,10 +36,9 @@ class Follower {
 
   /// Takes in where the target was.
   ///
-  /// @param time  [s], of any origin; one that is not after the last is ignored; one that is a gap
-  /// before
-  ///     it starts over: the clock was set back.
-  /// A place that it cannot have reached is another target's, and starts over as well.
+  /// @param time  [s], of any origin. A time not after the last is ignored; a time a whole gap
+  ///     before it, as when the clock was set back, restarts the filter, and so does a place that
+  ///     the target cannot have reached.
   void see(double time, const Angles& angles);
   /// When it was last seen [s].
   [[nodiscard]] std::optional<double> last() const { return last_; }

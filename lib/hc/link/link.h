@@ -99,10 +99,10 @@ class Sink {
   /// Puts a message in, whole. Waits as long as the link is full or has no reader yet; with another
   /// `keep` than all it does not wait for a reader that is slow.
   ///
-  /// Errors: Closed (the reader has gone, or abandon() was called meanwhile), NotFound (it never
-  /// was there), Stopped (LinkOptions::stop became readable before the first byte went), Truncated
-  /// (it became so later, and the reader did not take the rest within 2 s; the link is of no use
-  /// afterwards), System.
+  /// Errors: Closed (the reader disconnected, or abandon() was called meanwhile), NotFound (no
+  /// reader was found), Stopped (LinkOptions::stop became readable before the first byte went),
+  /// Truncated (it became so later, and the reader did not take the rest within 2 s; the link is of
+  /// no use afterwards), System.
   virtual Status send(const Message& message) = 0;
 
   /// A message to be filled in place and sent: in the memory that readers will see where the

@@ -41,7 +41,7 @@ void Runner::reload() {
   is_file_gone_ = is_gone;
   if (is_gone) return;
   auto is_reload = [](const Change& change) { return change.commands.empty(); };
-  // One that waits will read what is there then; what is being read is out of date.
+  // A queued reload reads the newest files; one in progress is out of date.
   if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_reload)) return;
   if (!changes_.empty() && is_reload(changes_.front())) planning_->stop();
   changes_.push_back({});
@@ -204,8 +204,8 @@ std::vector<std::string> Runner::set_parameters(const Commands& commands) {
   return {};
 }
 
-/// Reads links that the next plan does not have until their writers know that: one that waits for a
-/// reader that has left takes no commands.
+/// Reads links that the next plan removes until their writers have removed them too: a writer in
+/// another language may block on its reader, and then takes no commands.
 void Runner::drain_removed_links(const Plan& next) {
   auto is_there = [&](const PlannedLink& link) {
     return std::any_of(next.links.begin(), next.links.end(), [&](const PlannedLink& other) {

@@ -66,7 +66,7 @@ LinkState Runner::state_of(const PlannedLink& link) const {
     state.per_second = gone->per_second;
     state.bytes_per_second = gone->bytes_per_second;
   }
-  // The log has only problems of links. Of one inside, its modules' states tell whether it has any.
+  // Only problems of links are logged. Of a link between modules, their states show them.
   const bool is_outside = link.reader_uri.empty() || link.sender_uri.empty();
   if (is_outside && state.status.empty() && state.per_second == 0)
     if (const auto* module = at(link.reader_uri.empty() ? link.from : link.to))

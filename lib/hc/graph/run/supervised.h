@@ -64,8 +64,8 @@ class Supervised {
   /// Takes another plan, and restarts where commands cannot make it so. @returns  what to tell()
   /// it.
   ModuleChange adopt(PlannedModule plan);
-  /// Sends commands. One that is not connected yet gets what has changed when it is; one that never
-  /// takes them is restarted.
+  /// Sends commands. A module that is not connected yet gets the changes when it connects; one that
+  /// accepts none is restarted.
   void tell(const std::vector<std::string>& commands);
 
   /// Tells it that an input's writer has ended for good, or that it is there again.
@@ -104,8 +104,8 @@ class Supervised {
   Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
 
   struct Observed {
-    std::string text;  // PORT=URI, as the module is told
-    std::string uri;   // as observers are
+    std::string text;  // PORT=URI, of the module's output
+    std::string uri;   // for observers
     MonotonicTime until{0};
 
     [[nodiscard]] std::string command() const { return "link out " + text; }
