@@ -30,7 +30,6 @@ void Intake::take() {
   for (int i = 0; i < kMostInATurn; ++i) {
     auto got = source_->take(message);
     if (!got || *got == Got::End) {
-      is_over_ = true;
       watch_.reset();
       woken_.reset();
       again_.reset();
@@ -44,13 +43,10 @@ void Intake::take() {
   again_ = loop_.call_at(std::chrono::steady_clock::now(), [this] { take(); });
 }
 
-Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri,
-                                              StandIn until) {
+Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri) {
   auto uri = parse_uri(reader_uri);
   if (!uri) return uri.error();
-  // Also for a link that ends, since who only waits does so for the writer's answer too, which may
-  // be slow to come.
-  uri->options = {{"reconnect", until == StandIn::UntilTheLinkEnds ? "10" : "86400"}};
+  uri->options = {{"reconnect", "86400"}};
   if (uri->scheme == "shm") uri->options.emplace_back("keep", "latest");
   return Intake::make(loop, uri->text(), [](const Message&) {});
 }

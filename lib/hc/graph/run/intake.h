@@ -22,8 +22,6 @@ class Intake {
 
   /// Takes what is there now.
   void take();
-  /// Whether the link has ended, or failed.
-  [[nodiscard]] bool is_over() const { return is_over_; }
 
  private:
   static constexpr int kMostInATurn = 256;
@@ -34,14 +32,7 @@ class Intake {
   Loop& loop_;
   std::unique_ptr<Source> source_;
   Take take_;
-  bool is_over_ = false;
   Loop::Handle watch_, woken_, again_;
-};
-
-/// For how long there is a reader in another's place.
-enum class StandIn {
-  WhileThereAreWriters,  ///< one after the other
-  UntilTheLinkEnds       ///< and some seconds longer
 };
 
 /// What reads in the place of a module that reads no more, so that no writer waits for it.
@@ -50,7 +41,6 @@ enum class StandIn {
 ///     message from being overwritten.
 ///
 /// Errors: as Intake::make.
-Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri,
-                                              StandIn until = StandIn::WhileThereAreWriters);
+Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri);
 
 }  // namespace hc::internal

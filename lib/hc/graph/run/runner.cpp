@@ -174,7 +174,6 @@ std::string Runner::with_link_names(std::string line) const {
 void Runner::tick() {
   const auto time = now();
   for (auto& [name, module] : modules_) module->look(time);
-  std::erase_if(ending_, [](const auto& stand_in) { return stand_in->is_over(); });
   if (ticks_++ % kTicksOfState == 0) {
     if (observation_ && observation_->is_heard()) {
       for (auto& [name, module] : modules_)

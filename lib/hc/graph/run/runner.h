@@ -72,7 +72,6 @@ class Runner {
   void end_change(const std::vector<std::string>& wrong);
   void refuse_changes();
   std::vector<std::string> set_parameters(const std::vector<Command>& commands);
-  void drain_removed_links(const Plan& next);
   void change_to(Plan plan);
   void add(const PlannedModule& module);
 
@@ -98,9 +97,8 @@ class Runner {
   std::unique_ptr<Observation> observation_;
   std::unique_ptr<FileWatch> files_;
   std::unique_ptr<Aside> planning_;
-  std::map<LinkName, std::unique_ptr<Intake>>
-      stand_ins_;                                // for readers that are over; null: failed
-  std::vector<std::unique_ptr<Intake>> ending_;  // read links that are taken away
+  // In the place of readers that are over; null: it failed.
+  std::map<LinkName, std::unique_ptr<Intake>> stand_ins_;
   std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
   Loop::Handle stop_, tick_;
 };

@@ -204,27 +204,9 @@ std::vector<std::string> Runner::set_parameters(const Commands& commands) {
   return {};
 }
 
-/// Reads links that the next plan removes until their writers have removed them too: a writer in
-/// another language may block on its reader, and then takes no commands.
-void Runner::drain_removed_links(const Plan& next) {
-  auto is_there = [&](const PlannedLink& link) {
-    return std::any_of(next.links.begin(), next.links.end(), [&](const PlannedLink& other) {
-      return other.from == link.from && other.to == link.to && other.sender_uri == link.sender_uri;
-    });
-  };
-  for (const auto& link : plan_.links) {
-    const Supervised* writer = at(link.from);
-    if (writer == nullptr || writer->is_over() || at(link.to) == nullptr || is_there(link))
-      continue;
-    if (auto drain = make_stand_in(*loop_, link.reader_uri, StandIn::UntilTheLinkEnds))
-      ending_.push_back(std::move(*drain));
-  }
-}
-
 /// Makes the running graph as another plan says: links are removed before any are added, and
 /// outputs are there before inputs.
 void Runner::change_to(Plan plan) {
-  drain_removed_links(plan);
   plan_ = std::move(plan);
   is_unsettled_ = true;
   std::vector<std::pair<Supervised*, ModuleChange>> changes;
