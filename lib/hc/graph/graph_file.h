@@ -83,6 +83,7 @@ struct GraphMode {
 /// A coordinate system, and its pose in its parent.
 struct GraphFrame {
   std::string name;
+  std::string prefix;  ///< what inclusion has put before it, "head_"
   Lined<std::string> parent;
   std::array<double, 3> translation{};            ///< [m]
   std::array<double, 4> rotation = {0, 0, 0, 1};  ///< unit quaternion (x, y, z, w)

@@ -108,20 +108,16 @@ Fields::Take Fields::flag(bool& to) const {
   };
 }
 
-Fields::Take Fields::numbers(std::optional<std::vector<double>>& to, std::size_t count) const {
-  return [this, &to, count](const Node& value) {
-    std::vector<double> all;
-    for (const Node& each : value.nodes) {
-      if (const auto* number = each.as<double>()) all.push_back(*number);
-      if (const auto* number = each.as<std::int64_t>()) all.push_back(static_cast<double>(*number));
+Fields::Take Fields::numbers(std::array<double, 3>& to) const {
+  return [this, &to](const Node& value) {
+    bool is_right = value.list() != nullptr && value.nodes.size() == to.size();
+    for (std::size_t i = 0; is_right && i < to.size(); ++i) {
+      const auto* real = value.nodes[i].as<double>();
+      const auto* whole = value.nodes[i].as<std::int64_t>();
+      is_right = whole != nullptr || (real != nullptr && std::isfinite(*real));
+      if (is_right) to[i] = real != nullptr ? *real : static_cast<double>(*whole);
     }
-    bool is_right = value.list() != nullptr && all.size() == count && value.nodes.size() == count &&
-                    std::all_of(all.begin(), all.end(), [](double x) { return std::isfinite(x); });
-    if (is_right)
-      to = std::move(all);
-    else
-      add(value,
-          quoted_name(value.key) + " must be a list of " + std::to_string(count) + " numbers");
+    if (!is_right) add(value, quoted_name(value.key) + " must be a list of 3 numbers");
   };
 }
 

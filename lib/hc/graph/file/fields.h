@@ -3,6 +3,7 @@
 // Reads the tables of a document: a table's reader is a list of its keys, each with what takes its
 // value. Internal to graph.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -51,8 +52,7 @@ class Fields {
   [[nodiscard]] Take texts(std::vector<Lined<std::string>>& to) const;
   [[nodiscard]] Take integer(Lined<std::int64_t>& to, std::int64_t min, std::int64_t max) const;
   [[nodiscard]] Take flag(bool& to) const;
-  /// So many numbers.
-  [[nodiscard]] Take numbers(std::optional<std::vector<double>>& to, std::size_t count) const;
+  [[nodiscard]] Take numbers(std::array<double, 3>& to) const;
   /// One of some words, by its place among them.
   [[nodiscard]] Take choice(std::vector<std::string> words,
                             std::function<void(const Node&, std::size_t)> take) const;

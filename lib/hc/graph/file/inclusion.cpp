@@ -38,6 +38,7 @@ Graph with_prefix(Graph graph, const std::string& name) {
   }
   for (auto& frame : graph.frames) {
     rename(frame.name);
+    frame.prefix = prefix + frame.prefix;
     if (frames.contains(frame.parent.value)) rename(frame.parent.value);
     if (frame.moved_by) rename(frame.moved_by->value.module);
   }

@@ -8,7 +8,7 @@
 namespace hc::internal {
 namespace {
 
-using Angles = std::vector<double>;
+using Angles = std::array<double, 3>;
 
 /// A rotation by roll, pitch and yaw [deg] as a unit quaternion (x, y, z, w), about fixed axes,
 /// roll about x first, so that R = Rz(yaw) Ry(pitch) Rx(roll).
@@ -24,44 +24,29 @@ std::array<double, 4> quaternion_of(const Angles& degrees) {
   return quaternion;
 }
 
-void read_quaternion(const Fields& fields, const Node& node, const Angles& parts,
-                     GraphFrame& frame) {
-  constexpr double kTolerance = 1e-3;  // of its length
-  const double length = std::hypot(std::hypot(parts[0], parts[1]), std::hypot(parts[2], parts[3]));
-  if (std::abs(length - 1) > kTolerance)
-    return fields.add(node, "\"quaternion\" must have length 1");
-  for (std::size_t i = 0; i < 4; ++i) frame.rotation[i] = parts[i] / length;
-}
-
 void read_frame(const Fields& fields, const Node& node, Graph& graph) {
   GraphFrame frame;
   frame.name = node.key;
   frame.place = node.place;
   fields.check_name(node, "frame", node.key);
-  std::optional<Angles> translation, angles, quaternion;
+  Angles angles{};
   std::optional<Lined<std::string>> mover;
   fields.read(node, "in frame " + node.key,
               {{"parent", fields.text(frame.parent), true},
-               {"translation", fields.numbers(translation, 3)},
-               {"rotation", fields.numbers(angles, 3)},
-               {"quaternion", fields.numbers(quaternion, 4)},
+               {"translation", fields.numbers(frame.translation)},
+               {"rotation", fields.numbers(angles)},
                {"moved_by", fields.text(mover)},
                {"coord", fields.integer(frame.coord, 1, 999)}});
   if (node.table() == nullptr) return;
   if (!frame.parent.value.empty())
     fields.check_name(*node.find("parent"), "frame", frame.parent.value);
-  if (translation) std::copy(translation->begin(), translation->end(), frame.translation.begin());
-  if (angles) frame.rotation = quaternion_of(*angles);
-  if (angles && quaternion)
-    fields.add(*node.find("quaternion"), R"(a frame has "rotation" or "quaternion", not both)");
-  else if (quaternion)
-    read_quaternion(fields, *node.find("quaternion"), *quaternion, frame);
+  frame.rotation = quaternion_of(angles);
   if (mover) {
     if (auto port = parse_port(mover->value, false))
       frame.moved_by = Lined<GraphPort>{*port, mover->place};
     else
       fields.add(*node.find("moved_by"), port.error().detail);
-    for (const char* key : {"translation", "rotation", "quaternion"})
+    for (const char* key : {"translation", "rotation"})
       if (const Node* also = node.find(key))
         fields.add(*also, "a frame with \"moved_by\" has no " + quoted_name(key));
   }

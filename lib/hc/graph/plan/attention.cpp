@@ -85,9 +85,7 @@ class Attention {
     link.to = {module.name, kFocus, {}};
     link.policy["keep"] = {"latest", {}};  // a slow reader must not hold the others up
     link.place = module.place;
-    bool is_there = std::any_of(graph_.links.begin(), graph_.links.end(),
-                                [&](const auto& each) { return each.to.text() == link.to.text(); });
-    if (!is_there) planning_.graph.links.push_back(std::move(link));
+    if (!planning_.is_linked(link.to)) planning_.graph.links.push_back(std::move(link));
   }
 
   std::optional<std::int64_t> number_of(const Lined<std::string>& mode) {

@@ -25,17 +25,17 @@ class Frames {
 
   void run() {
     for (const auto& frame : graph_.frames) by_name_[frame.name] = &frame;
-    find_scopes();
     check_numbers();
     check_tree();
     for (const auto& frame : graph_.frames)
       if (frame.moved_by) check_mover(*frame.moved_by);
     check_numbers_of_moved();
     if (!planning_.problems.empty() || graph_.frames.empty()) return;
-    planning_.plan.frames = text_for("");
-    for (const auto& [name, description] : planning_.described)
-      if (takes_frames(planning_, name))
-        planning_.planned(name)->parameters.try_emplace(kFrames, text_for(name));
+    planning_.plan.frames = text_for(0);
+    for (const auto& module : graph_.modules)
+      if (takes_frames(planning_, module.name))
+        planning_.planned(module.name)
+            ->parameters.try_emplace(kFrames, text_for(module.place.file));
   }
 
  private:
@@ -72,27 +72,25 @@ class Frames {
                                                      "; the root is " + root);
       known.pop_back();
     }
-    enum class Visit { Begun = 1, Done };
-    std::map<std::string, Visit> visits;
+    std::map<const GraphFrame*, const GraphFrame*> met;  // each on the way up from which first
     for (const auto& frame : graph_.frames) {
-      std::vector<const GraphFrame*> way;
       const GraphFrame* at = &frame;
-      while (at != nullptr && !visits.contains(at->name)) {
-        visits[at->name] = Visit::Begun;
-        way.push_back(at);
-        auto parent = by_name_.find(at->parent.value);
-        at = parent == by_name_.end() ? nullptr : parent->second;
-      }
-      if (at != nullptr && visits[at->name] == Visit::Begun) add_circle(way, *at);
-      for (const auto* each : way) visits[each->name] = Visit::Done;
+      while (at != nullptr && met.emplace(at, &frame).second) at = parent_of(*at);
+      if (at == nullptr || met.at(at) != &frame) continue;
+      std::string circle = at->name;
+      const GraphFrame* next = at;
+      do {
+        circle += " in " + next->parent.value;
+        next = parent_of(*next);
+      } while (next != at);
+      planning_.problems.add(at->parent.place, "frames form a circle: " + circle);
     }
   }
 
-  void add_circle(const std::vector<const GraphFrame*>& way, const GraphFrame& first) {
-    std::string text = first.name;
-    for (auto each = std::find(way.begin(), way.end(), &first); each != way.end(); ++each)
-      text += " in " + (*each)->parent.value;
-    planning_.problems.add(first.parent.place, "frames form a circle: " + text);
+  /// Null where it is the root.
+  [[nodiscard]] const GraphFrame* parent_of(const GraphFrame& frame) const {
+    auto parent = by_name_.find(frame.parent.value);
+    return parent == by_name_.end() ? nullptr : parent->second;
   }
 
   void check_mover(const Lined<GraphPort>& mover) {
@@ -134,38 +132,25 @@ class Frames {
     return frame == by_name_.end() ? 0 : frame->second->coord.value;
   }
 
-  /// What inclusion has put before the names of a file, "head_", by its standard frames.
-  void find_scopes() {
-    for (const auto& frame : graph_.frames)
-      for (const auto& [standard, number] : kStandard)
-        if (frame.place.file != 0 && frame.name.ends_with("_" + standard))
-          scopes_[frame.place.file] = frame.name.substr(0, frame.name.size() - standard.size());
-  }
-  /// A frame's scope; empty: none.
-  [[nodiscard]] std::string scope_of(const GraphFrame& frame) const {
-    auto scope = scopes_.find(frame.place.file);
-    return scope != scopes_.end() && frame.name.starts_with(scope->second) ? scope->second : "";
-  }
-
-  /// The names of frames as a module sees them, by those that they have here. What its own graph
-  /// file declares has no prefix; nor has a standard frame of another file, if it is the only one.
-  [[nodiscard]] std::map<std::string, std::string> names_for(const std::string& module) const {
+  /// The names of frames as the modules of a file see them, by those that they have here. What that
+  /// file declares has no prefix; nor has a standard frame of another, if it is the only one.
+  [[nodiscard]] std::map<std::string, std::string> names_for(int file) const {
+    auto local = [](const GraphFrame& frame) { return frame.name.substr(frame.prefix.size()); };
     std::map<std::string, int> uses;  // of a name without prefix
-    for (const auto& frame : graph_.frames) ++uses[frame.name.substr(scope_of(frame).size())];
+    for (const auto& frame : graph_.frames) ++uses[local(frame)];
     std::map<std::string, std::string> names;
     for (const auto& frame : graph_.frames) {
-      const std::string scope = scope_of(frame), local = frame.name.substr(scope.size());
-      const bool is_own = module.starts_with(scope);
-      const bool is_only = kStandard.contains(local) && uses[local] == 1;
-      const bool is_free = scope.empty() || !by_name_.contains(local);
-      names[frame.name] = is_free && (is_own || is_only) ? local : frame.name;
+      const std::string name = local(frame);
+      const bool is_only = kStandard.contains(name) && uses[name] == 1;
+      const bool is_free = !by_name_.contains(name);
+      names[frame.name] = is_free && (frame.place.file == file || is_only) ? name : frame.name;
     }
     return names;
   }
 
   /// As G31 has it.
-  [[nodiscard]] std::string text_for(const std::string& module) const {
-    const auto names = names_for(module);
+  [[nodiscard]] std::string text_for(int file) const {
+    const auto names = names_for(file);
     auto name_of = [&](const std::string& name) {
       auto seen = names.find(name);
       return seen == names.end() ? name : seen->second;
@@ -178,7 +163,8 @@ class Frames {
       text << name << " " << (kStandard.contains(name) ? kStandard.at(name) : number_of(frame.name))
            << " " << name_of(frame.parent.value);
       if (frame.moved_by) {
-        text << " " << frame.moved_by->value.text() << " " << address_of(frame.moved_by->value);
+        const std::string mover = frame.moved_by->value.text();
+        text << " " << mover << " " << planning_.plan.sources.at(mover);
         continue;
       }
       for (double length : frame.translation) text << " " << length;
@@ -187,18 +173,9 @@ class Frames {
     return text.str();
   }
 
-  /// Of an output, as its module was told.
-  [[nodiscard]] std::string address_of(const GraphPort& port) const {
-    const auto& options = planning_.planned(port.module)->options;
-    for (const auto& option : options)
-      if (option.starts_with(port.port + "=")) return option.substr(port.port.size() + 1);
-    return "0";
-  }
-
   Planning& planning_;
   const Graph& graph_;
   std::map<std::string, const GraphFrame*> by_name_;
-  std::map<int, std::string> scopes_;  // by the number of the file
 };
 
 }  // namespace
@@ -222,25 +199,20 @@ void link_frames(Planning& planning) {
     if (is_there && std::none_of(movers.begin(), movers.end(), is_it))
       movers.push_back(*frame.moved_by);
   }
-  std::vector<GraphLink> made;
   for (const auto& module : planning.graph.modules) {
     if (!takes_frames(planning, module.name) || module.parameters.contains(kFrames)) continue;
     if (find_input(*planning.description_of(module.name), kFrames) == nullptr) continue;
     GraphLink link;
     link.to = {module.name, kFrames, {}};
     link.policy["keep"] = {kKeep, {}};
-    bool is_linked =
-        std::any_of(planning.graph.links.begin(), planning.graph.links.end(),
-                    [&](const auto& each) { return each.to.text() == link.to.text(); });
-    if (is_linked) continue;
+    if (planning.is_linked(link.to)) continue;
     for (const auto& mover : movers) {
       if (mover.value.module == module.name) continue;
       link.from = mover.value;
       link.place = mover.place;
-      made.push_back(link);
+      planning.graph.links.push_back(link);
     }
   }
-  planning.graph.links.insert(planning.graph.links.end(), made.begin(), made.end());
 }
 
 void plan_frames(Planning& planning) {

@@ -2,6 +2,7 @@
 #pragma once
 // The steps from a graph to a plan; plan.cpp takes them one after the other. Internal to graph.
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -36,6 +37,10 @@ struct Planning {
     if (!output.uri.empty() || !is_router(output.module)) return false;
     const PortDescription* port = find_named(described.at(output.module).outputs, output.port);
     return port != nullptr && port->types.empty();
+  }
+  [[nodiscard]] bool is_linked(const GraphPort& input) const {
+    return std::any_of(graph.links.begin(), graph.links.end(),
+                       [&](const auto& link) { return link.to.text() == input.text(); });
   }
   [[nodiscard]] PlannedModule* planned(const std::string& module) {
     auto found = index.find(module);
