@@ -80,13 +80,13 @@ class LinkPlanner {
       if (address != planning_.plan.addresses.end()) routed.reaches = address->second;
     }
     constexpr std::size_t kMostRouters = 7;  // R42: the eighth would leave a ttl of 8 with 0
-    if (const auto most = longest_way(links, is_router); most > kMostRouters)
-      planning_.problems.add({1, 0}, "a message passes " + std::to_string(most) +
+    const Routes routes = compute_routes(links, is_router);
+    if (routes.longest > kMostRouters)
+      planning_.problems.add({1, 0}, "a message passes " + std::to_string(routes.longest) +
                                          " routers on a way of this graph, and its ttl is for " +
                                          std::to_string(kMostRouters));
-    const auto passed = compute_routes(links, is_router);
     for (std::size_t i = 0; i < graph_.links.size(); ++i)
-      routes_.push_back(words_of(graph_.links[i], passed[i]));
+      routes_.push_back(words_of(graph_.links[i], routes.passed[i]));
   }
 
   struct RouteWords {

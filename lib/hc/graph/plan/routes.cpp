@@ -9,9 +9,9 @@
 namespace hc::internal {
 namespace {
 
-class Routes {
+class Network {
  public:
-  Routes(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router)
+  Network(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router)
       : links_(links), is_router_(is_router), leaving_(is_router.size()) {
     for (std::size_t i = 0; i < links.size(); ++i)
       if (is_router_at(links[i].from)) leaving_[links[i].from].push_back(i);
@@ -21,37 +21,29 @@ class Routes {
     return module < is_router_.size() && is_router_[module];
   }
 
-  /// By address, the link of a router that begins the shortest way there.
-  [[nodiscard]] std::map<std::int64_t, std::size_t> first_links(std::size_t router) const {
-    std::map<std::int64_t, std::size_t> first;
-    std::map<std::size_t, std::size_t> begun_by;  // the link by which a router is reached
-    std::deque<std::size_t> next = {router};      // breadth first: the nearest come first
-    for (; !next.empty(); next.pop_front())
-      for (std::size_t i : leaving_[next.front()]) {
-        const RoutedLink& link = links_[i];
-        std::size_t begin = next.front() == router ? i : begun_by.at(next.front());
-        for (std::int64_t address : link.given ? *link.given : std::vector{link.reaches})
-          if (address > 0) first.emplace(address, begin);
-        if (is_router_at(link.to) && link.to != router && begun_by.emplace(link.to, begin).second)
-          next.push_back(link.to);
-      }
-    return first;
-  }
+  /// A way from a router.
+  struct Way {
+    std::size_t first = 0;    ///< the link that begins it
+    std::size_t routers = 1;  ///< that are passed on it
+  };
 
-  /// By address, how many routers are passed from this one on.
-  [[nodiscard]] std::map<std::int64_t, std::size_t> hops(std::size_t router) const {
-    std::map<std::int64_t, std::size_t> hops;
-    std::map<std::size_t, std::size_t> distance = {{router, 1}};
-    std::deque<std::size_t> next = {router};
+  /// By address, the shortest way there.
+  [[nodiscard]] std::map<std::int64_t, Way> ways(std::size_t router) const {
+    std::map<std::int64_t, Way> ways;
+    std::map<std::size_t, Way> reached = {{router, {}}};  // routers
+    std::deque<std::size_t> next = {router};              // breadth first: the nearest come first
     for (; !next.empty(); next.pop_front())
       for (std::size_t i : leaving_[next.front()]) {
         const RoutedLink& link = links_[i];
-        const std::size_t passed = distance.at(next.front());
-        if (link.reaches > 0) hops.emplace(link.reaches, passed);
-        if (is_router_at(link.to) && distance.emplace(link.to, passed + 1).second)
+        Way way = reached.at(next.front());
+        if (next.front() == router) way.first = i;
+        for (std::int64_t address : link.given ? *link.given : std::vector{link.reaches})
+          if (address > 0) ways.emplace(address, way);
+        if (is_router_at(link.to) &&
+            reached.emplace(link.to, Way{way.first, way.routers + 1}).second)
           next.push_back(link.to);
       }
-    return hops;
+    return ways;
   }
 
  private:
@@ -62,37 +54,26 @@ class Routes {
 
 }  // namespace
 
-std::size_t longest_way(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router) {
-  const Routes routes(links, is_router);
-  std::size_t longest = 0;
-  for (std::size_t router = 0; router < is_router.size(); ++router)
-    if (is_router[router])
-      for (const auto& [address, hops] : routes.hops(router)) longest = std::max(longest, hops);
-  return longest;
-}
-
-std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLink>& links,
-                                                      const std::vector<bool>& is_router) {
-  const Routes routes(links, is_router);
+Routes compute_routes(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router) {
+  const Network network(links, is_router);
+  Routes routes;
   std::vector<std::set<std::int64_t>> passed(links.size());
   for (std::size_t router = 0; router < is_router.size(); ++router)
     if (is_router[router])
-      for (const auto& [address, link] : routes.first_links(router)) passed[link].insert(address);
-  std::vector<std::vector<std::int64_t>> all;
+      for (const auto& [address, way] : network.ways(router)) {
+        passed[way.first].insert(address);
+        routes.longest = std::max(routes.longest, way.routers);
+      }
   for (std::size_t i = 0; i < links.size(); ++i) {
-    const RoutedLink& link = links[i];
-    if (!routes.is_router_at(link.from)) {
-      all.emplace_back();
-      continue;
-    }
-    if (link.given) {
-      all.push_back(*link.given);
-      continue;
-    }
+    auto& addresses = routes.passed.emplace_back();
+    if (!network.is_router_at(links[i].from)) continue;
     passed[i].insert(kAll);
-    all.emplace_back(passed[i].begin(), passed[i].end());
+    if (links[i].given)
+      addresses = *links[i].given;
+    else
+      addresses.assign(passed[i].begin(), passed[i].end());
   }
-  return all;
+  return routes;
 }
 
 }  // namespace hc::internal

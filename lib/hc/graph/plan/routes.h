@@ -24,20 +24,19 @@ inline constexpr std::int64_t kAll = -1;
 /// The number of a link's end that is no module.
 inline constexpr std::size_t kOutside = static_cast<std::size_t>(-1);
 
-/// The addresses that each link passes, in the order of numbers; none for links from modules that
-/// are no routers.
-///
+struct Routes {
+  /// The addresses that each link passes, in the order of numbers; none for links from modules that
+  /// are no routers.
+  std::vector<std::vector<std::int64_t>> passed;
+  std::size_t longest = 0;  ///< the most routers that a message passes on its way to an address
+};
+
 /// An address is passed by one link of a router: the one that begins the way of the fewest hops to
 /// it, of several the first. -1 (all) passes everywhere: routers see to it that such a message goes
 /// round once.
 ///
 /// @param is_router  by number of module.
 /// Cost: the number of routers times that of links and addresses.
-std::vector<std::vector<std::int64_t>> compute_routes(const std::vector<RoutedLink>& links,
-                                                      const std::vector<bool>& is_router);
-
-/// The most routers that a message passes on its way to an address, by the ways of
-/// compute_routes().
-std::size_t longest_way(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router);
+Routes compute_routes(const std::vector<RoutedLink>& links, const std::vector<bool>& is_router);
 
 }  // namespace hc::internal
