@@ -14,7 +14,9 @@
 namespace hc::internal {
 namespace {
 
+// Between messages that follow one another one looks for new peers only so often.
 constexpr std::chrono::microseconds kFollowTime{10};
+constexpr std::chrono::milliseconds kLookPeriod{1};
 
 }  // namespace
 
@@ -26,22 +28,35 @@ Result<std::unique_ptr<Sink>> ListeningSink::make(ListeningSocket socket, const 
   if (!stays) return stays.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
-  auto acceptor = Acceptor::make(std::move(socket), kMaxPeers);
-  if (!acceptor) return acceptor.error();
-  return std::unique_ptr<Sink>(
-      new ListeningSink(std::move(*acceptor), *readers, *stays == 1, *policy, options));
+  auto loop = Loop::make();
+  if (!loop) return loop.error();
+  std::unique_ptr<ListeningSink> sink(new ListeningSink(std::move(socket), std::move(*loop),
+                                                        *readers, *stays == 1, *policy, options));
+  auto watched = sink->loop_->watch(sink->socket_.descriptor.get(), EPOLLIN,
+                                    [self = sink.get()](auto) { self->accept_all(); });
+  if (!watched) return watched.error();
+  sink->listening_ = std::move(*watched);
+  return std::unique_ptr<Sink>(std::move(sink));
 }
 
-/// Makes peers of those who have come.
+/// Makes peers of those who wait outside, as far as there is room.
+void ListeningSink::accept_all() {
+  auto has_room = [this] {
+    for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= kMaxPeers;)
+      if (peers_[i]->has_failed()) leave(i);
+    return peers_.size() < kMaxPeers;
+  };
+  socket_.accept_all(listening_, options_.log, has_room, [this](Descriptor accepted) -> Status {
+    auto connection = Connection::make(std::move(accepted), policy_, options_);
+    if (!connection) return connection.error();
+    peers_.push_back(std::move(*connection));
+    return {};
+  });
+}
+
 void ListeningSink::let_in() {
-  for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= kMaxPeers;)
-    if (peers_[i]->has_failed()) leave(i);
-  for (auto& newcomer : acceptor_->take(kMaxPeers - peers_.size())) {
-    auto connection = Connection::make(std::move(newcomer), policy_, options_);
-    if (connection) peers_.push_back(std::move(*connection));
-  }
-  for (const auto& line : acceptor_->take_remarks())
-    if (options_.log) options_.log(Severity::Warning, line);
+  if (socket_.is_paused) accept_all();  // there may be room by now
+  static_cast<void>(loop_->turn(std::chrono::milliseconds(0)));
 }
 
 /// Waits for those that the next message is for, or for all before the first one.
@@ -52,7 +67,7 @@ Status ListeningSink::await_readers() {
   const bool awaits = peers_.size() < readers && options_.awaits_reader;
   if (awaits) options_.awaits_reader(true);
   for (; peers_.size() < readers; let_in()) {
-    auto come = wait_for(acceptor_->descriptor(), POLLIN, options_.stop);
+    auto come = wait_for(loop_->descriptor(), POLLIN, options_.stop);
     if (!come) return come.error();
   }
   if (awaits) options_.awaits_reader(false);
@@ -65,7 +80,7 @@ void ListeningSink::leave(std::size_t peer) {
   if (peers_.size() > 1) losses.bytes = 0;
   traffic_ += losses;
   peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
-  last_send_ = {};  // there is room for who waits outside
+  last_look_ = {};  // there is room for who waits outside
 }
 
 Status ListeningSink::send(const Message& message) {
@@ -81,12 +96,11 @@ Status ListeningSink::send(const Message& message) {
         return {};
       }
     }
-    // Between messages that follow one another the reactor alone lets peers in.
     auto now = std::chrono::steady_clock::now();
-    bool follows = now - last_send_ < kFollowTime;
-    if (!begun_ || peers_.empty() || !follows || acceptor_->has_news()) {
+    bool follows = now - last_send_ < kFollowTime && now - last_look_ < kLookPeriod;
+    if (!begun_ || peers_.empty() || !follows) {
       if (auto awaited = await_readers(); !awaited) return awaited;
-      now = std::chrono::steady_clock::now();
+      last_look_ = now = std::chrono::steady_clock::now();
     }
     begun_ = true;
     auto has = put_to_all(outgoing, now);
@@ -151,6 +165,7 @@ Result<bool> ListeningSink::has_reader() {
 Status ListeningSink::close() {
   Status awaited;
   if (readers_ > 0 && !begun_) awaited = await_readers();
+  let_in();  // who has just come finds the end too
   bool patient = true;
   for (auto& peer : peers_) {
     auto closed = peer->close(patient);
@@ -158,7 +173,8 @@ Status ListeningSink::close() {
     if (awaited && !patient) awaited = closed;
   }
   while (!peers_.empty()) leave(peers_.size() - 1);
-  acceptor_.reset();  // who has connected and was not let in yet finds the end too
+  listening_.reset();
+  socket_ = ListeningSocket();
   return awaited;
 }
 

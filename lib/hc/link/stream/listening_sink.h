@@ -5,9 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include <hc/link/stream/acceptor.h>
 #include <hc/link/stream/connection.h>
 #include <hc/mtp/codec.h>
+#include <hc/os/loop.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 
@@ -30,14 +31,16 @@ class ListeningSink final : public Sink {
   [[nodiscard]] Traffic traffic() const override;
 
  private:
-  ListeningSink(std::unique_ptr<Acceptor> acceptor, std::int64_t readers, bool stays,
-                const Policy& policy, LinkOptions options)
-      : acceptor_(std::move(acceptor)),
+  ListeningSink(ListeningSocket socket, std::unique_ptr<Loop> loop, std::int64_t readers,
+                bool stays, const Policy& policy, LinkOptions options)
+      : socket_(std::move(socket)),
+        loop_(std::move(loop)),
         readers_(readers),
         stays_(stays),
         policy_(policy),
         options_(std::move(options)) {}
 
+  void accept_all();
   void let_in();
   Status await_readers();
   void leave(std::size_t peer);
@@ -45,13 +48,15 @@ class ListeningSink final : public Sink {
   Result<bool> has_reader();
   [[nodiscard]] Result<bool> has_taken(const Connection& peer) const;
 
-  std::unique_ptr<Acceptor> acceptor_;
+  ListeningSocket socket_;
+  std::unique_ptr<Loop> loop_;  // of the listening socket
+  Loop::Handle listening_;
   std::int64_t readers_;  // to wait for before the first message and before the end; -1: one, none
   bool stays_;            // when all who were waited for have left
   Policy policy_;         // of each peer
   LinkOptions options_;
-  bool begun_ = false;  // the readers that were to be waited for have come
-  TimePoint last_send_;
+  bool begun_ = false;               // the readers that were to be waited for have come
+  TimePoint last_send_, last_look_;  // the latter: who wants to be let in
   Encoder encoder_;
   std::vector<std::unique_ptr<Connection>> peers_;
   Traffic traffic_;  // with the losses of those that have left
