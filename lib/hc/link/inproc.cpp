@@ -23,9 +23,10 @@ struct Channel {
   Traffic losses;
   bool has_source = false, has_sink = false;
   bool source_left = false, sink_left = false;
-  Descriptor readable;           // eventfd: messages wait, or the sink has left
-  Descriptor writable;           // eventfd: there is room again, or the source has left
-  std::unique_ptr<Watch> timer;  // raises the first when a message may go; null: each may at once
+  Descriptor readable;    // eventfd: messages wait, or the sink has left
+  Descriptor writable;    // eventfd: there is room again, or the source has left
+  bool is_paced = false;  // not each message may go at once
+  Watch timer;            // raises the first when one may
 };
 
 void raise(const Descriptor& event) {
@@ -87,10 +88,10 @@ class InprocSource final : public Source {
     auto& messages = channel_->messages;
     if (messages.empty() && channel_->sink_left) return Got::End;
     TimePoint now;
-    if (channel_->timer != nullptr) now = std::chrono::steady_clock::now();
+    if (channel_->is_paced) now = std::chrono::steady_clock::now();
     if (auto ready = messages.ready_at(now, channel_->losses); ready > now) {
       lower(channel_->readable);
-      if (ready != TimePoint::max()) channel_->timer->call_at(ready);
+      if (ready != TimePoint::max()) channel_->timer.call_at(ready);
       return Got::Nothing;
     }
     message = messages.pop(now);
@@ -175,15 +176,13 @@ Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions
   if (!joined) return joined.error();
   auto& channel = **joined;
   std::unique_ptr<Sink> sink(new InprocSink(*joined, *policy, options.stop));
-  std::unique_ptr<Watch> timer;
   if (policy->is_paced()) {
-    auto made = Watch::make(-1, [&channel](std::uint32_t) { raise(channel.readable); });
-    if (!made) return made.error();
-    timer = std::move(*made);
+    auto started = channel.timer.start(-1, [&channel](auto) { raise(channel.readable); });
+    if (!started) return started.error();
   }
   std::lock_guard lock(channel.mutex);
   channel.messages = SendQueue<Message>(*policy);
-  channel.timer = std::move(timer);
+  channel.is_paced = policy->is_paced();
   return sink;
 }
 

@@ -20,29 +20,30 @@ struct Watch::State {
 /// A loop, turned by one thread with a lock that is free while the thread waits or calls back.
 class Watch::Reactor {
  public:
-  Status start() {
-    std::lock_guard lock(mutex_);
-    if (loop_ != nullptr) return {};
-    auto loop = Loop::make();
-    if (!loop) return loop.error();
-    loop_ = std::move(*loop);
-    auto started = start_thread();
-    if (!started) loop_.reset();
-    return started;
+  /// Never destroyed: its thread outlives main().
+  static Reactor& the() {
+    static auto* reactor = new Reactor;
+    return *reactor;
   }
 
-  std::shared_ptr<State> add(int descriptor, Loop::Callback callback) {
-    auto state = std::make_shared<State>();
-    state->callback = std::move(callback);
-    std::lock_guard lock(mutex_);
-    state->handle = std::move(
-        *loop_->watch(descriptor, 0, [this, state](std::uint32_t events) { call(state, events); }));
-    return state;
+  Status add(State& state, int descriptor, Loop::Callback callback) {
+    std::lock_guard lock(mutex);
+    if (loop_ == nullptr) {
+      auto loop = Loop::make();
+      if (!loop) return loop.error();
+      loop_ = std::move(*loop);
+      if (auto started = start_thread(); !started) {
+        loop_.reset();
+        return started;
+      }
+    }
+    state.handle = std::move(*loop_->watch(descriptor, 0, std::move(callback)));
+    return {};
   }
 
   void remove(State& state) {
     Loop::Callback callback;  // ends without the lock: it may hold watches of its own
-    std::unique_lock lock(mutex_);
+    std::unique_lock lock(mutex);
     state.has_ended = true;
     state.handle.reset();
     if (std::this_thread::get_id() != thread_)
@@ -50,20 +51,19 @@ class Watch::Reactor {
     if (running_ != &state) callback.swap(state.callback);
   }
 
-  Status want(State& state, std::uint32_t events) {
-    std::lock_guard lock(mutex_);
-    return state.has_ended ? Status() : state.handle.want(events);
+  void call(const std::shared_ptr<State>& state, std::uint32_t events) {
+    if (state->has_ended) return;
+    auto held = state;
+    running_ = held.get();
+    lock_.unlock();
+    held->callback(events);
+    if (held->has_ended) held->callback = nullptr;  // without the lock, as in remove()
+    lock_.lock();
+    running_ = nullptr;
+    returned_.notify_all();
   }
 
-  void move(State& state, int descriptor) {
-    std::lock_guard lock(mutex_);
-    if (!state.has_ended) state.handle.move_to(descriptor);
-  }
-
-  void call_at(State& state, TimePoint when) {
-    std::lock_guard lock(mutex_);
-    if (!state.has_ended) state.handle.call_at(when);
-  }
+  std::mutex mutex;
 
  private:
   Status start_thread() {
@@ -84,7 +84,7 @@ class Watch::Reactor {
   }
 
   [[noreturn]] void run() {
-    lock_ = std::unique_lock(mutex_);
+    lock_ = std::unique_lock(mutex);
     while (true) {
       lock_.unlock();
       static_cast<void>(wait_for(loop_->descriptor(), POLLIN, -1));
@@ -93,19 +93,6 @@ class Watch::Reactor {
     }
   }
 
-  void call(const std::shared_ptr<State>& state, std::uint32_t events) {
-    if (state->has_ended) return;
-    auto held = state;
-    running_ = held.get();
-    lock_.unlock();
-    held->callback(events);
-    if (held->has_ended) held->callback = nullptr;  // without the lock, as in remove()
-    lock_.lock();
-    running_ = nullptr;
-    returned_.notify_all();
-  }
-
-  std::mutex mutex_;
   std::unique_lock<std::mutex> lock_;  // of the thread
   std::condition_variable returned_;   // from a callback
   std::thread::id thread_;
@@ -113,31 +100,32 @@ class Watch::Reactor {
   const State* running_ = nullptr;
 };
 
-/// Never destroyed: its thread outlives main().
-Watch::Reactor& Watch::reactor() {
-  static auto* the = new Reactor;
-  return *the;
+Status Watch::start(int descriptor, Callback callback) {
+  auto state = std::make_shared<State>();
+  state->callback = std::move(callback);
+  auto added = Reactor::the().add(
+      *state, descriptor, [state](std::uint32_t events) { Reactor::the().call(state, events); });
+  if (added) state_ = std::move(state);
+  return added;
 }
 
-Result<std::unique_ptr<Watch>> Watch::make(int descriptor, Callback callback) {
-  if (auto started = reactor().start(); !started) return started.error();
-  return std::unique_ptr<Watch>(new Watch(reactor().add(descriptor, std::move(callback))));
-}
-
-Watch::~Watch() {
-  reactor().remove(*state_);
+void Watch::end() {
+  if (state_ != nullptr) Reactor::the().remove(*state_);
 }
 
 Status Watch::want(std::uint32_t events) {
-  return reactor().want(*state_, events);
+  std::lock_guard lock(Reactor::the().mutex);
+  return state_->has_ended ? Status() : state_->handle.want(events);
 }
 
 void Watch::move_to(int descriptor) {
-  reactor().move(*state_, descriptor);
+  std::lock_guard lock(Reactor::the().mutex);
+  if (!state_->has_ended) state_->handle.move_to(descriptor);
 }
 
 void Watch::call_at(TimePoint when) {
-  reactor().call_at(*state_, when);
+  std::lock_guard lock(Reactor::the().mutex);
+  if (!state_->has_ended) state_->handle.call_at(when);
 }
 
 }  // namespace hc::internal

@@ -13,28 +13,33 @@ namespace hc::internal {
 
 /// A descriptor that the thread watches, and a timer with it.
 ///
-///     auto watch = Watch::make(socket, [&](std::uint32_t events) { … });
-///     if (!watch) return watch.error();
-///     (*watch)->want(EPOLLOUT);                  // until want(0), as long as there is room
-///     (*watch)->call_at(now + milliseconds(1));  // once, with events 0
+///     Watch watch;
+///     if (auto started = watch.start(socket, [&](std::uint32_t events) { … }); !started) …
+///     watch.want(EPOLLOUT);                  // until want(0), as long as there is room
+///     watch.call_at(now + milliseconds(1));  // once, with events 0
 ///
-/// A callback must not block: those of all links take turns. It may use every Watch, and destroy
-/// its own. want() and call_at() may be called from any thread.
+/// A callback must not block: those of all links take turns. It may use every Watch, its own also
+/// while that is being destroyed, and end its own. want() and call_at() may be called from any
+/// thread.
 class Watch {
  public:
   using TimePoint = Loop::TimePoint;
   using Callback = Loop::Callback;
 
+  Watch() = default;
+  ~Watch() { end(); }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+  /// To be called once, before all else.
   /// @param descriptor  must stay open as long as the watch; -1: a timer alone.
   ///
   /// Errors: System (no descriptor or thread to be had).
-  static Result<std::unique_ptr<Watch>> make(int descriptor, Callback callback);
+  Status start(int descriptor, Callback callback);
 
   /// Afterwards the callback neither runs nor will run: waits for it where it runs now, but for
-  /// itself. Not to be destroyed, then, while holding a lock which the callback takes.
-  ~Watch();
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
+  /// itself. Not to be called, then, while holding a lock which the callback takes.
+  void end();
 
   /// As Loop::Handle's. Cost: a system call where something changes, or the next time of all does.
   Status want(std::uint32_t events);
@@ -44,9 +49,6 @@ class Watch {
  private:
   struct State;
   class Reactor;
-  static Reactor& reactor();
-
-  explicit Watch(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
   std::shared_ptr<State> state_;
 };

@@ -24,9 +24,9 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 std::unique_ptr<Watch> watch_of(int descriptor, Watch::Callback callback) {
-  auto watch = Watch::make(descriptor, std::move(callback));
-  EXPECT_TRUE(watch) << watch.error().text();
-  return std::move(*watch);
+  auto watch = std::make_unique<Watch>();
+  EXPECT_TRUE(watch->start(descriptor, std::move(callback)));
+  return watch;
 }
 
 Watch::TimePoint now() {

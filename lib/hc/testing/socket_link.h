@@ -258,7 +258,7 @@ inline std::size_t open_descriptors() {
 
 /// Starts the thread that all links of a process share, whose descriptors stay open.
 inline void start_link_thread() {
-  ASSERT_TRUE(internal::Watch::make(-1, [](auto) {}));
+  ASSERT_TRUE(internal::Watch().start(-1, [](auto) {}));
 }
 
 constexpr int kPeersThatLeave = static_cast<int>(internal::kMaxPeers) + 20;

@@ -28,12 +28,10 @@ Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
     refuse(peer, "another user");
     return Error{Code::Closed, "refused a reader of " + who};
   };
-  auto watch = Watch::make(readers->socket_.descriptor.get(),
-                           [all = readers.get()](std::uint32_t) { all->accept_all(); });
-  if (!watch) return watch.error();
-  readers->watch_ = std::move(*watch);
-  readers->watching_ = readers->watch_.get();
-  if (auto watched = readers->watching_->want(EPOLLIN); !watched) return watched.error();
+  auto watched = readers->watch_.start(readers->socket_.descriptor.get(),
+                                       [all = readers.get()](auto) { all->accept_all(); });
+  if (watched) watched = readers->watch_.want(EPOLLIN);
+  if (!watched) return watched.error();
   return readers;
 }
 
@@ -42,7 +40,7 @@ ShmReaders::~ShmReaders() {
     std::lock_guard lock(mutex_);
     ending_ = true;
   }
-  watch_.reset();
+  watch_.end();
   std::vector<std::shared_ptr<ShmReader>> all;  // whose watches end outside the lock
   std::lock_guard lock(mutex_);
   for (auto* list : {&strangers_, &come_, &current_}) {
@@ -62,9 +60,9 @@ void ShmReaders::remark(std::string line) {
 void ShmReaders::accept_all() {
   auto log = [this](Severity, std::string_view line) { remark(std::string(line)); };
   auto has_room = [] { return true; };
-  socket_.accept_all(*watching_, log, has_room, [this](Descriptor peer) -> Status {
+  socket_.accept_all(watch_, log, has_room, [this](Descriptor peer) -> Status {
     auto reader = std::make_shared<ShmReader>();
-    auto watch = Watch::make(peer.get(), [this, each = reader.get()](std::uint32_t events) {
+    auto started = reader->watch.start(peer.get(), [this, each = reader.get()](auto events) {
       if ((events & (EPOLLHUP | EPOLLERR)) != 0)
         let_go(*each);
       else if (each->memory.data() == nullptr)
@@ -72,10 +70,8 @@ void ShmReaders::accept_all() {
       else
         note_leaving(*each);
     });
-    if (!watch) return watch.error();
+    if (!started) return started;
     reader->socket = std::move(peer);
-    reader->watch = std::move(*watch);
-    reader->watching = reader->watch.get();
     std::shared_ptr<ShmReader> silent;
     {
       std::lock_guard lock(mutex_);
@@ -86,7 +82,7 @@ void ShmReaders::accept_all() {
       }
       strangers_.push_back(reader);
     }
-    return reader->watching->want(EPOLLIN);
+    return reader->watch.want(EPOLLIN);
   });
 }
 
@@ -125,7 +121,7 @@ void ShmReaders::hear(ShmReader& reader) {
   }
   HC_CRASH_POINT("publisher knows reader");
   // Edge-triggered: the reader's end of its direction, and then that of the connection.
-  static_cast<void>(reader.watching->want(EPOLLRDHUP | EPOLLET));
+  static_cast<void>(reader.watch.want(EPOLLRDHUP | EPOLLET));
   Offer offer{reader.begin, reader.keep, {}};
   if (!answer(reader.socket.get(), offer, bytes_, read_only_.get())) let_go(reader);
   HC_CRASH_POINT("publisher answered");
@@ -141,7 +137,7 @@ void ShmReaders::note_leaving(const ShmReader& reader) {
 
 /// A reader or stranger has gone, or died, which looks the same: what it held is free.
 void ShmReaders::let_go(ShmReader& reader) {
-  static_cast<void>(reader.watching->want(0));
+  static_cast<void>(reader.watch.want(0));
   std::shared_ptr<ShmReader> owner;  // goes outside the lock
   std::lock_guard lock(mutex_);
   if (ending_) return;

@@ -28,8 +28,7 @@ struct ShmReader {
   std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
   std::atomic<bool> gone{false};
-  Watch* watching = nullptr;     ///< for its callback, which may run while it is being destroyed
-  std::unique_ptr<Watch> watch;  ///< last, so that it ends first
+  Watch watch;  ///< last, so that it ends first
 
   [[nodiscard]] const ReaderPage& page() const {
     return *reinterpret_cast<const ReaderPage*>(memory.data());
@@ -109,8 +108,7 @@ class ShmReaders {
   std::size_t count_ = 0;                              // of readers, those in come_ included
   bool ending_ = false;
 
-  Watch* watching_ = nullptr;  // as in ShmReader
-  std::unique_ptr<Watch> watch_;
+  Watch watch_;
 };
 
 }  // namespace hc::internal

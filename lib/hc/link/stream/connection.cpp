@@ -29,10 +29,9 @@ Result<std::unique_ptr<Connection>> Connection::make(Descriptor connection, cons
                                                      const LinkOptions& options,
                                                      std::unique_ptr<Dialer> dialer) {
   std::unique_ptr<Connection> made(new Connection(policy, options, std::move(dialer)));
-  auto watch = Watch::make(-1, [self = made.get()](auto events) { self->on_event(events); });
-  if (!watch) return watch.error();
-  made->watch_ = std::move(*watch);
-  made->watching_ = made->watch_.get();
+  auto started =
+      made->watch_.start(-1, [self = made.get()](auto events) { self->on_event(events); });
+  if (!started) return started.error();
   std::lock_guard lock(made->mutex_);
   auto now = clock_now();
   if (connection)
@@ -55,7 +54,7 @@ void Connection::connect(Descriptor connection, TimePoint now) {
   blocked_ = false;
   connected_at_ = now;
   look_due_ = TimePoint::max();
-  watching_->move_to(writer_.descriptor());
+  watch_.move_to(writer_.descriptor());
 }
 
 void Connection::dial(TimePoint now) {
@@ -64,11 +63,11 @@ void Connection::dial(TimePoint now) {
   if (!made) return fail(made.error());
   if (auto remark = dialer_->take_remark(now)) remarks_.add(*remark);
   if (*made) return connect(std::move(*made), now);
-  watching_->move_to(dialer_->descriptor());
+  watch_.move_to(dialer_->descriptor());
 }
 
 void Connection::stop_watching() {
-  watching_->move_to(-1);
+  watch_.move_to(-1);
   wanted_ = 0;
 }
 
@@ -102,7 +101,7 @@ void Connection::put(const Parcel& parcel, TimePoint now) {
     if (pays && writer_.gathered() < kFlushBytes && now - oldest_ < kFlushAge) {
       is_gathering_ = true;
       // The reactor has work only when no further message comes; else they are written here.
-      if (!std::exchange(flush_is_due_, true)) watching_->call_at(flush_due());
+      if (!std::exchange(flush_is_due_, true)) watch_.call_at(flush_due());
       return;
     }
   }
@@ -117,7 +116,7 @@ void Connection::write() {
   blocked_ = !*written;
   if (!is_tcp_ || look_due_ != TimePoint::max()) return;
   look_due_ = last_write_ + kLookPeriod;
-  watching_->call_at(look_due_);
+  watch_.call_at(look_due_);
 }
 
 /// Does all that can be done by now without waiting.
@@ -194,13 +193,13 @@ void Connection::arm(TimePoint now) {
   auto when = due(now);
   if (when == TimePoint::max()) return;
   flush_is_due_ = writer_.gathered() > 0;
-  watching_->call_at(when);
+  watch_.call_at(when);
 }
 
 /// Has the descriptor watched for events, which are told once. A file cannot be, and need not.
 void Connection::want(std::uint32_t events) {
   if (std::exchange(wanted_, events) == events) return;
-  static_cast<void>(watching_->want(events == 0 ? 0 : events | EPOLLONESHOT));
+  static_cast<void>(watch_.want(events == 0 ? 0 : events | EPOLLONESHOT));
 }
 
 /// When there is something to do next, beside what the descriptor tells.

@@ -142,10 +142,9 @@ class Connection {
   std::optional<Error> failed_;
   Traffic losses_;
   Remarks remarks_;
-  std::uint32_t wanted_ = 0;      // of watch_
-  bool waits_ = false;            // a thread, in wait()
-  Watch* watching_ = nullptr;     // for the callback, which may run while watch_ is destroyed
-  std::unique_ptr<Watch> watch_;  // of the connection or the dialer's attempt, and of the next time
+  std::uint32_t wanted_ = 0;  // of watch_
+  bool waits_ = false;        // a thread, in wait()
+  Watch watch_;               // of the connection or the dialer's attempt, and of the next time
 };
 
 }  // namespace hc::internal
