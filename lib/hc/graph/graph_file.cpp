@@ -98,7 +98,10 @@ class GraphReader {
                   {"modules", [&](const Node& modules) { overrides = &modules; }}});
     if (file.value.empty()) return;
     auto text = read_included(graph.file, file);
-    if (!text) return graph.unread.push_back(name);
+    if (!text) {
+      graph.is_whole = false;
+      return;
+    }
     Graph included = internal::with_prefix(
         read(*text, problems_.add_file(path_of(graph.file, file.value))), name);
     if (overrides != nullptr)

@@ -99,7 +99,7 @@ struct Graph {
   std::vector<GraphLink> links;
   std::vector<GraphMode> modes;
   std::vector<GraphFrame> frames;
-  std::vector<std::string> unread;  ///< [graphs.NAME] whose file cannot be read, as is reported
+  bool is_whole = true;  ///< false: a file that it includes cannot be read, as is reported
   /// Modules that publish which mode is in focus, the graph's own first, each for the modules of
   /// its file and of what that includes; empty: it is wrong, and has been reported.
   std::vector<Lined<std::string>> workspaces;

@@ -29,7 +29,6 @@ class ModulePlanner {
     planned_.name = module_.name;
     planned_.program = module_.program.value;
     planned_.group = module_.group;
-    planned_.workspace = module_.workspace;
     planned_.options = {"--name", module_.name};
     planned_.restart = module_.restart;
     planned_.ends_graph = module_.ends_graph;
@@ -47,10 +46,8 @@ class ModulePlanner {
 
  private:
   void add_parameters(const Description& description) {
-    for (const auto& parameter : description.parameters) {
+    for (const auto& parameter : description.parameters)
       planned_.known.emplace(parameter.name, parameter);
-      if (parameter.options.fixed) planned_.fixed.insert(parameter.name);
-    }
     for (const auto& [name, value] : module_.parameters) {
       if (auto checked = planned_.check_parameter(name, value.value); !checked)
         problems_.add(value.place, checked.error().detail);
@@ -123,8 +120,6 @@ std::string suggest(const Planning& planning, std::string_view name,
 }
 
 void add_no_module(Planning& planning, const Place& place, const std::string& module) {
-  for (const auto& graph : planning.graph.unread)
-    if (module.starts_with(graph + "_")) return;  // it may be there
   const std::vector<std::string> known(planning.names.begin(), planning.names.end());
   planning.problems.add(place, "no module \"" + module + "\"" + suggest(planning, module, known));
 }
@@ -174,6 +169,7 @@ std::vector<std::string> PlannedModule::command() const {
 
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
                const Plan* before) {
+  if (!graph.is_whole) return {};
   internal::Planning planning{std::move(graph), problems, before};
   planning.plan.token = token;
   for (const auto& module : planning.graph.modules)

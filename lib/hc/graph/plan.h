@@ -31,7 +31,6 @@ struct PlannedModule {
   std::vector<std::string> options;               ///< what is said neither below nor by links
   std::map<std::string, std::string> parameters;  ///< as text
   std::map<std::string, ParameterState> known;    ///< all that it has, to check values with
-  std::set<std::string> fixed;                    ///< parameters that cannot be set while it runs
   std::vector<PlannedEnd> ends;                   ///< in the order of the file's links
   std::string manage_uri;                         ///< where the runner listens to it
   std::string control_uri;  ///< where it listens to the runner; empty: it does not
@@ -39,7 +38,6 @@ struct PlannedModule {
   std::string mode;                 ///< of a task; empty: none
   std::vector<std::string> modes;   ///< it works in; empty: all
   std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
-  std::string workspace;            ///< the module that publishes its focus; empty: none
   bool ends_graph = false;          ///< when it has ended with status 0
 
   /// Whether a parameter can have a value. Errors: Invalid.
@@ -84,8 +82,9 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 /// @param before  a plan of this graph whose port numbers stay, so that modules that have not
 /// changed are planned as they were; null: there was none.
 ///
-/// Problems: as spec/graph.md lists them. Nothing more is said of a module without a program
-/// (empty), whose problem has been reported. The plan is of no use where there are problems.
+/// Problems: as spec/graph.md lists them; of a graph that is not whole none, as what it lacks may
+/// be what is named. Nothing more is said of a module without a program (empty), whose problem has
+/// been reported. The plan is of no use where there are problems.
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
                const Plan* before = nullptr);
 

@@ -146,62 +146,46 @@ Node convert(const toml::node& from, int file) {
   return node;
 }
 
-/// Replaces `${NAME}` and `${NAME:-DEFAULT}` in a string.
-class Expansion {
- public:
-  Expansion(const Environment& environment, Problems& problems)
-      : environment_(environment), problems_(problems) {}
-
-  void expand_all(Node& node) const {
-    if (const auto* text = node.as<std::string>()) {
-      if (auto expanded = expand(node.place, *text))
-        node.value = std::move(*expanded);
-      else
-        node.value = Node::Wrong();
-    }
-    for (Node& each : node.nodes) expand_all(each);
-    if (node.list() != nullptr)
-      std::erase_if(node.nodes, [](const Node& each) { return each.as<Node::Wrong>() != nullptr; });
+/// What stands for `${NAME}` or `${NAME:-DEFAULT}`. @param variable  NAME or NAME:-DEFAULT.
+Result<std::string> value_of(std::string variable, const Environment& environment) {
+  std::optional<std::string> default_value;
+  if (auto split = variable.find(":-"); split != std::string::npos) {
+    default_value = variable.substr(split + 2);
+    variable.resize(split);
   }
+  if (variable.empty()) return Error{Code::Invalid, "no name of a variable in ${}"};
+  const char* value = environment ? environment(variable.c_str()) : nullptr;
+  if (value == nullptr && !default_value)
+    return Error{Code::Invalid, "environment variable " + variable + " is not set; ${" + variable +
+                                    ":-VALUE} gives a default"};
+  return value != nullptr && *value != '\0' ? value : default_value.value_or("");
+}
 
- private:
-  std::optional<std::string> expand(const Place& place, std::string_view text) const {
-    std::string result;
-    bool is_right = true;
-    while (true) {
-      auto begin = text.find("${");
-      result += text.substr(0, begin);
-      if (begin == std::string_view::npos) return is_right ? std::optional(result) : std::nullopt;
-      auto end = text.find('}', begin);
-      auto value = end == std::string_view::npos
-                       ? Result<std::string>(Error{Code::Invalid, "\"${\" without \"}\""})
-                       : value_of(std::string(text.substr(begin + 2, end - begin - 2)));
-      if (!value) problems_.add(place, value.error().detail);
-      is_right = is_right && value;
-      if (end == std::string_view::npos) return std::nullopt;
-      if (value) result += *value;
-      text.remove_prefix(end + 1);
-    }
+/// Replaces the variables in all strings of a value. One with a problem is Node::Wrong then.
+void expand(Node& node, const Environment& environment, Problems& problems) {
+  for (Node& each : node.nodes) expand(each, environment, problems);
+  if (node.list() != nullptr)
+    std::erase_if(node.nodes, [](const Node& each) { return each.as<Node::Wrong>() != nullptr; });
+  if (node.as<std::string>() == nullptr) return;
+  const std::string text = *node.as<std::string>();
+  std::string expanded;
+  std::size_t at = 0;
+  bool is_right = true;
+  for (auto begin = text.find("${"); begin != std::string::npos; begin = text.find("${", at)) {
+    const auto end = text.find('}', begin);
+    auto value = end == std::string::npos
+                     ? Result<std::string>(Error{Code::Invalid, "\"${\" without \"}\""})
+                     : value_of(text.substr(begin + 2, end - begin - 2), environment);
+    if (!value) problems.add(node.place, value.error().detail);
+    is_right = is_right && value;
+    expanded += text.substr(at, begin - at) + (value ? *value : "");
+    at = std::min(end, text.size() - 1) + 1;
   }
-
-  /// @param variable  NAME or NAME:-DEFAULT.
-  [[nodiscard]] Result<std::string> value_of(std::string variable) const {
-    std::optional<std::string> default_value;
-    if (auto split = variable.find(":-"); split != std::string::npos) {
-      default_value = variable.substr(split + 2);
-      variable.resize(split);
-    }
-    if (variable.empty()) return Error{Code::Invalid, "no name of a variable in ${}"};
-    const char* value = environment_ ? environment_(variable.c_str()) : nullptr;
-    if (value == nullptr && !default_value)
-      return Error{Code::Invalid, "environment variable " + variable + " is not set; ${" +
-                                      variable + ":-VALUE} gives a default"};
-    return value != nullptr && *value != '\0' ? value : default_value.value_or("");
-  }
-
-  const Environment& environment_;
-  Problems& problems_;
-};
+  if (is_right)
+    node.value = expanded + text.substr(at);
+  else
+    node.value = Node::Wrong();
+}
 
 }  // namespace
 
@@ -232,7 +216,7 @@ std::optional<Node> read_document(std::string_view text, int file, const Environ
                                " dots in a key, and as many nested brackets");
   try {
     auto root = convert(toml::parse(ascii_only(text), problems.file(file)), file);
-    Expansion(environment, problems).expand_all(root);
+    expand(root, environment, problems);
     return root;
   } catch (const toml::parse_error& error) {
     problems.add({std::max(static_cast<int>(error.source().begin.line), 1), file},

@@ -43,7 +43,6 @@ Graph with_prefix(Graph graph, const std::string& name) {
     if (frame.moved_by) rename(frame.moved_by->value.module);
   }
   for (auto& workspace : graph.workspaces) rename(workspace.value);
-  for (auto& unread : graph.unread) rename(unread);
   return graph;
 }
 
@@ -69,7 +68,7 @@ void append(Graph& graph, Graph included, Problems& problems) {
   move_all(graph.frames, included.frames);
   move_all(graph.modes, included.modes);
   move_all(graph.workspaces, included.workspaces);
-  move_all(graph.unread, included.unread);
+  graph.is_whole = graph.is_whole && included.is_whole;
 }
 
 }  // namespace hc::internal

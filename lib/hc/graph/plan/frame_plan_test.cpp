@@ -32,7 +32,7 @@ coord = 200
   EXPECT_EQ(planned->modules[1].parameters.at("frames"), "mine");
   EXPECT_EQ(planned->frames, planned->modules[0].parameters.at("frames"));
   EXPECT_TRUE(planned->modules[2].parameters.empty());
-  EXPECT_EQ(planned->modules[0].fixed, (std::set<std::string>{"file"}));
+  EXPECT_TRUE(planned->modules[0].known.at("file").options.fixed);
 }
 
 constexpr const char* kHead = R"([modules.framed]

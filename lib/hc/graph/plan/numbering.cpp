@@ -115,9 +115,6 @@ class Numbering {
     if (name == "all") address = kAll;
     if (auto input = input_named(name)) address = address_of(*input);
     if (!address) {
-      const std::string whose = name.substr(0, name.find('.'));
-      for (const auto& graph : graph_.unread)
-        if (whose.starts_with(graph + "_")) return;  // it may be there
       auto known = names_of_inputs();
       known.emplace_back("all");
       return planning_.problems.add(to.place,

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 
 #include <hc/base/uri.h>
+#include <hc/link/link.h>
 #include <hc/link/stream/peers.h>
 #include <hc/mtp/codec.h>
 
@@ -86,24 +87,12 @@ Status say_at_once(const std::string& uri, const Message& message) {
   auto parsed = parse_uri(uri);
   if (!parsed) return parsed.error();
   if (parsed->scheme != "unix") return Error{Code::Invalid, uri + ": only unix: can be said to"};
-  auto peer = unix_peer(*parsed);
-  if (!peer) return peer.error();
-  const Address& address = peer->addresses.front();
-  auto socket = open_socket(address);
-  if (!socket) return socket.error();
-  auto connected = system_call(
-      "connect", uri, [&] { return ::connect(socket->get(), address.get(), address.size); });
-  if (!connected) return connected.error();
-  if (auto admitted = peer->admit ? peer->admit(socket->get()) : Status(); !admitted)
-    return admitted;
-  const std::string bytes = encode(message);
-  auto sent = system_call("send", uri, [&] {
-    return ::send(socket->get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-  });
-  if (!sent) return sent.error();
-  if (static_cast<std::size_t>(*sent) < bytes.size())
-    return Error{Code::System, uri + ": there was no room for all"};
-  return {};
+  parsed->options = {{"keep", "latest"}};  // so that nothing is waited for
+  auto sink = open_sink(*parsed);
+  if (!sink) return sink.error();
+  auto sent = (*sink)->send(message);
+  (*sink)->abandon();
+  return sent;
 }
 
 }  // namespace hc::internal

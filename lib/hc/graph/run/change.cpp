@@ -38,7 +38,8 @@ void add_settings(const PlannedModule& before, const PlannedModule& after, Modul
   for (const auto& [key, value] : after.parameters) {
     auto found = before.parameters.find(key);
     if (found != before.parameters.end() && found->second == value) continue;
-    if (after.fixed.contains(key)) change.needs_restart = true;
+    auto known = after.known.find(key);
+    if (known != after.known.end() && known->second.options.fixed) change.needs_restart = true;
     change.outputs.push_back(text({Verb::Set, true, key, value}));
   }
 }

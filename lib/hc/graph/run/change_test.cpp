@@ -14,7 +14,7 @@ class ChangeTest : public ::testing::Test {
     before_.program = "camera";
     before_.control_uri = "unix-listen:@t.camera.control";
     before_.parameters = {{"rate", "30"}, {"source", "0"}};
-    before_.fixed = {"source"};
+    before_.known["source"].options.fixed = true;
     before_.ends = {{false, "left", "shm:t.camera.left?readers=1&stay=1", ""},
                     {true, "gaze", "unix:@t.eyes.gaze.camera.gaze?reconnect=86400", ""}};
     after_ = before_;

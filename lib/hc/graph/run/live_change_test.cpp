@@ -103,8 +103,7 @@ TEST_F(LiveChange, AnotherProgramIsStartedInThePlaceOfTheFirst) {
 TEST_F(LiveChange, AParameterIsSetWithoutPlanning) {
   auto& a = add("a");
   a.known = rate();
-  a.fixed = {"fixed"};
-  a.known.emplace("fixed", a.known.at("rate"));
+  a.known.emplace("fixed", a.known.at("rate")).first->second.options.fixed = true;
   plans_ = [](int) { HC_CHECK(false, "planned"); };
   heard_ = [this](std::string_view) {
     if (count("a: started") == 2) stop();

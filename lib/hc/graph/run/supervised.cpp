@@ -113,7 +113,8 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
 
 Status Supervised::start() {
   timer_.reset();
-  is_to_end_ = is_to_restart_ = is_dismissed_ = is_interrupted_ = awaits_cause_ = false;
+  wish_ = Wish::None;
+  is_interrupted_ = awaits_cause_ = false;
   finished_.clear();
   lines_.forget();
   if (auto opened = open_control(); !opened) return opened;
@@ -145,22 +146,20 @@ void Supervised::start_again() {
 
 void Supervised::end() {
   if (is_over()) return;
-  is_to_end_ = true;
-  is_to_restart_ = false;
+  wish_ = Wish::End;
   ask_to_end();
 }
 
 void Supervised::dismiss() {
   if (is_over()) return;
-  is_dismissed_ = true;
+  wish_ = Wish::Dismissal;
   ask_to_end();
 }
 
 void Supervised::restart() {
   restarts_.reset();
-  is_to_end_ = false;
   if (!process_) return start_again();
-  is_to_restart_ = true;
+  wish_ = Wish::Restart;
   hear_.interrupted();
   ask_to_end();
 }
@@ -208,7 +207,7 @@ bool Supervised::is_heard() const {
 
 void Supervised::tell(const std::vector<std::string>& commands) {
   for (const auto& command : commands) {
-    if (!is_heard() || is_to_restart_ || control_->say(command_message(command))) continue;
+    if (!is_heard() || wish_ == Wish::Restart || control_->say(command_message(command))) continue;
     hear_.event("does not accept commands; restarting");
     restart();
   }
@@ -244,19 +243,15 @@ void Supervised::end_observations(MonotonicTime time) {
   });
 }
 
-void Supervised::read_lines() {
-  if (!read_piece()) said_.reset();
-}
-
-/// Hands on what a module has said; whether there may be more. One piece only: one who does not
+/// Hands on what a module has said, until it says nothing more. One piece only: one who does not
 /// stop must not keep us from all else.
-bool Supervised::read_piece() {
+void Supervised::read_lines() {
   static thread_local std::array<char, kPiece> piece;
-  ssize_t size = ::read(process_->output(), piece.data(), piece.size());
-  if (size < 0) return true;
+  const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
+  if (size == 0) said_.reset();
+  if (size <= 0) return;
   lines_.add({piece.data(), static_cast<std::size_t>(size)}, hear_.said);
-  if (size > 0) said_at_ = now();
-  return size > 0;
+  said_at_ = now();
 }
 
 void Supervised::take_report(const Message& message) {
@@ -335,12 +330,11 @@ void Supervised::forget_process() {
 void Supervised::go_on(int status) {
   exit_ = status;
   auto words = end_in_words(status);
-  const bool is_told_to = is_to_end_ || is_to_restart_ || is_dismissed_;
   // One that did not come to heed our signal yet has done as it was told all the same.
-  const bool is_as_told = is_told_to && (status == 0 || status == kSignal + SIGTERM);
-  if (is_to_end_ || is_to_restart_ || is_as_told) {
+  const bool is_as_told = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
+  if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_told) {
     hear_.event(is_as_told ? end_in_words(0) : words);
-    if (is_to_restart_) {
+    if (wish_ == Wish::Restart) {
       hear_.interrupted();
       return start_again();
     }

@@ -93,7 +93,7 @@ class Supervised {
     return status_ == ModuleStatus::Ended || status_ == ModuleStatus::GivenUp;
   }
   /// Ended or is about to, because it was told to.
-  [[nodiscard]] bool is_to_end() const { return is_to_end_ || is_dismissed_; }
+  [[nodiscard]] bool is_to_end() const { return wish_ == Wish::End || wish_ == Wish::Dismissal; }
   [[nodiscard]] std::optional<int> exit() const { return exit_; }
   [[nodiscard]] const Reports& reports() const { return reports_; }
   [[nodiscard]] ModuleState state() const;
@@ -102,6 +102,9 @@ class Supervised {
 
  private:
   Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
+
+  /// What its process has been asked to end for.
+  enum class Wish { None, End, Restart, Dismissal };
 
   struct Observed {
     std::string text;  // PORT=URI, of the module's output
@@ -119,7 +122,6 @@ class Supervised {
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
   void read_lines();
-  bool read_piece();
   void take_report(const Message& message);
   void forget_process();
   void go_on(int status);
@@ -134,7 +136,7 @@ class Supervised {
   Hear hear_;
   ModuleStatus status_ = ModuleStatus::Waiting;
   std::string detail_;
-  bool is_to_end_ = false, is_to_restart_ = false, is_dismissed_ = false;
+  Wish wish_ = Wish::None;
   bool is_interrupted_ = false;  // a link has been cut that this process cannot mend
   bool awaits_cause_ = false;    // it has ended, perhaps since a link was cut
   std::optional<int> exit_;
