@@ -85,7 +85,7 @@ class Recording(Pipes):
         """Where it sends the head. While that is on its way to a target that has just come, it counts
         most when `gaze` heard of what."""
         self.replay(name)
-        self.assert_close(name + ".command", 0.1, 1 * DEGREE, 0.9)
+        self.assert_close(name + ".command", max(seconds, 0.1), 1 * DEGREE, 0.9)
         self.assert_close(name + ".command", seconds, degrees * DEGREE, 0.85, begin=0.7)
         self.assert_close(name + ".bid", 0.25, 0, 0.95)
         first = self.messages("again", name + ".command")
@@ -174,7 +174,8 @@ class Recording(Pipes):
     def test_point(self):
         line = self.record("point", "point_score.count=4")
         self.replay_workspace()
-        self.replay_gaze("point", 0.1, 0.1)
+        # What a push moves depends on when it is heard of, which on a busy machine may be late.
+        self.replay_gaze("point", 0.3, 0.1)
         # It pushes by what it sees of the head: to the same side and as far, but the first time as
         # soon as the head has stood, which it may have seen later then; so its delay is another.
         again = self.replay("point_score")

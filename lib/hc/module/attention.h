@@ -26,10 +26,13 @@ struct Attention {
   [[nodiscard]] bool in_focus() const {
     return modes.empty() || std::find(modes.begin(), modes.end(), focus) != modes.end();
   }
-  /// Whether an exclusive input takes messages of a mode: none of them while nobody has the focus.
-  [[nodiscard]] bool has_focus(std::int32_t mode) const { return mode != 0 && mode == focus; }
+  /// Whether an input takes a message of a mode: an exclusive one only of the mode in focus, and
+  /// none while no mode has the focus.
+  [[nodiscard]] bool admits(bool is_exclusive, std::int32_t mode) const {
+    return !is_exclusive || (mode != 0 && mode == focus);
+  }
   /// Whether an exclusive input takes what the module sends of its own mode, as far as it knows.
-  [[nodiscard]] bool has_own_focus() const { return !is_linked || own == 0 || has_focus(own); }
+  [[nodiscard]] bool has_own_focus() const { return !is_linked || own == 0 || admits(true, own); }
   /// Forgets a focus that was not repeated in time; whether it was forgotten now.
   bool expire(MonotonicTime now) {
     if (focus == 0 || now - received <= kFocusExpiry) return false;

@@ -294,7 +294,7 @@ bool Module::Loop::take_one(Inlet& link) {
   return true;
 }
 
-void Module::Loop::handle(Inlet& link, const Message& message) {
+void Module::Loop::handle(Inlet& link, Message& message) {
   if (link.inputs.empty())
     set_focus(message);
   else
@@ -368,7 +368,7 @@ void Module::Loop::log_dropped() {
     }
 }
 
-void Module::Loop::deliver(Inlet& link, const Message& message) {
+void Module::Loop::deliver(Inlet& link, Message& message) {
   std::string takers;
   for (auto* input : link.inputs) {
     auto fits_message = [&](const PortType& type) {
@@ -380,7 +380,7 @@ void Module::Loop::deliver(Inlet& link, const Message& message) {
       continue;
     }
     if (!input->handler) return;
-    if (input->is_exclusive && !module_.attention_.has_focus(message.header.mode)) {
+    if (!module_.attention_.admits(input->is_exclusive, message.header.mode)) {
       ++link.ignored;
       return;
     }
@@ -398,7 +398,7 @@ void Module::Loop::deliver(Inlet& link, const Message& message) {
   fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
 }
 
-void Module::Loop::call(const internal::InputState& input, Inlet& link, const Message& message) {
+void Module::Loop::call(const internal::InputState& input, Inlet& link, Message& message) {
   if (input.wants_finite() && !finite(message)) {
     ++link.ignored;
     return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");

@@ -88,9 +88,9 @@ struct Module::Loop {
   void end_unneeded();
   void log_dropped();
   void measure(internal::Inlet& link, const Message& message);
-  void handle(internal::Inlet& link, const Message& message);
-  void deliver(internal::Inlet& link, const Message& message);
-  void call(const internal::InputState& input, internal::Inlet& link, const Message& message);
+  void handle(internal::Inlet& link, Message& message);
+  void deliver(internal::Inlet& link, Message& message);
+  void call(const internal::InputState& input, internal::Inlet& link, Message& message);
   void fire_timers();
   void read_watched();
   [[nodiscard]] MonotonicTime next_timer() const;
@@ -129,7 +129,8 @@ struct Module::Loop {
   Module& module_;
   LinkOptions options_;
   std::vector<internal::Inlet> sources_;
-  std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;  // in the order of the command line
+  std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;     // in the order of the command line
+  std::vector<std::shared_ptr<internal::LinkedSink>> unlinked_;  // one may still be in send()
   std::vector<internal::Inlet> focus_;
   internal::Management management_;
   WaitSet waits_, pauses_;  // for all there is; between two calls of the generator

@@ -38,6 +38,7 @@ Durations take_durations(internal::Quantiles& quantiles) {
 
 /// Receives the focus and, from time to time, commands; and reports.
 void Module::Loop::attend() {
+  unlinked_.clear();
   receive_focus();
   expire_focus();
   log_lines(now_);
@@ -186,6 +187,7 @@ Status Module::Loop::unlink_output(internal::OutputState& output, const std::str
       module_.log(output.name + ": " + std::to_string(lost) + " waiting, lost with the link");
   }
   report_counters();  // the last of this link
+  unlinked_.push_back(*found);
   sinks_.erase(std::find(sinks_.begin(), sinks_.end(), *found));
   links.erase(found);
   return {};

@@ -89,7 +89,8 @@ bool Module::Loop::take_earliest() {
   pass_to(due);
   expire_focus();
   has_generated_ = false;
-  handle(*link, *std::exchange(link->head, std::nullopt));
+  Message message = *std::exchange(link->head, std::nullopt);
+  handle(*link, message);
   handle_newest();
   return true;
 }

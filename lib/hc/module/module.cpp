@@ -82,8 +82,8 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
     HC_CHECK(!input.handler, input.name);
     input.together = &state;
     input.place = i;
-    input.handler = [this, &state, i](const Message& message) {
-      state.matcher.push(i, message.keep());
+    input.handler = [this, &state, i](Message& message) {
+      state.matcher.push(i, message.owner != nullptr ? std::move(message) : message.keep());
       log_unmatched(state);
     };
   }
@@ -183,9 +183,9 @@ template <typename SendOne>
 bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
   bool any_ended = false;
   for (std::size_t i = 0; i < output.links.size();) {
-    const auto link = output.links[i];
+    auto* link = output.links[i].get();
     const bool ended = link->sink != nullptr && !send_one(*link);
-    if (i >= output.links.size() || output.links[i] != link) continue;  // it was unlinked
+    if (i >= output.links.size() || output.links[i].get() != link) continue;  // it was unlinked
     any_ended = any_ended || ended;
     ++i;
   }

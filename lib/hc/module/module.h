@@ -132,8 +132,8 @@ class Module {
   /// Calls a handler with each message of an input. Compressed elements have been expanded.
   template <typename K, typename Handler>
   void on(const Input<K>& input, Handler handler) {
-    input.state_->handler = [handler = std::move(handler)](const Message& message) {
-      handler(MessageOf<K>{message});
+    input.state_->handler = [handler = std::move(handler)](Message& message) {
+      handler(MessageOf<K>{std::move(message)});
     };
   }
 

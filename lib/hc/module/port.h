@@ -34,10 +34,10 @@ struct LinkedSink {
 
 struct InputState {
   std::string name, doc;
-  std::vector<PortType> types;  ///< what it takes; empty: anything
-  std::function<void(const Message&)> handler;
-  TogetherState* together = nullptr;  ///< with the inputs that are taken together with this one
-  std::size_t place = 0;              ///< of this one among them
+  std::vector<PortType> types;            ///< what it takes; empty: anything
+  std::function<void(Message&)> handler;  ///< may move the message away
+  TogetherState* together = nullptr;      ///< with the inputs that are taken together with this one
+  std::size_t place = 0;                  ///< of this one among them
   bool is_unmatched = false;  ///< a message was dropped for want of a partner, and it is logged
   bool is_raw = false;        ///< the handler gets messages as they came, compressed ones too
   bool is_actor = false;      ///< moves something: one writer at a time is to have it
@@ -160,7 +160,7 @@ class Output {
   /// dst, mode, coord and time where they are 0: dst by `--to`, mode and time by those of the
   /// message being handled, since what is derived from a message keeps its time; and coord by the
   /// port's, else by that of the message being handled where both are images or of one type.
-  void send(const MessageOf<K>& message) { internal::send(*state_, message); }
+  void send(MessageOf<K> message) { internal::send(*state_, std::move(message)); }
   void send(DraftOf<K>&& draft) { internal::send(*state_, std::move(draft).finish()); }
 
   /// A message to be written in place and sent, which saves a copy of large elements.
