@@ -209,7 +209,6 @@ void Module::Loop::run() {
   }
   for (const auto& together : module_.together_)
     for (const auto& input : together->inputs) together->matcher.end(input->place);
-  handle_newest();
   module_.handled_ = {};
   if (module_.end_) module_.end_();
 }
@@ -361,7 +360,7 @@ void Module::Loop::end_unneeded() {
 void Module::Loop::log_dropped() {
   for (const auto& together : module_.together_)
     for (const auto& input : together->inputs) {
-      const auto& dropped = together->matcher.left_out(input->place);
+      const auto& dropped = together->matcher.dropped(input->place);
       if (dropped.total() == 0 || together->is_latest) continue;
       module_.log(input->name + ": dropped " + std::to_string(dropped.unmatched) + " unmatched, " +
                   std::to_string(dropped.crowded) + " on queue overflow");

@@ -243,7 +243,7 @@ void Module::Loop::report_counters() {
     const auto& input = *link.inputs.front();
     if (input.together != nullptr && input.together->is_latest)
       counters.traffic.superseded +=
-          input.together->superseded + input.together->matcher.left_out(input.place).total();
+          input.together->superseded + input.together->matcher.dropped(input.place).total();
   }
   for (const auto& link : sinks_)
     links.push_back({link->sink ? link->sink->traffic() : link->traffic});

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which messages of several inputs belong together, by the times at which they were sensed.
+// Which messages of several inputs belong together: those of equal times.
 // Pure: no I/O, no clock, no threads; the same messages in the same order give the same sets.
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,55 +14,41 @@
 
 namespace hc {
 
-/// How messages are taken together.
-struct Matching {
-  /// Largest difference of times in a set; 0: all are equal.
-  std::chrono::nanoseconds within{0};
-  /// Most messages of an input that wait for their partners, 1 … 32: half of what a reader of
-  /// shared memory may hold.
-  std::size_t max_waiting = 16;
-};
-
-/// Puts messages of several inputs into sets, one of each input.
+/// Puts messages of several inputs into sets, one of each input, all of one time.
 ///
-///     Matcher matcher(2, {.within = 10ms}, [](std::span<const Message> set) { use(set); });
+///     Matcher matcher(2, [](std::span<const Message> set) { use(set); });
 ///     matcher.push(0, left);
 ///     matcher.push(1, right);
 ///     matcher.end(0);  // no more of these
 ///
-/// The *spread* of a set is the difference of its latest and its earliest time. Of all sets, the
-/// one with the smallest spread is taken, the earliest of several; then the same is done with what
-/// is before it at every input, and with what is behind it. So a message is in one set at most,
-/// sets follow one another as their messages do, none spreads over more than `within`, and where
-/// one was not taken, a closer one has one of its messages or stands in its way.
-///
-/// A set is given as soon as this is certain, which takes for granted that the times of an input
-/// do not fall: where all times are equal that is at once, else when the inputs have come so far
-/// that no closer one can follow. A message without a time (0) fits any others: it is taken in its
-/// turn, with the first set of the others.
-///
-/// Where the time of an input falls, its writer has started anew: what waits at any input is
-/// settled as at the end, and matching begins anew with that message.
+/// A set is given as soon as it is complete, which takes for granted that the times of an input do
+/// not fall: what is older than the set is dropped. A message without a time (0) fits any others:
+/// it is taken in its turn, with the next set. Where the time of an input falls, its writer has
+/// restarted: what waits at any input is dropped, and matching starts over with that message.
 class Matcher {
  public:
   using Take = std::function<void(std::span<const Message>)>;
 
+  /// Most messages of an input that wait for their partners: half of what a reader of shared
+  /// memory may hold with two inputs.
+  static constexpr std::size_t kMaxWaiting = 16;
   /// At most so many bytes of elements wait at an input, or one message.
-  static constexpr std::uint64_t kMostWaitingBytes = std::uint64_t{256} << 20;
+  static constexpr std::uint64_t kMaxWaitingBytes = std::uint64_t{256} << 20;
 
   /// Messages of an input that came into no set.
-  struct LeftOut {
-    std::uint64_t unmatched = 0;  ///< no partners were near enough, or others were nearer to them
-    std::uint64_t crowded = 0;    ///< too many waited: the oldest made room
+  struct Dropped {
+    std::uint64_t unmatched = 0;  ///< another input had none of this time
+    std::uint64_t crowded = 0;    ///< too many waited, and the oldest was dropped
     [[nodiscard]] std::uint64_t total() const { return unmatched + crowded; }
   };
 
-  /// @param take  is called with each set, in the order of inputs, from push() and end(). What it
-  /// throws goes to their caller; the set counts as taken.
-  Matcher(std::size_t inputs, const Matching& how, Take take);
+  /// @param inputs  2 or more.
+  /// @param take  is called with each set, in the order of inputs, from push(). What it throws goes
+  /// to the caller; the set counts as taken.
+  Matcher(std::size_t inputs, Take take);
 
-  /// The next message of an input. Its elements are to be safe to hold: see Message::keep().
-  /// Cost: in proportion to the messages that wait.
+  /// The next message of an input that has not ended. Its elements are to be safe to hold: see
+  /// Message::keep(). Cost: in proportion to the messages that are settled by it.
   void push(std::size_t input, Message message);
 
   /// No more messages of an input come. Again is as once.
@@ -77,39 +61,25 @@ class Matcher {
 
   /// Whether the next message of an input might push one out.
   [[nodiscard]] bool crowded(std::size_t input) const {
-    return inputs_[input].waiting.size() >= how_.max_waiting;
+    return inputs_[input].waiting.size() >= kMaxWaiting;
   }
 
-  [[nodiscard]] const LeftOut& left_out(std::size_t input) const { return inputs_[input].left_out; }
+  [[nodiscard]] const Dropped& dropped(std::size_t input) const { return inputs_[input].dropped; }
 
  private:
-  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-
   struct Input {
     std::deque<Message> waiting;
-    std::int64_t latest = 0;  // time; one that is earlier has fallen
+    std::int64_t latest = 0;  // time; an earlier one has fallen
     bool ended = false;
-    LeftOut left_out;
+    Dropped dropped;
   };
 
-  /// For a message, the closest set in which it is the earliest.
-  struct Candidate {
-    std::vector<std::size_t> at;   // which of the messages that wait; their number: one to come
-    std::size_t earliest = kNone;  // input
-    std::int64_t spread = 0;       // at least, where some are still to come [ns]
-    bool complete = true;          // none is still to come
-  };
-  using Candidates = std::vector<Candidate>;
-
-  [[nodiscard]] Candidate candidate(const std::vector<std::size_t>& at) const;
-  [[nodiscard]] Candidates candidates(bool closed) const;
-  [[nodiscard]] const Candidate* choose(const Candidates& candidates) const;
-  void settle(bool closed);
-  void take(const Candidate& chosen);
-  static void leave_out(Input& input, std::uint64_t LeftOut::*reason);
+  [[nodiscard]] bool is_complete() const;
+  void settle();
+  void take();
+  void drop_waiting();
 
   std::vector<Input> inputs_;
-  Matching how_;
   Take take_;
 };
 

@@ -66,7 +66,7 @@ std::shared_ptr<ParameterState> Module::add_parameter(std::string name,
 }
 
 void Module::add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
-                          const Matching& how, Matcher::Take handler) {
+                          Matcher::Take handler) {
   const auto index = together_.size();
   auto take = [this, index](std::span<const Message> set) {
     internal::TogetherState& state = *together_[index];
@@ -75,7 +75,7 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
     if (!state.is_latest) handle(state);
   };
   together_.push_back(std::make_unique<internal::TogetherState>(internal::TogetherState{
-      inputs, std::move(handler), Matcher(inputs.size(), how, std::move(take)), false, {}}));
+      inputs, std::move(handler), Matcher(inputs.size(), std::move(take)), false, {}}));
   internal::TogetherState& state = *together_.back();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     internal::InputState& input = *inputs[i];
@@ -108,7 +108,7 @@ void Module::log_unmatched(const internal::TogetherState& together) {
   // Where sets are dropped for newer ones, that is no news.
   if (together.is_latest && together.superseded > 0) return;
   for (const auto& input : together.inputs)
-    if (!input->is_unmatched && together.matcher.left_out(input->place).total() > 0) {
+    if (!input->is_unmatched && together.matcher.dropped(input->place).total() > 0) {
       input->is_unmatched = true;
       log(input->name + ": dropped: no matching message (further drops are counted)");
     }

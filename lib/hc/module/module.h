@@ -145,12 +145,10 @@ class Module {
     input.state_->is_raw = true;
   }
 
-  /// Calls a handler with messages that belong together, one of each input, by their times: equal
-  /// ones, or those nearest to one another within a bound (Matcher has the rules).
+  /// Calls a handler with messages that belong together, one of each input, by their equal times
+  /// (Matcher has the rules).
   ///
   ///     module.on(hc::together(left, right), [&](const auto& l, const auto& r) { … });
-  ///     module.on(hc::together(left, right, gaze).within(std::chrono::milliseconds(10)),
-  ///               [&](const auto& l, const auto& r, const auto& g) { … });
   ///
   /// What the handler sends has the latest of their times (R43), and their coord where it is the
   /// same. Messages without a partner are dropped; the first of an input is logged, and at the end
@@ -160,7 +158,7 @@ class Module {
   void on(const Together<Kinds...>& inputs, Handler handler) {
     static_assert(std::is_invocable_v<Handler&, const MessageOf<Kinds>&...>,
                   "the handler takes one message of each input");
-    add_together(inputs.inputs_, inputs.how_,
+    add_together(inputs.inputs_,
                  [handler = std::move(handler)](std::span<const Message> set) mutable {
                    auto message = set.begin();
                    // In braces, arguments are evaluated from left to right.
@@ -291,7 +289,7 @@ class Module {
                                                 std::string unit, std::string doc,
                                                 ParameterOptions options);
   void add_together(const std::vector<std::shared_ptr<internal::InputState>>& inputs,
-                    const Matching& how, Matcher::Take handler);
+                    Matcher::Take handler);
   /// Handles the set that is complete, if there is one.
   void handle(internal::TogetherState& together);
   /// Logs the first unmatched message of each input.

@@ -119,29 +119,15 @@ class Input {
   std::shared_ptr<internal::InputState> state_;
 };
 
-/// Inputs whose messages are taken together, by their times; see Matcher for the rules.
+/// Inputs whose messages of equal times are taken together; see Matcher for the rules.
 template <typename... Kinds>
 class Together {
  public:
   explicit Together(const Input<Kinds>&... inputs) : inputs_{inputs.state_...} {}
 
-  /// The same with times that may differ by so much; otherwise they are equal.
-  [[nodiscard]] Together within(std::chrono::nanoseconds difference) const {
-    Together together = *this;
-    together.how_.within = difference;
-    return together;
-  }
-  /// The same with so many messages of each input that may wait for others, 1 … 32; otherwise 16.
-  [[nodiscard]] Together max_waiting(std::size_t messages) const {
-    Together together = *this;
-    together.how_.max_waiting = messages;
-    return together;
-  }
-
  private:
   friend class Module;
   std::vector<std::shared_ptr<internal::InputState>> inputs_;
-  Matching how_;
 };
 
 /// Two inputs or more, of any kinds, for Module::on().
