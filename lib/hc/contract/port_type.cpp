@@ -6,7 +6,8 @@
 namespace hc {
 namespace {
 
-Error misfit(int rule, std::string_view field, const std::string& has, const std::string& wanted) {
+Error misfit_of(int rule, std::string_view field, const std::string& has,
+                const std::string& wanted) {
   std::string detail = "R" + std::to_string(rule) + " ";
   detail.append(field).append(": ").append(has).append(" does not fit, the port takes ");
   return {Code::Malformed, detail + wanted};
@@ -14,23 +15,23 @@ Error misfit(int rule, std::string_view field, const std::string& has, const std
 
 }  // namespace
 
-Status fits(const Header& header, const PortType& type) {
+Error misfit(const Header& header, const PortType& type) {
   const Info& info = header.info;
   if (info.type != type.info.type)
-    return misfit(17, "info", std::string(name(info.type)), std::string(name(type.info.type)));
+    return misfit_of(17, "info", std::string(name(info.type)), std::string(name(type.info.type)));
   if (info.components != type.info.components)
-    return misfit(18, "info", std::to_string(info.components) + " components",
-                  std::to_string(type.info.components));
+    return misfit_of(18, "info", std::to_string(info.components) + " components",
+                     std::to_string(type.info.components));
   if (info.scalar != type.info.scalar)
-    return misfit(19, "info", std::string(name(info.scalar)), std::string(name(type.info.scalar)));
+    return misfit_of(19, "info", std::string(name(info.scalar)),
+                     std::string(name(type.info.scalar)));
   if (type.width != 0 && header.width != type.width)
-    return misfit(15, "width", std::to_string(header.width), std::to_string(type.width));
+    return misfit_of(15, "width", std::to_string(header.width), std::to_string(type.width));
   if (type.height != 0 && header.height != type.height)
-    return misfit(16, "height", std::to_string(header.height), std::to_string(type.height));
-  if (type.coord != 0 && header.coord != 0 && header.coord != type.coord)
-    return misfit(44, "coord", "coordinate system " + std::to_string(header.coord),
-                  std::to_string(type.coord));
-  return {};
+    return misfit_of(16, "height", std::to_string(header.height), std::to_string(type.height));
+  HC_CHECK(!fits(header, type), text(header));
+  return misfit_of(44, "coord", "coordinate system " + std::to_string(header.coord),
+                   std::to_string(type.coord));
 }
 
 bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken) {

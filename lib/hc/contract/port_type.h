@@ -20,9 +20,17 @@ struct PortType {
 };
 
 /// Whether a message fits a type.
-///
-/// Errors: Malformed; the detail begins with the rule of the field that does not fit, "R19: …".
-Status fits(const Header& header, const PortType& type);
+inline bool fits(const Header& header, const PortType& type) {
+  return header.info.type == type.info.type && header.info.components == type.info.components &&
+         header.info.scalar == type.info.scalar &&
+         (type.width == 0 || header.width == type.width) &&
+         (type.height == 0 || header.height == type.height) &&
+         (type.coord == 0 || header.coord == 0 || header.coord == type.coord);
+}
+
+/// Why a message does not fit a type: Malformed; the detail begins with the rule of the field,
+/// "R19: …". A message that fits is a bug.
+Error misfit(const Header& header, const PortType& type);
 
 /// Whether an output that gives `given` may be linked to an input that takes `taken`; an empty list
 /// is anything.

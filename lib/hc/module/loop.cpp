@@ -191,13 +191,15 @@ void Module::Loop::run() {
   if (module_.start_) module_.start_();
   while (true) {
     if (stop_requested()) throw Stopped();
+    // What was waited for comes first.
     now_ = module_.clock_.monotonic();
-    attend();
-    fire_timers();
-    read_watched();
+    receive_focus();
     const bool any = module_.message_time_ ? take_earliest() : take_each();
     end_unneeded();
     if (join_renewed()) report_links();
+    serve();
+    fire_timers();
+    read_watched();
     if (any) continue;
     if (is_generators_turn()) {
       if (!generate()) break;
@@ -368,16 +370,12 @@ void Module::Loop::log_dropped() {
 }
 
 void Module::Loop::deliver(Inlet& link, Message& message) {
-  std::string takers;
   for (auto* input : link.inputs) {
-    auto fits_message = [&](const PortType& type) {
-      return fits(message.header, type).has_value();
-    };
-    if (!input->types.empty() &&
-        std::none_of(input->types.begin(), input->types.end(), fits_message)) {
-      takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
-      continue;
-    }
+    const bool fits_any =
+        input->types.empty() ||
+        std::any_of(input->types.begin(), input->types.end(),
+                    [&](const PortType& type) { return fits(message.header, type); });
+    if (!fits_any) continue;
     if (!input->handler) return;
     if (!module_.attention_.admits(input->is_exclusive, message.header.mode)) {
       ++link.ignored;
@@ -388,9 +386,17 @@ void Module::Loop::deliver(Inlet& link, Message& message) {
     if (!plain) fail(input->name, plain.error());
     return call(*input, link, *plain);
   }
+  refuse(link, message);
+}
+
+/// Ends the module, since a message fits no input of its link.
+void Module::Loop::refuse(const Inlet& link, const Message& message) const {
   const auto& only = *link.inputs.back();
   if (link.inputs.size() == 1 && only.types.size() == 1)
-    fail(only.name, fits(message.header, only.types[0]).error());
+    fail(only.name, misfit(message.header, only.types[0]));
+  std::string takers;
+  for (const auto* input : link.inputs)
+    takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
   std::string what = text(message.header.info);
   if (message.header.coord != 0)
     what += ", coordinate system " + std::to_string(message.header.coord);
@@ -398,7 +404,7 @@ void Module::Loop::deliver(Inlet& link, Message& message) {
 }
 
 void Module::Loop::call(const internal::InputState& input, Inlet& link, Message& message) {
-  if (input.wants_finite() && !finite(message)) {
+  if (input.is_finite && !finite(message)) {
     ++link.ignored;
     return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
   }

@@ -90,6 +90,7 @@ struct Module::Loop {
   void measure(internal::Inlet& link, const Message& message);
   void handle(internal::Inlet& link, Message& message);
   void deliver(internal::Inlet& link, Message& message);
+  [[noreturn]] void refuse(const internal::Inlet& link, const Message& message) const;
   void call(const internal::InputState& input, internal::Inlet& link, Message& message);
   void fire_timers();
   void read_watched();
@@ -107,6 +108,7 @@ struct Module::Loop {
 
   // loop_control.cpp
   void attend();
+  void serve();
   void receive_focus();
   void set_focus(const Message& message);
   void expire_focus();

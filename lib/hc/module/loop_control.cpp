@@ -36,11 +36,14 @@ Durations take_durations(internal::Quantiles& quantiles) {
 
 }  // namespace
 
-/// Receives the focus and, from time to time, commands; and reports.
 void Module::Loop::attend() {
-  unlinked_.clear();
   receive_focus();
-  expire_focus();
+  serve();
+}
+
+/// From time to time, obeys commands and reports.
+void Module::Loop::serve() {
+  unlinked_.clear();
   log_lines(now_);
   const bool reports = management_.is_heard() && now_ - reported_ >= kReportPeriod;
   if (now_ - attended_ < kLookPeriod && deferred_.empty() && !reports) return;
@@ -51,10 +54,11 @@ void Module::Loop::attend() {
 }
 
 void Module::Loop::receive_focus() {
-  if (module_.message_time_) return;  // in its time
   Message message;
-  for (auto& link : focus_)
-    while (link.source != nullptr && take(link, message) == Got::Message) set_focus(message);
+  if (!module_.message_time_)  // else in its time
+    for (auto& link : focus_)
+      while (link.source != nullptr && take(link, message) == Got::Message) set_focus(message);
+  expire_focus();
 }
 
 void Module::Loop::set_focus(const Message& message) {

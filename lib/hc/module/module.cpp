@@ -37,6 +37,8 @@ std::shared_ptr<internal::InputState> Module::add_input(std::string name,
   state->name = std::move(name);
   state->types = std::move(types);
   state->doc = std::move(doc);
+  state->is_finite = std::any_of(state->types.begin(), state->types.end(),
+                                 [](const auto& type) { return type.finite; });
   inputs_.push_back(state);
   return state;
 }

@@ -42,10 +42,7 @@ struct InputState {
   bool is_raw = false;        ///< the handler gets messages as they came, compressed ones too
   bool is_actor = false;      ///< moves something: one writer at a time is to have it
   bool is_exclusive = false;  ///< takes messages of the mode in focus alone
-
-  [[nodiscard]] bool wants_finite() const {
-    return std::any_of(types.begin(), types.end(), [](const auto& type) { return type.finite; });
-  }
+  bool is_finite = false;     ///< drops messages with NaN or infinity
 };
 
 /// What an output takes over from the message that is being handled.
