@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   auto receive = [&] {
     const auto invalid = tracker->ignored();
     const auto pose = hc::value_or_end(tracker->receive());
-    if (const auto more = tracker->ignored() - invalid; more > 0)
+    if (const auto more = static_cast<std::int64_t>(tracker->ignored() - invalid); more > 0)
       module.log_once("invalid packet", "ignored " + tracker->why_ignored(), more);
     if (!pose) return;
     silent.restart(hc::duration(*silence));

@@ -130,8 +130,8 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
   // What is taken together is dropped together: by the loop, and not by each link for itself.
   Uri opened = uri;
   const bool is_latest = inputs.front()->together != nullptr && keeps_latest(opened);
-  Inlet link{
-      .uri = uri.text(), .source = open(opened, inputs.front()->name), .inputs = std::move(inputs)};
+  Inlet link{.uri = uri.text(), .source = open(opened, inputs.front()->name)};
+  link.inputs = std::move(inputs);
   link.is_latest = is_latest;
   for (auto* input : link.inputs)
     if (input->together != nullptr) input->together->matcher.begin(input->place);
@@ -234,7 +234,8 @@ void Module::Loop::fire_timers() {
     now_ = module_.clock_.monotonic();
     timer.last = std::max(due, time() - timer.period());
   }
-  for (std::size_t i = 0; i < module_.timeouts_.size(); ++i) {  // a handler may add some
+  // A handler may add some. NOLINTNEXTLINE(modernize-loop-convert)
+  for (std::size_t i = 0; i < module_.timeouts_.size(); ++i) {
     const auto timeout = module_.timeouts_[i];
     if (!timeout->due || *timeout->due > time()) continue;
     timeout->due.reset();

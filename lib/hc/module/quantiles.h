@@ -42,7 +42,7 @@ class Quantiles {
 
  private:
   static constexpr unsigned kSteps = 8;  // in an octave
-  static constexpr std::size_t kClasses = 64 * kSteps;
+  static constexpr std::size_t kClasses = std::size_t{64} * kSteps;
 
   /// Values below 8 have a class each; from there on an octave has 8.
   static std::size_t class_of(std::uint64_t value) {
