@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include <hc/base/clock.h>
 
@@ -27,10 +28,9 @@ class Backoff {
   [[nodiscard]] MonotonicTime due() const { return due_; }
 
   /// An attempt has failed.
-  void fail(MonotonicTime now) {
-    due_ = now + pause_;
-    pause_ = std::min(2 * pause_, longest_);
-  }
+  void fail(MonotonicTime now) { due_ = now + next(); }
+  /// The same, for who waits by itself: gives the pause.
+  MonotonicTime next() { return std::exchange(pause_, std::min(2 * pause_, longest_)); }
 
   /// The next attempt may be made at once, and pauses start over.
   void reset() {

@@ -25,12 +25,4 @@ Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline)
   return *ready > 0;
 }
 
-Status Pauses::next(int stop) {
-  constexpr std::chrono::milliseconds kLongest{200};
-  auto waited = wait_for(-1, 0, stop, std::chrono::steady_clock::now() + pause_);
-  if (!waited) return waited.error();
-  pause_ = std::min(2 * pause_, kLongest);
-  return {};
-}
-
 }  // namespace hc::internal

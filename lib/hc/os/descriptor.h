@@ -69,14 +69,4 @@ using Deadline = std::chrono::steady_clock::time_point;
 /// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
 Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline = Deadline::max());
 
-/// The pauses between attempts: 1 ms, doubled each time up to 200 ms.
-class Pauses {
- public:
-  /// Errors: Stopped when `stop` is readable.
-  Status next(int stop);
-
- private:
-  std::chrono::milliseconds pause_{1};
-};
-
 }  // namespace hc::internal

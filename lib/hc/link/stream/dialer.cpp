@@ -7,18 +7,16 @@
 
 namespace hc::internal {
 
-std::chrono::nanoseconds Backoff::next() {
-  std::uniform_int_distribution<std::int64_t> pause(0, bound_.count());
-  std::chrono::nanoseconds chosen(pause(random_));
-  bound_ = std::min<std::chrono::nanoseconds>(2 * bound_, longest_);
-  return chosen;
+std::chrono::nanoseconds draw_pause(Backoff& backoff, std::minstd_rand& random) {
+  return std::chrono::nanoseconds(
+      std::uniform_int_distribution<std::int64_t>(0, backoff.next().count())(random));
 }
 
 Dialer::Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patience, TimePoint now)
     : peer_(std::move(peer)),
       first_(first),
       patience_(patience),
-      backoff_(std::random_device{}(), peer_.longest_pause),
+      backoff_(kFirstPause, peer_.longest_pause),
       begin_(now),
       give_up_(now + first),
       next_try_(now) {}
@@ -55,7 +53,7 @@ void Dialer::lost(TimePoint now, bool was_of_use, std::string why) {
   why_ = std::move(why);
   give_up_ = now + patience_;
   if (was_of_use) backoff_.reset();
-  next_try_ = was_of_use ? now : std::min(now + backoff_.next(), give_up_);
+  next_try_ = was_of_use ? now : std::min(now + draw_pause(backoff_, random_), give_up_);
 }
 
 void Dialer::try_next(TimePoint now) {
@@ -93,7 +91,7 @@ void Dialer::fail(int number, TimePoint now) {
   if (all_tried) is_refused_ = !std::exchange(was_silent_, false);
   next_try_ = now;
   if (!all_tried || number == ETIMEDOUT) return;
-  auto pause = backoff_.next();
+  auto pause = draw_pause(backoff_, random_);
   bool away = number == ENETUNREACH || number == EHOSTUNREACH || number == ENETDOWN;
   next_try_ += away ? std::min<std::chrono::nanoseconds>(pause, kAway) : pause;
   next_try_ = std::max(std::min(next_try_, give_up_), now);  // once more at the very end

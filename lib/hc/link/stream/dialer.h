@@ -10,31 +10,20 @@
 #include <string>
 #include <vector>
 
+#include <hc/base/backoff.h>
 #include <hc/link/policy.h>
 #include <hc/os/descriptor.h>
 #include <hc/os/socket.h>
 
 namespace hc::internal {
 
-/// Pauses between tries, so that many who lost the same peer do not come back at once: uniform
-/// between 0 and a bound that begins at kFirst and doubles up to `longest` ("full jitter").
+/// A pause between tries, so that many who lost the same peer do not come back at once: uniform
+/// between 0 and what `backoff` says ("full jitter").
 ///
 /// Source: M. Brooker, Exponential Backoff And Jitter, AWS Architecture Blog, 2015.
-class Backoff {
- public:
-  static constexpr std::chrono::milliseconds kFirst{100}, kLongest{5000};
+std::chrono::nanoseconds draw_pause(Backoff& backoff, std::minstd_rand& random);
 
-  explicit Backoff(std::uint32_t seed, std::chrono::milliseconds longest = kLongest)
-      : random_(seed), longest_(longest) {}
-
-  std::chrono::nanoseconds next();
-  void reset() { bound_ = kFirst; }
-
- private:
-  std::minstd_rand random_;
-  std::chrono::nanoseconds longest_;
-  std::chrono::nanoseconds bound_ = kFirst;
-};
+constexpr std::chrono::milliseconds kFirstPause{100}, kLongestPause{5000};  // at most
 
 /// Why a connection was lost, in words; what is not plainly Closed has its code.
 inline std::string in_words(const Error& error) {
@@ -48,7 +37,7 @@ struct Peer {
   /// Whether a peer that has answered is wanted; an error says why not. May be empty.
   std::function<Status(int socket)> admit;
   /// Between two tries: one on this host costs so little that nobody needs to be spared.
-  std::chrono::milliseconds longest_pause = Backoff::kLongest;
+  std::chrono::milliseconds longest_pause = kLongestPause;
 };
 
 /// Connects to a peer, and to it again when the connection is lost.
@@ -100,6 +89,7 @@ class Dialer {
   std::chrono::seconds first_, patience_;
   bool was_there_ = false;  // a peer
   bool told_ = false;
+  std::minstd_rand random_{std::random_device{}()};
   Backoff backoff_;
   TimePoint begin_, give_up_, next_try_;
   std::size_t turn_ = 0;  // of the addresses

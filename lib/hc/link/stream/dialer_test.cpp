@@ -15,7 +15,6 @@
 namespace hc::testing {
 namespace {
 
-using internal::Backoff;
 using internal::Dialer;
 using internal::TimePoint;
 using std::chrono::milliseconds;
@@ -28,14 +27,15 @@ constexpr std::array<milliseconds, 9> kBounds = {
     milliseconds(800),  milliseconds(1600), milliseconds(3200),
     milliseconds(5000), milliseconds(5000), milliseconds(5000)};
 
-TEST(Backoff, APauseIsAnywhereBelowABoundThatDoublesUpTo5Seconds) {
+TEST(Dialer, APauseIsAnywhereBelowABoundThatDoublesUpTo5Seconds) {
   constexpr int kSeeds = 2000, kParts = 10;
   for (std::size_t number = 0; number < kBounds.size(); ++number) {
     std::array<int, kParts> drawn{};
     for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
-      Backoff backoff(seed * 7919);
+      std::minstd_rand random(seed * 7919);
+      Backoff backoff(internal::kFirstPause, internal::kLongestPause);
       for (std::size_t i = 0; i < number; ++i) backoff.next();
-      nanoseconds pause = backoff.next();
+      nanoseconds pause = internal::draw_pause(backoff, random);
       ASSERT_GE(pause, nanoseconds(0));
       ASSERT_LE(pause, kBounds.at(number));
       auto part = kParts * pause / (nanoseconds(kBounds.at(number)) + nanoseconds(1));
@@ -43,17 +43,6 @@ TEST(Backoff, APauseIsAnywhereBelowABoundThatDoublesUpTo5Seconds) {
     }
     // As often in each tenth of the interval, but for 5 standard deviations.
     for (int count : drawn) EXPECT_NEAR(count, kSeeds / kParts, 5 * 13.5) << number;
-  }
-}
-
-TEST(Backoff, BeginsAnewWhenItIsReset) {
-  Backoff backoff(1);
-  for (int i = 0; i < 100; ++i) {
-    for (int tries = 0; tries < 10; ++tries) backoff.next();
-    backoff.reset();
-    EXPECT_LE(backoff.next(), kBounds[0]);
-    EXPECT_LE(backoff.next(), kBounds[1]);
-    backoff.reset();
   }
 }
 
@@ -164,11 +153,11 @@ TEST_F(DialerTest, AfterOneOfNoUseItGoesOnWithItsPauses) {
     listen();
     EXPECT_TRUE(connects(dialer));
     dialer.lost(now_, false, "it has gone");
-    EXPECT_LE(dialer.due() - now_, Backoff::kLongest);
+    EXPECT_LE(dialer.due() - now_, internal::kLongestPause);
     longest = std::max(longest, nanoseconds(dialer.due() - now_));
     listening_ = {};
   }
-  EXPECT_GT(longest, 3 * Backoff::kFirst);
+  EXPECT_GT(longest, 3 * internal::kFirstPause);
 }
 
 TEST_F(DialerTest, PatienceBeginsAnewWithEachLoss) {

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <hc/base/backoff.h>
 #include <hc/link/stream/sink.h>
 #include <hc/link/stream/source.h>
 #include <hc/link/transports.h>
@@ -14,7 +15,7 @@ namespace {
 Result<Descriptor> open_path(const Uri& uri, int flags, int stop) {
   constexpr int kMode = 0666;
   const char* path = uri.rest.c_str();
-  Pauses pauses;
+  Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(200));
   while (true) {
     Descriptor opened(::open(path, flags | O_NONBLOCK | O_CLOEXEC | O_NOCTTY, kMode));
     if (opened) {
@@ -27,7 +28,8 @@ Result<Descriptor> open_path(const Uri& uri, int flags, int stop) {
     bool is_fifo = ::stat(path, &status) == 0 && S_ISFIFO(status.st_mode);
     if (number != ENXIO || !is_fifo) return system_error("open", uri.rest, number);
     // Nobody has opened it for reading yet.
-    if (auto waited = pauses.next(stop); !waited) return waited.error();
+    auto waited = wait_for(-1, 0, stop, std::chrono::steady_clock::now() + backoff.next());
+    if (!waited) return waited.error();
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include <hc/base/backoff.h>
 #include <hc/link/stream/listening_source.h>
 #include <hc/link/stream/source.h>
 #include <hc/link/transports.h>
@@ -136,7 +137,7 @@ Result<bool> ListeningSink::put_to_all(Outgoing& message, TimePoint now) {
 /// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
 /// succeeds in either case; what tells is its kernel's answer, an acknowledgement or a reset.
 Result<bool> ListeningSink::has_taken(const Connection& peer) const {
-  Pauses pauses;
+  Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(200));
   while (true) {
     pollfd polled{peer.descriptor(), POLLRDHUP, 0};
     ::poll(&polled, 1, 0);
@@ -147,7 +148,8 @@ Result<bool> ListeningSink::has_taken(const Connection& peer) const {
         under_way == 0)
       return true;
     if (look_at_peer(peer.descriptor()).vanished) return false;
-    if (auto waited = pauses.next(options_.stop); !waited) return waited.error();
+    auto waited = wait_for(-1, 0, options_.stop, std::chrono::steady_clock::now() + backoff.next());
+    if (!waited) return waited.error();
   }
 }
 

@@ -132,10 +132,11 @@ TEST(Tcp, AReaderThatVanishesIsNoticedThoughItsBufferHasRoom) {
   cut_off(peer);
   ASSERT_TRUE(sink->send(numbered(1, 1)));
   // Nothing wakes a sink that waits for nothing; the peer's kernel is silent for all to see.
-  internal::Pauses pauses;
+  Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(200));
   Status sent;
   for (int i = 0; sent; ++i) {
-    ASSERT_TRUE(pauses.next(-1));
+    const auto later = std::chrono::steady_clock::now() + backoff.next();
+    ASSERT_TRUE(internal::wait_for(-1, 0, -1, later));
     sent = sink->send(numbered(i, 1));
   }
   EXPECT_EQ(sent.error().code, Code::Closed);
