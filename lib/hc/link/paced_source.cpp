@@ -15,7 +15,7 @@ class PacedSource final : public Source {
     // Its callbacks do nothing; but the descriptor announces again what comes from now on.
     if (auto turned = loop_->turn(std::chrono::milliseconds(0)); !turned) return turned.error();
     const auto now = std::chrono::steady_clock::now();
-    if (auto ready = pace_.ready_at(1, now); ready > now) {
+    if (auto ready = pace_.ready_at(now); ready > now) {
       message = {};
       if (!timer_) hold(ready);
       return Got::Nothing;
@@ -26,7 +26,7 @@ class PacedSource final : public Source {
     auto got = source_->take(message);
     if (was_held) overtaken_ += source_->traffic().superseded - overtaken;
     if (!got || *got != Got::Message) return got;
-    pace_.take(1, now);
+    pace_.take(now);
     if (was_held) ++kept_back_;
     return got;
   }

@@ -70,18 +70,17 @@ void TokenBucket::fill(TimePoint now) {
   level_ = fills ? capacity_ : level_ + elapsed * rate_;
 }
 
-TimePoint TokenBucket::ready_at(std::uint64_t tokens, TimePoint now) {
+TimePoint TokenBucket::ready_at(TimePoint now) {
   if (rate_ == 0) return now;
   fill(now);
-  std::int64_t wanted = std::min(static_cast<std::int64_t>(tokens) * kTick, capacity_);
-  if (level_ >= wanted) return now;
-  return now + std::chrono::nanoseconds((wanted - level_ + rate_ - 1) / rate_);
+  if (level_ >= kTick) return now;
+  return now + std::chrono::nanoseconds((kTick - level_ + rate_ - 1) / rate_);
 }
 
-void TokenBucket::take(std::uint64_t tokens, TimePoint now) {
+void TokenBucket::take(TimePoint now) {
   if (rate_ == 0) return;
   fill(now);
-  level_ -= static_cast<std::int64_t>(tokens) * kTick;
+  level_ -= kTick;
 }
 
 }  // namespace hc::internal

@@ -37,17 +37,18 @@ struct Policy {
 /// Errors: Invalid; also for a burst without its rate.
 Result<Policy> parse_policy(const Uri& uri);
 
-/// Lets `rate` tokens a second pass, and `burst` at once when none were taken for long. What costs
-/// more than the burst passes when the bucket is full, and leaves a debt. Exact: integers alone.
+/// Lets `rate` messages a second pass, and `burst` at once when none passed for long. Exact:
+/// integers alone.
 class TokenBucket {
  public:
   /// Full at first. Both up to kMost; rate 0: no limit.
   TokenBucket(std::uint64_t rate, std::uint64_t burst);
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
 
-  /// When `tokens`, up to kMost, may be taken: `now`, or later if none are taken until then.
-  TimePoint ready_at(std::uint64_t tokens, TimePoint now);
-  void take(std::uint64_t tokens, TimePoint now);
+  /// When one may pass: `now`, or later if none passes until then.
+  TimePoint ready_at(TimePoint now);
+  /// Has one pass, which is ready.
+  void take(TimePoint now);
   /// Whether there is a limit; without one, no time needs to be known.
   [[nodiscard]] bool limited() const { return rate_ > 0; }
 
@@ -56,7 +57,7 @@ class TokenBucket {
 
   std::int64_t rate_;      // [1e-9 token/ns]
   std::int64_t capacity_;  // [1e-9 token]
-  std::int64_t level_;     // the same; below 0: debt
+  std::int64_t level_;     // the same
   TimePoint filled_ = TimePoint::min();
 };
 

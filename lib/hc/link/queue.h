@@ -49,14 +49,14 @@ class SendQueue {
   /// When the first message may go: `now` or later; for ever later where there is none.
   TimePoint ready_at(TimePoint now, Traffic& traffic) {
     if (items_.empty()) return TimePoint::max();
-    auto ready = pace_.ready_at(1, now);
+    auto ready = pace_.ready_at(now);
     if (ready > now) hold(items_.front(), traffic);
     return ready;
   }
 
   /// Takes the first message, which is ready.
   Item pop(TimePoint now) {
-    pace_.take(1, now);
+    pace_.take(now);
     return remove_front();
   }
 
@@ -64,8 +64,8 @@ class SendQueue {
   bool pass(TimePoint now) {
     if (!items_.empty()) return false;
     if (!pace_.limited()) return true;
-    if (pace_.ready_at(1, now) > now) return false;
-    pace_.take(1, now);
+    if (pace_.ready_at(now) > now) return false;
+    pace_.take(now);
     return true;
   }
 
