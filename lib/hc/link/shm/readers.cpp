@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/stream/peers.h>
@@ -43,10 +44,9 @@ ShmReaders::~ShmReaders() {
   watch_.end();
   std::vector<std::shared_ptr<ShmReader>> all;  // whose watches end outside the lock
   std::lock_guard lock(mutex_);
-  for (auto* list : {&strangers_, &come_, &current_}) {
-    all.insert(all.end(), list->begin(), list->end());
-    list->clear();
-  }
+  all.swap(all_);
+  all.insert(all.end(), current_.begin(), current_.end());
+  current_.clear();
 }
 
 /// On the thread that serves links: the publisher's tells the log.
@@ -65,7 +65,7 @@ void ShmReaders::accept_all() {
     auto started = reader->watch.start(peer.get(), [this, each = reader.get()](auto events) {
       if ((events & (EPOLLHUP | EPOLLERR)) != 0)
         let_go(*each);
-      else if (each->memory.data() == nullptr)
+      else if (!each->is_known())
         hear(*each);
       else
         note_leaving(*each);
@@ -76,14 +76,23 @@ void ShmReaders::accept_all() {
     {
       std::lock_guard lock(mutex_);
       if (ending_) return {};
-      if (strangers_.size() == kMostReaders) {  // who says nothing cannot keep others out
-        silent = strangers_.front();
-        strangers_.erase(strangers_.begin());
+      if (is_full_of(false)) {  // who says nothing cannot keep others out
+        auto first = std::find_if(all_.begin(), all_.end(),
+                                  [](const auto& each) { return !each->is_known(); });
+        silent = std::move(*first);
+        all_.erase(first);
       }
-      strangers_.push_back(reader);
+      all_.push_back(reader);
     }
     return reader->watch.want(EPOLLIN);
   });
+}
+
+/// Whether there are as many strangers, or readers that are known, as there may be.
+bool ShmReaders::is_full_of(bool known) const {
+  auto count = std::count_if(all_.begin(), all_.end(),
+                             [&](const auto& each) { return each->is_known() == known; });
+  return static_cast<std::size_t>(count) == kMostReaders;
 }
 
 /// A stranger has said something.
@@ -94,11 +103,10 @@ void ShmReaders::hear(ShmReader& reader) {
   if (!hello) why = hello.error().detail;
   {
     std::lock_guard lock(mutex_);
-    if (why.empty() && count_ == kMostReaders)
+    if (ending_) return;
+    if (why.empty() && is_full_of(true))
       why = "it has " + std::to_string(kMostReaders) + " readers already";
     if (why.empty()) {
-      auto owner = take_from(strangers_, reader);
-      if (owner == nullptr) return;
       reader.memory = std::move(hello->page);
       reader.wakes = std::move(hello->wakes);
       reader.keep = hello->keep;
@@ -108,9 +116,6 @@ void ShmReaders::hear(ShmReader& reader) {
       changed_.store(true, std::memory_order_relaxed);
       order_everywhere();
       reader.begin = reader.seen = head_->published.load(std::memory_order_acquire);
-      // Nobody else owns it: who ends the list then waits for this callback, which goes on.
-      come_.push_back(std::move(owner));
-      ++count_;
     }
   }
   if (!why.empty()) {
@@ -123,7 +128,7 @@ void ShmReaders::hear(ShmReader& reader) {
   // Edge-triggered: the reader's end of its direction, and then that of the connection.
   static_cast<void>(reader.watch.want(EPOLLRDHUP | EPOLLET));
   Offer offer{reader.begin, reader.keep, {}};
-  if (!answer(reader.socket.get(), offer, bytes_, read_only_.get())) let_go(reader);
+  if (!answer(reader.socket.get(), offer, bytes_, read_only_.get())) return let_go(reader);
   HC_CRASH_POINT("publisher answered");
   std::lock_guard lock(mutex_);
   tell_change(reader);
@@ -140,25 +145,12 @@ void ShmReaders::let_go(ShmReader& reader) {
   static_cast<void>(reader.watch.want(0));
   std::shared_ptr<ShmReader> owner;  // goes outside the lock
   std::lock_guard lock(mutex_);
-  if (ending_) return;
-  owner = take_from(strangers_, reader);
-  if (owner != nullptr || reader.gone.load()) return;
-  --count_;
-  // A publisher that has nothing to publish does not look who has come and gone.
-  if (owner = take_from(come_, reader); owner != nullptr) return;
-  reader.gone.store(true);
-  tell_change(reader);  // refresh() waits for the lock, so the reader is there still
-}
-
-/// Takes a reader out of a list; null when it is not there.
-std::shared_ptr<ShmReader> ShmReaders::take_from(std::vector<std::shared_ptr<ShmReader>>& list,
-                                                 const ShmReader& reader) {
-  auto found = std::find_if(list.begin(), list.end(),
+  auto found = std::find_if(all_.begin(), all_.end(),
                             [&](const auto& each) { return each.get() == &reader; });
-  if (found == list.end()) return nullptr;
-  auto owner = *found;
-  list.erase(found);
-  return owner;
+  if (found == all_.end()) return;
+  owner = std::move(*found);
+  all_.erase(found);
+  if (reader.is_known()) tell_change(reader);
 }
 
 /// With the lock, so that refresh() sees the flag and the event together.
@@ -169,17 +161,14 @@ void ShmReaders::tell_change(const ShmReader& reader) {
 }
 
 void ShmReaders::refresh() {
-  std::vector<std::shared_ptr<ShmReader>> gone;  // their watches end outside the lock
+  std::vector<std::shared_ptr<ShmReader>> known;  // and then those before, who end outside the lock
   std::lock_guard lock(mutex_);
   changed_.store(false, std::memory_order_relaxed);
   eventfd_t count = 0;
   ::eventfd_read(event_.get(), &count);
-  current_.insert(current_.end(), come_.begin(), come_.end());
-  come_.clear();
-  auto first_gone = std::stable_partition(current_.begin(), current_.end(),
-                                          [](const auto& reader) { return !reader->gone.load(); });
-  gone.assign(first_gone, current_.end());
-  current_.erase(first_gone, current_.end());
+  std::copy_if(all_.begin(), all_.end(), std::back_inserter(known),
+               [](const auto& reader) { return reader->is_known(); });
+  current_.swap(known);
 }
 
 std::uint64_t ShmReaders::taken_by_all(std::uint64_t published) const {

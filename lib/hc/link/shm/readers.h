@@ -27,9 +27,10 @@ struct ShmReader {
   std::uint64_t begin = 0;  ///< position of its first message
   std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
-  std::atomic<bool> gone{false};
-  Watch watch;  ///< last, so that it ends first
+  Watch watch;              ///< last, so that it ends first
 
+  /// Whether it has said what it is; a stranger has not.
+  [[nodiscard]] bool is_known() const { return memory.data() != nullptr; }
   [[nodiscard]] const ReaderPage& page() const {
     return *reinterpret_cast<const ReaderPage*>(memory.data());
   }
@@ -55,7 +56,7 @@ class ShmReaders {
   ShmReaders& operator=(const ShmReaders&) = delete;
 
   /// Those there are, as of the last refresh(). On the publisher's thread.
-  [[nodiscard]] std::vector<std::shared_ptr<ShmReader>>& current() { return current_; }
+  [[nodiscard]] const std::vector<std::shared_ptr<ShmReader>>& current() const { return current_; }
 
   /// Whether some have come or gone since, or something is to be told.
   ///
@@ -88,8 +89,7 @@ class ShmReaders {
   void accept_all();
   void hear(ShmReader& reader);
   void let_go(ShmReader& reader);
-  static std::shared_ptr<ShmReader> take_from(std::vector<std::shared_ptr<ShmReader>>& list,
-                                              const ShmReader& reader);
+  [[nodiscard]] bool is_full_of(bool known) const;
   void note_leaving(const ShmReader& reader);
   void tell_change(const ShmReader& reader);
   void remark(std::string line);
@@ -102,10 +102,8 @@ class ShmReaders {
   std::vector<std::shared_ptr<ShmReader>> current_;
   std::atomic<bool> changed_{false};
 
-  std::mutex mutex_;                                   // of what follows
-  std::vector<std::shared_ptr<ShmReader>> strangers_;  // have not said what they are yet
-  std::vector<std::shared_ptr<ShmReader>> come_;       // since refresh()
-  std::size_t count_ = 0;                              // of readers, those in come_ included
+  std::mutex mutex_;                             // of what follows
+  std::vector<std::shared_ptr<ShmReader>> all_;  // who is connected, in the order of coming
   bool ending_ = false;
 
   Watch watch_;

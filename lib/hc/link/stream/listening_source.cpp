@@ -62,9 +62,7 @@ std::size_t ListeningSource::find_idlest() const {
 
 void ListeningSource::leave(const Peer& peer, std::string_view why) {
   if (!why.empty() && options_.log) options_.log(Severity::Warning, why);
-  Traffic traffic = peer.source->traffic();
-  left_.messages += traffic.messages;
-  left_.bytes += traffic.bytes;
+  left_ += peer.source->traffic();
   std::erase(ready_, &peer);
   std::erase_if(peers_, [&](const auto& entry) { return entry.get() == &peer; });
 }
@@ -77,10 +75,7 @@ void ListeningSource::rest(Peer& peer) {
 
 Traffic ListeningSource::traffic() const {
   Traffic all = left_;
-  for (const auto& peer : peers_) {
-    all.messages += peer->source->traffic().messages;
-    all.bytes += peer->source->traffic().bytes;
-  }
+  for (const auto& peer : peers_) all += peer->source->traffic();
   return all;
 }
 
