@@ -205,26 +205,6 @@ Result<bool> receive(Source& source, Message& message, int stop) {
 
 namespace internal {
 
-Result<bool> wait_to_send(int descriptor, short events, LinkOptions& options, Deadline deadline) {
-  auto& [interrupter, call] = options.interrupt;
-  std::array<pollfd, 3> polled = {
-      {{descriptor, events, 0}, {options.stop, POLLIN, 0}, {interrupter, POLLIN, 0}}};
-  auto ready = system_call("ppoll", "", [&] {
-    const auto left = std::max<std::chrono::nanoseconds>(
-        std::chrono::nanoseconds(0), deadline == Deadline::min()
-                                         ? std::chrono::nanoseconds(0)
-                                         : deadline - std::chrono::steady_clock::now());
-    const timespec time{left.count() / std::nano::den, left.count() % std::nano::den};
-    return ::ppoll(polled.data(), polled.size(), deadline == Deadline::max() ? nullptr : &time,
-                   nullptr);
-  });
-  if (!ready) return ready.error();
-  if (polled[0].revents == 0 && polled[1].revents != 0)
-    return Error{Code::Stopped, "asked to stop"};
-  if (polled[2].revents != 0 && !call()) interrupter = -1;
-  return *ready > 0;
-}
-
 Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,
                                    std::int64_t most) {
   auto text = uri.option(key, "");

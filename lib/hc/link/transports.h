@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include <hc/link/link.h>
-#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 
@@ -29,14 +28,6 @@ Result<std::unique_ptr<Sink>> open_shm_sink(const Uri&, const LinkOptions&);
 
 /// Whether a `memory` is enough for shm, where it is all there is. Errors: Invalid.
 Status check_shm_memory(const Uri& uri);
-
-/// Waits as a sink does that sends: until `descriptor` has one of the poll events, or the interrupt
-/// has been called, which may have abandoned the sink; false when `deadline` passes first.
-///
-/// @param options  those of the sink: an interrupt that is not to be called any more is taken out.
-/// Errors: as wait_for().
-Result<bool> wait_to_send(int descriptor, short events, LinkOptions& options,
-                          Deadline deadline = Deadline::max());
 
 /// A URI's option that is a whole number from 0 to `most`. Errors: Invalid.
 Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,

@@ -60,6 +60,7 @@ class ShmSink final : public Sink {
   }
   void meet_readers();
   void refresh_for_sure();
+  Status wait(int descriptor, std::chrono::milliseconds timeout);
   Status await_readers(std::size_t count);
   static Error abandoned() { return {Code::Closed, "the link was abandoned"}; }
 

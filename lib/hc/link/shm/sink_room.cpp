@@ -44,14 +44,22 @@ void ShmSink::refresh_for_sure() {
   refresh();
 }
 
+/// Waits for `descriptor`, or whoever interrupts.
+Status ShmSink::wait(int descriptor, std::chrono::milliseconds timeout) {
+  auto& [interrupter, call] = options_.interrupt;
+  auto ready = wait_readable(std::array{descriptor, interrupter}, options_.stop, timeout);
+  if (!ready) return ready.error();
+  if (*ready == 1 && !call()) interrupter = -1;
+  return ended_ ? abandoned() : Status();
+}
+
 Status ShmSink::await_readers(std::size_t count) {
   refresh();
   if (present_ >= count) return {};
   if (options_.awaits_reader) options_.awaits_reader(true);
   Status outcome;
   while (outcome && present_ < count) {
-    auto changed = wait_to_send(readers_->event(), POLLIN, options_);
-    outcome = ended_ ? abandoned() : changed ? Status() : changed.error();
+    outcome = wait(readers_->event(), std::chrono::milliseconds(-1));
     if (outcome) refresh();
   }
   if (options_.awaits_reader) options_.awaits_reader(false);
@@ -102,9 +110,7 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
       return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
     HC_CRASH_POINT("publisher waits for room");
     futex_wait(reader->page().progress, progress, kLookPeriod);
-    auto waited = wait_to_send(-1, 0, options_, Deadline::min());
-    if (ended_) return abandoned();
-    if (!waited) return waited.error();
+    if (auto waited = wait(-1, std::chrono::milliseconds(0)); !waited) return waited;
   }
 }
 
