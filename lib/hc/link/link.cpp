@@ -11,8 +11,7 @@
 #include <hc/base/suggestion.h>
 #include <hc/link/policy.h>
 #include <hc/link/stream/dialing.h>
-#include <hc/link/stream/listening_sink.h>
-#include <hc/link/stream/listening_source.h>
+#include <hc/link/stream/listening.h>
 #include <hc/link/stream/peers.h>
 #include <hc/link/transports.h>
 #include <hc/os/descriptor.h>
@@ -41,13 +40,13 @@ OpenedSink connect_sink(const Uri& uri, const LinkOptions& options) {
 template <Result<internal::ListeningSocket> listen(const Uri&)>
 Opened listening_source(const Uri& uri, const LinkOptions& options) {
   auto socket = listen(uri);
-  return socket ? internal::ListeningSource::make(std::move(*socket), options) : socket.error();
+  return socket ? internal::listening_source(std::move(*socket), options) : socket.error();
 }
 
 template <Result<internal::ListeningSocket> listen(const Uri&)>
 OpenedSink listening_sink(const Uri& uri, const LinkOptions& options) {
   auto socket = listen(uri);
-  return socket ? internal::ListeningSink::make(std::move(*socket), uri, options) : socket.error();
+  return socket ? internal::listening_sink(std::move(*socket), uri, options) : socket.error();
 }
 
 /// Every transport there is. The options that an end has are named here, so that one misspelt is

@@ -1,14 +1,139 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/stream/dialing.h>
 
+#include <algorithm>
+
 #include <hc/link/stream/sink.h>
 #include <hc/link/stream/source.h>
 #include <hc/link/transports.h>
+#include <hc/os/loop.h>
 
 namespace hc::internal {
 namespace {
 
 constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
+/// How long the writer may be away that said its end, until it is told: where both ends are ended
+/// together, the reader's end follows.
+constexpr std::chrono::milliseconds kTellAfter{200};
+
+/// A source that outlives its connection; see dial_source().
+class DialingSource final : public Source {
+ public:
+  DialingSource(std::unique_ptr<Dialer> dialer, Made made, std::unique_ptr<Loop> loop,
+                LinkOptions options)
+      : dialer_(std::move(dialer)),
+        made_(std::move(made)),
+        loop_(std::move(loop)),
+        options_(std::move(options)) {
+    static_cast<void>(dial());  // the first take() tells if it is in vain
+  }
+
+  Result<Got> take(Message& message) override {
+    message = {};
+    while (!ended_) {
+      if (source_ == nullptr && finishing_) break;
+      if (source_ == nullptr) {
+        if (auto dialed = dial(); !dialed) {
+          ended_ = true;
+          if (dialed.error().code == Code::NotFound) return dialed.error();
+          log(in_words(dialed.error()));
+          break;
+        }
+        if (source_ == nullptr) return Got::Nothing;
+      }
+      auto got = source_->take(message);
+      bool is_lost = got ? *got == Got::End
+                         : got.error().code == Code::Truncated || got.error().code == Code::Closed;
+      if (!is_lost) return got;
+      if (!got && got.error().code == Code::Truncated) ++past_.cut;
+      lose_connection(got ? "" : in_words(got.error()));
+    }
+    ended_ = true;
+    return Got::End;
+  }
+
+  [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
+  bool prepare_wait() override { return source_ == nullptr || source_->prepare_wait(); }
+  [[nodiscard]] int wake_descriptor() const override { return made_.wake_descriptor; }
+  [[nodiscard]] Spin spin() const override { return source_ == nullptr ? Spin() : source_->spin(); }
+  void finish() override { finishing_ = true; }
+  [[nodiscard]] Traffic traffic() const override {
+    Traffic all = past_;
+    if (source_ != nullptr) all += source_->traffic();
+    return all;
+  }
+
+ private:
+  /// Does what is due for a connection, and has the descriptor tell when there is more to do.
+  Status dial() {
+    auto now = std::chrono::steady_clock::now();
+    watch_.reset();  // before the dialer closes its descriptor
+    retry_.reset();
+    auto connected = dialer_->dial(now);
+    if (!connected) return connected.error();
+    if (auto remark = dialer_->take_remark(now)) log(*remark);
+    if (now >= tell_at_) {
+      log("sender closed; reconnecting");
+      tell_at_ = TimePoint::max();
+    }
+    if (*connected) {
+      auto source = made_.open(std::move(*connected));
+      if (!source) {
+        if (source.error().code == Code::Stopped) return source.error();
+        log(in_words(source.error()) + "; reconnecting");
+        dialer_->lost(now, false, in_words(source.error()));
+      } else {
+        source_ = std::move(*source);
+        watch(source_->descriptor(), EPOLLIN);
+        connected_at_ = now;
+        tell_at_ = TimePoint::max();
+      }
+    }
+    if (source_ == nullptr) {
+      retry_ = loop_->call_at(std::min(dialer_->due(), tell_at_), [] {});
+      if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), EPOLLOUT);
+    }
+    return {};
+  }
+
+  /// @param why  empty: the writer said its end.
+  void lose_connection(const std::string& why) {
+    const bool was_heard = source_->traffic().messages > 0;
+    past_ += source_->traffic();
+    watch_.reset();
+    source_.reset();
+    if (finishing_) return;
+    auto now = std::chrono::steady_clock::now();
+    if (why.empty())
+      tell_at_ = now + kTellAfter;
+    else
+      log(why + "; reconnecting");
+    dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime,
+                  why.empty() ? "sender closed" : why);
+  }
+
+  void watch(int descriptor, std::uint32_t events) {
+    auto watched = loop_->watch(descriptor, events, [](auto) {});
+    if (watched) watch_ = std::move(*watched);
+  }
+
+  void log(std::string_view line) const {
+    if (options_.log) options_.log(Severity::Warning, line);
+  }
+
+  std::unique_ptr<Dialer> dialer_;
+  Made made_;
+  std::unique_ptr<Loop> loop_;  // of what follows; calls nothing, but its descriptor tells
+  Loop::Handle watch_;          // of the connection, or the attempt at one
+  Loop::Handle retry_;
+  LinkOptions options_;
+  std::unique_ptr<Source> source_;  // null: there is no connection
+  TimePoint connected_at_;
+  TimePoint tell_at_ = TimePoint::max();  // that the sender closed
+  bool finishing_ = false;                // the peer will not come back
+  bool ended_ = false;
+  Traffic past_;  // of connections that were lost
+};
 
 /// None where the link is to end with its connection. Errors: Invalid.
 Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
@@ -51,23 +176,27 @@ Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
 }
 
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
-                                            const LinkOptions& options, DialingSource::Made made) {
+                                            const LinkOptions& options, Made made) {
   auto dialer = dialer_for(peer, uri);
   if (!dialer) return dialer.error();
-  if (*dialer != nullptr) return DialingSource::make(std::move(*dialer), std::move(made), options);
-  auto connected = connect_now(peer, uri, options);
-  if (!connected) return connected.error();
-  return made.open(std::move(*connected));
+  if (*dialer == nullptr) {
+    auto connected = connect_now(peer, uri, options);
+    return connected ? made.open(std::move(*connected)) : connected.error();
+  }
+  auto loop = Loop::make();
+  if (!loop) return loop.error();
+  return std::unique_ptr<Source>(
+      new DialingSource(std::move(*dialer), std::move(made), std::move(*loop), options));
 }
 
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
                                         const LinkOptions& options) {
   auto dialer = dialer_for(peer, uri);
   if (!dialer) return dialer.error();
-  if (*dialer != nullptr) return StreamSink::make(Descriptor(), uri, options, std::move(*dialer));
+  if (*dialer != nullptr) return make_stream_sink(Descriptor(), uri, options, std::move(*dialer));
   auto connected = connect_now(peer, uri, options);
   if (!connected) return connected.error();
-  return StreamSink::make(std::move(*connected), uri, options);
+  return make_stream_sink(std::move(*connected), uri, options);
 }
 
 }  // namespace hc::internal

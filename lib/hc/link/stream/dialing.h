@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The ends of tcp and unix links that connect, with `wait` and `reconnect`. Internal.
+// The ends of links that connect, with `wait` and `reconnect`. Internal.
 
+#include <functional>
 #include <memory>
 
 #include <hc/link/link.h>
 #include <hc/link/stream/dialer.h>
-#include <hc/link/stream/dialing_source.h>
 
 namespace hc::internal {
 
@@ -15,13 +15,26 @@ namespace hc::internal {
 /// Errors: Invalid, Closed (nobody listens), Stopped, System.
 Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options);
 
-/// Ends of a link to a peer that listens. With `reconnect` they are there at once, and the
-/// connection when it can be had; else they have it from connect_now(). Errors: the same.
+/// What becomes of the connections of a source.
+struct Made {
+  /// Makes the source of a connection; one that it cannot be made of counts as lost.
+  std::function<Result<std::unique_ptr<Source>>(Descriptor connection)> open;
+  int wake_descriptor = -1;  ///< of all sources that come of it
+};
+
+/// Ends of a link to a peer that listens. Without `reconnect` they have their connection from
+/// connect_now(), with the same errors.
+///
+/// With it they are there at once, and the connection when it can be had; a source connects again
+/// when that is lost, until the dialer gives up; then it ends, or fails with NotFound if there
+/// never was a connection. What has come of a message by then is of no use: the peer sends it anew,
+/// or not at all. The end that a peer says cannot be told from that of a process that was killed,
+/// so both lead to trying again.
+Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
+                                            const LinkOptions& options, Made made);
+/// The same, of messages as they stand in the stream.
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options);
-/// The same, of what is made of each connection.
-Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
-                                            const LinkOptions& options, DialingSource::Made made);
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
                                         const LinkOptions& options);
 

@@ -47,7 +47,7 @@ Result<std::unique_ptr<Source>> open_file_source(const Uri& uri, const LinkOptio
 Result<std::unique_ptr<Sink>> open_file_sink(const Uri& uri, const LinkOptions& options) {
   auto descriptor = open_path(uri, O_WRONLY | O_CREAT | O_TRUNC, options.stop);
   if (!descriptor) return descriptor.error();
-  return StreamSink::make(std::move(*descriptor), uri, options);
+  return make_stream_sink(std::move(*descriptor), uri, options);
 }
 
 }  // namespace hc::internal

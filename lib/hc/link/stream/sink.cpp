@@ -1,9 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/stream/sink.h>
 
-namespace hc::internal {
+#include <hc/link/stream/connection.h>
+#include <hc/mtp/codec.h>
 
-Result<std::unique_ptr<Sink>> StreamSink::make(Descriptor descriptor, const Uri& uri,
+namespace hc::internal {
+namespace {
+
+class StreamSink final : public Sink {
+ public:
+  explicit StreamSink(std::unique_ptr<Connection> connection)
+      : connection_(std::move(connection)) {}
+
+  Status send(const Message& message) override {
+    Outgoing outgoing(encoder_.encode(message), message);
+    auto sent = connection_->send(outgoing, std::chrono::steady_clock::now());
+    connection_->tell_log();
+    if (!sent) return sent.error();
+    ++messages_;
+    bytes_ += outgoing.size();
+    return {};
+  }
+
+  Status close() override {
+    auto closed = connection_->close();
+    connection_->tell_log();
+    return closed;
+  }
+
+  void abandon() override { connection_->abandon(); }
+
+  [[nodiscard]] Traffic traffic() const override {
+    Traffic traffic = connection_->losses();
+    traffic.messages = messages_;
+    traffic.bytes += bytes_;
+    return traffic;
+  }
+
+ private:
+  std::unique_ptr<Connection> connection_;
+  Encoder encoder_;
+  std::uint64_t messages_ = 0, bytes_ = 0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> make_stream_sink(Descriptor descriptor, const Uri& uri,
                                                const LinkOptions& options,
                                                std::unique_ptr<Dialer> dialer) {
   auto policy = parse_policy(uri);
@@ -11,29 +53,6 @@ Result<std::unique_ptr<Sink>> StreamSink::make(Descriptor descriptor, const Uri&
   auto connection = Connection::make(std::move(descriptor), *policy, options, std::move(dialer));
   if (!connection) return connection.error();
   return std::unique_ptr<Sink>(new StreamSink(std::move(*connection)));
-}
-
-Status StreamSink::send(const Message& message) {
-  Outgoing outgoing(encoder_.encode(message), message);
-  auto sent = connection_->send(outgoing, std::chrono::steady_clock::now());
-  connection_->tell_log();
-  if (!sent) return sent.error();
-  ++messages_;
-  bytes_ += outgoing.size();
-  return {};
-}
-
-Status StreamSink::close() {
-  auto closed = connection_->close();
-  connection_->tell_log();
-  return closed;
-}
-
-Traffic StreamSink::traffic() const {
-  Traffic traffic = connection_->losses();
-  traffic.messages = messages_;
-  traffic.bytes += bytes_;
-  return traffic;
 }
 
 }  // namespace hc::internal

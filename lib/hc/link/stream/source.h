@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Messages out of any descriptor that carries a stream of bytes: pipe, file, terminal, socket, and
-// what stdio, file, tcp and unix share beside. Internal. stream_sink.h has the other end.
+// what stdio, file, tcp and unix share beside. Internal. sink.h has the other end.
 
 #include <cstdint>
 #include <memory>

@@ -18,7 +18,7 @@ Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions& option
 Result<std::unique_ptr<Sink>> open_stdout(const Uri& uri, const LinkOptions& options) {
   auto descriptor = reopen_without_waiting(STDOUT_FILENO, O_WRONLY);
   if (!descriptor) return descriptor.error();
-  return StreamSink::make(std::move(*descriptor), uri, options);
+  return make_stream_sink(std::move(*descriptor), uri, options);
 }
 
 }  // namespace hc::internal

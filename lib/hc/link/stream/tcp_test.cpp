@@ -7,7 +7,7 @@
 #include <atomic>
 
 #include <hc/link/stream/dialing.h>
-#include <hc/link/stream/listening_source.h>
+#include <hc/link/stream/listening.h>
 #include <hc/testing/reconnect.h>
 
 namespace {
