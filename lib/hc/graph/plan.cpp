@@ -39,7 +39,7 @@ class ModulePlanner {
     else
       check_needs_no_control(description);
     add_parameters(description);
-    add_encodings(description);
+    add_encodings();
     planning_.index[module_.name] = planning_.plan.modules.size();
     planning_.plan.modules.push_back(std::move(planned_));
   }
@@ -55,21 +55,15 @@ class ModulePlanner {
     }
   }
 
-  void add_encodings(const Description& description) {
+  void add_encodings() {
     for (const auto& [port, encoding] : module_.encodings) {
-      const PortDescription* output = find_named(description.outputs, port);
-      if (output == nullptr) {
-        add_no_port(planning_, encoding.place, {module_.name, port, {}}, "output",
-                    description.outputs);
-        continue;
-      }
-      if (!output->types.empty())
+      const auto* output = find_port(planning_, encoding.place, {module_.name, port, {}}, false);
+      if (output != nullptr && !output->types.empty())
         if (auto broken = find_error(info_with(output->types.front(), encoding.value)))
           problems_.add(encoding.place, "module " + module_.name + ": R" +
                                             std::to_string(broken->rule) + " " + port + ": " +
                                             broken->what);
-      planned_.options.insert(planned_.options.end(),
-                              {"--encoding", port + "=" + std::string(name(encoding.value))});
+      planned_.add_option("--encoding", port + "=" + std::string(name(encoding.value)));
     }
   }
 
@@ -108,8 +102,7 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
                                  "module " + module.name + ": " + program +
                                      " --describe does not print the description of a module");
   if (planning.index.contains(module.name)) return;  // a duplicate, which has been reported
-  ModulePlanner(planning, module).plan(*description);
-  planning.described[module.name] = std::move(*description);
+  ModulePlanner(planning, module).plan(planning.described[module.name] = std::move(*description));
 }
 
 }  // namespace
@@ -119,15 +112,25 @@ std::string suggest(const Planning& planning, std::string_view name,
   return planning.problems.size() > kMostSuggestions ? "" : suggestion(name, known);
 }
 
-void add_no_module(Planning& planning, const Place& place, const std::string& module) {
-  const std::vector<std::string> known(planning.names.begin(), planning.names.end());
-  planning.problems.add(place, "no module \"" + module + "\"" + suggest(planning, module, known));
-}
-
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
                  const std::string& kind, const std::vector<PortDescription>& ports) {
   planning.problems.add(place, "module " + port.module + " has no " + kind + " \"" + port.port +
                                    "\"" + suggest(planning, port.port, names_of(ports)));
+}
+
+const PortDescription* find_port(Planning& planning, const Place& place, const GraphPort& port,
+                                 bool is_input) {
+  const std::string& module = port.module;
+  if (!planning.names.contains(module))
+    planning.problems.add(
+        place, "no module \"" + module + "\"" +
+                   suggest(planning, module, {planning.names.begin(), planning.names.end()}));
+  const Description* description = planning.description_of(module);
+  if (description == nullptr) return nullptr;
+  const auto& ports = is_input ? description->inputs : description->outputs;
+  const auto* found = is_input ? find_input(*description, port.port) : find_named(ports, port.port);
+  if (found == nullptr) add_no_port(planning, place, port, is_input ? "input" : "output", ports);
+  return found;
 }
 
 }  // namespace internal

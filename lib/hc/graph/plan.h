@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <hc/base/parameter.h>
@@ -39,6 +40,10 @@ struct PlannedModule {
   std::vector<std::string> modes;   ///< it works in; empty: all
   std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
   bool ends_graph = false;          ///< when it has ended with status 0
+
+  void add_option(std::string name, std::string value) {
+    options.insert(options.end(), {std::move(name), std::move(value)});
+  }
 
   /// Whether a parameter can have a value. Errors: Invalid.
   [[nodiscard]] Status check_parameter(const std::string& parameter,

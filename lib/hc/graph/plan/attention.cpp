@@ -51,16 +51,13 @@ class Attention {
   bool publishes_focus(const Lined<std::string>& workspace) {
     const auto& [name, place] = workspace;
     if (name.empty()) return false;
-    if (!planning_.names.contains(name)) add_no_module(planning_, place, name);
-    const Description* description = planning_.description_of(name);
-    if (description == nullptr) return false;
-    const PortDescription* output = find_named(description->outputs, kFocus);
-    if (output == nullptr)
-      add_no_port(planning_, place, {name, kFocus, {}}, "output", description->outputs);
-    else if (!fits(output->types, focus_input().types))
+    const PortDescription* output = find_port(planning_, place, {name, kFocus, {}}, false);
+    if (output == nullptr) return false;
+    const bool is_right = fits(output->types, focus_input().types);
+    if (!is_right)
       problems_.add(place, name + ".focus sends " + in_words(output->types) + ", not " +
                                in_words(focus_input().types));
-    return output != nullptr && fits(output->types, focus_input().types);
+    return is_right;
   }
 
   /// Gives a workspace that has a parameter `modes` their names, for its log lines.
@@ -98,12 +95,10 @@ class Attention {
 
   /// The modes of a module, in its command.
   void add_options(const GraphModule& module, PlannedModule& planned) {
-    auto add = [&](const char* option, std::string value) {
-      planned.options.insert(planned.options.end(), {option, std::move(value)});
-    };
     if (module.mode) {
       planned.mode = module.mode->value;
-      if (auto number = number_of(*module.mode)) add("--mode", std::to_string(*number));
+      if (auto number = number_of(*module.mode))
+        planned.add_option("--mode", std::to_string(*number));
     }
     std::string numbers;
     for (const auto& mode : module.modes) {
@@ -111,7 +106,7 @@ class Attention {
       if (auto number = number_of(mode))
         numbers += (numbers.empty() ? "" : ",") + std::to_string(*number);
     }
-    if (!numbers.empty()) add("--modes", numbers);
+    if (!numbers.empty()) planned.add_option("--modes", numbers);
     const Description& description = *planning_.description_of(module.name);
     for (const auto& input : module.exclusive) {
       if (find_named(description.inputs, input.value) == nullptr)
@@ -121,7 +116,7 @@ class Attention {
         continue;
       else if (module.workspace.empty() && !has_wrong_workspace())
         problems_.add(input.place, "exclusive inputs require a [workspace] table");
-      add("--exclusive", input.value);
+      planned.add_option("--exclusive", input.value);
     }
   }
 

@@ -94,20 +94,14 @@ class Frames {
   }
 
   void check_mover(const Lined<GraphPort>& mover) {
-    const GraphPort& port = mover.value;
-    if (!planning_.names.contains(port.module))
-      return add_no_module(planning_, mover.place, port.module);
-    const Description* description = planning_.description_of(port.module);
-    if (description == nullptr) return;
-    const PortDescription* output = find_named(description->outputs, port.port);
-    if (output == nullptr)
-      return add_no_port(planning_, mover.place, port, "output", description->outputs);
+    const PortDescription* output = find_port(planning_, mover.place, mover.value, false);
+    if (output == nullptr) return;
     auto is_pose = [](const PortType& type) {
       return type.info.type == MatrixType::Transformation && type.info.components == 1 &&
              (type.width == 0 || type.width == 4) && (type.height == 0 || type.height == 4);
     };
     if (planning_.problems.empty() && !output->types.empty() && !is_pose(output->types.front()))
-      planning_.problems.add(mover.place, port.text() + " sends " + in_words(output->types) +
+      planning_.problems.add(mover.place, mover.value.text() + " sends " + in_words(output->types) +
                                               ", not a pose, transformation 4 x 4");
   }
 

@@ -51,15 +51,7 @@ class LinkCheck {
       check_uri(link, port, is_input);
       return nullptr;
     }
-    if (!planning_.names.contains(port.module)) add_no_module(planning_, link.place, port.module);
-    const Description* description = planning_.description_of(port.module);
-    if (description == nullptr) return nullptr;
-    const PortDescription* found = is_input ? find_input(*description, port.port)
-                                            : find_named(description->outputs, port.port);
-    if (found == nullptr)
-      add_no_port(planning_, link.place, port, is_input ? "input" : "output",
-                  is_input ? description->inputs : description->outputs);
-    return found;
+    return find_port(planning_, link.place, port, is_input);
   }
 
   /// The world outside; its other end is a module.

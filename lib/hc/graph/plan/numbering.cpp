@@ -64,8 +64,7 @@ class Numbering {
       std::int64_t address =
           given != module.addresses.end() ? given->second.value : free_address(kept_outputs_, name);
       planning_.plan.sources[name] = address;
-      planned->options.insert(planned->options.end(),
-                              {"--address", output.name + "=" + std::to_string(address)});
+      planned->add_option("--address", output.name + "=" + std::to_string(address));
     }
   }
 
@@ -104,11 +103,7 @@ class Numbering {
   }
 
   void send_to(const GraphModule& module, const std::string& port, const Lined<Addressee>& to) {
-    const Description* description = planning_.description_of(module.name);
-    if (description == nullptr) return;
-    if (find_named(description->outputs, port) == nullptr)
-      return add_no_port(planning_, to.place, {module.name, port, {}}, "output",
-                         description->outputs);
+    if (find_port(planning_, to.place, {module.name, port, {}}, false) == nullptr) return;
     std::optional<std::int64_t> address;
     const std::string& name = to.value.name;
     if (name.empty()) address = to.value.number;
@@ -120,9 +115,7 @@ class Numbering {
       return planning_.problems.add(to.place,
                                     "no input \"" + name + "\"" + suggest(planning_, name, known));
     }
-    PlannedModule* planned = planning_.planned(module.name);
-    planned->options.insert(planned->options.end(),
-                            {"--to", port + "=" + std::to_string(*address)});
+    planning_.planned(module.name)->add_option("--to", port + "=" + std::to_string(*address));
   }
 
   Planning& planning_;

@@ -52,11 +52,14 @@ struct Planning {
 std::string suggest(const Planning& planning, std::string_view name,
                     const std::vector<std::string>& known);
 
-/// Says that a module, such as a link names it, is not there.
-void add_no_module(Planning& planning, const Place& place, const std::string& module);
 /// Says that a module has no such port. @param kind  "input", "output" or "port".
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
                  const std::string& kind, const std::vector<PortDescription>& ports);
+
+/// A port that the file names, with the implicit input `focus`; null where there is none, which is
+/// a problem, or where nobody knows since the module is not described.
+const PortDescription* find_port(Planning& planning, const Place& place, const GraphPort& port,
+                                 bool is_input);
 
 /// Gives ports their addresses, and messages of outputs their destinations.
 void number_ports(Planning& planning);
