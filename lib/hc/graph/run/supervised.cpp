@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// From the start of a module to its end, and what it is told.
 #include <hc/graph/run/supervised.h>
 
-#include <unistd.h>
-
-#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -16,12 +14,9 @@ namespace {
 
 using MonotonicClock = std::chrono::steady_clock;
 
-constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;  // a pipe can be made to hold a MiB; source: man 7 pipe
 constexpr int kCutOff = 1;       // a failure, as far as restarts go
 constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
-// Observers never make a module wait: with or without one, it keeps a few messages for them.
-constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
 
 std::string seconds_in_words(std::chrono::nanoseconds time) {
@@ -221,83 +216,6 @@ void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
     tell({text({ModuleCommand::Verb::Link, true, what, {}})});
 }
 
-std::string Supervised::observe(const std::string& port, const std::string& name) {
-  const bool has_memory = std::any_of(plan_.ends.begin(), plan_.ends.end(),
-                                      [](const auto& end) { return end.uri.starts_with("shm:"); });
-  auto [found, is_new] = observed_.try_emplace(port);
-  auto& observed = found->second;
-  if (is_new) {
-    observed.text = port + (has_memory ? "=shm:" : "=unix-listen:@") + name + kObserverPolicy;
-    observed.uri = (has_memory ? "shm:" : "unix:@") + name;
-    tell({observed.command()});
-  }
-  observed.until = now() + kObserved;
-  return observed.uri;
-}
-
-void Supervised::end_observations(MonotonicTime time) {
-  std::erase_if(observed_, [&](const auto& entry) {
-    const bool is_over = time >= entry.second.until;
-    if (is_over) tell({"unlink out " + entry.second.text});
-    return is_over;
-  });
-}
-
-/// Hands on what a module has said, until it says nothing more. One piece only: one who does not
-/// stop must not keep us from all else.
-void Supervised::read_lines() {
-  static thread_local std::array<char, kPiece> piece;
-  const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
-  if (size == 0) said_.reset();
-  if (size <= 0) return;
-  lines_.add({piece.data(), static_cast<std::size_t>(size)}, hear_.said);
-  said_at_ = now();
-}
-
-void Supervised::take_report(const Message& message) {
-  heard_ = now();
-  const bool has_changed = reports_.take(message, heard_);
-  if (message.header.src == static_cast<int>(Report::Refusal) &&
-      message.header.info.type == MatrixType::String)
-    for (const auto& line : rows_of(message)) hear_.event(line);
-  if (status_ == ModuleStatus::Stalled) hear_.event("resumed");
-  if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
-      status_ == ModuleStatus::Running)
-    change(ModuleStatus::Running);
-  if (has_changed) hear_.changed();
-}
-
-void Supervised::look(MonotonicTime time) {
-  end_observations(time);
-  const bool is_stalled = status_ == ModuleStatus::Stalled;
-  const bool is_blocked = reports_.state().blocked_row != 0;
-  if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
-  if (heard_ == MonotonicTime(0) || time - heard_ < limits_.stall) return;
-  const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
-  if (is_blocked && !is_stopped) {
-    if (is_stalled) hear_.event("resumed");
-    const auto output = reports_.blocked_output();
-    return change(ModuleStatus::Running,
-                  "blocked: no reader" + (output.empty() ? "" : " on output " + output));
-  }
-  if (is_stalled) return;
-  change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
-  hear_.event("unresponsive: " + detail_);
-}
-
-void Supervised::measure(MonotonicTime time, bool with_memory) {
-  if (!process_) return;
-  with_memory = with_memory || processes_.empty();
-  if (with_memory) processes_ = descendants(process_->guard_number());
-  auto usage = usage_of(processes_, with_memory);
-  if (!with_memory) usage.memory = usage_.memory;
-  if (measured_ != MonotonicTime(0) && time > measured_)
-    processor_ = std::max(0.0, std::chrono::duration<double>(usage.processor - usage_.processor) /
-                                   std::chrono::duration<double>(time - measured_));
-  usage_ = usage;
-  measured_ = time;
-}
-
 void Supervised::note_end() {
   if (!process_) return;
   auto status = process_->poll_status();
@@ -386,41 +304,6 @@ void Supervised::note_interruption() {
   if (!can_be_cut_off()) return;
   is_interrupted_ = true;
   if (awaits_cause_) decide(0);
-}
-
-std::string Supervised::said_of(const std::string& uri) const {
-  const auto name = uri.substr(0, uri.find('?'));
-  for (auto line = lines_.last().rbegin(); !name.empty() && line != lines_.last().rend(); ++line) {
-    const auto found = line->find(name);
-    if (found == std::string::npos) continue;
-    const auto why = line->find(": ", found + name.size());
-    return why == std::string::npos ? "" : line->substr(why + 2);
-  }
-  return "";
-}
-
-ModuleState Supervised::state() const {
-  ModuleState state;
-  state.name = plan_.name;
-  state.program = plan_.program;
-  state.group = plan_.group;
-  state.process = program_;
-  state.status = status_;
-  state.detail = detail_;
-  state.restarts = std::max(0, starts_ - 1);
-  state.exit = exit_;
-  state.processor = processor_;
-  state.memory = usage_.memory;
-  state.mode = plan_.mode;
-  state.modes = plan_.modes;
-  state.in_focus = reports_.state().in_focus;
-  if (!lines_.last().empty()) {
-    state.last_line = lines_.last().back();
-    state.last_line_age = std::chrono::duration<double>(now() - said_at_).count();
-  }
-  state.parameters = plan_.parameters;
-  for (const auto& [key, value] : reports_.parameters()) state.parameters[key] = value;
-  return state;
 }
 
 }  // namespace hc::internal
