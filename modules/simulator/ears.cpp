@@ -16,7 +16,7 @@ void Ears::hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head)
   if (sound_.linked()) {
     auto draft = sound_.loan(static_cast<std::int32_t>(end - sample_), 1);
     draft.header.time = start_ + period_end(sample_, hc::room::kSoundRate);
-    for (std::size_t side : {0, 1}) {
+    for (const std::size_t side : {0U, 1U}) {
       const double distance = (T_world_head * places_[side] - kLoudspeaker).norm();
       hc::room::hear(sample_, distance, draft.matrix().numbers().subspan(side), 2);
     }

@@ -29,7 +29,7 @@ ROOT = HERE.parents[1]
 VALID = sorted((ROOT / "spec/vectors/valid").glob("*.mtp"))
 INVALID = sorted((ROOT / "spec/vectors/invalid").glob("*.mtp"))
 COMPRESSED = [path for path in VALID if path.name.startswith(("zstd", "jpeg"))]
-PICTURES = sorted((HERE / "images").glob("*.jpg"))
+IMAGES = sorted((HERE / "images").glob("*.jpg"))
 HC = "hc"
 SEEDS = (1, 2, 3)
 COUNT = 800
@@ -179,7 +179,7 @@ class Vectors(unittest.TestCase):
         self.assertGreaterEqual(len(VALID), 40)
         self.assertGreaterEqual(len(INVALID), 60)
         self.assertGreaterEqual(len(COMPRESSED), 10)
-        self.assertGreaterEqual(len(PICTURES), 8)
+        self.assertGreaterEqual(len(IMAGES), 8)
 
     def test_files_are_what_make_writes(self):
         made = run(sys.executable, str(ROOT / "spec/vectors/make.py"), "--check")
@@ -276,7 +276,7 @@ class RandomMessages(unittest.TestCase):
 
     def test_both_read_images_alike(self):
         rng = random.Random(13)
-        images = [wrap(path.read_bytes()) for path in PICTURES]
+        images = [wrap(path.read_bytes()) for path in IMAGES]
         images += [send_image(rng) for _ in range(200)]
         for i, image in enumerate(images):
             with self.subTest(i):
@@ -285,7 +285,7 @@ class RandomMessages(unittest.TestCase):
     def test_both_refuse_damaged_compressed_alike(self):
         rng = random.Random(17)
         whole = [path.read_bytes() for path in COMPRESSED]
-        whole += [wrap(path.read_bytes()) for path in PICTURES]
+        whole += [wrap(path.read_bytes()) for path in IMAGES]
         whole += [send_table(rng, rng.choice((9, 60, 400)))[1] for _ in range(50)]
         whole += [send_image(rng) for _ in range(20)]
         for i in range(800):

@@ -67,7 +67,7 @@ class PanTilt(Necks):
         self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), 0)
         self.assertEqual(self.neck.count("further ones are counted"), 3)
         self.neck.process.terminate()
-        self.neck.wait_line("in all: not finite 1 time, stale 2 times, without a time 1 time")
+        self.neck.wait_line("total: 1 not finite, 2 stale, 1 without a time")
         self.assertEqual(self.neck.process.wait(), 0)
 
     def stop_for(self, nanoseconds, program, meanwhile):
@@ -97,7 +97,7 @@ class PanTilt(Necks):
         self.assertEqual(self.neck.count("further ones are counted"), 2)
         self.assertEqual(len(self.neck.lines), 3, self.neck.lines)
         self.neck.process.terminate()
-        self.neck.wait_line("in all: stale 40 times, without a time 20 times")
+        self.neck.wait_line("total: 40 stale, 20 without a time")
 
     def test_the_unit_stops_when_the_driver_is_killed_and_started_again(self):
         self.start_both()

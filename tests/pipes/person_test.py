@@ -102,7 +102,7 @@ class HeadTracker(Bodies):
         self.assertEqual(len(self.rows("rotation")), 1)
         self.stop(process)
         self.assertEqual(self.said().count("ignored a packet"), 1, self.said())
-        self.assertIn("head_tracker: in all: invalid packet 7 times", self.said())
+        self.assertIn("head_tracker: total: 7 invalid packet", self.said())
 
     def test_a_flood_of_packets_costs_no_memory_and_no_pose(self):
         process = self.start_tracker()
@@ -127,7 +127,7 @@ class HeadTracker(Bodies):
         )
         self.stop(process)
         self.assertEqual(self.said().count("ignored a packet"), 1, self.said())
-        self.assertRegex(self.said(), r"head_tracker: in all: invalid packet \d+ times")
+        self.assertRegex(self.said(), r"head_tracker: total: \d+ invalid packet")
 
     def test_silence_and_return_are_reported_once_each(self):
         process = self.start_tracker("--silence 0.1")

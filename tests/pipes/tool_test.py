@@ -122,7 +122,7 @@ class Tool(Pipes):
         self.assertEqual(out["type"], "intensity_image")
         out = json.loads(self.shell("hc send --npy a.npy | hc cat --json"))
         self.assertEqual((out["type"], out["elements"]), ("table", [[0, 1, 2], [3, 4, 5]]))
-        out = self.shell("hc send --picture %s/aloeL.jpg --src 4 --encoding jpeg | hc info" % DATA)
+        out = self.shell("hc send --image %s/aloeL.jpg --src 4 --encoding jpeg | hc info" % DATA)
         self.assertIn("1282x1110 rgb_image 3 x u8, jpeg", out)
 
     def record(self):
@@ -234,11 +234,11 @@ class Tool(Pipes):
 
     def test_an_image_gets_the_header_that_was_asked_for(self):
         out = self.shell(
-            "hc send --picture %s/aloeL.jpg --src 3 --dst 5 --seq 9 --ttl 2 --time 5 --mode 4 --coord 8"
+            "hc send --image %s/aloeL.jpg --src 3 --dst 5 --seq 9 --ttl 2 --time 5 --mode 4 --coord 8"
             " | hc cat --raw | head -n 1" % DATA
         )
         self.assertEqual(out, "1 3 5 9 2 5 30301 4 8 1282 1110\n")
-        self.shell("hc send --picture none.jpg", 1)
+        self.shell("hc send --image none.jpg", 1)
         self.assertEqual(self.err.count("\n"), 1)
 
     def test_hostile_messages_end_with_one_line(self):

@@ -55,7 +55,7 @@ std::unique_ptr<hc::Sink> open_sink(const std::string& uri);
 std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_file_sink(const std::string& path);
 
-/// Takes the next message; false at the end, or when we are told to stop.
+/// Takes the next message; false at the end, or when we are asked to stop.
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri);
 
 /// For --skip: goes on behind damaged bytes, which `failure` tells of, and says so. Everything else

@@ -28,7 +28,7 @@ struct GraphOptions {
   bool as_dot = false;
 };
 
-/// Has Graphviz make a picture.
+/// Has Graphviz draw an image.
 void write_svg(const std::string& dot, const std::string& path) {
   if (find_program("dot").empty())
     throw Failure(hc::Error{hc::Code::NotFound, "dot is not installed; install graphviz"});

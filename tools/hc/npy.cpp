@@ -88,8 +88,8 @@ hc::Result<hc::Message> read_npy(std::span<const std::byte> bytes) {
   header.width = shape->empty() ? 1 : shape->size() == 1 ? (*shape)[0] : (*shape)[1];
   std::int32_t components = shape->size() == 3 ? (*shape)[2] : 1;
   if (components < 1 || components > 99) return malformed("1 to 99 components are possible");
-  bool is_picture = components == 3 && *scalar == hc::Scalar::U8;
-  header.info = {is_picture ? hc::MatrixType::RgbImage : hc::MatrixType::Table,
+  bool is_image = components == 3 && *scalar == hc::Scalar::U8;
+  header.info = {is_image ? hc::MatrixType::RgbImage : hc::MatrixType::Table,
                  static_cast<std::uint8_t>(components), *scalar, hc::Encoding::Binary};
   if (auto valid = hc::check(header); !valid) return valid.error();
   if (data.size() != header.element_bytes())

@@ -20,12 +20,12 @@ hc::Result<hc::Message> read(const std::string& bytes) {
 }
 
 TEST(Npy, ArraysBecomeMatrices) {
-  auto picture =
+  auto image =
       read(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (1, 2, 3), }\n", "abcdef"));
-  ASSERT_TRUE(picture) << picture.error().detail;
-  EXPECT_EQ(picture->header.info.type, hc::MatrixType::RgbImage);
-  EXPECT_EQ(picture->header.width, 2);
-  EXPECT_EQ(picture->characters(), "abcdef");
+  ASSERT_TRUE(image) << image.error().detail;
+  EXPECT_EQ(image->header.info.type, hc::MatrixType::RgbImage);
+  EXPECT_EQ(image->header.width, 2);
+  EXPECT_EQ(image->characters(), "abcdef");
   auto row = read(npy("{'descr': '<i2', 'fortran_order': False, 'shape': (3,), }\n", "aabbcc"));
   ASSERT_TRUE(row);
   EXPECT_EQ(row->header.info.type, hc::MatrixType::Table);

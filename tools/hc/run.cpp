@@ -83,7 +83,7 @@ std::string name_of(const RunOptions& options) {
   return name.empty() ? "graph" : name;
 }
 
-/// A name that a person gives is theirs alone; one that a file gives is told apart by the process.
+/// A name that a person gives is theirs alone; one that a file gives gets the process's number.
 void check_name(const RunOptions& options) {
   const auto name = name_of(options);
   for (const auto& graph : find_running()) {

@@ -25,7 +25,7 @@ namespace {
 
 struct SendOptions {
   std::string out = "-";
-  std::string type = "table", scalar = "f64", encoding, text, picture, npy;
+  std::string type = "table", scalar = "f64", encoding, text, image, npy;
   int components = 0;  // 0: the least that the type has
   std::int32_t width = 0;
   hc::Header header;
@@ -102,9 +102,9 @@ hc::Message message_of_npy(const SendOptions& options) {
 
 /// The camera module reads images, with libraries that hc does not link: its one message, over a
 /// pipe that becomes our standard input.
-hc::Message message_of_picture(const SendOptions& options) {
+hc::Message message_of_image(const SendOptions& options) {
   std::string program = find_program("camera");
-  std::vector<std::string> words = {program, "--count=1", "--source=" + options.picture,
+  std::vector<std::string> words = {program, "--count=1", "--source=" + options.image,
                                     "--name=hc send"};
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -129,7 +129,7 @@ hc::Message message_of_picture(const SendOptions& options) {
                                                     std::generic_category().message(failed)});
   auto source = open_source("-", kDefaultLimit);
   hc::Message message;
-  bool came = receive(*source, message, options.picture);
+  bool came = receive(*source, message, options.image);
   int status = 0;
   ::waitpid(child, &status, 0);
   if (!came) throw Failure(1);  // camera has said why
@@ -140,12 +140,12 @@ hc::Message message_of_picture(const SendOptions& options) {
 void check(const SendOptions& options) {
   std::vector<std::string> given;
   if (options.has_text) given.emplace_back("--text");
-  if (!options.picture.empty()) given.emplace_back("--picture");
+  if (!options.image.empty()) given.emplace_back("--image");
   if (!options.npy.empty()) given.emplace_back("--npy");
   if (!options.numbers.empty()) given.emplace_back("numbers");
   auto refuse = [](const std::string& what) { throw Failure(hc::Error{hc::Code::Invalid, what}); };
   if (given.empty() && !options.has_type)
-    refuse("nothing to send: give numbers, --text, --picture or --npy");
+    refuse("nothing to send: give numbers, --text, --image or --npy");
   if (given.size() > 1) refuse(given[0] + " and " + given[1] + " do not go together");
   if (given.size() == 1 && given[0] != "numbers" && options.has_shape)
     refuse("--scalar, --components and --width are for numbers, not for " + given[0]);
@@ -155,10 +155,10 @@ void check(const SendOptions& options) {
 
 void run(const SendOptions& options) {
   check(options);
-  hc::Message message = !options.picture.empty() ? message_of_picture(options)
-                        : !options.npy.empty()   ? message_of_npy(options)
-                        : options.has_text       ? message_of_text(options)
-                                                 : message_of_numbers(options);
+  hc::Message message = !options.image.empty() ? message_of_image(options)
+                        : !options.npy.empty() ? message_of_npy(options)
+                        : options.has_text     ? message_of_text(options)
+                                               : message_of_numbers(options);
   auto encoding = message.header.info.encoding;
   if (!options.encoding.empty())
     encoding = named(hc::encoding_of(options.encoding), "encoding", options.encoding);
@@ -187,7 +187,7 @@ void add_send(CLI::App& app) {
   auto* verb = app.add_subcommand("send", "Send one message: numbers, text, an image, a .npy file");
   verb->add_option("--out", options->out, "where it goes")->capture_default_str();
   verb->add_option("--text", options->text, "send this as a string");
-  verb->add_option("--picture", options->picture, "send an image file");
+  verb->add_option("--image", options->image, "send an image file");
   verb->add_option("--npy", options->npy, "send a NumPy array");
   verb->add_option("--type", options->type, "matrix type of the numbers or the array")
       ->capture_default_str();

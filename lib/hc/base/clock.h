@@ -51,7 +51,7 @@ class SystemClock final : public Clock {
   }
 };
 
-/// A clock that stands still until it is told otherwise. One thread turns it, any may look.
+/// A clock that a test sets. One thread turns it, any may look.
 class ManualClock final : public Clock {
  public:
   [[nodiscard]] MonotonicTime monotonic() const override { return monotonic_; }

@@ -25,7 +25,7 @@ struct ParameterOptions {
   std::int64_t step = 1;  ///< of a whole number that has a least one: from there in such steps
   std::vector<std::string> choices = {};  ///< of a string; empty: any string
   bool positional = false;  ///< may be given without its name, in the order of declaration
-  bool fixed = false;       ///< read at the start alone: the module is started anew to change it
+  bool fixed = false;       ///< read at the start alone: the module is restarted to change it
 };
 
 /// A parameter as declared, with its value.

@@ -19,7 +19,7 @@ enum class Code {
   Unsupported,  ///< a version, encoding, transport or device that this build does not have
   TooLarge,     ///< more than a limit allows
   Truncated,    ///< a stream that ended inside a message
-  Closed,       ///< the other side has gone
+  Closed,       ///< the other side has closed
   Stopped,      ///< this side was asked to stop while it waited
   NotFound,     ///< a name that nothing has, or a peer that never was there
   Invalid,      ///< arguments, parameters or a graph file that make no sense

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The compressed encodings: zstd of the binary form, and JPEG of pictures (spec/mtp-1.md,
+// The compressed encodings: zstd of the binary form, and JPEG of images (spec/mtp-1.md,
 // R34 … R37). Uses libzstd and libjpeg-turbo; no state between calls, any thread.
 
 #include <hc/base/result.h>

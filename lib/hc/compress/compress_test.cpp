@@ -23,26 +23,26 @@ Message gradient(std::uint8_t components) {
 }
 
 TEST(Compress, ZstdKeepsEveryBit) {
-  Message picture = gradient(3);
-  auto packed = compress(picture, Encoding::Zstd);
+  Message image = gradient(3);
+  auto packed = compress(image, Encoding::Zstd);
   ASSERT_TRUE(packed);
-  EXPECT_LT(packed->elements.size(), picture.elements.size());
+  EXPECT_LT(packed->elements.size(), image.elements.size());
   auto again = expand(*packed);
   ASSERT_TRUE(again);
-  EXPECT_EQ(again->characters(), picture.characters());
-  EXPECT_EQ(again->header, picture.header);
+  EXPECT_EQ(again->characters(), image.characters());
+  EXPECT_EQ(again->header, image.header);
 }
 
-TEST(Compress, JpegKeepsThePicture) {
+TEST(Compress, JpegKeepsTheImage) {
   for (int components : {1, 3}) {
-    Message picture = gradient(static_cast<std::uint8_t>(components));
-    auto packed = compress(picture, Encoding::Jpeg);
+    Message image = gradient(static_cast<std::uint8_t>(components));
+    auto packed = compress(image, Encoding::Jpeg);
     ASSERT_TRUE(packed);
-    EXPECT_LT(packed->elements.size(), picture.elements.size() / 2);
+    EXPECT_LT(packed->elements.size(), image.elements.size() / 2);
     auto again = expand(*packed);
     ASSERT_TRUE(again);
     auto numbers = again->view<std::uint8_t>()->numbers(),
-         wanted = picture.view<std::uint8_t>()->numbers();
+         wanted = image.view<std::uint8_t>()->numbers();
     double squares = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i)
       squares += std::pow(numbers[i] - wanted[i], 2) / static_cast<double>(numbers.size());
@@ -51,8 +51,8 @@ TEST(Compress, JpegKeepsThePicture) {
 }
 
 TEST(Compress, BetweenAllEncodings) {
-  Message picture = gradient(1);
-  auto jpeg = compress(picture, Encoding::Jpeg);
+  Message image = gradient(1);
+  auto jpeg = compress(image, Encoding::Jpeg);
   auto zstd = compress(*jpeg, Encoding::Zstd);
   ASSERT_TRUE(zstd);
   EXPECT_EQ(expand(*zstd)->characters(), expand(*jpeg)->characters());
@@ -61,7 +61,7 @@ TEST(Compress, BetweenAllEncodings) {
   EXPECT_EQ(compress(*jpeg, Encoding::Jpeg)->elements.data(), jpeg->elements.data());
 }
 
-TEST(Compress, R21_JpegIsForPictures) {
+TEST(Compress, R21_JpegIsForImages) {
   Message table = std::move(Draft::make(Info(), 1, 1)).finish();
   auto refused = compress(table, Encoding::Jpeg);
   ASSERT_FALSE(refused);
@@ -103,7 +103,7 @@ TEST(Expand, R36_R37_NoMemoryIsSetAsideForWhatCannotCome) {
   }
 }
 
-TEST(Expand, R36_R37_TheFlattestPicturesComeBack) {
+TEST(Expand, R36_R37_TheFlattestImagesComeBack) {
   Draft draft =
       Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 8000, 8000);
   std::fill(draft.elements().begin(), draft.elements().end(), std::byte{128});

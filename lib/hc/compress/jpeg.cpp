@@ -51,22 +51,22 @@ jpeg_error_mgr* install(ErrorHandler& handler) {
 
 /// Refuses what would keep the decoder busy for longer than an image is worth.
 void count_scans(j_common_ptr info) {
-  auto* picture = reinterpret_cast<j_decompress_ptr>(info);
-  if (picture->input_scan_number <= kMaxScans) return;
+  auto* image = reinterpret_cast<j_decompress_ptr>(info);
+  if (image->input_scan_number <= kMaxScans) return;
   auto* handler = reinterpret_cast<ErrorHandler*>(info->err);
   std::snprintf(handler->text, sizeof handler->text, "more than %d scans", kMaxScans);
   std::longjmp(handler->start, 1);
 }
 
 /// How an image differs from what the header promises; null when it does not.
-const char* find_mismatch(const jpeg_decompress_struct& picture, const Header& header) {
-  if (picture.image_width != static_cast<JDIMENSION>(header.width) ||
-      picture.image_height != static_cast<JDIMENSION>(header.height))
+const char* find_mismatch(const jpeg_decompress_struct& image, const Header& header) {
+  if (image.image_width != static_cast<JDIMENSION>(header.width) ||
+      image.image_height != static_cast<JDIMENSION>(header.height))
     return "the JPEG image has another width or height than the header says";
-  if (picture.num_components != header.info.components)
+  if (image.num_components != header.info.components)
     return "the JPEG image has another number of components than the header says";
-  if (picture.data_precision != 8) return "the JPEG image does not have 8 bits";
-  if (picture.arith_code != FALSE) return "the JPEG image is arithmetic-coded";
+  if (image.data_precision != 8) return "the JPEG image does not have 8 bits";
+  if (image.arith_code != FALSE) return "the JPEG image is arithmetic-coded";
   return nullptr;
 }
 
@@ -75,33 +75,33 @@ const char* find_mismatch(const jpeg_decompress_struct& picture, const Header& h
 std::optional<std::string> read(std::span<const std::byte> bytes, const Header& header,
                                 std::byte* pixels) {
   ErrorHandler handler;
-  jpeg_decompress_struct picture;
+  jpeg_decompress_struct image;
   jpeg_progress_mgr progress{};
   progress.progress_monitor = count_scans;
-  picture.err = install(handler);
+  image.err = install(handler);
   if (setjmp(handler.start) != 0) {
-    jpeg_destroy_decompress(&picture);
+    jpeg_destroy_decompress(&image);
     return std::string("JPEG: ") + handler.text;
   }
-  jpeg_create_decompress(&picture);
-  picture.progress = &progress;
-  jpeg_mem_src(&picture, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  jpeg_read_header(&picture, TRUE);
-  if (const char* mismatch = find_mismatch(picture, header)) {
-    jpeg_destroy_decompress(&picture);
+  jpeg_create_decompress(&image);
+  image.progress = &progress;
+  jpeg_mem_src(&image, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&image, TRUE);
+  if (const char* mismatch = find_mismatch(image, header)) {
+    jpeg_destroy_decompress(&image);
     return mismatch;
   }
-  picture.out_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-  picture.do_block_smoothing = FALSE;  // what was sent, not a guess at what was not
-  jpeg_start_decompress(&picture);
+  image.out_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  image.do_block_smoothing = FALSE;  // what was sent, not a guess at what was not
+  jpeg_start_decompress(&image);
   std::size_t row_bytes = header.row_numbers();
-  while (picture.output_scanline < picture.output_height) {
-    auto* row = reinterpret_cast<JSAMPROW>(pixels + picture.output_scanline * row_bytes);
-    jpeg_read_scanlines(&picture, &row, 1);
+  while (image.output_scanline < image.output_height) {
+    auto* row = reinterpret_cast<JSAMPROW>(pixels + image.output_scanline * row_bytes);
+    jpeg_read_scanlines(&image, &row, 1);
   }
-  jpeg_finish_decompress(&picture);
-  bool left_over = picture.src->bytes_in_buffer > 0;
-  jpeg_destroy_decompress(&picture);
+  jpeg_finish_decompress(&image);
+  bool left_over = image.src->bytes_in_buffer > 0;
+  jpeg_destroy_decompress(&image);
   if (left_over) return "bytes follow the JPEG image";
   return std::nullopt;
 }
@@ -121,29 +121,29 @@ Result<Message> expand_jpeg(const Message& message) {
 Result<Message> compress_jpeg(const Message& message, int quality) {
   const Header& header = message.header;
   ErrorHandler handler;
-  jpeg_compress_struct picture;
+  jpeg_compress_struct image;
   unsigned char* buffer = nullptr;
   unsigned long size = 0;
-  picture.err = install(handler);
+  image.err = install(handler);
   if (setjmp(handler.start) != 0) HC_CHECK(false, handler.text);  // memory alone can fail
-  jpeg_create_compress(&picture);
-  jpeg_mem_dest(&picture, &buffer, &size);
-  picture.image_width = static_cast<JDIMENSION>(header.width);
-  picture.image_height = static_cast<JDIMENSION>(header.height);
-  picture.input_components = header.info.components;
-  picture.in_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-  jpeg_set_defaults(&picture);
-  jpeg_set_quality(&picture, quality, TRUE);
+  jpeg_create_compress(&image);
+  jpeg_mem_dest(&image, &buffer, &size);
+  image.image_width = static_cast<JDIMENSION>(header.width);
+  image.image_height = static_cast<JDIMENSION>(header.height);
+  image.input_components = header.info.components;
+  image.in_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  jpeg_set_defaults(&image);
+  jpeg_set_quality(&image, quality, TRUE);
   if (quality >= kFullColourQuality)
-    picture.comp_info[0].h_samp_factor = picture.comp_info[0].v_samp_factor = 1;
-  jpeg_start_compress(&picture, TRUE);
+    image.comp_info[0].h_samp_factor = image.comp_info[0].v_samp_factor = 1;
+  jpeg_start_compress(&image, TRUE);
   auto* pixels = reinterpret_cast<const unsigned char*>(message.elements.data());
-  while (picture.next_scanline < picture.image_height) {
-    auto* row = const_cast<JSAMPROW>(pixels + picture.next_scanline * header.row_numbers());
-    jpeg_write_scanlines(&picture, &row, 1);
+  while (image.next_scanline < image.image_height) {
+    auto* row = const_cast<JSAMPROW>(pixels + image.next_scanline * header.row_numbers());
+    jpeg_write_scanlines(&image, &row, 1);
   }
-  jpeg_finish_compress(&picture);
-  jpeg_destroy_compress(&picture);
+  jpeg_finish_compress(&image);
+  jpeg_destroy_compress(&image);
   std::shared_ptr<unsigned char> owner(buffer, std::free);
   return Message{header, {reinterpret_cast<const std::byte*>(buffer), size}, owner, 0};
 }

@@ -243,7 +243,7 @@ Status Parser::read_word() {
 
   auto parameter = position_of(module_.parameters(), std::string_view(key).substr(2));
   const bool is_parameter = key.size() > 2 && parameter != module_.parameters().end();
-  // A flag stands alone, or with a value after an equals sign.
+  // A flag needs no value; one may follow an equals sign.
   if (is_parameter && std::holds_alternative<bool>((*parameter)->value))
     return (*parameter)->set(given.value_or("true"));
   auto option = std::find_if(kOptions.begin(), kOptions.end(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a module is told while it runs: commands, modes, routes, timers.
+// What changes while a module runs: commands, modes, routes, timers.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -51,7 +51,7 @@ TEST_F(RunningModule, ObeysCommands) {
   ASSERT_TRUE(*receive(*other, message));
   EXPECT_FALSE(*receive(*from, message));
 
-  // What is wrong changes nothing, and is told.
+  // What is wrong changes nothing, and is an error.
   for (const char* line : {"set factor=-1", "set factor", "set colour=1", "set title=b", "link up",
                            "unlink out out=inproc:nowhere", "route out=x via=y", "jump"})
     ASSERT_TRUE(tell(*control_, line));

@@ -22,7 +22,7 @@ constexpr const char* kSetsKept = "4";      // by links whose newest complete se
 constexpr std::chrono::milliseconds kLineDelay{200};
 constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
 
-/// What ends a module: cleanly when it was told to stop, else with the name of who failed.
+/// Ends the module: cleanly if it is to stop, else with the name of what failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
   if (error.code == Code::Stopped) throw Stopped();
   throw ModuleError(Error{error.code, who + ": " + error.detail});
@@ -150,8 +150,8 @@ void Module::Loop::choose_policies() {
     });
 }
 
-/// Has links that were made anew count on from those that have ended in their place; whether there
-/// are any.
+/// Has links that were opened again count on from those that ended before them; whether there are
+/// any.
 bool Module::Loop::join_renewed() {
   bool any = false;
   for (auto link = sources_.begin(); link != sources_.end();) {
@@ -215,8 +215,8 @@ void Module::Loop::run() {
   if (module_.end_) module_.end_();
 }
 
-/// Whether nothing can come any more. A module that can be told to link an input anew waits for
-/// that where it has none; one without inputs has its timers.
+/// Whether nothing can come any more. A module that takes commands waits for a new link
+/// where an input has none; one without inputs has its timers.
 bool Module::Loop::all_ended() const {
   if (module_.keeps_running_ && !module_.message_time_) return false;
   if (sources_.empty() &&
@@ -332,19 +332,19 @@ void Module::Loop::end(Inlet& link) {
       input->together->matcher.end(input->place);
 }
 
-/// Ends inputs that are taken together and have no link, nor can be told of one.
+/// Ends inputs that are taken together and have no link, and cannot get one by a command.
 void Module::Loop::end_unlinked() {
-  const bool is_told = management_.commands() != nullptr;
+  const bool is_controlled = management_.commands() != nullptr;
   for (const auto& together : module_.together_) {
     std::string unlinked;
     for (const auto& input : together->inputs) {
       if (is_linked(*input)) continue;
       unlinked = input->name;
-      if (!is_told) together->matcher.end(input->place);
+      if (!is_controlled) together->matcher.end(input->place);
     }
     for (const auto& input : together->inputs)
       if (!unlinked.empty() && is_linked(*input))
-        module_.log(input->name + (is_told ? ": left out as long as " : ": not read, since ") +
+        module_.log(input->name + (is_controlled ? ": waits as long as " : ": not read, since ") +
                     unlinked + " has no link");
   }
 }

@@ -18,7 +18,7 @@ namespace hc {
 
 namespace internal {
 
-/// Thrown to end a module cleanly: nobody reads it any more, or it was told to stop.
+/// Thrown to end a module cleanly: nobody reads it any more, or it was asked to stop.
 struct Stopped {};
 
 /// A link whose messages come in: to one port, to all of them from standard input, or the focus.

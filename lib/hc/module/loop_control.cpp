@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A module's loop: what it is told by who runs it, and what it reports.
+// A module's loop: the commands of who runs it, and the reports to them.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -144,7 +144,7 @@ Status Module::Loop::set_parameter(const std::string& name, const std::string& v
 Status Module::Loop::link(bool is_input, const std::string& text) {
   auto link = internal::parse_port_link(module_, is_input, text);
   if (!link) return link.error();
-  // What cannot be opened is told, and leaves the module as it was.
+  // What cannot be opened is an error, and changes nothing.
   try {
     if (link->is_focus) {
       std::erase_if(focus_, [uri = link->uri.text()](const auto& each) { return each.uri == uri; });

@@ -130,9 +130,8 @@ void Module::log_once(const std::string& kind, std::string_view line, std::int64
 void Module::log_counts() const {
   std::string counts;
   for (const auto& [kind, count] : logged_)
-    counts += (counts.empty() ? "" : ", ") + kind + " " + std::to_string(count) +
-              (count == 1 ? " time" : " times");
-  if (!counts.empty()) log("in all: " + counts);
+    counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+  if (!counts.empty()) log("total: " + counts);
 }
 
 Timeout Module::after(std::chrono::nanoseconds duration, std::function<void()> handler) {

@@ -208,7 +208,7 @@ class Module {
   }
 
   /// For generators: waits until the next period of a rate begins, counted from the first call.
-  /// A module that is told to stop ends here. @param rate [Hz]
+  /// A module that is asked to stop ends here. @param rate [Hz]
   void keep_rate(double rate);
 
   /// Writes a line to standard error, with the module's name before it.
@@ -218,7 +218,7 @@ class Module {
   ///
   ///     module.log_once("stale", "command dropped: 0.3 s old");
   ///
-  /// @param kind  a literal, as the count names it: "stale 12 times".
+  /// @param kind  a literal, as the count names it: "total: 12 stale".
   /// @param count  how many there were.
   void log_once(const std::string& kind, std::string_view line, std::int64_t count = 1);
 
@@ -244,8 +244,8 @@ class Module {
   /// when it has no mode of its own (`--mode`), and when it has no link from a workspace.
   [[nodiscard]] bool has_focus() const { return attention_.has_own_focus(); }
 
-  /// Runs the module as the command line says, until its inputs end, all its readers have gone, or
-  /// it is told to stop (SIGINT, SIGTERM).
+  /// Runs the module as the command line says, until its inputs end, all its readers have
+  /// disconnected, or it is asked to stop (SIGINT, SIGTERM).
   /// @returns  what main() is to return: 0 done, 1 failure, 2 bad arguments.
   int run(int argc, char** argv);
 

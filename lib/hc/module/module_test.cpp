@@ -67,7 +67,7 @@ TEST(Module, AnswersEachMessageAndKeepsItsTime) {
 }
 
 TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
-  Module module{"copy", "Copies pictures."};
+  Module module{"copy", "Copies images."};
   auto in = module.input("in", intensity_image<std::uint8_t>(), "");
   auto out = module.output("out", intensity_image<std::uint8_t>(), "");
   module.on(in, [&](const auto& message) {
@@ -240,7 +240,7 @@ TEST(Module, AnInputOfFiniteNumbersDropsOthersAndCountsThem) {
                                 rotation(0.0, 0.0, std::numeric_limits<double>::infinity())}}});
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "sum: in: dropped: NaN or infinity (further ones are counted, not logged)\n"
-            "sum: in all: not finite 2 times\n");
+            "sum: total: 2 not finite\n");
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].view<double>()->at(0, 0, 2), 3.0);
 }
@@ -384,7 +384,7 @@ TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
 
 TEST(Module, DescribesItself) {
   Module module{"blob", "Finds the \"largest\" blob."};
-  auto in = module.input("image", any_of(rgb_image<std::uint8_t>().in(7)), "picture");
+  auto in = module.input("image", any_of(rgb_image<std::uint8_t>().in(7)), "image");
   auto depth = module.input("depth", anything(), "its depth");
   module.on(together(in, depth), [](const auto&, const auto&) {});
   auto out = module.output("target", position<double>(), "centre");
@@ -394,7 +394,7 @@ TEST(Module, DescribesItself) {
       to_json(internal::description_of(module)),
       R"({"name":"blob","summary":"Finds the \"largest\" blob.","inputs":[{"name":"image","types":)"
       R"([{"type":"rgb_image","components":3,"scalar":"u8","width":0,"height":0,"coord":7}],)"
-      R"("doc":"picture"},{"name":"depth","types":[],"doc":"its depth"}],)"
+      R"("doc":"image"},{"name":"depth","types":[],"doc":"its depth"}],)"
       R"("together":[["image","depth"]],)"
       R"("outputs":[{"name":"target","types":[{"type":"position","components":3,)"
       R"("scalar":"f64","width":0,"height":0,"coord":0}],"encoding":"text","doc":"centre"}],)"
@@ -405,7 +405,7 @@ TEST(Module, DescribesItself) {
       R"("routes":false})");
   std::string help = internal::help(module);
   for (const char* part :
-       {"Usage: hc blob", "picture (rgb_image 3 x u8 in coordinate system 7)",
+       {"Usage: hc blob", "image (rgb_image 3 x u8 in coordinate system 7)",
         "Taken together, by their times: image, depth\n", "colour [turn] (default 0.5)",
         "way: fast, good (default fast)", "--exclusive PORT", "--route 'PORT=URI WORDS'"})
     EXPECT_NE(help.find(part), std::string::npos) << help;

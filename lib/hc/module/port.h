@@ -27,7 +27,7 @@ struct TogetherState;
 /// One end of a link, at a port.
 struct LinkedSink {
   std::string uri;
-  std::unique_ptr<Sink> sink;  ///< null once the reader has gone
+  std::unique_ptr<Sink> sink;  ///< null once the reader has disconnected
   Traffic traffic;             ///< as it was when the link ended
   Route route;                 ///< which messages go here
 };

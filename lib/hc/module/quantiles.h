@@ -41,8 +41,8 @@ class Quantiles {
   void clear() { *this = {}; }
 
  private:
-  static constexpr unsigned kSteps = 8;  // in an octave
-  static constexpr std::size_t kClasses = std::size_t{64} * kSteps;
+  static constexpr std::size_t kSteps = 8;  // in an octave
+  static constexpr std::size_t kClasses = 64 * kSteps;
 
   /// Values below 8 have a class each; from there on an octave has 8.
   static std::size_t class_of(std::uint64_t value) {

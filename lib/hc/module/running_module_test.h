@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the tests of running modules share: a module on a thread of its own, and what it is told and
-// reports. Internal.
+// What the tests of running modules share: a module on a thread of its own, and what it is asked
+// and reports. Internal.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ class RunningModule : public ::testing::Test {
       status_ = module.run(static_cast<int>(arguments.size()), arguments.data());
     });
   }
-  /// The same for one that reports and is told.
+  /// The same for one that reports and takes commands.
   void start_managed(Module& module, std::vector<std::string> words = {}) {
     control_ = sink_of(uri("control"));
     reports_ = source_of(uri("reports"));

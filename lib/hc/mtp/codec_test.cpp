@@ -68,11 +68,11 @@ TEST(Codec, AMillionRandomMessagesComeBackToTheBit) {
 TEST(Codec, ImagesAreDecodedInPlace) {
   Draft draft = Draft::make({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 800, 600);
   std::string bytes = encode(std::move(draft).finish());
-  Message picture;
-  ASSERT_EQ(*decode(bytes_of(bytes), picture), bytes.size());
-  auto* elements = reinterpret_cast<const char*>(picture.elements.data());
+  Message image;
+  ASSERT_EQ(*decode(bytes_of(bytes), image), bytes.size());
+  auto* elements = reinterpret_cast<const char*>(image.elements.data());
   EXPECT_TRUE(elements > bytes.data() && elements < bytes.data() + bytes.size());
-  EXPECT_EQ(picture.owner, nullptr);
+  EXPECT_EQ(image.owner, nullptr);
 }
 
 TEST(Codec, ElementsAreAlwaysAligned) {
@@ -108,7 +108,7 @@ TEST(CodecDeathTest, ElementsThatAreNotWhatTheHeaderSaysAreABug) {
   EXPECT_DEATH(encode(message), "check failed");
 }
 
-// The paper's ratio: a colour SVGA picture is about 15,000 times the size of a position.
+// The paper's ratio: a colour SVGA image is about 15,000 times the size of a position.
 TEST(Codec, APositionTakesAtMost96Bytes) {
   Header header;
   header.src = 1234;

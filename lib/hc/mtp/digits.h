@@ -95,7 +95,7 @@ Outcome read_integer(const char* first, const char* last, T& value, const char*&
 }
 
 // The writers below give back where they ended. Those of few digits go by branches, which are
-// mostly foretold right, so that what comes next need not wait for the value.
+// mostly predicted right, so that what comes next need not wait for the value.
 
 /// Writes both digits of `value` < 100.
 inline char* write_2_digits(char* at, std::uint64_t value) {

@@ -33,7 +33,7 @@ TEST(Info, EveryCodeIsAcceptedOrNamesItsRule) {
   }
   // By hand from the table: position and rotation 3·2, rgb 2·4, intensity 10, field 99·10, string
   // 1, transformation 2, dense 990, sparse 980, sound, map, table 990 each; times text, binary,
-  // zstd; and two pictures in jpeg.
+  // zstd; and two images in jpeg.
   EXPECT_EQ(accepted, 3 * (6 + 6 + 8 + 10 + 990 + 1 + 2 + 990 + 980 + 3 * 990) + 2);
 }
 

@@ -87,7 +87,7 @@ std::optional<Finding> find_shape_error(std::size_t field, std::int64_t width, s
   std::int64_t side = field == Width ? width : height;
   if (info.encoding == Encoding::Jpeg && (side < 1 || side > kMaxJpegSide))
     return Finding{Code::Malformed, 21, field,
-                   "a jpeg picture's side is 1 to 65500, not " + std::to_string(side)};
+                   "the side of a JPEG image is 1 to 65500, not " + std::to_string(side)};
   if (field == Width && info.type == MatrixType::SparseGraph && side != 1)
     return Finding{Code::Malformed, 22, field,
                    "a sparse graph has width 1, not " + std::to_string(side)};

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Info kRgb{MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary};
 
-Message small_picture() {
+Message small_image() {
   Draft draft = Draft::make(kRgb, 2, 3);
   auto pixels = draft.view<std::uint8_t>();
   for (std::size_t i = 0; i < pixels.numbers().size(); ++i)
@@ -17,28 +17,28 @@ Message small_picture() {
 }
 
 TEST(Message, IsViewedWithoutACopy) {
-  Message picture = small_picture();
-  auto pixels = picture.view<std::uint8_t>();
+  Message image = small_image();
+  auto pixels = image.view<std::uint8_t>();
   ASSERT_TRUE(pixels);
   EXPECT_EQ(pixels->width(), 2U);
   EXPECT_EQ(pixels->height(), 3U);
   EXPECT_EQ(pixels->components(), 3U);
   EXPECT_FALSE(pixels->empty());
-  EXPECT_EQ(static_cast<const void*>(pixels->numbers().data()), picture.elements.data());
+  EXPECT_EQ(static_cast<const void*>(pixels->numbers().data()), image.elements.data());
   EXPECT_EQ(pixels->at(1, 1, 2), 11);
   EXPECT_EQ(pixels->row(2)[0], 12);
 }
 
 TEST(Message, AnotherScalarIsRefused) {
-  EXPECT_EQ(small_picture().view<float>().error().code, Code::Unsupported);
-  Message packed = small_picture();
+  EXPECT_EQ(small_image().view<float>().error().code, Code::Unsupported);
+  Message packed = small_image();
   packed.header.info.encoding = Encoding::Jpeg;
   EXPECT_FALSE(packed.view<std::uint8_t>());
 }
 
 TEST(MessageDeathTest, OutsideIsABug) {
-  Message picture = small_picture();
-  auto pixels = *picture.view<std::uint8_t>();
+  Message image = small_image();
+  auto pixels = *image.view<std::uint8_t>();
   EXPECT_DEATH(static_cast<void>(pixels.at(3, 0)), "check failed");
   EXPECT_DEATH(static_cast<void>(pixels.row(3)), "check failed");
   EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, 1, 1).view<float>()), "check failed");
@@ -46,12 +46,12 @@ TEST(MessageDeathTest, OutsideIsABug) {
 }
 
 TEST(Message, KeepOwnsWhatWasBorrowed) {
-  Message picture = small_picture();
-  EXPECT_EQ(picture.keep().elements.data(), picture.elements.data());
-  Message borrowed{picture.header, picture.elements, nullptr, 0};
+  Message image = small_image();
+  EXPECT_EQ(image.keep().elements.data(), image.elements.data());
+  Message borrowed{image.header, image.elements, nullptr, 0};
   Message kept = borrowed.keep();
-  EXPECT_NE(kept.elements.data(), picture.elements.data());
-  EXPECT_EQ(kept.characters(), picture.characters());
+  EXPECT_NE(kept.elements.data(), image.elements.data());
+  EXPECT_EQ(kept.characters(), image.characters());
   EXPECT_NE(kept.owner, nullptr);
 }
 
