@@ -54,9 +54,9 @@ OpenedSink listening_sink(const Uri& uri, const LinkOptions& options) {
 constexpr std::array<Transport, 8> kTransports = {{
     {"-", "", "keep rate burst memory", internal::open_stdin, internal::open_stdout},
     {"file", "", "keep rate burst memory", internal::open_file_source, internal::open_file_sink},
-    {"tcp", "wait reconnect", "wait reconnect keep rate burst memory",
+    {"tcp", "wait reconnect same_user", "wait reconnect same_user keep rate burst memory",
      connect_source<internal::tcp_peer>, connect_sink<internal::tcp_peer>},
-    {"tcp-listen", "", "readers stay keep rate burst memory",
+    {"tcp-listen", "same_user", "readers stay same_user keep rate burst memory",
      listening_source<internal::listen_tcp>, listening_sink<internal::listen_tcp>},
     {"unix", "wait reconnect", "wait reconnect keep rate burst memory",
      connect_source<internal::unix_peer>, connect_sink<internal::unix_peer>},
@@ -118,7 +118,7 @@ Status check_end(const Uri& uri, std::string_view allowed) {
   } else if (uri.scheme != "-" && (uri.rest.empty() || uri.rest == "@")) {
     return Error{Code::Invalid, "there is no name"};
   }
-  for (const char* key : {"wait", "reconnect", "readers", "stay", "spin"})
+  for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user"})
     if (auto number = internal::number_option(uri, key, 0); !number) return number.error();
   auto policy = internal::parse_policy(uri);
   return policy ? Status() : policy.error();

@@ -30,6 +30,9 @@ inline std::string in_words(const Error& error) {
   return error.code == Code::Closed ? error.detail : error.text();
 }
 
+/// The longest pause between two tries at a peer on this host.
+constexpr std::chrono::milliseconds kLocalPause{100};
+
 /// Where and how to connect.
 struct Peer {
   std::vector<Address> addresses;  ///< all are tried in turn

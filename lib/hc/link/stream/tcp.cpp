@@ -6,6 +6,8 @@
 #include <memory>
 
 #include <hc/link/stream/peers.h>
+#include <hc/link/transports.h>
+#include <hc/os/peer_user.h>
 
 namespace hc::internal {
 namespace {
@@ -29,14 +31,33 @@ Result<Addresses> resolve(const Uri& uri, int flags) {
   return Addresses(list);
 }
 
+/// What `same_user=1` has asked of each connection; empty without it. Errors: Invalid.
+Result<std::function<Status(int)>> admission(const Uri& uri, Connected how) {
+  auto same_user = number_option(uri, "same_user", 0, 1);
+  if (!same_user) return same_user.error();
+  if (*same_user == 0) return std::function<Status(int)>();
+  return std::function([how](int socket) -> Status {
+    const std::string what =
+        how == Connected::Dialed ? "the listener is a process of " : "refused a peer of ";
+    auto user = tcp_peer_user(socket, how);
+    if (!user) return Error{Code::Closed, what + "an unknown user: " + user.error().detail};
+    auto who = foreigner_of(*user);
+    return who.empty() ? Status() : Error{Code::Closed, what + who};
+  });
+}
+
 }  // namespace
 
 /// A name may have several addresses; localhost has two.
 Result<Peer> tcp_peer(const Uri& uri) {
   auto list = resolve(uri, 0);
   if (!list) return list.error();
+  auto admit = admission(uri, Connected::Dialed);
+  if (!admit) return admit.error();
   Peer peer;
   peer.name = uri.rest;
+  peer.admit = std::move(*admit);
+  if (peer.admit) peer.longest_pause = kLocalPause;
   for (const addrinfo* each = list->get(); each != nullptr; each = each->ai_next)
     peer.addresses.emplace_back(each->ai_addr, each->ai_addrlen);
   return peer;
@@ -45,10 +66,13 @@ Result<Peer> tcp_peer(const Uri& uri) {
 Result<ListeningSocket> listen_tcp(const Uri& uri) {
   auto addresses = resolve(uri, AI_PASSIVE);
   if (!addresses) return addresses.error();
+  auto admit = admission(uri, Connected::Accepted);
+  if (!admit) return admit.error();
   auto descriptor = listen_on({(*addresses)->ai_addr, (*addresses)->ai_addrlen}, uri.rest);
   if (!descriptor) return descriptor.error();
   ListeningSocket socket;
   socket.descriptor = std::move(*descriptor);
+  socket.admit = std::move(*admit);
   return socket;
 }
 

@@ -8,6 +8,7 @@
 
 #include <hc/link/stream/dialing.h>
 #include <hc/link/stream/listening.h>
+#include <hc/os/peer_user.h>
 #include <hc/testing/reconnect.h>
 
 namespace {
@@ -15,7 +16,15 @@ namespace {
 /// Whether the kernel chooses the other's port for a socket that connects, as it may.
 std::atomic<bool> chooses_the_same_port{false};
 
+/// Whether this process takes itself for another user's.
+std::atomic<bool> is_another{false};
+
 }  // namespace
+
+extern "C" uid_t geteuid() noexcept {
+  static auto* next = reinterpret_cast<decltype(&geteuid)>(::dlsym(RTLD_NEXT, "geteuid"));
+  return next() + (is_another ? 1 : 0);
+}
 
 extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
   static auto* next = reinterpret_cast<decltype(&connect)>(::dlsym(RTLD_NEXT, "connect"));
@@ -210,6 +219,85 @@ TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
   send(small.size());
   ASSERT_TRUE(*receive(source, message));
   EXPECT_EQ(message.header.seq, 8);
+}
+
+/// Makes sockets of another user, as root can; any other user takes its own for those.
+class Foreign {
+ public:
+  Foreign() {
+    if (own_ != 0) is_another = true;
+  }
+  ~Foreign() { is_another = false; }
+
+  template <typename Make>
+  auto make(Make make) {
+    EXPECT_EQ(::seteuid(uid_), 0);
+    auto made = make();
+    EXPECT_EQ(::seteuid(own_), 0);
+    return made;
+  }
+  [[nodiscard]] std::string name() const {
+    return "another user (uid " + std::to_string(uid_) + ")";
+  }
+
+ private:
+  const uid_t own_ = ::geteuid(), uid_ = own_ == 0 ? 65534 : own_;
+};
+
+TEST(Tcp, TheSameUserIsLetInWhereNobodyElseIs) {
+  const std::string place = free_port();
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1&same_user=1");
+  auto source = source_of("tcp:" + place + "?same_user=1");
+  ASSERT_TRUE(sink->send(numbered(0, 1)));
+  Message message;
+  EXPECT_TRUE(*receive(*source, message));
+  EXPECT_EQ(open_source(*parse_uri("tcp:" + place + "?same_user=2")).error().code, Code::Invalid);
+}
+
+TEST(Tcp, AnotherUserIsRefusedWhereOnlyTheSameIsLetIn) {
+  Warnings warnings;
+  Foreign foreign;
+  const std::string uri = "tcp-listen:" + free_port() + "?same_user=1";
+  auto source = source_of(uri, warnings.options());
+  auto peer = foreign.make([&] { return connect(parse_uri(uri)->rest); });
+  const std::string bytes = encode(numbered(0, 1));
+  ASSERT_EQ(::send(peer.get(), bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  Message message;
+  while (warnings.lines.empty()) {
+    ASSERT_TRUE(source->wait(-1, std::chrono::milliseconds(-1)));
+    ASSERT_EQ(*source->take(message), Got::Nothing);
+  }
+  EXPECT_EQ(warnings.lines[0], uri + ": refused a peer of " + foreign.name());
+}
+
+TEST(Tcp, AListenerOfAnotherUserIsRefused) {
+  Foreign foreign;
+  auto listening = foreign.make([] { return *internal::listen_on(loopback_address(0), "any"); });
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string place = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  auto refused = open_source(*parse_uri("tcp:" + place + "?same_user=1"));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().detail,
+            "connect(" + place + "): the listener is a process of " + foreign.name());
+  auto peer = connect(place);
+  EXPECT_TRUE(internal::tcp_peer_user(peer.get(), internal::Connected::Dialed));
+  EXPECT_FALSE(internal::tcp_peer_user(peer.get(), internal::Connected::Accepted));
+}
+
+TEST(Tcp, APeerThatHasLeftIsOfNoUser) {
+  auto listening = *internal::listen_on(loopback_address(0), "any");
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+  auto peer = connect("127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
+  internal::Descriptor accepted(::accept(listening.get(), nullptr, nullptr));
+  ASSERT_TRUE(accepted);
+  EXPECT_TRUE(internal::tcp_peer_user(accepted.get(), internal::Connected::Accepted));
+  peer.reset();
+  EXPECT_EQ(internal::tcp_peer_user(accepted.get(), internal::Connected::Accepted).error().code,
+            Code::NotFound);
 }
 
 TEST(Tcp, AHostWithoutAnAddressIsNotFound) {

@@ -13,8 +13,6 @@
 namespace hc::internal {
 namespace {
 
-constexpr std::chrono::milliseconds kLocalPause{100};
-
 struct UnixAddress {
   sockaddr_un address{};
   unsigned size = 0;
@@ -59,8 +57,12 @@ std::string foreigner(int socket) {
   socklen_t size = sizeof credentials;
   if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0)
     return "a user that the kernel does not tell";
-  if (credentials.uid == ::geteuid() || credentials.uid == 0) return "";
-  return "another user (uid " + std::to_string(credentials.uid) + ")";
+  return foreigner_of(credentials.uid);
+}
+
+std::string foreigner_of(uid_t user) {
+  if (user == ::geteuid() || user == 0) return "";
+  return "another user (uid " + std::to_string(user) + ")";
 }
 
 namespace {

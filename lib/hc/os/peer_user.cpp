@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/os/peer_user.h>
+
+#include <arpa/inet.h>
+#include <linux/inet_diag.h>
+#include <linux/netlink.h>
+#include <linux/sock_diag.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cstring>
+
+#include <hc/os/descriptor.h>
+
+namespace hc::internal {
+namespace {
+
+struct Question {
+  nlmsghdr header{sizeof(Question), SOCK_DIAG_BY_FAMILY, NLM_F_REQUEST, 0, 0};
+  inet_diag_req_v2 wanted{};
+};
+
+struct Answer {
+  nlmsghdr header;
+  union {
+    inet_diag_msg found;
+    nlmsgerr failed;
+  };
+};
+
+bool is_loopback(const sockaddr_storage& address) {
+  if (address.ss_family == AF_INET)
+    return ntohl(reinterpret_cast<const sockaddr_in&>(address).sin_addr.s_addr) >>
+               IN_CLASSA_NSHIFT ==
+           IN_LOOPBACKNET;
+  return address.ss_family == AF_INET6 &&
+         IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6&>(address).sin6_addr);
+}
+
+/// Writes an address into a question; gives its port, in the order of the network.
+in_port_t put(const sockaddr_storage& address, __be32* words) {
+  if (address.ss_family == AF_INET) {
+    const auto& place = reinterpret_cast<const sockaddr_in&>(address);
+    words[0] = place.sin_addr.s_addr;
+    return place.sin_port;
+  }
+  const auto& place = reinterpret_cast<const sockaddr_in6&>(address);
+  std::memcpy(words, &place.sin6_addr, sizeof place.sin6_addr);
+  return place.sin6_port;
+}
+
+/// The user of a socket with these two ends. Without the other end, of one that listens.
+///
+/// Source: man 7 sock_diag. Errors: NotFound (also a socket that nobody has, not yet or not any
+/// more), System.
+Result<uid_t> user_of(const sockaddr_storage& end, const sockaddr_storage* other) {
+  Question question;
+  question.wanted.sdiag_family = static_cast<std::uint8_t>(end.ss_family);
+  question.wanted.sdiag_protocol = IPPROTO_TCP;
+  question.wanted.idiag_states = ~0U;
+  auto& id = question.wanted.id;
+  id.idiag_sport = put(end, id.idiag_src);
+  if (other != nullptr) id.idiag_dport = put(*other, id.idiag_dst);
+  id.idiag_cookie[0] = id.idiag_cookie[1] = INET_DIAG_NOCOOKIE;
+  Descriptor kernel(::socket(AF_NETLINK, SOCK_DGRAM | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
+  Answer answer{};
+  if (::send(kernel.get(), &question, sizeof question, 0) < 0 ||
+      ::recv(kernel.get(), &answer, sizeof answer, 0) < 0)
+    return system_error("sock_diag", "");
+  const int number = answer.header.nlmsg_type == NLMSG_ERROR ? -answer.failed.error : 0;
+  if (number != 0 && number != ENOENT) return system_error("sock_diag", "", number);
+  if (number != 0 || answer.found.idiag_inode == 0)
+    return Error{Code::NotFound, "the kernel (sock_diag) does not find its socket"};
+  return answer.found.idiag_uid;
+}
+
+}  // namespace
+
+Result<uid_t> tcp_peer_user(int socket, Connected how) {
+  sockaddr_storage own{}, peer{};
+  socklen_t own_size = sizeof own, peer_size = sizeof peer;
+  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&own), &own_size) != 0 ||
+      ::getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &peer_size) != 0)
+    return Error{Code::NotFound, "its socket is closed"};
+  if (!is_loopback(peer)) return Error{Code::NotFound, "it is not on the loopback address"};
+  auto user = user_of(peer, &own);
+  return user || how == Connected::Accepted ? user : user_of(peer, nullptr);
+}
+
+}  // namespace hc::internal
