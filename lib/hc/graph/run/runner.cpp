@@ -97,7 +97,7 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
     if (is_failure) failures_.push_back({name, ended->exit().value_or(0)});
   };
   hear.interrupted = [this, name] {
-    for (auto* neighbour : neighbours_of(name)) neighbour->note_interruption();
+    for (auto* each : cut_off_by(name)) each->note_interruption();
   };
   hear.has_work = [this, name] {
     bool has_writers = false, is_written_to = false, is_read = false;
@@ -134,6 +134,22 @@ std::set<Supervised*> Runner::neighbours_of(const std::string& name) const {
   return neighbours;
 }
 
+/// Who ends when a module does, though not for good: its neighbours without `control`, and theirs,
+/// which may have ended before these have.
+std::set<Supervised*> Runner::cut_off_by(const std::string& name) const {
+  std::set<Supervised*> cut_off;
+  std::vector<std::string> way = {name};
+  while (!way.empty()) {
+    const std::string last = std::move(way.back());
+    way.pop_back();
+    for (auto* each : neighbours_of(last))
+      if (each->plan().control_uri.empty() && each->plan().name != name &&
+          cut_off.insert(each).second)
+        way.push_back(each->plan().name);
+  }
+  return cut_off;
+}
+
 void Runner::tell(const std::string& line) const {
   if (options_.event) options_.event(line);
 }
@@ -160,10 +176,11 @@ void Runner::hear(std::string line) {
 
 /// Puts "MODULE.PORT → MODULE.PORT" in the place of a link's URI.
 std::string Runner::with_link_names(std::string line) const {
-  if (plan_.token.empty() || line.find(plan_.token) == std::string::npos) return line;
+  const bool has_token = !plan_.token.empty() && line.find(plan_.token) != std::string::npos;
+  if (!has_token && plan_.ports.empty()) return line;
   for (const auto& link : plan_.links)
     for (const auto* uri : {&link.reader_uri, &link.sender_uri}) {
-      const bool is_inside = uri->find(plan_.token) != std::string::npos;
+      const bool is_inside = !link.reader_uri.empty() && !link.sender_uri.empty();
       const auto found = is_inside ? line.find(*uri) : std::string::npos;
       if (found != std::string::npos)
         return line.replace(found, uri->size(), link.from + " → " + link.to);

@@ -48,6 +48,7 @@ class Runner {
   [[nodiscard]] Supervised* at(const std::string& end) const;
 
   [[nodiscard]] std::set<Supervised*> neighbours_of(const std::string& name) const;
+  [[nodiscard]] std::set<Supervised*> cut_off_by(const std::string& name) const;
 
   void tell(const std::string& line) const;
   void say(const std::string& line);

@@ -47,6 +47,25 @@ TEST_F(Supervision, OneThatIsKilledComesBackAndTheOthersGoOn) {
   EXPECT_EQ(module(*report, "b").restarts, 0);
 }
 
+TEST_F(Supervision, OneThatEndsBeforeItsCutOffWriterDoesIsRestarted) {
+  add("first", "echo $$ >&2; exec sleep 1000");
+  add("second", "exec sleep 1000");
+  add("third", "trap 'exit 0' USR1; echo $$ >&2; while :; do sleep 1000 & wait; done");
+  plan_.links = {{"first.out", "second.in", "", "", "all", {}, false},
+                 {"second.out", "third.in", "", "", "all", {}, false}};
+  std::map<std::string, pid_t> pids;
+  heard_ = [&](std::string_view line) {
+    const auto name = std::string(line.substr(0, line.find(':')));
+    const auto number = std::atoi(std::string(line.substr(name.size() + 2)).c_str());
+    if (number > 0 && pids.emplace(name, number).second && pids.size() == 2)
+      ::kill(pids["first"], SIGKILL);
+    if (line == "first: killed by signal 9; restarting") ::kill(pids["third"], SIGUSR1);
+    if (line.starts_with("third: ended")) stop();
+  };
+  ASSERT_TRUE(run());
+  EXPECT_EQ(count("third: ended; restarting"), 1);
+}
+
 TEST_F(Supervision, OneThatEndsAtOnceIsPutOffAndGivenUp) {
   add("a", "exit 3");
   auto report = run();
