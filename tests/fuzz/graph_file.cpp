@@ -12,7 +12,7 @@ constexpr const char* kPorts =
     R"("types":[{"type":"table","components":1,"scalar":"f64","width":0,"height":0,"coord":0}]},)"
     R"({"name":"focus","types":[{"type":"table","components":1,"scalar":"i32","width":1,"height":1,)"
     R"("coord":0}]}],"parameters":[{"name":"p","type":"integer","min":0,"fixed":true},)"
-    R"({"name":"frames","type":"string"}],"transports":["shm","tcp","file"])";
+    R"({"name":"frames","type":"string"}],"transports":["shm","tcp","tcp-listen","unix","file"])";
 
 /// What a program says of itself: much of it hangs on its name's first letter.
 std::string describe(const std::string& program) {

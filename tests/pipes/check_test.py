@@ -44,6 +44,9 @@ PROGRAMS = {
     "relay": program(port("in"), port("out")),
     "actor": program(port("command", more=',"actor":true'), port("pose", POSE), CONTROL),
     "workspace": program(port("bids"), port("focus", FOCUS), CONTROL),
+    "tcp": program(port("in"), port("out"), ',"transports":["tcp","tcp-listen"]'),
+    "unix": program(port("in"), port("out"), ',"transports":["unix","unix-listen"]'),
+    "tcp_control": program("", "", CONTROL + ',"transports":["tcp","tcp-listen"]'),
 }
 LIAR = '#!/bin/sh\necho \'{"inputs":[{}],"outputs":[{"name":3,"types":[]}],"parameters":"none"}\'\n'
 

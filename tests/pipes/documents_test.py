@@ -99,6 +99,7 @@ class Documents(Pipes):
     def run_document(self, name):
         pathlib.Path(self.path("graphs")).symlink_to(ROOT / "graphs")
         pathlib.Path(self.path("modules")).symlink_to(ROOT / "modules")
+        pathlib.Path(self.path("templates")).symlink_to(ROOT / "templates")
         pathlib.Path(self.path("data")).symlink_to(DATA)
         for block in self.commands(name):
             with self.subTest(block):

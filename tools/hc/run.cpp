@@ -121,7 +121,9 @@ void run(const RunOptions& options) {
     std::filesystem::create_directories(folder, failed);
     if (failed) throw Failure({hc::Code::System, folder + ": " + failed.message()});
   }
-  auto loader = hc::make_loader(options.graph);
+  hc::LoadOptions load_options = options.graph;
+  load_options.holds_ports = true;
+  auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", *loader);
   StatusLine status(!options.quiet);
   hc::RunOptions run_options;

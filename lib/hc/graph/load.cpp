@@ -11,6 +11,7 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/graph/programs.h>
+#include <hc/os/socket.h>
 
 namespace hc {
 namespace {
@@ -93,7 +94,8 @@ class FileLoader : public GraphLoader {
         known = described.emplace(program, describe_once(program, stop)).first;
       return known->second;
     };
-    Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running);
+    Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
+                          options_.holds_ports ? internal::hold_port : HoldPort());
     loaded.problems = problems.lines();
     if (problems.empty()) loaded.plan = std::move(plan);
     return loaded;

@@ -18,6 +18,7 @@ struct LoadOptions {
   std::vector<std::string> settings;  ///< MODULE.PARAMETER=VALUE
   std::string record;                 ///< folder to record all outputs in; empty: none
   std::string token;                  ///< for make_plan()
+  bool holds_ports = false;           ///< that links over TCP need, where the plan is to run
 };
 
 /// A graph that has been read and checked.

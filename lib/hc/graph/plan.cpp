@@ -33,6 +33,10 @@ class ModulePlanner {
     planned_.restart = module_.restart;
     planned_.ends_graph = module_.ends_graph;
     planned_.manage_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name + ".manage";
+    if (description.control && !description.knows("unix"))
+      problems_.add(module_.place, "module " + module_.name +
+                                       " supports --control, which takes unix: URIs, but its "
+                                       "program does not list unix in \"transports\"");
     if (description.control)
       planned_.control_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name +
                              ".control?readers=0&keep=64";
@@ -171,9 +175,9 @@ std::vector<std::string> PlannedModule::command() const {
 }
 
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
-               const Plan* before) {
+               const Plan* before, const HoldPort& hold_port) {
   if (!graph.is_whole) return {};
-  internal::Planning planning{std::move(graph), problems, before};
+  internal::Planning planning{std::move(graph), problems, before, hold_port};
   planning.plan.token = token;
   for (const auto& module : planning.graph.modules)
     internal::plan_module(planning, describe, module);

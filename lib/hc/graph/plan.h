@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,6 +17,10 @@
 #include <hc/graph/graph_file.h>
 
 namespace hc {
+
+namespace internal {
+struct HeldPort;
+}
 
 /// One end of a link, as a module is told of it.
 struct PlannedEnd {
@@ -70,11 +75,16 @@ struct Plan {
   std::map<std::string, std::int64_t> sources;    ///< of outputs, "MODULE.PORT": their `src`
   std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
   std::set<std::string> workspaces;               ///< modules that publish the focus
-  std::string frames;                             ///< as text (G31), by the names of the file
+  /// Of links over TCP, by their names: the port is theirs for as long as a plan has it.
+  std::map<std::string, std::shared_ptr<const internal::HeldPort>> ports;
+  std::string frames;  ///< as text (G31), by the names of the file
 };
 
 /// Gives what `program --describe` prints.
 using Describe = std::function<Result<std::string>(const std::string& program)>;
+
+/// Gives a link over TCP its port.
+using HoldPort = std::function<Result<std::shared_ptr<const internal::HeldPort>>()>;
 
 /// Checks a graph and plans it.
 ///
@@ -84,13 +94,14 @@ using Describe = std::function<Result<std::string>(const std::string& program)>;
 ///
 /// Ports without an address get the least ones that are free, in the order of the file.
 ///
-/// @param before  a plan of this graph whose port numbers stay, so that modules that have not
-/// changed are planned as they were; null: there was none.
+/// @param before  a plan of this graph whose addresses and TCP ports stay, so that modules that
+/// have not changed are planned as they were; null: there was none.
+/// @param hold_port  null: such links have port 0, and the plan cannot be run.
 ///
 /// Problems: as spec/graph.md lists them; of a graph that is not whole none, as what it lacks may
 /// be what is named. Nothing more is said of a module without a program (empty), whose problem has
 /// been reported. The plan is of no use where there are problems.
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
-               const Plan* before = nullptr);
+               const Plan* before = nullptr, const HoldPort& hold_port = {});
 
 }  // namespace hc

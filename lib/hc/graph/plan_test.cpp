@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <netinet/in.h>
+
 #include <hc/graph/plan/planning_test.h>
+#include <hc/os/socket.h>
 
 namespace hc {
 namespace {
@@ -80,6 +83,41 @@ program = "seer"
   EXPECT_EQ(planned->links[1].keep, "3");
   EXPECT_EQ(planned->links[1].policy,
             (std::map<std::string, std::string>{{"memory", "8M"}, {"rate", "10"}}));
+}
+
+TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
+  const std::string text = "[modules.source]\n[modules.java]\ninputs.in = \"source.left\"\n" +
+                           link_text("java.out", "filter.in") + "[modules.filter]\n";
+  auto looked_at = plan(text);
+  ASSERT_TRUE(looked_at) << looked_at.error().detail;
+  EXPECT_EQ(looked_at->links[0].reader_uri, "tcp:127.0.0.1:0?wait=60&same_user=1");
+  auto planned = plan(text, {}, nullptr, internal::hold_port);
+  ASSERT_TRUE(planned) << planned.error().detail;
+  const auto& ports = planned->ports;
+  ASSERT_EQ(ports.size(), 2U);
+  const auto number = ports.at("t.source.left.java.in")->number;
+  const std::string port = std::to_string(number);
+  EXPECT_EQ(planned->links[0].sender_uri,
+            "tcp-listen:127.0.0.1:" + port + "?readers=1&stay=1&same_user=1");
+  EXPECT_EQ(planned->links[0].reader_uri, "tcp:127.0.0.1:" + port + "?wait=60&same_user=1");
+  EXPECT_NE(ports.at("t.java.out.filter.in")->number, number);
+  // Who listens there can do so, and the port stays that of the link in the next plan.
+  sockaddr_in place{AF_INET, htons(number), {htonl(INADDR_LOOPBACK)}, {}};
+  EXPECT_TRUE(internal::listen_on({&place, sizeof place}, port));
+  auto next = plan(text + "parameters.rate = 1\n", {}, &*planned, internal::hold_port);
+  ASSERT_TRUE(next) << next.error().detail;
+  EXPECT_EQ(next->ports, planned->ports);
+  EXPECT_EQ(next->links[1].sender_uri, planned->links[1].sender_uri);
+}
+
+TEST(Plan, TheEndsOfALinkHaveATransportInCommon) {
+  EXPECT_EQ(wrong("[modules.java]\n[modules.files]\ninputs.in = \"java.out\"\n"),
+            "g.toml:4: no transport from java.out to files.in: module java supports tcp, "
+            "tcp-listen, module files supports file, tcp-listen; it takes shm at both ends, or "
+            "tcp-listen at java and tcp at files, or unix-listen and unix");
+  EXPECT_EQ(wrong("[modules.liar]\n"),
+            "g.toml:2: module liar supports --control, which takes unix: URIs, but its program "
+            "does not list unix in \"transports\"");
 }
 
 TEST(Plan, MemoryThatIsSharedIsEnough) {

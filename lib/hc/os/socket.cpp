@@ -16,6 +16,17 @@ namespace {
 
 constexpr int kBacklog = 1024;  // who waits here costs no descriptor
 
+Result<Descriptor> bind_socket(const Address& address, const std::string& name) {
+  auto socket = open_socket(address);
+  if (!socket) return socket.error();
+  int on = 1;
+  ::setsockopt(socket->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  auto bound =
+      system_call("bind", name, [&] { return ::bind(socket->get(), address.get(), address.size); });
+  if (!bound) return bound.error();
+  return socket;
+}
+
 }  // namespace
 
 Address::Address(const void* data, unsigned length) : size(length) {
@@ -50,16 +61,26 @@ ListeningSocket::~ListeningSocket() {
 }
 
 Result<Descriptor> listen_on(const Address& address, const std::string& name) {
-  auto socket = open_socket(address);
+  auto socket = bind_socket(address, name);
   if (!socket) return socket.error();
-  int on = 1;
-  ::setsockopt(socket->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  auto bound =
-      system_call("bind", name, [&] { return ::bind(socket->get(), address.get(), address.size); });
-  if (!bound) return bound.error();
   auto listening = system_call("listen", name, [&] { return ::listen(socket->get(), kBacklog); });
   if (!listening) return listening.error();
   return socket;
+}
+
+Result<std::shared_ptr<const HeldPort>> hold_port() {
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const Address address(&place, sizeof place);
+  auto socket = bind_socket(address, "127.0.0.1");
+  if (!socket) return socket.error();
+  socklen_t size = sizeof place;
+  auto named = system_call("getsockname", "", [&] {
+    return ::getsockname(socket->get(), reinterpret_cast<sockaddr*>(&place), &size);
+  });
+  if (!named) return named.error();
+  return std::make_shared<const HeldPort>(HeldPort{std::move(*socket), ntohs(place.sin_port)});
 }
 
 Result<Descriptor> ListeningSocket::accept(const LogSink& log) const {

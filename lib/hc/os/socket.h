@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -67,6 +69,16 @@ constexpr std::chrono::seconds kAnswerTime{4};
 
 /// A socket that listens on an address; its name is for error lines.
 Result<Descriptor> listen_on(const Address& address, const std::string& name);
+
+/// A port of 127.0.0.1 that no other program is given. It is bound and nobody listens here, so that
+/// one who sets SO_REUSEADDR, and knows the number, can listen there, again and again.
+struct HeldPort {
+  Descriptor socket;
+  std::uint16_t number = 0;
+};
+
+/// Holds a port until the last who shares it lets it go. Errors: System.
+Result<std::shared_ptr<const HeldPort>> hold_port();
 
 /// How long a TCP peer may leave what it must answer without an answer: so one that vanishes is
 /// noticed within 4 s, with what timers are late by.

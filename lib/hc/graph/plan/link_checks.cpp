@@ -28,21 +28,43 @@ class LinkCheck {
     if (link.route) check_route(link);
     if (!link.from.uri.empty() || !link.to.uri.empty()) check_outer_policy(link);
     if (from == nullptr || to == nullptr) return true;
-    const bool right = fits(from->types, to->types);
+    bool right = fits(from->types, to->types);
     if (!right)
       problems_.add(link.place, link.from.text() + " sends " + in_words(from->types) + ", " +
                                     link.to.text() + " takes " + in_words(to->types));
-    if (auto memory = link.policy.find("memory"); memory != link.policy.end() &&
-                                                  !memory->second.value.empty() &&
-                                                  knows(link.from, "shm") && knows(link.to, "shm"))
+    const auto transport = transport_of(planning_, link);
+    if (transport.empty()) {
+      right = false;
+      add_no_transport(link);
+    }
+    if (auto memory = link.policy.find("memory");
+        memory != link.policy.end() && !memory->second.value.empty() && transport == "shm")
       if (auto enough = check_shm_memory({"shm", "", {{"memory", memory->second.value}}}); !enough)
         problems_.add(memory->second.place, enough.error().detail);
     return right;
   }
 
  private:
-  bool knows(const GraphPort& port, std::string_view transport) const {
-    return planning_.description_of(port.module)->knows(transport);
+  /// The schemes that links to and from outside may have.
+  static std::vector<std::string> schemes_of(const Description& description) {
+    std::vector<std::string> schemes = {"file", "tcp", "tcp-listen", "unix", "unix-listen"};
+    if (description.transports) schemes = *description.transports;
+    std::erase_if(schemes, [](const auto& each) { return each == "-" || each == "inproc"; });
+    return schemes;
+  }
+
+  void add_no_transport(const GraphLink& link) {
+    auto supported = [this](const std::string& module) {
+      std::string list;
+      for (const auto& scheme : schemes_of(*planning_.description_of(module)))
+        list += (list.empty() ? "" : ", ") + scheme;
+      return "module " + module + " supports " + (list.empty() ? "none" : list);
+    };
+    const std::string &from = link.from.module, &to = link.to.module;
+    problems_.add(link.place, "no transport from " + link.from.text() + " to " + link.to.text() +
+                                  ": " + supported(from) + ", " + supported(to) +
+                                  "; it takes shm at both ends, or tcp-listen at " + from +
+                                  " and tcp at " + to + ", or unix-listen and unix");
   }
 
   /// Null where there is none, or where nobody knows since the module is not described.
@@ -65,9 +87,7 @@ class LinkCheck {
     const std::string& module = is_input ? link.from.module : link.to.module;
     const Description* description = planning_.description_of(module);
     if (description == nullptr) return;
-    std::vector<std::string> known = {"file", "tcp", "tcp-listen", "unix", "unix-listen"};
-    if (description->transports) known = *description->transports;
-    std::erase_if(known, [](const auto& each) { return each == "-" || each == "inproc"; });
+    const auto known = schemes_of(*description);
     if (std::find(known.begin(), known.end(), uri.scheme) == known.end())
       problems_.add(link.place, "module " + module + " does not support " + uri.scheme + ": links" +
                                     suggest(planning_, uri.scheme, known));

@@ -5,6 +5,7 @@
 #include <hc/base/uri.h>
 #include <hc/graph/plan/planning.h>
 #include <hc/graph/plan/routes.h>
+#include <hc/os/socket.h>
 
 namespace hc::internal {
 namespace {
@@ -122,15 +123,11 @@ class LinkPlanner {
     return !planning_.planned(link.to.module)->control_uri.empty();
   }
 
-  bool shared(const GraphLink& link) const {
-    return planning_.description_of(link.from.module)->knows("shm") &&
-           planning_.description_of(link.to.module)->knows("shm");
-  }
-
   /// Whether links of an output have an end in common with this one.
   bool is_common(std::size_t number) const {
     const GraphLink& link = graph_.links[number];
-    return shared(link) && !link.policy.contains("memory") && routes_[number].sender.empty();
+    return transport_of(planning_, link) == "shm" && !link.policy.contains("memory") &&
+           routes_[number].sender.empty();
   }
 
   std::string name_of(std::size_t number) const {
@@ -153,25 +150,48 @@ class LinkPlanner {
     return is_image ? "latest" : "all";
   }
 
+  /// The TCP port of a link, as before; else one of its own.
+  int port_of(const GraphLink& link, const std::string& name) {
+    auto& held = planning_.plan.ports[name];
+    if (planning_.before != nullptr)
+      if (auto kept = planning_.before->ports.find(name); kept != planning_.before->ports.end())
+        held = kept->second;
+    if (held == nullptr && planning_.hold_port) {
+      auto port = planning_.hold_port();
+      if (port)
+        held = *port;
+      else
+        planning_.problems.add(link.place, "no port for the link from " + link.from.text() +
+                                               " to " + link.to.text() + ": " +
+                                               port.error().detail);
+    }
+    return held == nullptr ? 0 : held->number;
+  }
+
   /// The links of an output that share memory have one sending end in common, but for those that
   /// have a bound or a route of their own, and each reader keeps its rate; every other link has a
   /// socket. Senders wait for their readers, so that it does not matter who starts first.
   PlannedLink plan_inside(std::size_t number) {
     const GraphLink& link = graph_.links[number];
-    const bool by_memory = shared(link);
+    const std::string_view transport = transport_of(planning_, link);
+    const bool by_memory = transport == "shm", by_tcp = transport == "tcp";
     const std::string name = name_of(number), keep = keep_of(link);
+    std::string place = by_memory ? name : "@" + name;
+    if (by_tcp) place = "127.0.0.1:" + std::to_string(port_of(link, name));
+    const std::string scheme(transport);
+    const std::string same_user = by_tcp ? "&same_user=1" : "";
     const std::string and_keep = keep == "all" ? "" : "&keep=" + keep;
     const std::string pace = options_of(link, {"rate", "burst"});
     Sender& sender = senders_[name];
     if (sender.uri.empty()) {
-      sender.uri = (by_memory ? "shm:" : "unix-listen:@") + name +
-                   "?readers=" + std::to_string(sender.readers) + "&stay=1" +
+      sender.uri = scheme + (by_memory ? ":" : "-listen:") + place +
+                   "?readers=" + std::to_string(sender.readers) + "&stay=1" + same_user +
                    (is_common(number) ? "" : and_keep) + options_of(link, {"memory"}) +
                    (by_memory ? "" : pace);
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }
-    const std::string reader_uri = (by_memory ? "shm:" : "unix:@") + name +
-                                   (lasts(link) ? "?reconnect=86400" : "?wait=60") +
+    const std::string reader_uri = scheme + ":" + place +
+                                   (lasts(link) ? "?reconnect=86400" : "?wait=60") + same_user +
                                    (by_memory ? and_keep + pace : "");
     add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
     return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
@@ -211,6 +231,15 @@ class LinkPlanner {
 };
 
 }  // namespace
+
+std::string_view transport_of(const Planning& planning, const GraphLink& link) {
+  const Description& from = *planning.description_of(link.from.module);
+  const Description& to = *planning.description_of(link.to.module);
+  if (from.knows("shm") && to.knows("shm")) return "shm";
+  if (from.knows("unix-listen") && to.knows("unix")) return "unix";
+  if (from.knows("tcp-listen") && to.knows("tcp")) return "tcp";
+  return "";
+}
 
 void plan_links(Planning& planning) {
   LinkPlanner(planning).run();

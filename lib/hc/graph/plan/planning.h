@@ -18,6 +18,7 @@ struct Planning {
   Graph graph;  ///< its links have modules, ports and types that fit, as far as they are described
   Problems& problems;
   const Plan* before;  ///< of this graph, whose numbers stay; null: there was none
+  const HoldPort& hold_port;
   Plan plan{};
   std::map<std::string, Description> described{};  ///< by module
   std::map<std::string, std::size_t> index{};      ///< of a module in Plan::modules
@@ -84,6 +85,10 @@ void check_actors(Planning& planning);
 void check_together(Planning& planning);
 void check_bids(Planning& planning);
 void check_destinations(Planning& planning);
+
+/// What a link between two modules goes over, the first of shm, unix and tcp that both have; empty
+/// where there is none. Both are described.
+std::string_view transport_of(const Planning& planning, const GraphLink& link);
 
 /// Gives each link its two ends.
 void plan_links(Planning& planning);

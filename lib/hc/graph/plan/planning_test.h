@@ -33,9 +33,16 @@ inline Result<std::string> describe(const std::string& program) {
     return text.replace(text.size() - 1, 1, R"(,"together":[["left","right"]]})");
   }
   if (program == "any") return module(R"({"name":"in","types":[]})", "");
-  const std::string transports = R"(,"transports":["-","unix","shm"]})";
+  const std::string transports = R"(,"transports":["-","unix","unix-listen","shm"]})";
   auto shares = [&](std::string text) { return text.replace(text.size() - 1, 1, transports); };
   if (program == "eye") return shares(module("", port("image", "intensity_image", 0)));
+  auto lists = [](std::string text, const std::string& schemes) {
+    return text.replace(text.size() - 1, 1, ",\"transports\":[" + schemes + "]}");
+  };
+  if (program == "java")
+    return lists(module(port("in", "map", 0), port("out", "map", 0)), R"("tcp","tcp-listen")");
+  if (program == "files") return lists(module(port("in", "map", 0), ""), R"("file","tcp-listen")");
+  if (program == "liar") return lists(module("", ""), R"("tcp"],"control":true,"together":[)");
   if (program == "seer")
     return shares(
         module(port("in", "intensity_image", 0) + "," + port("more", "intensity_image", 0), ""));
@@ -88,7 +95,7 @@ inline Result<std::string> describe(const std::string& program) {
 /// @param text  behind `version = 1`, which is its first line, as in `files`, which it may include.
 inline Result<Plan> plan(const std::string& text,
                          const std::map<std::string, std::string>& files = {},
-                         const Plan* before = nullptr) {
+                         const Plan* before = nullptr, const HoldPort& hold_port = {}) {
   Problems problems("g.toml");
   auto read_file = [&](const std::string& name) -> Result<std::string> {
     auto found = files.find(name);
@@ -97,7 +104,7 @@ inline Result<Plan> plan(const std::string& text,
   };
   auto graph = parse_graph(
       kVersion + text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
-  Plan plan = make_plan(graph, describe, "t", problems, before);
+  Plan plan = make_plan(graph, describe, "t", problems, before, hold_port);
   if (problems.empty()) return plan;
   std::string all;
   for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;

@@ -46,7 +46,8 @@ void Intake::take() {
 Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri) {
   auto uri = parse_uri(reader_uri);
   if (!uri) return uri.error();
-  uri->options = {{"reconnect", "86400"}};
+  std::erase_if(uri->options, [](const auto& option) { return option.first != "same_user"; });
+  uri->options.emplace_back("reconnect", "86400");
   if (uri->scheme == "shm") uri->options.emplace_back("keep", "latest");
   return Intake::make(loop, uri->text(), [](const Message&) {});
 }
