@@ -51,13 +51,13 @@ class Watch::Reactor {
     if (running_ != &state) callback.swap(state.callback);
   }
 
-  void call(const std::shared_ptr<State>& state, std::uint32_t events) {
-    if (state->has_ended) return;
-    auto held = state;
-    running_ = held.get();
+  /// The loop keeps what it calls, and so the state, until it returns.
+  void call(State& state, std::uint32_t events) {
+    if (state.has_ended) return;
+    running_ = &state;
     lock_.unlock();
-    held->callback(events);
-    if (held->has_ended) held->callback = nullptr;  // without the lock, as in remove()
+    state.callback(events);
+    if (state.has_ended) state.callback = nullptr;  // without the lock, as in remove()
     lock_.lock();
     running_ = nullptr;
     returned_.notify_all();
@@ -104,7 +104,7 @@ Status Watch::start(int descriptor, Callback callback) {
   auto state = std::make_shared<State>();
   state->callback = std::move(callback);
   auto added = Reactor::the().add(
-      *state, descriptor, [state](std::uint32_t events) { Reactor::the().call(state, events); });
+      *state, descriptor, [state](std::uint32_t events) { Reactor::the().call(*state, events); });
   if (added) state_ = std::move(state);
   return added;
 }
