@@ -174,7 +174,7 @@ void expand(Node& node, const Environment& environment, Problems& problems) {
   for (auto begin = text.find("${"); begin != std::string::npos; begin = text.find("${", at)) {
     const auto end = text.find('}', begin);
     auto value = end == std::string::npos
-                     ? Result<std::string>(Error{Code::Invalid, "\"${\" without \"}\""})
+                     ? Result<std::string>(Error{Code::Invalid, R"("${" without "}")"})
                      : value_of(text.substr(begin + 2, end - begin - 2), environment);
     if (!value) problems.add(node.place, value.error().detail);
     is_right = is_right && value;
