@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows images in a window and saves them as PNG files.
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <set>
 
@@ -31,7 +32,10 @@ int main(int argc, char** argv) {
   auto max =
       module.parameter("max", 0.0, "", "upper end of the colour scale; both 0: from the image");
 
+  auto count = module.parameter("count", 0, "", "end after so many images, 0: never", {.min = 0});
+
   bool shows = false;
+  int seen = 0;
   std::set<std::string> windows;
   fs::path last;  // that was saved
   module.on_start([&] {
@@ -45,7 +49,7 @@ int main(int argc, char** argv) {
 
   module.on(image, [&](const hc::Message& message) {
     const hc::Header& header = message.header;
-    if (header.empty()) return;
+    if (header.empty() || (*count > 0 && seen == *count)) return;
     const cv::Mat bgr = hc::vision::displayable(hc::value_or_end(hc::as_mat(message)), *min, *max);
     if (!save->empty()) {
       bool all = save->ends_with('/');
@@ -60,6 +64,7 @@ int main(int argc, char** argv) {
       cv::pollKey();
       windows.insert(title);
     }
+    if (++seen == *count) std::raise(SIGTERM);  // as anybody else would end it
   });
   module.on_end([&] {
     auto is_open = [](const std::string& title) {

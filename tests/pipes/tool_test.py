@@ -93,6 +93,10 @@ class Tool(Pipes):
         page = self.shell("hc man | tee hc.1 | man -l - 2>/dev/null || cat hc.1")
         for word in ("record", "MODULE.PORT", "HC_GRAPH"):
             self.assertIn(word, page)
+        page = self.read("hc.1")
+        self.assertIn("\n.B \\-\\-count\nend after so many messages", page)
+        self.assertNotRegex(page, r"\n\.B *\n")
+        self.assertRegex(self.shell("hc --help"), r"\n  completion +Print[^\n]*\n  man +Print")
 
     def test_shipped_graphs_are_found_by_name(self):
         for name in ("depth", "depth.toml"):
@@ -144,6 +148,14 @@ class Tool(Pipes):
         self.assertRegex(out, r" 7 +10 +240 B +0\.180 s +50 Hz +0 +0  1x1 position 3 x f64, text")
         self.assertRegex(out, r" 8 +9 +72 B +0\.180 s +44\.4 Hz +1 +0  1x1 table 1 x f64, text")
         self.assertIn("19 messages", out)
+        self.assertIn("\n3 messages", self.shell("hc info r.mtp --count 3"))
+        self.shell("cat r.mtp r.mtp >twice.mtp")
+        self.assertIn(" seq restarted 1 time\n", self.shell("hc info twice.mtp"))
+
+    def test_view_ends_after_so_many_images(self):
+        images = "%s/aloeL.jpg --loop --width 8 --height 6" % DATA
+        self.shell("hc camera %s | hc view --save all/ --count 2" % images)
+        self.assertEqual(len(os.listdir(self.path("all"))), 2)
 
     def test_record_and_play_give_the_same_bytes(self):
         self.record()
@@ -225,6 +237,16 @@ class Tool(Pipes):
         self.shell(
             "hc record 'odd?name&=.mtp' --in r.mtp --in r.mtp && hc play --speed max 'odd?name&=.mtp' | hc info"
         )
+
+    def test_record_takes_a_source_as_the_other_verbs_do(self):
+        self.record()
+        self.shell("hc record r.mtp copy.mtp && cmp r.mtp copy.mtp")
+        self.shell("hc record --in r.mtp other.mtp && cmp r.mtp other.mtp")
+        self.shell("hc record r.mtp two.mtp three.mtp", 2)
+        self.assertIn("not expected: three.mtp", self.err)
+
+    def test_a_repeated_option_takes_one_word_each(self):
+        self.assertIn("no problems", self.shell("hc check --set depth.block_size=7 depth"))
 
     def test_record_names_the_link_that_is_wrong(self):
         self.record()

@@ -49,6 +49,7 @@ void add_doctor(CLI::App& app) {
       verb->add_option("graph", options->file, "a graph file (TOML), or the name of a shipped one")
           ->transform(find_graph);
   verb->add_option("--set", options->settings, "MODULE.PARAMETER=VALUE; may be repeated")
+      ->allow_extra_args(false)
       ->needs(graph);
   verb->callback([options] { run(*options); });
 }

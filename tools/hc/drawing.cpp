@@ -81,7 +81,8 @@ Drawing drawing_of(const hc::Plan& plan, const std::string& title) {
   for (const auto& module : plan.modules) {
     auto program = std::filesystem::path(module.program).filename().string();
     drawing.boxes.push_back({module.name, program == module.name ? "" : program, module.group});
-    if (!module.mode.empty()) drawing.boxes.back().words += " mode: " + module.mode;
+    auto& words = drawing.boxes.back().words;
+    if (!module.mode.empty()) words += (words.empty() ? "mode: " : ", mode: ") + module.mode;
   }
   for (const auto& link : plan.links) {
     std::string words = link.keep == "all" ? "" : "keep " + link.keep;

@@ -12,7 +12,8 @@ void add_graph_options(CLI::App& verb, hc::LoadOptions& options) {
   verb.add_option("graph", options.file, "a graph file (TOML), or the name of a shipped one")
       ->required()
       ->transform(find_graph);
-  verb.add_option("--set", options.settings, "MODULE.PARAMETER=VALUE; may be repeated");
+  verb.add_option("--set", options.settings, "MODULE.PARAMETER=VALUE; may be repeated")
+      ->allow_extra_args(false);
 }
 
 hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader) {

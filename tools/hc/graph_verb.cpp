@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <map>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -100,20 +101,20 @@ const hc::ModuleState& find_module(const hc::GraphState& state, const std::strin
       {hc::Code::Invalid, hc::format("no module \"{}\"{}", name, hc::suggestion(name, known))});
 }
 
-/// Prints parameters with value, unit, range and default.
+/// Adds a line for each parameter that is wanted: its value, and its range and default.
 /// @param what  MODULE, MODULE.PARAMETER, or empty: all.
-void get(const RunningGraph& graph, const std::string& what) {
-  const auto state = state_of(graph);
+void add_parameters(const hc::GraphState& state, const std::string& what,
+                    std::vector<std::array<std::string, 2>>& rows) {
   const auto dot = std::min(what.find('.'), what.size());
   const std::string wanted = dot < what.size() ? what.substr(dot + 1) : "";
-  std::vector<std::array<std::string, 2>> rows;
-  std::size_t widest = 0;
   auto add = [&](const hc::ModuleState& module) {
     const auto parameters = parameters_of(module);
     std::vector<std::string> known;
+    bool is_found = wanted.empty();
     for (const auto& [name, parameter] : parameters) {
       known.push_back(name);
       if (!wanted.empty() && name != wanted) continue;
+      is_found = true;
       const auto& value = parameter.at("default");
       const std::string standard = value.is_string() ? value.get<std::string>() : value.dump();
       const auto found = module.parameters.find(name);
@@ -125,9 +126,8 @@ void get(const RunningGraph& graph, const std::string& what) {
           (range.empty() ? "" : range + ", ") + "default " + (standard.empty() ? "\"\"" : standard);
       if (parameter.at("fixed")) about += ", set restarts the module";
       rows.push_back({module.name + "." + name + " = " + words, about});
-      widest = std::max(widest, rows.back()[0].size());
     }
-    if (!wanted.empty() && rows.empty())
+    if (!is_found)
       throw Failure(
           {hc::Code::Invalid, hc::format("module {} has no parameter \"{}\"{}", module.name, wanted,
                                          hc::suggestion(wanted, known))});
@@ -135,19 +135,27 @@ void get(const RunningGraph& graph, const std::string& what) {
   if (!what.empty()) add(find_module(state, what.substr(0, dot)));
   for (const auto& module : state.modules)
     if (what.empty()) add(module);
+}
+
+/// Prints parameters. @param wanted  which, as of add_parameters().
+void get(const RunningGraph& graph, const std::vector<std::string>& wanted) {
+  const auto state = state_of(graph);
+  std::vector<std::array<std::string, 2>> rows;
+  for (const auto& what : wanted) add_parameters(state, what, rows);
+  if (wanted.empty()) add_parameters(state, "", rows);
   constexpr std::size_t kMaxColumn = 60;
+  std::size_t widest = 0;
+  for (const auto& row : rows) widest = std::max(widest, row[0].size());
   std::string text;
   for (const auto& [value, about] : rows)
     text += hc::format("{:<{}}  ({})\n", value, std::min(widest, kMaxColumn), about);
   print(text);
 }
 
-/// Sets a parameter, and says so where that restarts its module.
-void set(const RunningGraph& graph, const std::string& assignment) {
-  ask(graph, {"set " + assignment});
+/// Says so where setting a parameter restarts its module.
+void say_restart(const hc::GraphState& state, const std::string& assignment) {
   const auto dot = assignment.find('.'), equals = assignment.find('=');
   if (dot == std::string::npos || equals == std::string::npos || dot > equals) return;
-  const auto state = state_of(graph);
   const auto& module = find_module(state, assignment.substr(0, dot));
   const auto name = assignment.substr(dot + 1, equals - dot - 1);
   const auto parameters = parameters_of(module);
@@ -155,33 +163,65 @@ void set(const RunningGraph& graph, const std::string& assignment) {
     say("hc graph: restarting " + module.name + ", since " + name + " is fixed while it runs");
 }
 
+/// Has the graph do all of some commands, or none.
+void change(const GraphOptions& options, const std::vector<std::string>& commands) {
+  for (const auto& command : commands)
+    if (command.find('\n') != std::string::npos)
+      throw Failure(hc::Error{hc::Code::Invalid, "a command is one line"});
+  const auto graph = choose_running(options.running);
+  ask(graph, commands);
+  const std::string_view set = "set ";
+  std::optional<hc::GraphState> state;
+  for (const auto& command : commands) {
+    if (!command.starts_with(set)) continue;
+    if (!state) state = state_of(graph);
+    say_restart(*state, command.substr(set.size()));
+  }
+}
+
 struct Word {
   std::string name, doc;
 };
 
-/// A verb of `hc graph` whose words go to the running graph as they are.
+/// A verb of `hc graph` that is for a running one, and so takes nothing that is for drawing.
+CLI::App* add_verb(CLI::App& verb, GraphOptions& options, const std::string& name,
+                   const std::string& doc) {
+  auto* added = verb.add_subcommand(name, doc);
+  add_of(*added, options.running);
+  for (const char* drawn : {"graph", "--set", "--svg", "--dot"})
+    added->excludes(verb.get_option(drawn));
+  return added;
+}
+
+/// A verb whose words go to the running graph as one command.
 /// @param more_words  of which there may be any number; without a name: there are none.
 void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
                 const std::string& doc, const std::vector<Word>& words,
                 const Word& more_words = {}) {
   auto given = std::make_shared<std::vector<std::string>>(words.size());
   auto more = std::make_shared<std::vector<std::string>>();
-  auto* change = verb.add_subcommand(name, doc);
-  change->fallthrough();  // --of may stand behind it
+  auto* added = add_verb(verb, options, name, doc);
   for (std::size_t i = 0; i < words.size(); ++i)
-    change->add_option(words[i].name, (*given)[i], words[i].doc)->required();
-  if (!more_words.name.empty()) change->add_option(more_words.name, *more, more_words.doc);
-  change->callback([&options, name, given, more] {
+    added->add_option(words[i].name, (*given)[i], words[i].doc)->required();
+  if (!more_words.name.empty()) added->add_option(more_words.name, *more, more_words.doc);
+  added->callback([&options, name, given, more] {
     std::string command = name;
     for (const auto* list : {given.get(), more.get()})
       for (const auto& word : *list) command += " " + word;
-    if (command.find('\n') != std::string::npos)
-      throw Failure(hc::Error{hc::Code::Invalid, "a command is one line"});
-    const auto graph = choose_running(options.running);
-    if (name == "set")
-      set(graph, command.substr(name.size() + 1));
-    else
-      ask(graph, {command});
+    change(options, {command});
+  });
+}
+
+/// A verb with a command for each of its words; all are done, or none.
+void add_changes(CLI::App& verb, GraphOptions& options, const std::string& name,
+                 const std::string& doc, const Word& word) {
+  auto given = std::make_shared<std::vector<std::string>>();
+  auto* added = add_verb(verb, options, name, doc);
+  added->add_option(word.name, *given, word.doc)->required();
+  added->callback([&options, name, given] {
+    std::vector<std::string> commands;
+    for (const auto& each : *given) commands.push_back(hc::format("{} {}", name, each));
+    change(options, commands);
   });
 }
 
@@ -190,32 +230,33 @@ void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
 void add_graph(CLI::App& app) {
   static GraphOptions options;  // lives as long as the verbs that refer to it
   auto* verb = app.add_subcommand("graph", "Draw a graph, or inspect and change a running one");
-  verb->add_option("graph", options.file.file, "a graph file (default: the running graph)");
-  verb->add_option("--set", options.file.settings, "MODULE.PARAMETER=VALUE; may be repeated");
-  verb->add_option("--of", options.running,
-                   "name of the running graph, where there are several (hc ps)");
+  verb->add_option("graph", options.file.file,
+                   "a graph file, or the name of a shipped one (default: the running graph)")
+      ->transform(find_graph);
+  verb->add_option("--set", options.file.settings, "MODULE.PARAMETER=VALUE; may be repeated")
+      ->allow_extra_args(false);
+  add_of(*verb, options.running);
   verb->add_option("--svg", options.svg, "write an SVG image to this file (needs Graphviz)");
   verb->add_flag("--dot", options.as_dot, "print the drawing in the DOT language of Graphviz");
-  const Word module = {"MODULE", "its name in the graph"};
+  const Word module = {"MODULE", "its name in the graph; there may be several"};
   const Word from = {"FROM", "an output MODULE.PORT, or a URI"};
   const Word to = {"TO", "an input MODULE.PORT, or a URI"};
   add_change(*verb, options, "add", "Add a module",
              {{"MODULE", "its name, new in the graph"},
               {"PROGRAM", "a module's program, or the path of any program"}},
              {"PARAMETER=VALUE", "its parameters (default: its own defaults)"});
-  add_change(*verb, options, "remove", "Stop and remove a module, and its links", {module});
-  add_change(*verb, options, "restart", "Restart a module", {module});
+  add_changes(*verb, options, "remove", "Stop and remove modules, and their links", module);
+  add_changes(*verb, options, "restart", "Restart modules", module);
   add_change(*verb, options, "link", "Add a link, or change its policy", {from, to},
              {"KEY=VALUE", "policy: keep, rate, burst, memory"});
   add_change(*verb, options, "unlink", "Remove a link", {from, to});
-  add_change(*verb, options, "set", "Set a parameter",
-             {{"MODULE.PARAMETER=VALUE", "the parameter and its new value"}});
+  add_changes(*verb, options, "set", "Set parameters, all or none",
+              {"MODULE.PARAMETER=VALUE", "a parameter and its new value"});
   add_change(*verb, options, "stop", "Stop the graph", {});
-  auto what = std::make_shared<std::string>();
-  auto* getter = verb->add_subcommand("get", "Print parameters: value, unit, range, default");
-  getter->fallthrough();
-  getter->add_option("MODULE[.PARAMETER]", *what, "which module or parameter (default: all)");
-  getter->callback([what] { get(choose_running(options.running), *what); });
+  auto wanted = std::make_shared<std::vector<std::string>>();
+  auto* getter = add_verb(*verb, options, "get", "Print parameters: value, unit, range, default");
+  getter->add_option("MODULE[.PARAMETER]", *wanted, "a module or a parameter (default: all)");
+  getter->callback([wanted] { get(choose_running(options.running), *wanted); });
   verb->callback([verb] {
     if (verb->get_subcommands().empty()) draw(options);
   });

@@ -46,6 +46,7 @@ struct Sender {
 
 struct InfoOptions {
   std::string uri = "-", of;
+  std::uint64_t count = 0;
   std::uint64_t limit = kDefaultLimit;
   bool skip = false;
 };
@@ -66,7 +67,8 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
               : "-",
         sender.lost, sender.repeated, types);
     if (sender.restarts > 0)
-      text += hc::format("{:>6} seq restarted {} times\n", "", sender.restarts);
+      text += hc::format("{:>6} seq restarted {} time{}\n", "", sender.restarts,
+                         sender.restarts == 1 ? "" : "s");
   }
   print(text);
 }
@@ -78,7 +80,7 @@ void run(const InfoOptions& options) {
   Progress progress("hc info");
   Skipper skipper("hc info");
   std::optional<Failure> fault;
-  while (true) {
+  for (std::uint64_t taken = 0; options.count == 0 || taken < options.count;) {
     try {
       if (!receive(*source, message, options.uri)) break;
     } catch (const Failure& failure) {
@@ -90,6 +92,7 @@ void run(const InfoOptions& options) {
       break;
     }
     skipper.whole_message();
+    ++taken;
     senders[message.header.src].add(message);
     auto traffic = source->traffic();
     progress.show(-1, hc::format("{} messages, {}", traffic.messages,
@@ -111,6 +114,7 @@ void add_info(CLI::App& app) {
   auto* verb = app.add_subcommand("info", "Summarise a recording, port or stream");
   add_source(*verb, options->uri, options->of);
   verb->add_flag("--skip", options->skip, "skip corrupt messages (files only)");
+  add_count(*verb, options->count);
   add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }

@@ -10,7 +10,7 @@ namespace tool {
 namespace {
 
 std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* verb) { return verb->get_group() != kHidden; });
+  return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
 std::string with_blanks(const std::vector<std::string>& words) {
@@ -60,7 +60,7 @@ std::string roff(const std::string& text) {
 std::string options_text(const CLI::App& verb) {
   std::string text;
   for (const auto* option : verb.get_options())
-    text += hc::format(".TP\n.B {}\n{}\n", roff(option->get_name(true)),
+    text += hc::format(".TP\n.B {}\n{}\n", roff(option->get_name(false, true)),
                        roff(option->get_description()));
   return text;
 }
@@ -89,7 +89,6 @@ void add_manual(CLI::App& app) {
   completion->callback([&app] { print(bash_completion(app)); });
   auto* man = app.add_subcommand("man", "Print the manual page of hc");
   man->callback([&app] { print(man_page(app)); });
-  for (auto* verb : {completion, man}) verb->group(kHidden);
 }
 
 }  // namespace tool

@@ -16,6 +16,7 @@
 
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
+#include <hc/contract/description.h>
 #include <hc/mtp/rows.h>
 #include <hc/os/program.h>
 
@@ -45,6 +46,18 @@ bool is_of_this_folder(int process) {
   std::error_code unknown;
   const auto folder = std::filesystem::read_symlink(hc::format("/proc/{}/cwd", process), unknown);
   return !unknown && folder == std::filesystem::current_path(unknown);
+}
+
+/// Whether it is spelled as MODULE.PORT.
+bool is_port_name(std::string_view text) {
+  auto is_word = [](std::string_view word) {
+    return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+    });
+  };
+  const auto dot = text.find('.');
+  return dot != std::string_view::npos && is_word(text.substr(0, dot)) &&
+         is_word(text.substr(dot + 1));
 }
 
 /// NAME.PROCESS, which stands behind the prefix in a socket's name. Anybody may bind any other.
@@ -237,22 +250,39 @@ std::string observe(const RunningGraph& graph, const std::string& port) {
   ::_exit(0);
 }
 
+bool is_running_port(const std::string& text, const std::string& of) {
+  if (!is_port_name(text) || find_running().empty()) return false;
+  const auto dot = text.find('.');
+  const auto name = text.substr(0, dot), port = text.substr(dot + 1);
+  try {
+    const auto state = Observer(choose_running(of)).next();
+    if (!state) return false;
+    for (const auto& module : state->modules) {
+      if (module.name != name) continue;
+      const auto text = hc::describe_program(module.program);
+      const auto description = hc::parse_description(text ? *text : "");
+      return description && (hc::find_input(*description, port) != nullptr ||
+                             hc::find_named(description->outputs, port) != nullptr);
+    }
+  } catch (const Failure&) {
+    return false;  // one of several graphs may be meant, or it is another user's
+  }
+  return false;
+}
+
 std::string source_uri(const std::string& text, const std::string& of) {
-  auto is_word = [](std::string_view word) {
-    return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-    });
-  };
-  const auto dot = std::min(text.find('.'), text.size());
+  if (!is_port_name(text) && of.empty()) return text;
   std::error_code missing;
-  const bool is_port = is_word(text.substr(0, dot)) && dot < text.size() &&
-                       is_word(std::string_view(text).substr(dot + 1)) &&
-                       !std::filesystem::exists(text, missing);
-  if (!is_port && of.empty()) return text;
-  const bool is_known = !of.empty() || !find_running().empty();
-  if (!is_known)
+  const bool is_file = std::filesystem::exists(text, missing);
+  if (of.empty() && is_file && !is_running_port(text, of)) return text;
+  if (of.empty() && find_running().empty())
     throw Failure({hc::Code::NotFound, text + ": no such file, and no graph is running here"});
-  return observe(choose_running(of), text);
+  try {
+    return observe(choose_running(of), text);
+  } catch (const Failure& failure) {
+    if (is_file || !of.empty()) throw;
+    throw Failure({failure.code, text + ": no such file, and " + failure.detail});
+  }
 }
 
 }  // namespace tool

@@ -78,7 +78,13 @@ class Observation {
 /// For a process that has no links yet.
 std::string observe(const RunningGraph& graph, const std::string& port);
 
-/// What a person names as a source: a URI, a file, or MODULE.PORT of a running graph.
+/// Whether a module of a running graph has this port, MODULE.PORT.
+///
+/// @param of  name of the graph; empty: as choose_running(), and no port where that fails.
+bool is_running_port(const std::string& text, const std::string& of);
+
+/// What a person names as a source: a URI, a file, or MODULE.PORT of a running graph. A port comes
+/// before a file of the same name, which ./MODULE.PORT is.
 ///
 /// @param of  name of the running graph; empty: as choose_running().
 /// @returns  the URI to read.

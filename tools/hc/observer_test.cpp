@@ -100,6 +100,13 @@ TEST(Screen, ShowsModulesAndLinks) {
       "30/s, 2 throttled, 1 dropp…\n");
 }
 
+TEST(Screen, LinesAreWholeWhereThereIsNoWidth) {
+  auto state = some_state(1);
+  state.modules[0].last_line = std::string(500, 'x');
+  const auto text = draw(state, {}, {std::numeric_limits<std::size_t>::max(), 0, true});
+  EXPECT_NE(text.find(std::string(500, 'x') + " (0 s ago)\n"), std::string::npos) << text;
+}
+
 TEST(Screen, ShowsTheModeOfWhoContributesToTheTaskInFocus) {
   auto state = some_state(3);
   state.links.clear();

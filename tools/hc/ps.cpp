@@ -14,7 +14,8 @@
 namespace tool {
 namespace {
 
-std::string row(const hc::GraphState& state, bool is_plain) {
+/// @param name  as --of takes it.
+std::string row(const std::string& name, const hc::GraphState& state, bool is_plain) {
   auto count = [&](hc::ModuleStatus status) {
     return std::count_if(state.modules.begin(), state.modules.end(),
                          [&](const auto& module) { return module.status == status; });
@@ -22,11 +23,11 @@ std::string row(const hc::GraphState& state, bool is_plain) {
   std::string status = state.is_stopping ? "stopping" : "running";
   for (auto trouble : {hc::ModuleStatus::Stalled, hc::ModuleStatus::GivenUp})
     if (auto number = count(trouble); number > 0)
-      status += hc::format(", {} {}", number, name(trouble));
+      status += hc::format(", {} {}", number, hc::name(trouble));
   const bool is_red = std::any_of(state.modules.begin(), state.modules.end(), is_in_trouble);
   const bool is_painted = is_red && !is_plain;
   return hc::format("{}{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}{}\n", is_painted ? "\x1b[31m" : "",
-                    state.name, state.process, seconds_in_words(state.uptime),
+                    name, state.process, seconds_in_words(state.uptime),
                     count(hc::ModuleStatus::Running), state.modules.size(),
                     state.focus == 0 ? "-" : state.focus_name(), status,
                     is_painted ? "\x1b[0m" : "");
@@ -38,14 +39,18 @@ void ps(bool as_json) {
   if (!as_json)
     text = hc::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n", "GRAPH", "PROCESS", "RUNS FOR",
                       "UP", "ALL", "FOCUS", "STATUS");
-  for (const auto& graph : find_running()) {
+  const auto graphs = find_running();
+  for (const auto& graph : graphs) {
+    const bool is_only = std::count_if(graphs.begin(), graphs.end(), [&](const auto& each) {
+                           return each.name == graph.name;
+                         }) == 1;
+    const std::string name = is_only ? graph.name : graph.text();
     try {
       if (auto state = Observer(graph).next())
-        text += as_json ? to_json(*state) + "\n" : row(*state, is_plain);
+        text += as_json ? to_json(*state) + "\n" : row(name, *state, is_plain);
     } catch (const Failure& failure) {
       // It has just ended, or is another user's; the others are of interest even so.
-      if (!as_json)
-        text += hc::format("{:<16} {:>7} {}\n", graph.name, graph.process, failure.what());
+      if (!as_json) text += hc::format("{:<16} {:>7} {}\n", name, graph.process, failure.what());
     }
   }
   print(text);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc record: records ports or links to a file.
 
+#include <array>
 #include <filesystem>
 
 #include <hc/base/format.h>
@@ -16,7 +17,7 @@ namespace {
 
 struct RecordOptions {
   std::string file, of;
-  std::vector<std::string> links = {"-"};
+  std::vector<std::string> links;
   std::uint64_t count = 0;
   std::uint64_t limit = kDefaultLimit;
 };
@@ -35,6 +36,19 @@ struct Link {
   std::string uri;
   std::unique_ptr<hc::Source> source;  // null once it has ended
 };
+
+/// Takes the words SOURCE FILE, or FILE alone, as `file` is empty then.
+void take_words(const std::string& source, const std::string& file, RecordOptions& options) {
+  options.file = file.empty() ? source : file;
+  if (!file.empty()) options.links.insert(options.links.begin(), source);
+  if (!options.links.empty()) return;
+  if (is_running_port(options.file, options.of))
+    throw Failure({hc::Code::Invalid,
+                   hc::format("{} is a port of a running graph: give a FILE behind it to record "
+                              "it, or ./{} for a file of that name",
+                              options.file, options.file)});
+  options.links = {"-"};
+}
 
 void run(const RecordOptions& options) {
   std::vector<std::string> uris;  // all before the first link is opened
@@ -82,13 +96,21 @@ void run(const RecordOptions& options) {
 void add_record(CLI::App& app) {
   auto options = std::make_shared<RecordOptions>();
   auto* verb = app.add_subcommand("record", "Record ports or links to a file");
-  verb->add_option("file", options->file, "output file (overwritten)")->required();
+  auto words = std::make_shared<std::array<std::string, 2>>();
+  verb->add_option("source", words->front(),
+                   "what is recorded, as --in has it; where no word follows, the output file")
+      ->required();
+  verb->add_option("file", words->back(), "output file (overwritten)");
   verb->add_option("--in", options->links,
-                   "URIs, files or MODULE.PORT of a running graph; may be repeated");
+                   "URIs, files or MODULE.PORT of a running graph; may be repeated")
+      ->allow_extra_args(false);
   add_of(*verb, options->of);
   add_count(*verb, options->count);
   add_limit(*verb, options->limit);
-  verb->callback([options] { run(*options); });
+  verb->callback([options, words] {
+    take_words(words->front(), words->back(), *options);
+    run(*options);
+  });
 }
 
 }  // namespace tool

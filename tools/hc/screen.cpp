@@ -118,7 +118,7 @@ std::set<std::string> contributors(const hc::GraphState& state) {
   return found;
 }
 
-void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Line>& lines) {
+void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
   const std::vector<Column<hc::ModuleState>> columns = {
       {"CPU", 7, [](const auto& m) { return hc::format("{:.1f}%", 100 * m.processor); }},
       {"MEMORY", 9, [](const auto& m) { return bytes_in_words(static_cast<double>(m.memory)); }},
@@ -145,7 +145,7 @@ void add_modules(const hc::GraphState& state, std::size_t width, std::vector<Lin
                            seconds_in_words(std::max(0.0, module.last_line_age)));
     const auto text = fitted(module.name, name) + cells(columns, module) + "  " +
                       fitted(mode_of(module), mode) + " " + status;
-    lines.push_back({fitted(text, width), module.in_workspace, is_in_trouble(module),
+    lines.push_back({text, module.in_workspace, is_in_trouble(module),
                      !module.in_focus && !is_in_trouble(module)});
   }
 }
@@ -181,7 +181,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
     note(losses_in_words(link.traffic));
     if (link.left_out > 0) note("ignored: not in focus");
     const auto text = fitted(link.from + " → " + link.to, name) + cells(columns, link) + notes;
-    lines.push_back({fitted(text, width), link.in_workspace, !link.status.empty()});
+    lines.push_back({text, link.in_workspace, !link.status.empty()});
   }
 }
 
@@ -191,7 +191,7 @@ void sort(std::vector<Line>::iterator begin, std::vector<Line>::iterator end) {
 }
 
 std::string painted(Line line, const Screen& screen) {
-  line.text = fitted(line.text, screen.width);
+  line.text = fitted(line.text, std::min(screen.width, length(line.text)));
   line.text.erase(line.text.find_last_not_of(' ') + 1);
   std::string begin;
   if (line.is_bold) begin += kBold;
@@ -247,7 +247,7 @@ std::string draw(const hc::GraphState& state, const std::vector<Bid>& bids, cons
   std::vector<Line> fixed = {{heading(state), true}}, lines;
   if (!bids.empty()) fixed.push_back({bids_line(bids)});
   fixed.push_back({});
-  add_modules(state, screen.width, lines);
+  add_modules(state, lines);
   sort(lines.begin() + 1, lines.end());
   if (!state.links.empty()) {
     lines.push_back({});

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "common.h"
 #include "observer.h"
@@ -14,8 +15,6 @@
 
 namespace tool {
 namespace {
-
-constexpr std::size_t kPlainWidth = 120;  // without a terminal [character]
 
 /// A terminal that shows one page and reads keys one by one, until this is destroyed.
 class Page {
@@ -153,7 +152,7 @@ void top(const TopOptions& options) {
   Bids bids(graph, *state);
   if (is_live) return show(observer, bids);
   if (auto later = observer.next()) state = later;  // meanwhile bids come
-  print(draw(*state, bids.take(*state), {kPlainWidth, 0, true}));
+  print(draw(*state, bids.take(*state), {std::numeric_limits<std::size_t>::max(), 0, true}));
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ inline CLI::Validator whole_number() {
           },
           "", "whole_number"};
 }
-inline constexpr const char* kHidden = "";  ///< the group of verbs that help does not list
 
 /// Options that several verbs have.
 inline void add_limit(CLI::App& verb, std::uint64_t& limit) {

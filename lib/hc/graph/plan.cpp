@@ -125,10 +125,13 @@ void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
 const PortDescription* find_port(Planning& planning, const Place& place, const GraphPort& port,
                                  bool is_input) {
   const std::string& module = port.module;
-  if (!planning.names.contains(module))
-    planning.problems.add(
-        place, "no module \"" + module + "\"" +
-                   suggest(planning, module, {planning.names.begin(), planning.names.end()}));
+  if (!planning.names.contains(module)) {
+    const std::string hint =
+        port.port == "mtp"
+            ? "; a file is \"file:" + port.text() + "\""
+            : suggest(planning, module, {planning.names.begin(), planning.names.end()});
+    planning.problems.add(place, "no module \"" + module + "\"" + hint);
+  }
   const Description* description = planning.description_of(module);
   if (description == nullptr) return nullptr;
   const auto& ports = is_input ? description->inputs : description->outputs;
