@@ -16,7 +16,12 @@ LINKED = '[modules.camera]\n[modules.brightness]\ninputs.image = "camera.left"\n
 OTHER = {
     "": "g.toml:1: a graph needs a table [modules.NAME] for each of its modules",
     "[modules.camera\n": "g.toml:2: Error while parsing",
-    'x = "\n': "g.toml:2: Error while parsing",
+    'x = "\n': "g.toml:2: a quote is missing",
+    'x = "': "g.toml:2: a quote is missing",
+    'x = "\x01"\n': "g.toml:2: Error while parsing string: unescaped control characters",
+    "x = relay\n": "g.toml:2: no such value; a string needs quotes",
+    'x = ["a, "b"]\n': "g.toml:2: a list lacks a comma, a quote",
+    "x = { a = 1\n b = 2 }\n": "g.toml:2: a table in braces is one line",
     "[modules.camera]\n[modules.camera]\n": "g.toml:3: Error while parsing",
 }
 TYPE = '{"type":"table","components":1,"scalar":"f64","width":0,"height":0,"coord":0}'

@@ -71,7 +71,9 @@ class Doctor(Pipes):
         self.assertEqual(said["wrong"], ["graph " + line for line in got])
         self.assertEqual(len(got), 2)
         self.assertEqual(self.shell("hc doctor none.toml", 1), "")
-        self.assertEqual(self.err, "hc doctor: NotFound: none.toml: cannot be read\n")
+        self.assertEqual(
+            self.err, "hc doctor: NotFound: none.toml: cannot be read: No such file or directory\n"
+        )
 
 
 if __name__ == "__main__":

@@ -18,7 +18,33 @@ class Tool(Pipes):
             ("hc nonsense", 2, 'hc: unknown command or module "nonsense"; see hc --help'),
             ("hc cat --nonsense", 2, "hc cat: The following argument was not expected: --nonsense"),
             ("hc play", 2, "hc play: file is required"),
-            ("hc run missing.toml", 1, "hc run: NotFound: missing.toml: cannot be read"),
+            ("hc run missing.toml", 1, "hc run: NotFound: missing.toml: cannot be read: No such"),
+            (
+                "hc run nosuch",
+                1,
+                "hc run: NotFound: nosuch: cannot be read: No such file or "
+                "directory; shipped graphs: depth, head, ",
+            ),
+            (
+                "hc camera --widht 1",
+                2,
+                'camera: Invalid: no option "--widht", did you mean "--width"?',
+            ),
+            (
+                "hc send --type positon 1",
+                2,
+                'hc send: Invalid: no matrix type "positon", did you mean "position"?',
+            ),
+            (
+                "hc send --scalar q 1",
+                2,
+                'hc send: Invalid: no scalar "q"; there are: u8, i8, u16, ',
+            ),
+            (
+                "hc cat --cuont=1",
+                2,
+                'hc cat: The following argument was not expected: --cuont=1, did you mean "--count"?',
+            ),
             ("hc camera nothing.jpg", 1, "camera: NotFound: nothing.jpg: no such file"),
             (
                 "echo rubbish | hc cat",
@@ -77,6 +103,27 @@ class Tool(Pipes):
 
     def test_help_lists_all_links(self):
         self.assertIn("shm:NAME", self.shell("hc --help"))
+
+    def test_help_has_columns(self):
+        lines = self.shell("hc camera --help").splitlines()
+        for option in ("  --modes NUMBER,…", "  --mode NUMBER", "  --name NAME"):
+            line = next(line for line in lines if line.startswith(option + " "))
+            self.assertRegex(line, r"^.{27} [a-z]")
+
+    def test_an_included_file_is_named_by_where_it_was_looked_for(self):
+        self.write("g.toml", 'version = 1\n[graphs.a]\nfile = "none.toml"\n')
+        self.shell("hc check g.toml", 2)
+        self.assertIn(
+            "g.toml:3: %s: cannot be read: No such file or directory\n"
+            % os.path.realpath(self.path("none.toml")),
+            self.err,
+        )
+
+    def test_a_program_that_is_no_module_is_led_to_the_specification(self):
+        for program in ("/bin/cat", "/bin/echo"):
+            self.write("g.toml", 'version = 1\n[modules.a]\nprogram = "%s"\n' % program)
+            self.shell("hc check g.toml", 2)
+            self.assertIn("spec/module.md", self.err)
 
     def test_hc_alone_gives_an_overview(self):
         out = self.shell("hc", 2)

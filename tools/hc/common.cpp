@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
+#include <set>
 
 #include <hc/base/format.h>
 #include <hc/os/program.h>
@@ -28,6 +30,12 @@ hc::Uri parse(const std::string& uri) {
   if (parsed.scheme == "inproc")
     throw Failure(uri, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
   return parsed;
+}
+
+/// Where graphs that came with hc are: installed, or built in a folder of the project.
+std::array<fs::path, 2> graph_folders() {
+  const fs::path prefix = module_folder().parent_path().parent_path();
+  return {prefix / "share" / "hypercolumn" / "graphs", prefix.parent_path() / "graphs"};
 }
 
 /// Text to the person; it does not matter whether it arrives.
@@ -107,13 +115,19 @@ void say(std::string_view line) {
 std::string find_graph(const std::string& name) {
   std::error_code missing;
   if (name.find('/') != std::string::npos || fs::exists(name, missing)) return name;
-  const fs::path prefix = module_folder().parent_path().parent_path();
-  // Installed, or built in a folder of the project.
-  for (const auto& folder :
-       {prefix / "share" / "hypercolumn" / "graphs", prefix.parent_path() / "graphs"})
+  for (const auto& folder : graph_folders())
     for (const char* suffix : {"", ".toml"})
       if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);
   return name;
+}
+
+std::vector<std::string> shipped_graphs() {
+  std::set<std::string> names;
+  std::error_code missing;
+  for (const auto& folder : graph_folders())
+    for (const auto& entry : fs::directory_iterator(folder, missing))
+      if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+  return {names.begin(), names.end()};
 }
 
 std::string seconds_in_words(double seconds) {

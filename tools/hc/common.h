@@ -92,6 +92,8 @@ using hc::module_names;
 /// A graph file by its name: that file, or else one of the graphs that came with hc, with or
 /// without ".toml".
 std::string find_graph(const std::string& name);
+/// The names of the graphs that came with hc, without ".toml".
+std::vector<std::string> shipped_graphs();
 
 /// "1.44 MB"
 std::string bytes_in_words(double bytes);

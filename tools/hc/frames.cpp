@@ -37,7 +37,8 @@ void feed(GraphFrames& frames, const hc::Message& message, const std::string& ou
 
 /// The outputs that move a frame between the two.
 std::vector<std::string> outputs_between(const GraphFrames& frames, const FramesOptions& options) {
-  const auto chain = value_or_fail(frames.tree.chain(options.target, options.source), "frames");
+  const auto chain =
+      value_or_fail(frames.tree.chain(options.target, options.source), options.graph.file);
   auto is_between = [&](const std::string& frame) {
     return std::find(chain.begin(), chain.end(), frame) != chain.end();
   };
@@ -58,11 +59,25 @@ void read_recording(GraphFrames& frames, const std::string& folder,
   }
 }
 
+/// The running graph that tells where the frames between the two are.
+RunningGraph choose_graph(const FramesOptions& options, const std::vector<std::string>& outputs) {
+  const auto stem = fs::path(options.graph.file).stem().string();
+  try {
+    return choose_running(options.of.empty() ? stem : options.of);
+  } catch (const Failure& failure) {
+    std::string movers;
+    for (const auto& output : outputs) movers += (movers.empty() ? "" : ", ") + output;
+    throw Failure({failure.code,
+                   hc::format("{}; from {} to {} a frame is moved by {}: run the graph (--of NAME "
+                              "where its name is another), or give a recording with --in FOLDER",
+                              failure.detail, options.source, options.target, movers)});
+  }
+}
+
 /// Takes poses of a running graph until the transform is known.
 void observe(GraphFrames& frames, const FramesOptions& options,
              const std::vector<std::string>& outputs) {
-  const auto stem = fs::path(options.graph.file).stem().string();
-  const auto graph = choose_running(options.of.empty() ? stem : options.of);
+  const auto graph = choose_graph(options, outputs);
   std::vector<Observation> observations;
   std::vector<std::unique_ptr<hc::Source>> sources;
   std::vector<int> descriptors;
@@ -108,7 +123,8 @@ std::string text_of(const GraphFrames& frames, const FramesOptions& options) {
   };
   const Eigen::Matrix3d R = T.linear();
   std::string words;
-  const auto chain = value_or_fail(frames.tree.chain(options.target, options.source), "frames");
+  const auto chain =
+      value_or_fail(frames.tree.chain(options.target, options.source), options.graph.file);
   for (const auto& frame : chain) words += (words.empty() ? "" : " -> ") + frame;
   return hc::format("{} to {}, {}\n", options.source, options.target,
                     is_fixed ? "fixed" : hc::format("at {} ns", time)) +

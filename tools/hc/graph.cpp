@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph.h"
 
+#include <filesystem>
+
 #include <hc/base/format.h>
 
 #include "common.h"
@@ -16,8 +18,15 @@ void add_graph_options(CLI::App& verb, hc::LoadOptions& options) {
       ->allow_extra_args(false);
 }
 
-hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader) {
+hc::LoadedGraph load_graph(std::string_view verb, const std::string& file,
+                           hc::GraphLoader& loader) {
   auto loaded = loader.load(nullptr, -1);
+  std::error_code unknown;
+  if (!loaded && !std::filesystem::exists(file, unknown)) {
+    std::string shipped;
+    for (const auto& name : shipped_graphs()) shipped += (shipped.empty() ? "" : ", ") + name;
+    throw Failure({loaded.error().code, loaded.error().detail + "; shipped graphs: " + shipped});
+  }
   if (!loaded) throw Failure(loaded.error());
   if (loaded->plan) return std::move(*loaded);
   for (const auto& line : loaded->problems) say(hc::format("hc {}: error: {}", verb, line));
@@ -25,7 +34,7 @@ hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader) {
 }
 
 hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options) {
-  return std::move(*load_graph(verb, *hc::make_loader(options)).plan);
+  return std::move(*load_graph(verb, options.file, *hc::make_loader(options)).plan);
 }
 
 }  // namespace tool

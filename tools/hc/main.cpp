@@ -61,6 +61,18 @@ std::vector<std::string> module_arguments(const std::string& program,
   return arguments;
 }
 
+/// What may have been meant by an option that the verb does not have.
+std::string meant_option(const CLI::App& app) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().back();
+  std::vector<std::string> known;
+  for (const auto* option : verb->get_options())
+    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+  for (const auto& word : app.remaining(true))
+    if (word.starts_with("--")) return hc::suggestion(word.substr(0, word.find('=')), known);
+  return "";
+}
+
 /// Becomes the module of that name; returns when there is none.
 void become_module(const std::string& name, char** argv) {
   std::string program = tool::find_program(name);
@@ -122,6 +134,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     return 0;
+  } catch (const CLI::ExtrasError& error) {
+    tool::say(
+        hc::format("hc{}: {}{}", is_verb ? " " + first : "", error.what(), meant_option(app)));
+    return kUsage;
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too.
     if (error.get_exit_code() == 0) return app.exit(error);

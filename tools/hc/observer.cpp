@@ -259,8 +259,8 @@ bool is_running_port(const std::string& text, const std::string& of) {
     if (!state) return false;
     for (const auto& module : state->modules) {
       if (module.name != name) continue;
-      const auto text = hc::describe_program(module.program);
-      const auto description = hc::parse_description(text ? *text : "");
+      const auto described = hc::describe_program(module.program);
+      const auto description = hc::parse_description(described ? *described : "");
       return description && (hc::find_input(*description, port) != nullptr ||
                              hc::find_named(description->outputs, port) != nullptr);
     }

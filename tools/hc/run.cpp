@@ -124,7 +124,7 @@ void run(const RunOptions& options) {
   hc::LoadOptions load_options = options.graph;
   load_options.holds_ports = true;
   auto loader = hc::make_loader(load_options);
-  auto graph = load_graph("run", *loader);
+  auto graph = load_graph("run", options.graph.file, *loader);
   StatusLine status(!options.quiet);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();

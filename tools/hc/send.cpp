@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include <hc/base/format.h>
+#include <hc/base/suggestion.h>
 #include <hc/compress/compress.h>
 #include <hc/mtp/text.h>
 
@@ -35,12 +36,22 @@ struct SendOptions {
   bool has_text = false, has_type = false, has_shape = false;  // given on the command line
 };
 
+/// @param first, last  of all values that have a name.
 template <typename E>
-E named(std::optional<E> value, const std::string& kind, const std::string& name) {
-  if (!value)
-    throw Failure(hc::Error{hc::Code::Invalid,
-                            hc::format("no {} \"{}\"; see spec/mtp-1.md, section 3", kind, name)});
-  return *value;
+E named(std::optional<E> value, const std::string& kind, const std::string& name, E first, E last) {
+  if (value) return *value;
+  std::vector<std::string> known;
+  for (int i = static_cast<int>(first); i <= static_cast<int>(last); ++i)
+    known.emplace_back(hc::name(static_cast<E>(i)));
+  std::string hint = hc::suggestion(name, known);
+  if (hint.empty())
+    for (const auto& each : known) hint += (hint.empty() ? "; there are: " : ", ") + each;
+  throw Failure(hc::Error{hc::Code::Invalid, hc::format("no {} \"{}\"{}", kind, name, hint)});
+}
+
+hc::MatrixType type_named(const std::string& name) {
+  return named(hc::matrix_type_of(name), "matrix type", name, hc::MatrixType::Position,
+               hc::MatrixType::Table);
 }
 
 hc::Message message_of_text(const SendOptions& options) {
@@ -56,8 +67,9 @@ hc::Message message_of_text(const SendOptions& options) {
 
 hc::Message message_of_numbers(const SendOptions& options) {
   hc::Header header;
-  header.info.type = named(hc::matrix_type_of(options.type), "matrix type", options.type);
-  header.info.scalar = named(hc::scalar_of(options.scalar), "scalar", options.scalar);
+  header.info.type = type_named(options.type);
+  header.info.scalar = named(hc::scalar_of(options.scalar), "scalar", options.scalar,
+                             hc::Scalar::U8, hc::Scalar::F64);
   for (int components = std::max(options.components, 1); components <= 99; ++components) {
     header.info.components = static_cast<std::uint8_t>(components);
     auto error = hc::find_error(header.info);
@@ -94,8 +106,7 @@ hc::Message message_of_npy(const SendOptions& options) {
   if (!file) throw Failure(hc::Error{hc::Code::NotFound, options.npy + ": cannot be read"});
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   auto message = value_or_fail(read_npy(std::as_bytes(std::span(bytes))), options.npy);
-  if (options.has_type)
-    message.header.info.type = named(hc::matrix_type_of(options.type), "matrix type", options.type);
+  if (options.has_type) message.header.info.type = type_named(options.type);
   if (auto valid = hc::check(message.header); !valid) throw Failure(options.npy, valid.error());
   return message;
 }
@@ -161,7 +172,8 @@ void run(const SendOptions& options) {
                                                : message_of_numbers(options);
   auto encoding = message.header.info.encoding;
   if (!options.encoding.empty())
-    encoding = named(hc::encoding_of(options.encoding), "encoding", options.encoding);
+    encoding = named(hc::encoding_of(options.encoding), "encoding", options.encoding,
+                     hc::Encoding::Text, hc::Encoding::Jpeg);
   hc::Header header = options.header;
   header.info = message.header.info;
   header.width = message.header.width;

@@ -3,11 +3,13 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <system_error>
 
 #include <hc/base/suggestion.h>
 #include <hc/graph/programs.h>
@@ -23,19 +25,24 @@ Result<std::string> read_text(const std::string& name) {
   if (fs::is_directory(name, missing))
     return Error{Code::NotFound, name + ": is a folder, not a file"};
   std::ifstream file(name, std::ios::binary);
-  if (!file) return Error{Code::NotFound, name + ": cannot be read"};
+  if (!file)
+    return Error{Code::NotFound,
+                 name + ": cannot be read: " + std::generic_category().message(errno)};
   std::string text(kMaxGraphBytes + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
   return text;
 }
 
-/// Only files, so that nothing is waited for, as a pipe would be.
+/// Only files, so that nothing is waited for, as a pipe would be. Errors have the whole path.
 Result<std::string> read_file(const std::string& name) {
   std::error_code missing;
-  if (!fs::is_regular_file(name, missing) && !fs::is_directory(name, missing))
-    return Error{Code::NotFound, name + ": cannot be read"};
-  return read_text(name);
+  const std::string path = fs::absolute(name, missing).lexically_normal().string();
+  if (!fs::is_regular_file(path, missing) && !fs::is_directory(path, missing))
+    return Error{Code::NotFound,
+                 path + ": cannot be read: " +
+                     (fs::exists(path, missing) ? "not a file" : "No such file or directory")};
+  return read_text(path);
 }
 
 /// @param path  what `program` stands for, where it has a slash.

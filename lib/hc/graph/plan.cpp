@@ -104,7 +104,8 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
   if (!description)
     return planning.problems.add(module.place,
                                  "module " + module.name + ": " + program +
-                                     " --describe does not print the description of a module");
+                                     " --describe does not print the description of a module; "
+                                     "see spec/module.md");
   if (planning.index.contains(module.name)) return;  // a duplicate, which has been reported
   ModulePlanner(planning, module).plan(planning.described[module.name] = std::move(*description));
 }

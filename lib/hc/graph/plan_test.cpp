@@ -139,9 +139,11 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
   const std::pair<std::string, std::string> cases[] = {
       {"[modules.x]\n", "g.toml:2: module x: no such program"},
       {"[modules.dumb]\n",
-       "g.toml:2: module dumb: dumb --describe does not print the description of a module"},
+       "g.toml:2: module dumb: dumb --describe does not print the description of a module; "
+       "see spec/module.md"},
       {"[modules.odd]\nparameters.rate=1",
-       "g.toml:2: module odd: odd --describe does not print the description of a module"},
+       "g.toml:2: module odd: odd --describe does not print the description of a module; "
+       "see spec/module.md"},
       {"[modules.source]\nparameters.rat = 3",
        "g.toml:3: module source has no parameter \"rat\", did you mean \"rate\"?"},
       {"[modules.source]\naddresses.lft = 3",

@@ -82,8 +82,9 @@ Result<std::string> describe_program(const std::string& program, int stop) {
     if (auto ended = wait(process->ended()); !ended) return ended.error();
     int status = process->poll_status().value_or(0);
     if (status == 0) return text;
-    return Error{Code::System,
-                 program + " --describe failed with status " + std::to_string(status)};
+    return Error{Code::System, program + " --describe failed with status " +
+                                   std::to_string(status) +
+                                   "; how a program describes itself is in spec/module.md"};
   }
   return Error{Code::System, program + " --describe prints more than a MiB"};
 }

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <tuple>
 
+#include <hc/base/suggestion.h>
+
 namespace hc::internal {
 namespace {
 
@@ -132,6 +134,7 @@ class Parser {
 
  private:
   Status read_word();
+  [[nodiscard]] Error no_option(const std::string& key) const;
 
   Status read_link(bool is_input, const std::string& value) {
     auto link = parse_port_link(module_, is_input, value);
@@ -232,6 +235,16 @@ constexpr std::array<Option, 16> kOptions = {{
     {"--help", "", "print this, and end (also -h)", &Parser::help},
 }};
 
+Error Parser::no_option(const std::string& key) const {
+  std::vector<std::string> known;
+  for (const auto& each : module_.parameters()) known.push_back("--" + each->name);
+  for (const auto& each : kOptions) known.emplace_back(each.name);
+  const std::string meant = suggestion(key, known);
+  return invalid("no option \"" + key + "\"" +
+                 (meant.empty() ? "; parameters are: " + names(module_.parameters()) : meant) +
+                 "; see --help");
+}
+
 Status Parser::read_word() {
   std::string_view word = words_[at_++];
   if (word == "-h") word = "--help";
@@ -248,9 +261,7 @@ Status Parser::read_word() {
     return (*parameter)->set(given.value_or("true"));
   auto option = std::find_if(kOptions.begin(), kOptions.end(),
                              [&](const Option& each) { return each.name == key; });
-  if (!is_parameter && option == kOptions.end())
-    return invalid("no option \"" + key + "\"; parameters are: " + names(module_.parameters()) +
-                   "; see --help");
+  if (!is_parameter && option == kOptions.end()) return no_option(key);
   if (!is_parameter && option->argument.empty()) return (this->*option->read)("");
   if (!given) {
     if (at_ == words_.size()) return invalid(key + " needs a value");

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // --help and --describe: what a module says of itself.
+#include <algorithm>
+
 #include <hc/link/link.h>
 #include <hc/module/arguments.h>
 
@@ -8,7 +10,10 @@ namespace {
 
 std::string line(const std::string& left, const std::string& right) {
   constexpr std::size_t kColumn = 28;
-  std::string pad(left.size() + 3 < kColumn ? kColumn - left.size() - 2 : 1, ' ');
+  const auto width = static_cast<std::size_t>(std::count_if(left.begin(), left.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // a character's first byte in UTF-8
+  }));
+  std::string pad(width + 3 < kColumn ? kColumn - width - 2 : 1, ' ');
   return "  " + left + pad + right + "\n";
 }
 

@@ -109,8 +109,22 @@ std::string original(std::string_view text) {
   return result;
 }
 
-/// What replaces a letter outside ASCII is not what somebody wrote.
-std::string with_odd_character(std::string_view description) {
+/// What toml++ says of the commonest mistakes tells little of them, and what replaces a letter
+/// outside ASCII is not what somebody wrote.
+std::string in_plain_words(std::string_view description, std::string_view toml) {
+  auto says = [&](std::string_view words) {
+    return description.find(words) != std::string_view::npos;
+  };
+  const bool has_control = std::any_of(toml.begin(), toml.end(), [](char c) {
+    return (c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r') || c == 0x7f;
+  });
+  if (says("string: encountered end-of-file") ||
+      (says("control characters other than TAB") && !has_control))
+    return "a quote is missing: this string has no end";
+  if (says("could not determine value type")) return "no such value; a string needs quotes";
+  if (says("expected comma or closing ']'")) return "a list lacks a comma, a quote or its \"]\"";
+  if (says("inline table") && says("saw '\\n'"))
+    return "a table in braces is one line, and its \"}\" is missing there";
   constexpr std::string_view kOurs = "saw '~'";
   std::string text(description);
   if (auto at = text.find(kOurs); at != std::string::npos)
@@ -220,7 +234,7 @@ std::optional<Node> read_document(std::string_view text, int file, const Environ
     return root;
   } catch (const toml::parse_error& error) {
     problems.add({std::max(static_cast<int>(error.source().begin.line), 1), file},
-                 original(with_odd_character(error.description())));
+                 original(in_plain_words(error.description(), text)));
     return std::nullopt;
   }
 }
