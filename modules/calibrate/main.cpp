@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
       "file of stereo_calibration: the result is added to it, and read from it if it has one",
       {.positional = true, .fixed = true});
   auto turn = module.parameter("turn", 0.28, "rad", "how far the head turns to each side",
-                               {.min = 0.05, .max = 0.6});
+                               {.min = 0.05, .max = 0.6, .fixed = true});
   auto salience = module.parameter("salience", 0.9, "", "of the bid", {.min = 0, .max = 1});
   auto focal = module.parameter("focal", 600.0, "px", "focal length of the eyes, without a file",
                                 {.min = 1, .fixed = true});

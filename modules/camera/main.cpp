@@ -28,9 +28,9 @@ int main(int argc, char** argv) {
   auto left_name = module.parameter("source", "", "",
                                     "left or only eye: aravis:NAME, a number or /dev/videoN, "
                                     "rtsp://…, a video, pipeline, folder or image",
-                                    {.positional = true});
-  auto right_name =
-      module.parameter("right_source", "", "", "the same of the right eye", {.positional = true});
+                                    {.positional = true, .fixed = true});
+  auto right_name = module.parameter("right_source", "", "", "the same of the right eye",
+                                     {.positional = true, .fixed = true});
   auto side_by_side = module.parameter("side_by_side", false, "",
                                        "each image holds both eyes', the left one on the left");
   auto width = module.parameter("width", 0, "px",

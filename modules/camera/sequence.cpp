@@ -13,13 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What is named is not there, or is no such thing: it would not be at the next start either.
+hc::ModuleError unusable(const std::string& name, const std::string& why) {
+  return hc::ModuleError(hc::Error{hc::Code::Invalid, name + ": " + why});
+}
+
 class ImageFiles final : public ImageSequence {
  public:
   explicit ImageFiles(std::vector<std::string> paths) : paths_(std::move(paths)) {}
   cv::Mat next() override {
     if (at_ == paths_.size()) return {};
     cv::Mat image = cv::imread(paths_[at_]);
-    if (image.empty()) throw hc::ModuleError(paths_[at_] + ": not an image that can be read");
+    if (image.empty()) throw unusable(paths_[at_], "not an image that can be read");
     ++at_;
     return image;
   }
@@ -57,7 +62,7 @@ std::vector<std::string> images_in(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file() && cv::haveImageReader(entry.path().string()))
       paths.push_back(entry.path().string());
-  if (paths.empty()) throw hc::ModuleError(folder + ": no images in this folder");
+  if (paths.empty()) throw unusable(folder, "no images in this folder");
   std::sort(paths.begin(), paths.end());
   return paths;
 }
@@ -70,7 +75,7 @@ std::unique_ptr<ImageSequence> open_sequence(const std::string& name) {
   const bool is_path =
       name.find_first_of("!%") == std::string::npos && name.find("://") == std::string::npos;
   if (is_path && !fs::exists(name, unreadable))
-    throw hc::ModuleError(hc::Error{hc::Code::NotFound, name + ": no such file, folder or camera"});
+    throw unusable(name, "no such file, folder or camera");
   if (fs::is_directory(name, unreadable)) return std::make_unique<ImageFiles>(images_in(name));
   if (fs::is_regular_file(name, unreadable) && cv::haveImageReader(name))
     return std::make_unique<ImageFiles>(std::vector<std::string>{name});

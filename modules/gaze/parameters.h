@@ -19,8 +19,9 @@ struct Parameters {
   hc::Parameter<double> idle_salience = module.parameter(
       "idle_salience", 0.0, "",
       "salience of looking straight ahead while there is no target, 0: idle", {.min = 0, .max = 1});
-  hc::Parameter<double> timeout = module.parameter(
-      "timeout", 0.5, "s", "how long a lost target keeps the head", {.min = 0.01, .max = 60});
+  hc::Parameter<double> timeout =
+      module.parameter("timeout", 0.5, "s", "how long a lost target keeps the head",
+                       {.min = 0.01, .max = 60, .fixed = true});
   hc::Parameter<double> noise =
       module.parameter("noise", 0.003, "rad", "measurement noise: σ of the target's angles",
                        {.min = 1e-6, .max = 1, .fixed = true});
@@ -59,8 +60,9 @@ struct Parameters {
       module.parameter("cx", 399.5, "px", "principal point", {.fixed = true});
   hc::Parameter<double> cy =
       module.parameter("cy", 299.5, "px", "principal point", {.fixed = true});
-  hc::Parameter<double> distance = module.parameter(
-      "distance", 2.5, "m", "assumed of a target seen by one eye alone", {.min = 0.2});
+  hc::Parameter<double> distance =
+      module.parameter("distance", 2.5, "m", "assumed of a target seen by one eye alone",
+                       {.min = 0.2, .fixed = true});
 
   /// Equal eyes, mounted so in the head.
   [[nodiscard]] hc::gaze::Eyes eyes(const Eigen::Isometry3d& T_head_left,

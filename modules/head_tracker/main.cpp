@@ -28,8 +28,8 @@ int main(int argc, char** argv) {
                        "address of this machine to listen on, 0.0.0.0: all", {.fixed = true});
   auto port =
       module.parameter("port", 4242, "", "UDP port", {.min = 0, .max = 65535, .fixed = true});
-  auto centre_first =
-      module.parameter("centre_first", true, "", "the first pose is the zero; else the tracker's");
+  auto centre_first = module.parameter(
+      "centre_first", true, "", "the first pose is the zero; else the tracker's", {.fixed = true});
   auto silence = module.parameter("silence", 1.0, "s", "time without packets until it is logged",
                                   {.min = 0.01, .max = 3600});
 

@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
       module.output("score", hc::table<double>().of(6, 1),
                     "character error rate; seen to spoken, median and maximum [s]; of "
                     "it since the image that decided, median [s]; texts; texts not spoken");
-  auto seed = module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9});
+  auto seed =
+      module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9, .fixed = true});
   auto count = module.parameter("count", 5, "", "texts", {.min = 1, .max = 100'000});
   auto time_out =
       module.parameter("time_out", 10.0, "s", "maximum time for a text", {.min = 0.1, .max = 1000});

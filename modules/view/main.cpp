@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
   auto save = module.parameter("save", "", "",
                                "PNG file for the latest image, or folder/ for all as SRC_SEQ.png",
                                {.positional = true});
-  auto window =
-      module.parameter("window", "auto", "", "show a window", {.choices = {"auto", "yes", "no"}});
+  auto window = module.parameter("window", "auto", "", "show a window",
+                                 {.choices = {"auto", "yes", "no"}, .fixed = true});
   auto stay = module.parameter("stay", true, "",
                                "keep windows after the last image, until a key is pressed");
   auto min =
