@@ -92,6 +92,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     auto now = module.monotonic();
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
     if (workspace.decide(now)) module.log("focus: " + workspace.last_change(names_of(*modes)));
+    module.report_focus(workspace.focus());
     const std::int64_t time = module.now();
     auto message = hc::table({workspace.focus()});
     message.header.time = time;

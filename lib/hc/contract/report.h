@@ -74,7 +74,7 @@ std::map<std::string, std::string> read_parameters(const Message& message, std::
 /// Report::State.
 struct StateReport {
   std::int64_t mode = 0;   ///< of its messages; 0: none of its own
-  std::int64_t focus = 0;  ///< the mode in focus, as last received; 0: none
+  std::int64_t focus = 0;  ///< the mode in focus, as last received or decided; 0: none
   bool in_focus = true;    ///< whether it works in that mode
   /// Row, from 1 on, of the link for whose reader it waits; 0: it does not.
   std::int64_t blocked_row = 0;

@@ -20,6 +20,7 @@ struct Attention {
   std::vector<std::int32_t> modes;  ///< in which the module works; empty: in all
   std::int32_t own = 0;             ///< mode of all its messages, where it is a task
   std::int32_t focus = 0;           ///< as last received; 0: none, or that has expired
+  std::int32_t decided = 0;         ///< of who decides on the focus: which has it
   MonotonicTime received{0};        ///< when that was
   bool is_linked = false;           ///< whether there is a link from a workspace
 

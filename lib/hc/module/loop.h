@@ -62,6 +62,8 @@ struct Module::Loop {
   void pause(const std::function<MonotonicTime()>& due);
   /// Ends the outputs.
   void close();
+  /// @param blocked  the link whose reader the module waits for; null: none.
+  void report_state(const internal::LinkedSink* blocked = nullptr);
 
  private:
   [[nodiscard]] std::string name_of(const std::string& uri, const std::string& port) const;
@@ -125,8 +127,6 @@ struct Module::Loop {
   void report_counters();
   void report_links();
   void report_parameters();
-  /// @param blocked  the link whose reader the module waits for; null: none.
-  void report_state(const internal::LinkedSink* blocked = nullptr);
 
   Module& module_;
   LinkOptions options_;

@@ -279,8 +279,9 @@ void Module::Loop::report_state(const LinkedSink* blocked) {
   const auto found = std::find_if(sinks_.begin(), sinks_.end(),
                                   [&](const auto& sink) { return sink.get() == blocked; });
   const auto row = static_cast<std::int64_t>(sources_.size()) + (found - sinks_.begin()) + 1;
-  send(Report::State, make_state({attention.own, attention.focus, attention.in_focus(),
-                                  blocked == nullptr ? 0 : row}));
+  send(Report::State,
+       make_state({attention.own, attention.decided != 0 ? attention.decided : attention.focus,
+                   attention.in_focus(), blocked == nullptr ? 0 : row}));
 }
 
 }  // namespace hc

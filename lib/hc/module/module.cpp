@@ -154,6 +154,10 @@ void Timeout::restart(std::chrono::nanoseconds duration) {
   state_->due = now + std::clamp(duration, MonotonicTime(0), internal::kLongestPeriod);
 }
 
+void Module::report_focus(std::int32_t mode) {
+  if (std::exchange(attention_.decided, mode) != mode) loop_->report_state();
+}
+
 void Module::keep_rate(double rate) {
   auto period = [&] { return internal::period_of(rate); };
   loop_->pause([&] { return last_period_ ? *last_period_ + period() : MonotonicTime(0); });

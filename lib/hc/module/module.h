@@ -240,6 +240,10 @@ class Module {
   /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 200 ms.
   [[nodiscard]] std::int32_t focus() const { return attention_.focus; }
 
+  /// For who decides on the focus, and so does not hear it: reports which mode has it, as `hc ps`
+  /// shows it. Nothing else changes.
+  void report_focus(std::int32_t mode);
+
   /// Whether the module's mode has the focus, so that exclusive inputs take what it sends. Also
   /// when it has no mode of its own (`--mode`), and when it has no link from a workspace.
   [[nodiscard]] bool has_focus() const { return attention_.has_own_focus(); }

@@ -25,6 +25,27 @@ TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
   EXPECT_EQ(source->traffic().messages, 3U);
 }
 
+TEST_P(SocketLink, ALossIsToldAndItsEnd) {
+  Warnings warnings;
+  auto source = source_of(dial() + "?reconnect=60", warnings.options());
+  Message message;
+  for (int i = 0; i < 2; ++i) {
+    {
+      auto sink = sink_of(listen() + "?readers=1");
+      std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
+      ASSERT_TRUE(*receive(*source, message));
+      sender.join();
+    }
+    while (i == 0 && warnings.lines.empty()) {
+      ASSERT_EQ(*source->take(message), Got::Nothing);
+      ASSERT_TRUE(source->wait());
+    }
+  }
+  EXPECT_EQ(warnings.lines,
+            (std::vector<std::string>{dial() + "?reconnect=60: sender closed; reconnecting",
+                                      dial() + "?reconnect=60: reconnected"}));
+}
+
 TEST_P(SocketLink, ASinkThatLosesNothingWaitsForEachReader) {
   auto sink = sink_of(dial() + "?reconnect=60");
   std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });

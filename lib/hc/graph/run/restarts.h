@@ -21,6 +21,8 @@ namespace hc::internal {
 /// A run that was long enough makes all that came before forgotten.
 class Restarts {
  public:
+  static constexpr int kBadArguments = 2;  ///< the status of one that they have failed
+
   enum class Next {
     End,     ///< it has done its work
     Again,   ///< it is to be started once `delay` has passed
@@ -45,8 +47,6 @@ class Restarts {
   void set_policy(Restart policy) { policy_ = policy; }
 
  private:
-  static constexpr int kBadArguments = 2;
-
   Restart policy_;
   RestartLimits limits_;
   std::minstd_rand random_;

@@ -33,6 +33,7 @@ Message command_message(const std::string& command) {
 
 std::string end_in_words(int status) {
   if (status == 0) return "ended";
+  if (status == Restarts::kBadArguments) return "failed with status 2 (bad arguments)";
   if (status > kSignal) return "killed by signal " + std::to_string(status - kSignal);
   return "failed with status " + std::to_string(status);
 }

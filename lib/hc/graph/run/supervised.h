@@ -123,6 +123,7 @@ class Supervised {
   void ask_to_end();
   void read_lines();
   void take_report(const Message& message);
+  void look_at_silent();
   void forget_process();
   void go_on(int status);
   void decide(int status);

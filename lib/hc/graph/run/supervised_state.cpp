@@ -65,10 +65,11 @@ void Supervised::take_report(const Message& message) {
 
 void Supervised::look(MonotonicTime time) {
   end_observations(time);
+  if (process_ && heard_ == MonotonicTime(0)) return look_at_silent();
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const bool is_blocked = reports_.state().blocked_row != 0;
   if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
-  if (heard_ == MonotonicTime(0) || time - heard_ < limits_.stall) return;
+  if (!process_ || time - heard_ < limits_.stall) return;
   const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
   if (is_blocked && !is_stopped) {
     if (is_stalled) hear_.event("resumed");
@@ -79,6 +80,17 @@ void Supervised::look(MonotonicTime time) {
   if (is_stalled) return;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
   hear_.event("unresponsive: " + detail_);
+}
+
+/// One that sends no reports: only the kernel says whether it goes on.
+void Supervised::look_at_silent() {
+  const bool is_stalled = status_ == ModuleStatus::Stalled;
+  if (status_ != ModuleStatus::Running && !is_stalled) return;
+  const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
+  if (is_stopped == is_stalled) return;
+  change(is_stopped ? ModuleStatus::Stalled : ModuleStatus::Running,
+         is_stopped ? "stopped by a signal" : "");
+  hear_.event(is_stopped ? "unresponsive: " + detail_ : "resumed");
 }
 
 void Supervised::measure(MonotonicTime time, bool with_memory) {
@@ -100,7 +112,8 @@ std::string Supervised::said_of(const std::string& uri) const {
     const auto found = line->find(name);
     if (found == std::string::npos) continue;
     const auto why = line->find(": ", found + name.size());
-    return why == std::string::npos ? "" : line->substr(why + 2);
+    if (why == std::string::npos || line->ends_with(": reconnected")) return "";
+    return line->substr(why + 2);
   }
   return "";
 }

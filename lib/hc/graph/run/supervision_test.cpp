@@ -81,8 +81,25 @@ TEST_F(Supervision, BadArgumentsWouldBeBadAgain) {
   add("a", "exit 2");
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_EQ(lines_, (std::vector<std::string>{"a: started",
-                                              "a: failed with status 2; failed permanently"}));
+  EXPECT_EQ(lines_,
+            (std::vector<std::string>{
+                "a: started", "a: failed with status 2 (bad arguments); failed permanently"}));
+}
+
+TEST_F(Supervision, OneThatSendsNoReportsIsSeenToBeStopped) {
+  add("a", "echo $$ >&2; exec sleep 1000");
+  pid_t process = 0;
+  heard_ = [&](std::string_view line) {
+    if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9') {
+      process = std::stoi(std::string(line.substr(3)));
+      ::kill(process, SIGSTOP);
+    }
+    if (line == "a: unresponsive: stopped by a signal") ::kill(process, SIGCONT);
+    if (line == "a: resumed") stop();
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(count("a: unresponsive: stopped by a signal"), 1);
 }
 
 TEST_F(Supervision, AlwaysIsAfterAGoodEndToo) {

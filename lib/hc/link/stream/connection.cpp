@@ -62,7 +62,10 @@ void Connection::dial(TimePoint now) {
   auto made = dialer_->dial(now);
   if (!made) return fail(made.error());
   if (auto remark = dialer_->take_remark(now)) remarks_.add(*remark);
-  if (*made) return connect(std::move(*made), now);
+  if (*made) {
+    if (std::exchange(is_loss_told_, false)) remarks_.add("reconnected");
+    return connect(std::move(*made), now);
+  }
   watch_.move_to(dialer_->descriptor());
 }
 
@@ -142,6 +145,7 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
   blocked_ = false;
   if (dialer_ == nullptr) return fail(why);
   remarks_.add(in_words(why) + "; reconnecting");
+  is_loss_told_ = true;
   writer_.start(Descriptor());
   dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime, in_words(why));
 }

@@ -42,7 +42,11 @@ Result<Descriptor> Dialer::dial(TimePoint now) {
 std::optional<std::string> Dialer::take_remark(TimePoint now) {
   if (was_there_ || why_.empty() || now < begin_ + kQuiet || std::exchange(told_, true))
     return std::nullopt;
-  return "no peer yet (" + why_ + "); giving up after " + std::to_string(first_.count()) + " s";
+  // As long as the longest that can be asked for is for ever, to who reads this.
+  return "no peer yet (" + why_ + "); " +
+         (first_ >= std::chrono::hours(24)
+              ? "waiting"
+              : "giving up after " + std::to_string(first_.count()) + " s");
 }
 
 TimePoint Dialer::due() const {

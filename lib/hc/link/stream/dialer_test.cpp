@@ -132,6 +132,10 @@ TEST_F(DialerTest, SaysOnceThatItsFirstConnectionIsLongInComing) {
   EXPECT_EQ(dialer.take_remark(now_ + Dialer::kQuiet),
             "no peer yet (Connection refused); giving up after 60 s");
   EXPECT_FALSE(dialer.take_remark(now_ + 2 * Dialer::kQuiet));
+  auto patient = this->dialer(seconds(86'400));
+  EXPECT_FALSE(connects(patient));
+  EXPECT_EQ(patient.take_remark(now_ + Dialer::kQuiet),
+            "no peer yet (Connection refused); waiting");
 }
 
 TEST_F(DialerTest, AfterAConnectionOfUseItTriesAtOnceAndWithShortPauses) {

@@ -2,6 +2,7 @@
 #include <hc/link/stream/dialing.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <hc/link/stream/sink.h>
 #include <hc/link/stream/source.h>
@@ -73,20 +74,21 @@ class DialingSource final : public Source {
     if (!connected) return connected.error();
     if (auto remark = dialer_->take_remark(now)) log(*remark);
     if (now >= tell_at_) {
-      log("sender closed; reconnecting");
+      log_loss("sender closed");
       tell_at_ = TimePoint::max();
     }
     if (*connected) {
       auto source = made_.open(std::move(*connected));
       if (!source) {
         if (source.error().code == Code::Stopped) return source.error();
-        log(in_words(source.error()) + "; reconnecting");
+        log_loss(in_words(source.error()));
         dialer_->lost(now, false, in_words(source.error()));
       } else {
         source_ = std::move(*source);
         watch(source_->descriptor(), EPOLLIN);
         connected_at_ = now;
         tell_at_ = TimePoint::max();
+        if (std::exchange(is_loss_told_, false)) log("reconnected");
       }
     }
     if (source_ == nullptr) {
@@ -107,7 +109,7 @@ class DialingSource final : public Source {
     if (why.empty())
       tell_at_ = now + kTellAfter;
     else
-      log(why + "; reconnecting");
+      log_loss(why);
     dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime,
                   why.empty() ? "sender closed" : why);
   }
@@ -115,6 +117,11 @@ class DialingSource final : public Source {
   void watch(int descriptor, std::uint32_t events) {
     auto watched = loop_->watch(descriptor, events, [](auto) {});
     if (watched) watch_ = std::move(*watched);
+  }
+
+  void log_loss(const std::string& why) {
+    log(why + "; reconnecting");
+    is_loss_told_ = true;
   }
 
   void log(std::string_view line) const {
@@ -130,6 +137,7 @@ class DialingSource final : public Source {
   std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;
   TimePoint tell_at_ = TimePoint::max();  // that the sender closed
+  bool is_loss_told_ = false;             // and its end has not been
   bool finishing_ = false;                // the peer will not come back
   bool ended_ = false;
   Traffic past_;  // of connections that were lost
