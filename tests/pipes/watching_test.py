@@ -11,7 +11,7 @@ import signal
 import unittest
 
 from graphs import GRAPH, Graphs
-from harness import ROOT, WATCHDOG, free_port, wait_until
+from harness import DATA, ROOT, WATCHDOG, free_port, wait_until
 
 
 class Watching(Graphs):
@@ -104,6 +104,11 @@ class Watching(Graphs):
         self.hc("graph restart camera second" + of)
         wait_until(lambda: re.search(r"camera .* 2 +running", self.hc("top " + name)))
         wait_until(lambda: re.search(r"second .* 1 +running", self.hc("top " + name)))
+        self.shell("hc graph set camera.source=nosuch.ppm" + of)
+        self.assertIn("restarting camera", self.err)
+        wait_until(lambda: "given up" in self.hc("top " + name))
+        self.shell("hc graph set camera.source=%s/aloeR.jpg" % DATA + of)
+        wait_until(lambda: re.search(r"camera .* running", self.hc("top " + name)))
         self.stop_named(name, process)
 
     def test_no_word_is_ignored(self):

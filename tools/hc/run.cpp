@@ -126,6 +126,12 @@ void run(const RunOptions& options) {
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
   StatusLine status(!options.quiet);
+  if (const auto& unlinked = graph.plan->unlinked;
+      !options.graph.record.empty() && !unlinked.empty()) {
+    std::string list;
+    for (const auto& output : unlinked) list += (list.empty() ? "" : ", ") + output;
+    status.say("graph: not recorded, as not linked: " + list);
+  }
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
   run_options.tells_lines = !options.quiet;

@@ -216,6 +216,23 @@ std::optional<Description> parse_description(std::string_view text) {
   return description;
 }
 
+bool is_name(std::string_view text) {
+  auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  return !text.empty() && text.size() <= 64 && text.front() >= 'a' && text.front() <= 'z' &&
+         std::all_of(text.begin(), text.end(), is_letter);
+}
+
+Status check_names(const Description& description) {
+  for (const auto* ports : {&description.inputs, &description.outputs})
+    for (const auto& port : *ports)
+      if (!is_name(port.name))
+        return Error{Code::Invalid, std::string(ports == &description.inputs ? "input" : "output") +
+                                        " name \"" + port.name + "\" is not snake_case"};
+  return {};
+}
+
 const PortDescription& focus_input() {
   static const PortDescription kFocus{
       "focus", "", {{{MatrixType::Table, 1, Scalar::I32, Encoding::Text}, 1, 1, 0}}};

@@ -39,6 +39,12 @@ std::string to_json(const Description& description);
 /// Whatever the text, memory is in proportion to it.
 std::optional<Description> parse_description(std::string_view text);
 
+/// Whether a text is snake_case: a small letter, then small letters, digits and _, 64 at most.
+bool is_name(std::string_view text);
+
+/// Whether the names of all ports are. Errors: Invalid.
+Status check_names(const Description& description);
+
 /// The port or parameter of that name; null where there is none.
 template <typename Named>
 const Named* find_named(const std::vector<Named>& list, std::string_view name) {

@@ -77,5 +77,18 @@ TEST(Description, WhatIsNoneIsRefused) {
   EXPECT_FALSE(parse_description(std::string(1 << 20, '[')));
 }
 
+TEST(Description, NamesOfPortsAreSnakeCase) {
+  auto with = [](const std::string& input, const std::string& output) {
+    Description description;
+    description.inputs = {{.name = input}};
+    description.outputs = {{.name = output}};
+    const auto checked = check_names(description);
+    return checked ? "" : checked.error().detail;
+  };
+  EXPECT_EQ(with("in", "out_2"), "");
+  EXPECT_EQ(with("in", "Out"), "output name \"Out\" is not snake_case");
+  EXPECT_EQ(with("2nd", "out"), "input name \"2nd\" is not snake_case");
+}
+
 }  // namespace
 }  // namespace hc

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <hc/mtp/coords.h>
+
 namespace hc {
 namespace {
 
@@ -30,8 +32,8 @@ Error misfit(const Header& header, const PortType& type) {
   if (type.height != 0 && header.height != type.height)
     return misfit_of(16, "height", std::to_string(header.height), std::to_string(type.height));
   HC_CHECK(!fits(header, type), text(header));
-  return misfit_of(44, "coord", "coordinate system " + std::to_string(header.coord),
-                   std::to_string(type.coord));
+  return misfit_of(44, "coord", "coordinate system " + coord_and_number(header.coord),
+                   coord_and_number(type.coord));
 }
 
 bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken) {
@@ -50,7 +52,7 @@ std::string in_words(const PortType& type) {
   text += " " + std::to_string(type.info.components) + " x " + std::string(name(type.info.scalar));
   if (type.width != 0) text += ", width " + std::to_string(type.width);
   if (type.height != 0) text += ", height " + std::to_string(type.height);
-  if (type.coord != 0) text += " in coordinate system " + std::to_string(type.coord);
+  if (type.coord != 0) text += " in coordinate system " + coord_and_number(type.coord);
   return text;
 }
 

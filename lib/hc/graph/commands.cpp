@@ -6,6 +6,7 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/base/uri.h>
+#include <hc/contract/description.h>
 #include <hc/graph/file/fields.h>
 #include <hc/link/policy.h>
 
@@ -60,7 +61,7 @@ void add_module(Graph& graph, const Command& command, Problems& problems) {
   GraphModule module;
   module.name = command.words[0];
   module.program.value = command.words[1];
-  if (!internal::is_name(module.name))
+  if (!is_name(module.name))
     return problems.add({}, "module name \"" + module.name + "\" is not snake_case");
   if (graph.find(module.name) != nullptr)
     return problems.add({}, "module \"" + module.name + "\" already exists");

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <hc/base/suggestion.h>
+#include <hc/contract/description.h>
 #include <hc/graph/file/tables.h>
 
 namespace hc {
@@ -108,7 +109,7 @@ class GraphReader {
       fields_.each([&](const Node& module) { override_module(included, name, module); })(
           *overrides);
     for (const auto& module : included.modules)
-      if (internal::is_name(name) && !internal::is_name(module.name) && module.name.size() > 64)
+      if (is_name(name) && !is_name(module.name) && module.name.size() > 64)
         fields_.add(node, "the name " + module.name + " has more than 64 letters");
     internal::append(graph, std::move(included), problems_);
   }

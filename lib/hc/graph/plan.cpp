@@ -74,8 +74,10 @@ class ModulePlanner {
   /// What a program that does not say "control" would ignore.
   void check_needs_no_control(const Description& description) {
     auto refuse = [&](const Place& place, const std::string& key) {
-      problems_.add(place, "module " + module_.name + " cannot have \"" + key +
-                               "\": its program does not support --control");
+      problems_.add(
+          place,
+          "module " + module_.name + " cannot have \"" + key +
+              "\": its program does not support --control; see spec/module.md, sections 3 and 6");
     };
     for (const auto& [port, to] : module_.to) refuse(to.place, "to");
     if (module_.mode) refuse(module_.mode->place, "mode");
@@ -106,6 +108,9 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
                                  "module " + module.name + ": " + program +
                                      " --describe does not print the description of a module; "
                                      "see spec/module.md");
+  if (auto named = check_names(*description); !named)
+    return planning.problems.add(module.place,
+                                 "module " + module.name + ": " + named.error().detail);
   if (planning.index.contains(module.name)) return;  // a duplicate, which has been reported
   ModulePlanner(planning, module).plan(planning.described[module.name] = std::move(*description));
 }
@@ -195,7 +200,12 @@ Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Pr
   internal::check_bids(planning);
   internal::check_destinations(planning);
   internal::plan_frames(planning);
-  if (problems.empty()) internal::plan_links(planning);
+  if (!problems.empty()) return std::move(planning.plan);
+  internal::plan_links(planning);
+  for (const auto& module : planning.graph.modules)
+    for (const auto& output : planning.described.at(module.name).outputs)
+      if (const GraphPort port{module.name, output.name, {}}; !planning.is_read(port))
+        planning.plan.unlinked.push_back(port.text());
   return std::move(planning.plan);
 }
 

@@ -75,6 +75,7 @@ struct Plan {
   std::map<std::string, std::int64_t> sources;    ///< of outputs, "MODULE.PORT": their `src`
   std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
   std::set<std::string> workspaces;               ///< modules that publish the focus
+  std::vector<std::string> unlinked;              ///< outputs without a link, "MODULE.PORT"
   /// Of links over TCP, by their names: the port is theirs for as long as a plan has it.
   std::map<std::string, std::shared_ptr<const internal::HeldPort>> ports;
   std::string frames;  ///< as text (G31), by the names of the file

@@ -144,6 +144,7 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.odd]\nparameters.rate=1",
        "g.toml:2: module odd: odd --describe does not print the description of a module; "
        "see spec/module.md"},
+      {"[modules.loud]\n", "g.toml:2: module loud: output name \"Out\" is not snake_case"},
       {"[modules.source]\nparameters.rat = 3",
        "g.toml:3: module source has no parameter \"rat\", did you mean \"rate\"?"},
       {"[modules.source]\naddresses.lft = 3",
@@ -162,9 +163,8 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {link("source.up", "filter.in"), "g.toml:5: module source has no output \"up\""},
       {link("source.left", "filter.into"), "g.toml:5: module filter has no input \"into\""},
       {link("source.left", "sink.in"),
-       "g.toml:5: source.left sends map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 "
-       "in "
-       "coordinate system 8"},
+       "g.toml:5: source.left sends map 1 x f32 in coordinate system left_image (7), sink.in takes "
+       "map 1 x f32 in coordinate system right_image (8)"},
       {link("source.left", "sink.text"), "g.toml:5: source.left sends map"},
       {link("source.left", "filter.in") + "[[modules.filter.inputs.in]]\nfrom = \"source.left\"\n",
        "g.toml:7: duplicate link from source.left to filter.in"},
@@ -186,6 +186,12 @@ TEST(Plan, TwoLinksCannotListenAtThePortOfOneHost) {
   EXPECT_EQ(listening("tcp-listen:0.0.0.0:7000", "tcp-listen:7000"),
             "g.toml:4: another link listens at tcp-listen:7000 too");
   EXPECT_EQ(listening("tcp-listen:192.0.2.1:7000", "tcp-listen:7000"), "");
+}
+
+TEST(Plan, OutputsWithoutALinkAreKnown) {
+  auto planned = plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n");
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->unlinked, std::vector<std::string>{"source.right"});
 }
 
 TEST(Plan, InputsThatAreTakenTogetherAreAllLinked) {
@@ -210,14 +216,15 @@ inputs.in = "source.left"
 from = "source.left"
 )");
   ASSERT_FALSE(planned);
-  EXPECT_EQ(planned.error().detail,
-            R"(g.toml:3: module source has no parameter "rat", did you mean "rate"?
+  EXPECT_EQ(
+      planned.error().detail,
+      R"(g.toml:3: module source has no parameter "rat", did you mean "rate"?
 g.toml:3: module source: parameter rate: "10" is not from 0 to 9
 g.toml:4: module source has no port "lft", did you mean "left"?
 g.toml:5: module x: no such program
 g.toml:7: module sink has no input "inn", did you mean "in"?
-g.toml:8: source.left sends map 1 x f32 in coordinate system 7, sink.in takes map 1 x f32 in )"
-            "coordinate system 8\ng.toml:9: module snk: no such program");
+g.toml:8: source.left sends map 1 x f32 in coordinate system left_image (7), sink.in takes )"
+      "map 1 x f32 in coordinate system right_image (8)\ng.toml:9: module snk: no such program");
 }
 
 TEST(Plan, ALoopHasARate) {
@@ -236,6 +243,8 @@ TEST(Plan, ALoopHasARate) {
             "g.toml:11: loop without a rate: a -> b -> a; give one of its links a rate, for "
             "example rate = 30");
   EXPECT_TRUE(loop("rate = 30\n"));
+  EXPECT_EQ(wrong("[modules.filter]\ninputs.on = \"filter.out\"\n"),
+            "g.toml:3: module filter has no input \"on\", did you mean \"in\"?");  // and of no loop
   auto to_itself = plan("[modules.filter]\ninputs.in = \"filter.out\"\n");
   ASSERT_FALSE(to_itself);
   EXPECT_TRUE(

@@ -400,7 +400,7 @@ void Module::Loop::refuse(const Inlet& link, const Message& message) const {
     takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
   std::string what = text(message.header.info);
   if (message.header.coord != 0)
-    what += ", coordinate system " + std::to_string(message.header.coord);
+    what += ", coordinate system " + coord_and_number(message.header.coord);
   fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
 }
 

@@ -61,4 +61,9 @@ std::string coord_text(std::int32_t coord) {
   return known != nullptr ? std::string(known->name) : std::to_string(coord);
 }
 
+std::string coord_and_number(std::int32_t coord) {
+  const auto number = std::to_string(coord), text = coord_text(coord);
+  return text == number ? number : text + " (" + number + ")";
+}
+
 }  // namespace hc

@@ -44,5 +44,7 @@ constexpr std::int32_t transform_coord(std::int32_t to, std::int32_t from) {
 
 /// A header's coord for people: "gaze", "world from head", "123".
 std::string coord_text(std::int32_t coord);
+/// The same with the number, where it has a name: "gaze (13)", "123".
+std::string coord_and_number(std::int32_t coord);
 
 }  // namespace hc

@@ -52,6 +52,8 @@ TEST(Coords, HaveAText) {
             "world from head");
   EXPECT_EQ(hc::coord_text(123), "123");
   EXPECT_EQ(hc::coord_text(1'000'001), "1000001");
+  EXPECT_EQ(hc::coord_and_number(hc::Coord::kLeftImage), "left_image (7)");
+  EXPECT_EQ(hc::coord_and_number(123), "123");
 }
 
 }  // namespace

@@ -7,16 +7,9 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/base/uri.h>
+#include <hc/contract/description.h>
 
 namespace hc::internal {
-
-bool is_name(std::string_view text) {
-  auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  };
-  return !text.empty() && text.size() <= 64 && text.front() >= 'a' && text.front() <= 'z' &&
-         std::all_of(text.begin(), text.end(), is_letter);
-}
 
 std::string quoted_name(std::string_view name) {
   return "\"" + std::string(name) + "\"";

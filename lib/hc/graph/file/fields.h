@@ -15,9 +15,6 @@
 
 namespace hc::internal {
 
-/// Whether a text is snake_case: a small letter, then small letters, digits and _, 64 at most.
-bool is_name(std::string_view text);
-
 /// `"NAME"`
 std::string quoted_name(std::string_view name);
 

@@ -120,12 +120,14 @@ TEST(Frames, PosesMakeNoLoop) {
 TEST(Frames, WhatMovesThemTellsPoses) {
   EXPECT_EQ(wrong("[modules.source]\n[modules.seeker]\n[frames.head]\nparent = \"robot\"\n"
                   "moved_by = \"source.left\"\n"),
-            "g.toml:6: source.left sends map 1 x f32 in coordinate system 7, seeker.frames takes "
+            "g.toml:6: source.left sends map 1 x f32 in coordinate system left_image (7), "
+            "seeker.frames takes "
             "transformation 1 x f64, width 4, height 4");
-  EXPECT_EQ(wrong("[modules.source]\n[frames.head]\nparent = \"robot\"\n"
-                  "moved_by = \"source.left\"\n"),
-            "g.toml:5: source.left sends map 1 x f32 in coordinate system 7, not a pose, "
-            "transformation 4 x 4");
+  EXPECT_EQ(
+      wrong("[modules.source]\n[frames.head]\nparent = \"robot\"\n"
+            "moved_by = \"source.left\"\n"),
+      "g.toml:5: source.left sends map 1 x f32 in coordinate system left_image (7), not a pose, "
+      "transformation 4 x 4");
   EXPECT_EQ(wrong("[modules.neck]\n[frames.a]\nparent = \"root\"\nmoved_by = \"neck.pose\"\n"
                   "[frames.b]\nparent = \"a\"\nmoved_by = \"neck.pose\"\n"),
             "g.toml:8: neck.pose moves a and b, so they and their parents need a \"coord\"");

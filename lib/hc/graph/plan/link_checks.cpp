@@ -175,7 +175,12 @@ void check_links(Planning& planning) {
 void check_loops(Planning& planning) {
   std::map<std::string, std::vector<const GraphLink*>> leaving;
   for (const auto& link : planning.graph.links) {
+    const Description* from = planning.description_of(link.from.module);
     const Description* to = planning.description_of(link.to.module);
+    // One at a port that there is not has been told of.
+    if ((from != nullptr && find_named(from->outputs, link.from.port) == nullptr) ||
+        (to != nullptr && find_input(*to, link.to.port) == nullptr))
+      continue;
     const bool is_focus = to != nullptr && find_input(*to, link.to.port) == &focus_input();
     const bool is_frames = link.to.port == "frames" && takes_frames(planning, link.to.module);
     if (link.from.uri.empty() && link.to.uri.empty() && !is_paced(link) && !is_focus &&

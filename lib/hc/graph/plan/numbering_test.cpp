@@ -58,7 +58,8 @@ TEST(Numbering, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_EQ(wrong("[modules.task]\nto.comand = 3\n"),
             "g.toml:3: module task has no output \"comand\", did you mean \"command\"?");
   EXPECT_EQ(wrong("[modules.filter]\nto.out = 3\n"),
-            "g.toml:3: module filter cannot have \"to\": its program does not support --control");
+            "g.toml:3: module filter cannot have \"to\": its program does not support --control; "
+            "see spec/module.md, sections 3 and 6");
 }
 
 TEST(Numbering, TheFileMaySayTheRoute) {
@@ -71,7 +72,8 @@ TEST(Numbering, TheFileMaySayTheRoute) {
             (Words{"out=tcp:7000 to=*", "out=tcp:7001 to=21,0,-5", "out=tcp:7002 to=-1"}));
   EXPECT_EQ(
       wrong("[modules.filter]\n" + link_text("filter.out", "tcp:1", "route = [1]\n")),
-      "g.toml:5: module filter cannot have \"route\": its program does not support --control");
+      "g.toml:5: module filter cannot have \"route\": its program does not support --control; "
+      "see spec/module.md, sections 3 and 6");
 }
 
 TEST(Numbering, NumbersStayWhenAGraphIsPlannedAnew) {

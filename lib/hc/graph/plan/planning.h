@@ -43,6 +43,10 @@ struct Planning {
     return std::any_of(graph.links.begin(), graph.links.end(),
                        [&](const auto& link) { return link.to.text() == input.text(); });
   }
+  [[nodiscard]] bool is_read(const GraphPort& output) const {
+    return std::any_of(graph.links.begin(), graph.links.end(),
+                       [&](const auto& link) { return link.from.text() == output.text(); });
+  }
   [[nodiscard]] PlannedModule* planned(const std::string& module) {
     auto found = index.find(module);
     return found == index.end() ? nullptr : &plan.modules[found->second];

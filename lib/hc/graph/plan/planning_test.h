@@ -85,6 +85,7 @@ inline Result<std::string> describe(const std::string& program) {
     return shares(R"({"name":"x","inputs":[{"name":"frames",)" + pose + R"(],"outputs":[)" +
                   port("command", "map", 0) + R"(,{"name":"pose",)" + pose +
                   R"(],"parameters":[{"name":"frames","type":"string","fixed":true}]})");
+  if (program == "loud") return module("", port("Out", "map", 0));
   if (program == "dumb") return std::string("hello");
   if (program == "odd") return std::string(R"({"inputs":[{}],"outputs":3,"parameters":[{"x":1}]})");
   return Error{Code::NotFound, "no such program"};
