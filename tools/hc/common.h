@@ -74,7 +74,7 @@ class Skipper {
 /// Sends a message; false when nobody reads any more.
 bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri);
 
-/// "253 throttled, 8 lost at disconnect"; empty where none were.
+/// "253 throttled, 8 lost without a reader"; empty where none were.
 std::string losses_in_words(const hc::Traffic& traffic);
 /// Logs how many messages a link has dropped and why, if any.
 void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic);
