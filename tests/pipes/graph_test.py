@@ -39,7 +39,7 @@ class Graph(Pipes):
         self.shell("hc run %s --set depth.disparities=20" % graph, 2)
         self.assertIn('parameter disparities: "20" is not 16, 32, …, 1024', self.err)
         self.shell("hc run %s --set camera.source=none.jpg" % graph, 1)
-        self.assertIn("camera: NotFound: none.jpg: ", self.err)
+        self.assertIn("camera: Invalid: none.jpg: ", self.err)
         self.shell("hc run %s --set depht.disparities=16" % graph, 2)
         self.assertIn('did you mean "depth"?', self.err)
         self.shell("hc run %s --set depth.disparitis=16" % graph, 2)

@@ -45,7 +45,7 @@ class Tool(Pipes):
                 2,
                 'hc cat: The following argument was not expected: --cuont=1, did you mean "--count"?',
             ),
-            ("hc camera nothing.jpg", 1, "camera: NotFound: nothing.jpg: no such file"),
+            ("hc camera nothing.jpg", 2, "camera: Invalid: nothing.jpg: no such file"),
             (
                 "echo rubbish | hc cat",
                 1,

@@ -80,8 +80,8 @@ TEST(Description, WhatIsNoneIsRefused) {
 TEST(Description, NamesOfPortsAreSnakeCase) {
   auto with = [](const std::string& input, const std::string& output) {
     Description description;
-    description.inputs = {{.name = input}};
-    description.outputs = {{.name = output}};
+    description.inputs.emplace_back().name = input;
+    description.outputs.emplace_back().name = output;
     const auto checked = check_names(description);
     return checked ? "" : checked.error().detail;
   };

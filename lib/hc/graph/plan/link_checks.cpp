@@ -138,7 +138,8 @@ class LinkCheck {
     if (sender != nullptr && !sender->control)
       problems_.add(link.route->place, "module " + link.from.module +
                                            " cannot have \"route\": its program does not "
-                                           "support --control");
+                                           "support --control; see spec/module.md, sections 3 "
+                                           "and 6");
     else if (!link.from.uri.empty())
       problems_.add(link.route->place,
                     "a link from outside cannot have a route: its sender sets it");
