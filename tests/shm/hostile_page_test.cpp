@@ -88,7 +88,7 @@ void take_all(Source& source, std::int64_t count) {
 
 /// The other reader gets every message, whole.
 TEST(HostileReaderPage, WordsChangeWhileTheyAreUsed) {
-  for (std::uint64_t keep : {0, 1, 700}) {
+  for (std::uint64_t keep : {0U, 1U, 700U}) {
     auto name = fresh_name();
     auto sink = std::move(*open_sink(*parse_uri(name + "?memory=2M")));
     auto source = std::move(*open_source(*parse_uri(name)));
