@@ -46,8 +46,8 @@ struct PlannedModule {
   std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
   bool ends_graph = false;          ///< when it has ended with status 0
 
-  void add_option(std::string name, std::string value) {
-    options.insert(options.end(), {std::move(name), std::move(value)});
+  void add_option(std::string option, std::string value) {
+    options.insert(options.end(), {std::move(option), std::move(value)});
   }
 
   /// Whether a parameter can have a value. Errors: Invalid.
