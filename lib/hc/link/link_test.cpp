@@ -19,7 +19,7 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
 
 TEST(Open, OptionsAreChecked) {
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?speed=3")).error().detail,
-            "tcp has no option \"speed\" here, only \"wait\", \"reconnect\"");
+            "tcp has no option \"speed\" here, only \"wait\", \"reconnect\", \"same_user\"");
   EXPECT_EQ(open_source(*parse_uri("tcp:h:1?wait=")).error().text(),
             "Invalid: option wait has no value");
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
@@ -33,8 +33,8 @@ TEST(Open, OptionsAreChecked) {
 
 TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?recconect=3")).error().detail,
-            "tcp has no option \"recconect\" here, only \"wait\", \"reconnect\", did you mean "
-            "\"reconnect\"?");
+            "tcp has no option \"recconect\" here, only \"wait\", \"reconnect\", \"same_user\", "
+            "did you mean \"reconnect\"?");
   for (const char* end :
        {"-", "file:x", "tcp-listen:0", "unix:@x", "unix-listen:@x", "inproc:x", "shm:x"})
     EXPECT_TRUE(open_sink(*parse_uri(std::string(end) + "?keeps=latest"))
