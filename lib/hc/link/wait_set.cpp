@@ -145,7 +145,7 @@ Result<bool> WaitSet::sleep(nanoseconds timeout) {
     if (event.data.u64 == kStop)
       return Error{Code::Stopped, "asked to stop"};
     else
-      woken_by_.push_back(event.data.u64);
+      woken_by_.push_back(std::uint64_t{event.data.u64});  // a copy, since the event is packed
   return *count > 0;
 }
 

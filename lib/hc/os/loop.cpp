@@ -116,8 +116,9 @@ Status Loop::turn(std::chrono::milliseconds timeout) {
   if (!count) return count.error();
   bool is_time = false;
   for (const auto& event : std::span(events).first(static_cast<std::size_t>(*count))) {
-    is_time = is_time || event.data.u64 == kTimerId;
-    auto found = entries_.find(event.data.u64);
+    const std::uint64_t id = event.data.u64;  // a copy, since the event is packed
+    is_time = is_time || id == kTimerId;
+    auto found = entries_.find(id);
     if (found == entries_.end()) continue;  // ended by a callback before
     auto entry = found->second;             // may end itself
     // It may have been wanted no more since.
