@@ -31,9 +31,9 @@ class Tool(Pipes):
                 'camera: Invalid: no option "--widht", did you mean "--width"?',
             ),
             (
-                "hc send --type positon 1",
+                "hc send --type positn 1",
                 2,
-                'hc send: Invalid: no matrix type "positon", did you mean "position"?',
+                'hc send: Invalid: no matrix type "positn", did you mean "position"?',
             ),
             (
                 "hc send --scalar q 1",

@@ -120,8 +120,8 @@ class Watching(Graphs):
             ["30", "81"],
         )
         self.assertIn(
-            'no parameter "heigth"',
-            self.hc("graph set camera.rate=40 camera.heigth=60" + of, 2),
+            'no parameter "hheight"',
+            self.hc("graph set camera.rate=40 camera.hheight=60" + of, 2),
         )
         self.assertIn("camera.rate = 30 ", self.hc("graph get camera.rate" + of))
         self.assertIn('no module "nosuch"', self.hc("graph get camera.rate nosuch" + of, 2))
