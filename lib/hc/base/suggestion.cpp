@@ -31,7 +31,9 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kNear = 3;
   const std::string* best = nullptr;
-  std::size_t beyond = std::min(kNear, (name.size() + 1) / 3) + 1;  // a third of its letters
+  // A third of its letters, to which the dashes of an option do not count.
+  const std::size_t letters = name.size() - std::min(name.find_first_not_of('-'), name.size());
+  std::size_t beyond = std::min(kNear, (letters + 1) / 3) + 1;
   for (const auto& word : known)
     if (std::size_t away = distance(name.substr(0, 64), word); away < beyond) {
       beyond = away;

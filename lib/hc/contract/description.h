@@ -56,6 +56,7 @@ const Named* find_named(const std::vector<Named>& list, std::string_view name) {
 template <typename Named>
 std::vector<std::string> names_of(const std::vector<Named>& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& each : list) names.push_back(each.name);
   return names;
 }
