@@ -165,7 +165,7 @@ TEST(HostilePublisher, GoesOrSaysNothing) {
   FakePublisher publisher(name);
   auto left = publisher.open(name, "", {}, true);
   ASSERT_FALSE(left);
-  EXPECT_EQ(left.error().text(), "Closed: the publisher has gone before it answered");
+  EXPECT_EQ(left.error().text(), "Closed: the publisher closed during the handshake");
   auto silent = publisher.open(name, "", {});  // waits for as long as an answer may take
   ASSERT_FALSE(silent);
   EXPECT_EQ(silent.error().text(), "Closed: the publisher does not answer");

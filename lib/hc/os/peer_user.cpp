@@ -49,7 +49,8 @@ in_port_t put(const sockaddr_storage& address, __be32* words) {
   return place.sin6_port;
 }
 
-/// The user of a socket with these two ends. Without the other end, of one that listens.
+/// The user that owns the socket with these two addresses; without a remote address, a listening
+/// one.
 ///
 /// Source: man 7 sock_diag. Errors: NotFound (also a socket that nobody has, not yet or not any
 /// more), System.

@@ -21,7 +21,7 @@ namespace hc::internal {
 /// A run that was long enough makes all that came before forgotten.
 class Restarts {
  public:
-  static constexpr int kBadArguments = 2;  ///< the status of one that they have failed
+  static constexpr int kBadArguments = 2;  ///< exit status: a restart would fail again
 
   enum class Next {
     End,     ///< it has done its work

@@ -25,7 +25,7 @@ GraphState Runner::state() const {
     const auto* module = find(planned.name);
     if (module == nullptr) continue;
     state.modules.push_back(module->state());
-    // Those that hear the focus, or decide on it. One that does not run may be wrong.
+    // Reported by modules that receive the focus or decide it; stale unless they run.
     if (state.focus == 0 && module->status() == ModuleStatus::Running)
       state.focus = module->reports().state().focus;
   }

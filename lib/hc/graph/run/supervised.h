@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // One module of a graph that runs: its process, and the next one where that fails; what it says and
-// reports; and what it is told. Internal to graph.
+// reports; and the commands it gets. Internal to graph.
 
 #include <deque>
 #include <map>
@@ -64,8 +64,8 @@ class Supervised {
   /// Takes another plan, and restarts where commands cannot make it so. @returns  what to tell()
   /// it.
   ModuleChange adopt(PlannedModule plan);
-  /// Sends commands. A module that is not connected yet gets the changes when it connects; one that
-  /// accepts none is restarted.
+  /// Sends commands. They reach a module that has not connected yet when it connects; one
+  /// that accepts no commands is restarted.
   void tell(const std::vector<std::string>& commands);
 
   /// Tells it that an input's writer has ended for good, or that it is there again.

@@ -82,7 +82,7 @@ void Supervised::look(MonotonicTime time) {
   hear_.event("unresponsive: " + detail_);
 }
 
-/// One that sends no reports: only the kernel says whether it goes on.
+/// Asks the kernel whether a module that sends no reports has been stopped by a signal.
 void Supervised::look_at_silent() {
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   if (status_ != ModuleStatus::Running && !is_stalled) return;

@@ -140,7 +140,7 @@ Result<std::optional<Offer>> take_offer(int socket) {
   if (::poll(&polled, 1, 0) == 0) return std::optional<Offer>();
   auto received = take_greeting(socket, 1);
   if (!received && received.error().code == Code::Closed)
-    return Error{Code::Closed, "the publisher has gone before it answered"};
+    return Error{Code::Closed, "the publisher closed during the handshake"};
   if (!received) return received.error();
   auto& [greeting, descriptors] = *received;
   if (greeting.refusal[0] != '\0')

@@ -156,7 +156,7 @@ TEST(ShmMeeting, AReaderThatReconnectsDoesNotWaitForAPublisherThatIsStopped) {
   publisher.join();
   const std::string link = name + "?reconnect=60: ";
   EXPECT_EQ(warnings.lines, (std::vector<std::string>{
-                                link + "the publisher has gone before it answered; reconnecting",
+                                link + "the publisher closed during the handshake; reconnecting",
                                 link + "reconnected"}));
 }
 

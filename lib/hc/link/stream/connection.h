@@ -66,7 +66,7 @@ class Connection {
   static constexpr std::size_t kFlushBytes = 60 << 10;
 
   /// @param connection  may be none (-1) with a dialer.
-  /// @param dialer  makes the connection anew when it is lost; without one the link ends with it.
+  /// @param dialer  reconnects when the connection is lost; without one the link ends with it.
   ///
   /// Errors: System.
   static Result<std::unique_ptr<Connection>> make(Descriptor connection, const Policy& policy,

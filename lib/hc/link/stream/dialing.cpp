@@ -13,8 +13,8 @@ namespace hc::internal {
 namespace {
 
 constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
-/// How long the writer may be away that said its end, until it is told: where both ends are ended
-/// together, the reader's end follows.
+/// After a sender has closed, how long to wait before that is logged: when both ends are stopped
+/// together, the reader ends meanwhile.
 constexpr std::chrono::milliseconds kTellAfter{200};
 
 /// A source that outlives its connection; see dial_source().

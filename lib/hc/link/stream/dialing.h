@@ -17,7 +17,7 @@ Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptio
 
 /// What becomes of the connections of a source.
 struct Made {
-  /// Makes the source of a connection; one that it cannot be made of counts as lost.
+  /// Makes the source of a connection; if that fails, the connection counts as lost.
   std::function<Result<std::unique_ptr<Source>>(Descriptor connection)> open;
   int wake_descriptor = -1;  ///< of all sources that come of it
 };
@@ -27,9 +27,8 @@ struct Made {
 ///
 /// With it they are there at once, and the connection when it can be had; a source connects again
 /// when that is lost, until the dialer gives up; then it ends, or fails with NotFound if there
-/// never was a connection. What has come of a message by then is of no use: the peer sends it anew,
-/// or not at all. The end that a peer says cannot be told from that of a process that was killed,
-/// so both lead to trying again.
+/// never was a connection. A partly received message is dropped: the peer sends it again, whole, or
+/// not at all. A clean close looks like the end of a killed process, so both lead to reconnecting.
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options, Made made);
 /// The same, of messages as they stand in the stream.
