@@ -15,7 +15,7 @@ using internal::Inlet;
 using internal::LinkedSink;
 
 /// How often a module that is busy looks for commands; one that waits is woken by them.
-constexpr std::chrono::milliseconds kLookPeriod{10};
+constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
 
 /// "PORT=URI" of a link at a port.
 std::string text_of(const std::string& port, const std::string& uri) {
@@ -46,7 +46,7 @@ void Module::Loop::serve() {
   unlinked_.clear();
   log_lines(now_);
   const bool reports = management_.is_heard() && now_ - reported_ >= kReportPeriod;
-  if (now_ - attended_ < kLookPeriod && deferred_.empty() && !reports) return;
+  if (now_ - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
   attended_ = now_;
   for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);

@@ -23,8 +23,8 @@ using std::memory_order_seq_cst;
 constexpr std::uint64_t kAheadBytes = std::uint64_t{8} << 20;
 constexpr std::uint64_t kAheadMessages = 2;  // at least, however large
 constexpr std::uint64_t kBatch = 64;         // cells that are withdrawn together
-/// How often one who waits looks whether it is to stop.
-constexpr std::chrono::milliseconds kLookPeriod{20};
+/// How often a wait checks whether it is to stop.
+constexpr std::chrono::milliseconds kStopCheckPeriod{20};
 
 }  // namespace
 
@@ -109,7 +109,7 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
     if (reader == nullptr)
       return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
     HC_CRASH_POINT("publisher waits for room");
-    futex_wait(reader->page().progress, progress, kLookPeriod);
+    futex_wait(reader->page().progress, progress, kStopCheckPeriod);
     if (auto waited = wait(-1, std::chrono::milliseconds(0)); !waited) return waited;
   }
 }

@@ -18,7 +18,7 @@ namespace {
 
 // Between messages that follow one another one looks for new peers only so often.
 constexpr std::chrono::microseconds kFollowTime{10};
-constexpr std::chrono::milliseconds kLookPeriod{1};
+constexpr std::chrono::milliseconds kNewPeerPeriod{1};
 
 /// A connection for each reader; see listening_sink().
 class ListeningSink final : public Sink {
@@ -53,7 +53,7 @@ class ListeningSink final : public Sink {
         }
       }
       auto now = std::chrono::steady_clock::now();
-      bool follows = now - last_send_ < kFollowTime && now - last_look_ < kLookPeriod;
+      bool follows = now - last_send_ < kFollowTime && now - last_look_ < kNewPeerPeriod;
       if (!begun_ || peers_.empty() || !follows) {
         if (auto awaited = await_readers(); !awaited) return awaited;
         last_look_ = now = std::chrono::steady_clock::now();
