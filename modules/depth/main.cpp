@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth from a rectified stereo pair.
 #include <cmath>
-#include <optional>
+#include <memory>
+#include <utility>
 
 #include <frames/module_frames.h>
-#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
-#include <vision/stereo.h>
+#include <vision/stereo/depth.h>
+#include <vision/stereo/matcher.h>
 
 namespace {
 
@@ -32,10 +33,23 @@ int main(int argc, char** argv) {
                     "disparity of the left image's pixels [px], 0 unknown");
   auto depth = module.output("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),
                              "depth along the optical axis [m], 0 unknown");
+  auto confidence =
+      module.output("confidence", hc::intensity_image<std::uint8_t>().in(hc::Coord::kDisparity),
+                    "how sure a disparity is: 1 doubtful, 255 sure, 0 unknown");
+  auto points = module.output("points", hc::vector_field<float>(6).in(hc::Coord::kLeftEye),
+                              "point of each pixel: x, y, z [m] in the frame left_eye, red, green, "
+                              "blue [0, 1]; NaN unknown");
+  module.on_demand(confidence);
+  module.on_demand(points);
+  auto matcher_name = module.parameter("matcher", "semi_global", "", "how images are matched",
+                                       {.choices = {"semi_global", "opencv"}, .fixed = true});
   auto disparities = module.parameter("disparities", 128, "px", "disparities searched",
-                                      {.min = 16, .max = 1024, .step = 16, .fixed = true});
-  auto block_size = module.parameter("block_size", 5, "px", "side of the window compared",
-                                     {.min = 1, .max = 21, .step = 2, .fixed = true});
+                                      {.min = 16, .max = 256, .step = 16, .fixed = true});
+  auto speckle_size = module.parameter("speckle_size", 100, "px", "smaller patches are removed",
+                                       {.min = 0, .max = 1e6, .fixed = true});
+  auto block_size =
+      module.parameter("block_size", 5, "px", "side of the window compared by the matcher opencv",
+                       {.min = 1, .max = 21, .step = 2, .fixed = true});
   auto focal = module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3});
   auto baseline = module.parameter("baseline", 0.0, "m",
                                    "distance of the cameras, 0: that of the frames left_eye and "
@@ -45,47 +59,58 @@ int main(int argc, char** argv) {
                                  "added to a disparity before depth is computed from it");
 
   hc::ModuleFrames frames{module, {.input = false}};
-  std::optional<hc::vision::StereoMatcher> matcher;
-  struct {
-    double focal, baseline;
-  } measured{};  // by `intrinsics`; 0: not yet
+  std::unique_ptr<hc::vision::StereoMatcher> matcher;
+  hc::vision::StereoGeometry measured;  // by `intrinsics`; focal 0: not yet
   module.on_start([&] {
-    matcher.emplace(
-        hc::vision::StereoOptions{static_cast<int>(*disparities), static_cast<int>(*block_size)});
+    const hc::vision::StereoOptions options{static_cast<int>(*disparities),
+                                            static_cast<int>(*speckle_size)};
+    matcher = *matcher_name == "opencv"
+                  ? hc::vision::opencv_matcher(options, static_cast<int>(*block_size))
+                  : hc::vision::semi_global_matcher(options);
   });
-  auto distance = [&] {
-    if (measured.baseline > 0) return measured.baseline;
-    if (*baseline > 0) return *baseline;
-    return frames.fixed("left_eye", "right_eye").translation().norm();
+  auto geometry = [&](const hc::Header& image) {
+    auto found = measured;
+    if (found.focal == 0) {
+      found = {.focal = *focal,
+               .baseline = *baseline,
+               .cx = (image.width - 1) / 2.0,
+               .cy = (image.height - 1) / 2.0};
+      if (found.baseline == 0)
+        found.baseline = frames.fixed("left_eye", "right_eye").translation().norm();
+    }
+    found.offset = *offset;
+    return found;
   };
   module.on(intrinsics, [&](const auto& message) {
     const auto numbers = message.matrix().numbers();
     const bool is_pair = numbers.size() == 5 && std::isfinite(numbers[0]) && numbers[0] > 0 &&
                          std::isfinite(numbers[4]) && numbers[4] > 0;
     if (!is_pair) return module.log("intrinsics: not fx, fy, cx, cy, baseline of a pair");
-    measured = {numbers[0], numbers[4]};
+    measured = {.focal = numbers[0], .baseline = numbers[4], .cx = numbers[2], .cy = numbers[3]};
   });
   module.on(hc::together(left, right), [&](const hc::Message& left_image,
                                            const hc::Message& right_image) {
-    const auto& size = left_image.header;
-    const auto& other = right_image.header;
-    if (size.width != other.width || size.height != other.height)
-      throw hc::ModuleError(hc::format("the left image is {} x {}, the right one {} x {}",
-                                       size.width, size.height, other.width, other.height));
-    if (!matcher->takes({size.width, size.height}))
-      throw hc::ModuleError(hc::format("images of {} x {} are not wider than {} disparities",
-                                       size.width, size.height, *disparities));
-    auto found = disparity.loan(size.width, size.height);
-    cv::Mat found_mat = hc::as_mat(found);
-    matcher->match(hc::value_or_end(hc::as_mat(left_image)),
-                   hc::value_or_end(hc::as_mat(right_image)), found_mat);
-    if (!depth.linked()) return disparity.send(std::move(found));
-    auto metres = depth.loan(size.width, size.height);
-    cv::Mat metres_mat = hc::as_mat(metres);
-    hc::vision::depth_of(
-        found_mat, {measured.focal > 0 ? measured.focal : *focal, distance(), *offset}, metres_mat);
-    disparity.send(std::move(found));
-    depth.send(std::move(metres));
+    const auto width = left_image.header.width, height = left_image.header.height;
+    const cv::Mat left_mat = hc::value_or_end(hc::as_mat(left_image));
+    auto disparity_draft = disparity.loan(width, height);
+    auto confidence_draft = confidence.loan(width, height);
+    auto depth_draft = depth.loan(width, height);
+    hc::vision::Disparities found{hc::as_mat(disparity_draft), hc::as_mat(confidence_draft)};
+    const cv::Mat right_mat = hc::value_or_end(hc::as_mat(right_image));
+    if (auto matched = matcher->match(left_mat, right_mat, found); !matched)
+      throw hc::ModuleError(matched.error().detail);
+    cv::Mat metres = hc::as_mat(depth_draft);
+    if (depth.linked() || points.linked())
+      hc::vision::depth_of(found.disparity, geometry(left_image.header), metres);
+    if (points.linked()) {
+      auto draft = points.loan(width, height);
+      cv::Mat mat = hc::as_mat(draft);
+      hc::vision::points_of(metres, left_mat, geometry(left_image.header), mat);
+      points.send(std::move(draft));
+    }
+    disparity.send(std::move(disparity_draft));
+    confidence.send(std::move(confidence_draft));
+    depth.send(std::move(depth_draft));
   });
   module.background();
   return module.run(argc, argv);

@@ -5,7 +5,7 @@
 
 #include <hc/module/module.h>
 #include <vision/messages.h>
-#include <vision/stereo.h>
+#include <vision/stereo/score.h>
 #include <opencv2/imgproc.hpp>
 
 int main(int argc, char** argv) {
@@ -27,10 +27,12 @@ int main(int argc, char** argv) {
             [&](const hc::Message& found, const hc::Message& known) {
               cv::Mat levels = hc::value_or_end(hc::as_mat(known));
               if (levels.channels() > 1) cv::extractChannel(levels.clone(), levels, 0);
-              cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
+              const cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
               if (found_mat.size() != levels.size())
                 throw hc::ModuleError("the disparities and the truth have different sizes");
-              auto score = hc::vision::score(found_mat, levels, *truth_scale, *threshold);
+              cv::Mat true_mat;
+              levels.convertTo(true_mat, CV_32F, *truth_scale);
+              auto score = hc::vision::score(found_mat, true_mat, *threshold);
               result.send(hc::table({score.bad_share(), score.hole_share(), score.wrong_share(),
                                      static_cast<double>(score.truth)}));
               char line[160];

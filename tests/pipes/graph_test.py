@@ -12,8 +12,8 @@ from harness import BUILD, DATA, Pipes, ROOT, WATCHDOG, wait_until
 
 
 class Graph(Pipes):
-    def test_depth_graph_is_as_good_as_opencv_called_directly(self):
-        out = self.shell("hc run --links %s/graphs/depth.toml" % ROOT)
+    def test_depth_graph_with_opencvs_matcher_is_as_good_as_opencv_called_directly(self):
+        out = self.shell("hc run --links %s/graphs/depth.toml --set depth.matcher=opencv" % ROOT)
         said = self.err
         direct = self.shell("%s/tests/depth_direct %s" % (BUILD, DATA))
         self.assertIn("depth_score: " + direct, said)
@@ -27,6 +27,15 @@ class Graph(Pipes):
         self.assertEqual(image[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(image[16:24], b"\0\0\3\x20\0\0\2\x58")  # 800 x 600
 
+    def test_depth_graph_is_better_with_its_own_matcher(self):
+        def holes_and_bad(matcher):
+            out = self.shell(
+                "hc run --quiet %s/graphs/depth.toml --set depth.matcher=%s" % (ROOT, matcher)
+            )
+            return float(re.search(r"bad or hole ([0-9.]+) %", out)[1])
+
+        self.assertLess(holes_and_bad("semi_global"), 0.6 * holes_and_bad("opencv"))
+
     def test_one_pipe_does_the_same(self):
         out = self.shell(
             "hc camera {0}/aloeL.jpg {0}/aloeR.jpg --rectified --width 200 --height 150 | "
@@ -37,7 +46,7 @@ class Graph(Pipes):
     def test_set_reaches_the_module_and_errors_name_it(self):
         graph = "%s/graphs/depth.toml" % ROOT
         self.shell("hc run %s --set depth.disparities=20" % graph, 2)
-        self.assertIn('parameter disparities: "20" is not 16, 32, …, 1024', self.err)
+        self.assertIn('parameter disparities: "20" is not 16, 32, …, 256', self.err)
         self.shell("hc run %s --set camera.source=none.jpg" % graph, 1)
         self.assertIn("camera: Invalid: none.jpg: ", self.err)
         self.shell("hc run %s --set depht.disparities=16" % graph, 2)

@@ -123,7 +123,8 @@ void Module::Loop::open_outputs(const internal::Arguments& arguments) {
     module_.outputs_[port]->links.push_back(open_output(uri, module_.outputs_[port]->name));
   if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
   auto standard_output = open_output({"-", "", {}}, "-");
-  for (auto& output : module_.outputs_) output->links.push_back(standard_output);
+  for (auto& output : module_.outputs_)
+    if (!output->is_on_demand) output->links.push_back(standard_output);
 }
 
 void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*> inputs) {

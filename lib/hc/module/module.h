@@ -106,6 +106,14 @@ class Module {
       return Output<K>(add_output(name, {kind.type}, doc));
   }
 
+  /// Declares that an output is sent only by a link of its own: it has no part in the standard
+  /// output that outputs share. For what few readers want, and costs time.
+  template <typename K>
+  void on_demand(const Output<K>& output) {
+    output.state_->is_on_demand = true;
+    output.state_->doc += "; only by a link of its own";
+  }
+
   /// Declares that an input moves something: a graph with several writers to it needs an arbiter
   /// (`exclusive`, a router).
   template <typename K>

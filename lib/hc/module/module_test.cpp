@@ -66,6 +66,24 @@ TEST(Module, AnswersEachMessageAndKeepsItsTime) {
   }
 }
 
+TEST(Module, SendsWhatIsOnDemandOnlyByALinkOfItsOwn) {
+  const auto linked = [](const std::vector<std::string>& arguments) {
+    Module module{"numbers", "Sends numbers."};
+    auto always = module.output("always", table<double>(), "a number");
+    auto seldom = module.output("seldom", table<double>(), "another");
+    module.on_demand(seldom);
+    std::pair<bool, bool> linked;
+    module.generate([&] {
+      linked = {always.linked(), seldom.linked()};
+      return false;
+    });
+    EXPECT_EQ(run(module, arguments), 0);
+    return linked;
+  };
+  EXPECT_EQ(linked({}), std::pair(true, false));
+  EXPECT_EQ(linked({"--out", "seldom=-"}), std::pair(false, true));
+}
+
 TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
   Module module{"copy", "Copies images."};
   auto in = module.input("in", intensity_image<std::uint8_t>(), "");

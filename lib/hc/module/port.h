@@ -89,6 +89,7 @@ struct OutputState {
   std::int32_t address = 0;          ///< src of its messages
   std::int32_t to = 0;               ///< dst of those that have none
   std::optional<Encoding> encoding;  ///< asked for on the command line
+  bool is_on_demand = false;         ///< see Module::on_demand()
   std::int64_t seq = 0;
   std::vector<std::shared_ptr<LinkedSink>> links;
   Module* module = nullptr;
@@ -164,6 +165,7 @@ class Output {
   }
 
  private:
+  friend class Module;
   std::shared_ptr<internal::OutputState> state_;
 };
 

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// vision [--rounds N]: speed and quality of stereo matching beside OpenCV's matchers, on the Aloe
+// pair and on rooms that are drawn with exact depth, as Markdown.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <graphics/camera.h>
+#include <graphics/renderer.h>
+#include <room/room.h>
+#include <room/sensor.h>
+#include <room/world.h>
+#include <vision/image.h>
+#include <vision/stereo/depth.h>
+#include <vision/stereo/matcher.h>
+#include <vision/stereo/score.h>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+using hc::vision::Disparities, hc::vision::StereoMatcher;
+
+struct Pair {
+  cv::Mat left, right;  // (H, W, 3) u8, red, green, blue
+  cv::Mat truth;        // disparity (H, W) f32 [px], 0 unknown
+  cv::Mat walls;        // (H, W) u8, 255 on the four walls; or empty
+};
+
+cv::Mat read_image(const char* name, int flags) {
+  const char* folder = std::getenv("HC_DATA");
+  return cv::imread(
+      std::string(folder == nullptr ? "/usr/share/doc/opencv-doc/examples/data" : folder) + "/" +
+          name,
+      flags);
+}
+
+Pair read_aloe() {
+  Pair pair;
+  pair.left = hc::vision::fit(read_image("aloeL.jpg", cv::IMREAD_COLOR), 800, 600);
+  pair.right = hc::vision::fit(read_image("aloeR.jpg", cv::IMREAD_COLOR), 800, 600);
+  for (cv::Mat* image : {&pair.left, &pair.right}) cv::cvtColor(*image, *image, cv::COLOR_BGR2RGB);
+  const cv::Mat levels = read_image("aloeGT.png", cv::IMREAD_GRAYSCALE);
+  hc::vision::fit(levels, 800, 600, false).convertTo(pair.truth, CV_32F, 800.0 / levels.cols);
+  return pair;
+}
+
+constexpr int kRooms = 10;
+constexpr double kFocal = 600, kBaseline = 0.1;  // of the simulated head [px], [m]
+
+/// What the simulated head sees, looking somewhere in a room of its own.
+Pair draw_room(hc::graphics::Renderer& renderer, int number) {
+  hc::room::World world(renderer, static_cast<std::uint64_t>(number), "HELLO");
+  const hc::graphics::PinholeCamera camera;
+  const double pan = 0.25 * (number - 5), tilt = 0.12 * (number % 3);
+  Eigen::Isometry3d T_world_left = Eigen::Isometry3d::Identity();
+  T_world_left.translate(Eigen::Vector3d(0, 0, hc::room::kHeadHeight));
+  T_world_left.rotate(Eigen::AngleAxisd(pan, Eigen::Vector3d::UnitZ()) *
+                      Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()));
+  T_world_left.translate(Eigen::Vector3d(0.06, kBaseline / 2, 0.05));
+  Eigen::Matrix3d optical;
+  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  T_world_left.rotate(optical);
+  const Eigen::Isometry3d T_world_right = T_world_left * Eigen::Translation3d(kBaseline, 0, 0);
+  Pair pair;
+  cv::Mat depth;
+  const auto& items = world.items({2.2, 0.3, 0.65});
+  for (cv::Mat* image : {&pair.left, &pair.right}) {
+    const bool is_left = image == &pair.left;
+    if (auto drawn = renderer.draw(items, camera, is_left ? T_world_left : T_world_right,
+                                   world.light(), *image, is_left ? &depth : nullptr);
+        !drawn) {
+      std::fprintf(stderr, "vision: %s\n", drawn.error().text().c_str());
+      std::exit(1);
+    }
+    hc::room::Sensor(static_cast<std::uint64_t>(2 * number + (is_left ? 0 : 1)))
+        .apply(*image, 0, 2, 1);
+  }
+  pair.truth.create(depth.size(), CV_32F);
+  pair.walls.create(depth.size(), CV_8U);
+  for (int y = 0; y < depth.rows; ++y)
+    for (int x = 0; x < depth.cols; ++x) {
+      const double z = depth.at<float>(y, x);
+      pair.truth.at<float>(y, x) = z > 0 ? static_cast<float>(kFocal * kBaseline / z) : 0;
+      const Eigen::Vector3d p = T_world_left * Eigen::Vector3d((x - camera.cx) * z / camera.fx,
+                                                               (y - camera.cy) * z / camera.fy, z);
+      using namespace hc::room;
+      const double away = std::min({std::abs(p.x() - kRoomFront), std::abs(p.x() - kRoomBack),
+                                    std::abs(std::abs(p.y()) - kRoomSide)});
+      constexpr double kThick = 0.02;  // posters and marks hang before the walls [m]
+      pair.walls.at<std::uint8_t>(y, x) = z > 0 && away < kThick ? 255 : 0;
+    }
+  return pair;
+}
+
+struct Contestant {
+  std::string name;
+  std::function<void(const Pair&, Disparities&)> match;
+};
+
+std::vector<Contestant> contestants(int disparities) {
+  const auto ours = [](std::unique_ptr<StereoMatcher> owned) {
+    const std::shared_ptr<StereoMatcher> matcher = std::move(owned);
+    return [matcher](const Pair& pair, Disparities& found) {
+      if (auto matched = matcher->match(pair.left, pair.right, found); !matched) std::abort();
+    };
+  };
+  const auto theirs = [](const cv::Ptr<cv::StereoMatcher>& matcher) {
+    return [matcher](const Pair& pair, Disparities& found) {
+      cv::Mat sixteenths;
+      matcher->compute(hc::vision::grey_of(pair.left), hc::vision::grey_of(pair.right), sixteenths);
+      sixteenths.convertTo(found.disparity, CV_32F, 1.0 / 16);
+      cv::max(found.disparity, 0.0, found.disparity);
+    };
+  };
+  const auto sgbm = [&](int mode) {
+    return theirs(cv::StereoSGBM::create(0, disparities, 5, 200, 800, 1, 63, 10, 100, 2, mode));
+  };
+  const auto bm = cv::StereoBM::create(disparities, 15);
+  bm->setSpeckleWindowSize(100);
+  bm->setSpeckleRange(2);
+  bm->setDisp12MaxDiff(1);
+  return {{"semi_global", ours(hc::vision::semi_global_matcher({.disparities = disparities}))},
+          {"OpenCV 3WAY", sgbm(cv::StereoSGBM::MODE_SGBM_3WAY)},
+          {"OpenCV SGBM", sgbm(cv::StereoSGBM::MODE_SGBM)},
+          {"OpenCV HH4", sgbm(cv::StereoSGBM::MODE_HH4)},
+          {"OpenCV BM", theirs(bm)}};
+}
+
+double milliseconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+cv::Mat right_of(const cv::Mat& image, int column) {
+  return image(cv::Rect(column, 0, image.cols - column, image.rows));
+}
+
+void compare_speed(const Pair& pair, int rounds) {
+  std::printf(
+      "| disparities | matcher | one core [ms] | all cores [ms] | speed-up | against 3WAY |\n"
+      "|---|---|---:|---:|---:|---:|\n");
+  const int cores = cv::getNumberOfCPUs();
+  for (const int disparities : {64, 128}) {
+    auto all = contestants(disparities);
+    std::vector<std::vector<double>> one(all.size()), many(all.size());
+    Disparities found;
+    for (int round = 0; round <= rounds; ++round)
+      for (std::size_t i = 0; i < all.size(); ++i)
+        for (const bool is_many : {false, true}) {
+          cv::setNumThreads(is_many ? cores : 1);
+          const double time = milliseconds([&] { all[i].match(pair, found); });
+          if (round > 0) (is_many ? many : one)[i].push_back(time);
+        }
+    for (std::size_t i = 0; i < all.size(); ++i)
+      std::printf("| %d | %s | %.1f | %.1f | %.2f | %.2f × |\n", disparities, all[i].name.c_str(),
+                  median(one[i]), median(many[i]), median(one[i]) / median(many[i]),
+                  median(many[1]) / median(many[i]));
+  }
+}
+
+void compare_quality(const char* title, const std::vector<Pair>& pairs, int disparities) {
+  std::printf(
+      "\n%s, %d disparities\n\n| matcher | bad 1 px | bad 2 px | bad 4 px | holes | bad 2 px "
+      "or hole | the same right of the band | walls within 0.5 px |\n"
+      "|---|---:|---:|---:|---:|---:|---:|---:|\n",
+      title, disparities);
+  for (auto& contestant : contestants(disparities)) {
+    double shares[7] = {};
+    for (const Pair& pair : pairs) {
+      Disparities found;
+      contestant.match(pair, found);
+      const auto of = [&](double threshold) {
+        return hc::vision::score(found.disparity, pair.truth, threshold);
+      };
+      const auto two = of(2);
+      const auto inside = hc::vision::score(right_of(found.disparity, disparities),
+                                            right_of(pair.truth, disparities), 2);
+      double walls = 0;
+      if (!pair.walls.empty()) {
+        cv::Mat on_walls = cv::Mat::zeros(pair.truth.size(), CV_32F);
+        pair.truth.copyTo(on_walls, pair.walls);
+        const auto half = hc::vision::score(found.disparity, on_walls, 0.5);
+        walls = 1 - half.bad_share();
+      }
+      const double each[] = {of(1).bad_share(),
+                             two.bad_share(),
+                             of(4).bad_share(),
+                             two.hole_share(),
+                             two.wrong_share(),
+                             inside.wrong_share(),
+                             walls};
+      for (std::size_t i = 0; i < std::size(each); ++i)
+        shares[i] += each[i] / static_cast<double>(pairs.size());
+    }
+    std::printf("| %s |", contestant.name.c_str());
+    for (const double share : shares) std::printf(" %.2f %% |", 100 * share);
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 9;
+  const Pair aloe = read_aloe();
+  if (aloe.truth.empty()) {
+    std::fprintf(stderr, "vision: no aloeL.jpg, aloeR.jpg, aloeGT.png in HC_DATA\n");
+    return 1;
+  }
+  auto renderer = hc::graphics::Renderer::make();
+  if (!renderer) {
+    std::fprintf(stderr, "vision: %s\n", renderer.error().text().c_str());
+    return 1;
+  }
+  std::vector<Pair> rooms;
+  rooms.reserve(kRooms);
+  for (int number = 0; number < kRooms; ++number) rooms.push_back(draw_room(**renderer, number));
+  compare_quality("Aloe", {aloe}, 128);
+  compare_quality("Ten rooms", rooms, 64);
+  if (rounds > 0) compare_speed(aloe, rounds);
+}

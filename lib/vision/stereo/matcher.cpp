@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/stereo/matcher.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include <hc/base/format.h>
+#include <vision/image.h>
+#include <vision/stereo/semi_global.h>
+#include <vision/stereo/smoother.h>
+#include <vision/stereo/speckles.h>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace hc::vision {
+namespace {
+
+Status check(const cv::Mat& left, const cv::Mat& right) {
+  for (const auto* image : {&left, &right}) {
+    const char* eye = image == &left ? "left" : "right";
+    if (image->empty()) return Error{Code::Invalid, format("the {} image is empty", eye)};
+    if (image->depth() != CV_8U || (image->channels() != 1 && image->channels() != 3))
+      return Error{Code::Invalid,
+                   format("the {} image is no u8 image of one or three channels", eye)};
+  }
+  if (left.size() != right.size())
+    return Error{Code::Invalid, format("the left image is {} x {}, the right one {} x {}",
+                                       left.cols, left.rows, right.cols, right.rows)};
+  return {};
+}
+
+/// Intensities of an image as match_rows() takes it, with a border that repeats its outermost
+/// pixels.
+void prepare(const cv::Mat& image, bool flipped, cv::Mat& bordered) {
+  bordered.create(image.rows + 2 * kBorder, image.cols + 2 * kBorder + kReadBeyond, CV_8U);
+  cv::Mat inside = bordered(cv::Rect({kBorder, kBorder}, image.size()));
+  if (image.channels() == 1)
+    image.copyTo(inside);
+  else
+    cv::cvtColor(image, inside, cv::COLOR_RGB2GRAY);
+  if (flipped) cv::flip(inside, inside, 1);
+  for (int y = 0; y < image.rows; ++y) {
+    auto* row = bordered.ptr(y + kBorder);
+    std::memset(row, row[kBorder], kBorder);
+    auto* end = row + kBorder + image.cols;
+    std::memset(end, end[-1], kBorder + kReadBeyond);
+  }
+  for (int y = 0; y < kBorder; ++y) {
+    bordered.row(kBorder).copyTo(bordered.row(y));
+    bordered.row(image.rows + kBorder - 1).copyTo(bordered.row(image.rows + kBorder + y));
+  }
+}
+
+class SemiGlobalMatcher final : public StereoMatcher {
+ public:
+  explicit SemiGlobalMatcher(const StereoOptions& options) : speckle_size_(options.speckle_size) {
+    matching_.disparities = options.disparities;
+  }
+
+  Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) override {
+    if (auto checked = check(left, right); !checked) return checked;
+    cv::parallel_for_({0, 2}, [&](const cv::Range& range) {
+      for (int i = range.start; i < range.end; ++i)
+        prepare(i == 0 ? left : right, i == 1, i == 0 ? left_ : right_);
+    });
+    const auto stripes = stripes_of(left.rows);
+    const auto count = static_cast<int>(stripes.size()) - 1;
+    raw_.create(left.size(), CV_16U);
+    found.confidence.create(left.size(), CV_8U);
+    scratch_.resize(static_cast<std::size_t>(count));
+    cv::parallel_for_(
+        {0, count},
+        [&](const cv::Range& range) {
+          for (auto i = static_cast<std::size_t>(range.start);
+               i < static_cast<std::size_t>(range.end); ++i)
+            match_rows(
+                {&left_, &right_, left.cols, stripes[i], stripes[i + 1], &raw_, &found.confidence},
+                matching_, scratch_[i]);
+        },
+        count);
+    constexpr int kMedian = 3;  // side of the window [px]
+    cv::medianBlur(raw_, clean_, kMedian);
+    speckles_.remove(clean_, speckle_size_, kSubPixels);
+    smoother_.smooth(clean_, raw_);
+    raw_.convertTo(found.disparity, CV_32F, 1.0 / kSubPixels);
+    // The median fills some holes.
+    cv::max(found.confidence, 1, found.confidence);
+    cv::compare(raw_, 0, known_, cv::CMP_GT);
+    cv::bitwise_and(found.confidence, known_, found.confidence);
+    return {};
+  }
+
+ private:
+  SemiGlobal matching_;
+  int speckle_size_;
+  cv::Mat left_, right_, raw_, clean_, known_;
+  std::vector<Scratch> scratch_;
+  SpeckleFilter speckles_;
+  Smoother smoother_;
+};
+
+class OpenCvMatcher final : public StereoMatcher {
+ public:
+  OpenCvMatcher(const StereoOptions& options, int block_size) {
+    // The smoothness penalties of OpenCV's own documentation, for one channel; the other values
+    // were chosen on the Aloe pair.
+    const int area = block_size * block_size;
+    constexpr int kLeast = 0, kLeftRightDifference = 1, kPreFilterCap = 63, kUniqueness = 10;
+    constexpr int kSpeckleRange = 2;
+    matcher_ =
+        cv::StereoSGBM::create(kLeast, options.disparities, block_size, 8 * area, 32 * area,
+                               kLeftRightDifference, kPreFilterCap, kUniqueness,
+                               options.speckle_size, kSpeckleRange, cv::StereoSGBM::MODE_SGBM_3WAY);
+  }
+
+  Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) override {
+    if (auto checked = check(left, right); !checked) return checked;
+    // OpenCV 4.6 writes where it should not otherwise.
+    if (left.cols <= matcher_->getNumDisparities())
+      return Error{Code::Invalid, format("images of {} x {} are not wider than {} disparities",
+                                         left.cols, left.rows, matcher_->getNumDisparities())};
+    matcher_->compute(grey_of(left), grey_of(right), sixteenths_);
+    constexpr int kScale = cv::StereoMatcher::DISP_SCALE;
+    sixteenths_.convertTo(found.disparity, CV_32F, 1.0 / kScale);
+    cv::max(found.disparity, 0.0, found.disparity);  // unknown is -1 there, 0 here
+    cv::compare(found.disparity, 0.0, found.confidence, cv::CMP_GT);
+    return {};
+  }
+
+ private:
+  cv::Ptr<cv::StereoSGBM> matcher_;
+  cv::Mat sixteenths_;
+};
+
+}  // namespace
+
+std::unique_ptr<StereoMatcher> semi_global_matcher(const StereoOptions& options) {
+  return std::make_unique<SemiGlobalMatcher>(options);
+}
+
+std::unique_ptr<StereoMatcher> opencv_matcher(const StereoOptions& options, int block_size) {
+  return std::make_unique<OpenCvMatcher>(options, block_size);
+}
+
+}  // namespace hc::vision

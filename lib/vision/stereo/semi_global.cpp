@@ -1,0 +1,532 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vision/stereo/semi_global.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+// Compiled once for each kind of processor. Vectors of unknown length cannot be kept in arrays.
+#define HWY_WANT_AVX3_DL
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vision/stereo/semi_global.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hc::vision::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Byte = std::uint8_t;
+
+constexpr int kPlanes = 3;  // bytes of a census word
+constexpr Byte kNever = 255;
+// Where a pixel's partner would be outside of the right image it has neither a good cost nor a bad
+// one, so that the paths carry the disparities of its neighbours there.
+constexpr Byte kOutside = 8;
+
+constexpr std::size_t round_up(std::size_t value, std::size_t unit) {
+  return (value + unit - 1) / unit * unit;
+}
+
+/// The least lane of each block of 16, in all lanes of the block.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V least_of_blocks(D d, V v) {
+  const hn::Repartition<std::uint16_t, D> d16;
+  const hn::Repartition<std::uint32_t, D> d32;
+  v = hn::Min(v, hn::BitCast(d, hn::Shuffle1032(hn::BitCast(d32, v))));
+  v = hn::Min(v, hn::BitCast(d, hn::Shuffle2301(hn::BitCast(d32, v))));
+  v = hn::Min(v, hn::BitCast(d, hn::Reverse2(d16, hn::BitCast(d16, v))));
+  v = hn::Min(v, hn::BitCast(d, hn::ShiftRight<8>(hn::BitCast(d16, v))));
+  return hn::TableLookupBytes(v, hn::Zero(d));
+}
+
+/// The least lane, in all lanes.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V least_of_lanes(D d, V v) {
+  if constexpr (hn::MaxLanes(d) >= 64) v = hn::Min(v, hn::ReverseBlocks(d, v));
+  if constexpr (hn::MaxLanes(d) >= 32) v = hn::Min(v, hn::SwapAdjacentBlocks(v));
+  return least_of_blocks(d, v);
+}
+
+/// The same of four vectors at once, which takes fewer steps.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void least_of_lanes(D d, V& a, V& b, V& c, V& e) {
+  if constexpr (hn::MaxLanes(d) <= 16) {
+    for (V* v : {&a, &b, &c, &e}) *v = least_of_blocks(d, *v);
+    return;
+  } else {
+    // Halves of a and b, then of c and e, side by side.
+    const V ab = hn::Min(hn::ConcatLowerLower(d, b, a), hn::ConcatUpperUpper(d, b, a));
+    const V ce = hn::Min(hn::ConcatLowerLower(d, e, c), hn::ConcatUpperUpper(d, e, c));
+    if constexpr (hn::MaxLanes(d) == 32) {
+      const V of_ab = least_of_blocks(d, ab), of_ce = least_of_blocks(d, ce);
+      a = hn::ConcatLowerLower(d, of_ab, of_ab);
+      b = hn::ConcatUpperUpper(d, of_ab, of_ab);
+      c = hn::ConcatLowerLower(d, of_ce, of_ce);
+      e = hn::ConcatUpperUpper(d, of_ce, of_ce);
+    }
+#if HWY_TARGET <= HWY_AVX3
+    if constexpr (hn::MaxLanes(d) == 64) {  // four blocks: of a, c, b, e
+      const V least = least_of_blocks(
+          d, hn::Min(hn::OddEvenBlocks(ce, ab), hn::SwapAdjacentBlocks(hn::OddEvenBlocks(ab, ce))));
+      a = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0x00)};
+      c = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0x55)};
+      b = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0xAA)};
+      e = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0xFF)};
+    }
+#endif
+  }
+}
+
+/// The blocks of 16 bytes of `lanes`, moved up by one, with the last one of `below` before them.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V blocks_up(D d, V lanes, V below) {
+  if constexpr (hn::MaxLanes(d) <= 16) return below;
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (hn::MaxLanes(d) == 64) return V{_mm512_alignr_epi64(lanes.raw, below.raw, 6)};
+#endif
+  if constexpr (hn::MaxLanes(d) == 32) return hn::ConcatLowerUpper(d, lanes, below);
+}
+
+/// The same down, with the first block of `above` behind them.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V blocks_down(D d, V lanes, V above) {
+  if constexpr (hn::MaxLanes(d) <= 16) return above;
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (hn::MaxLanes(d) == 64) return V{_mm512_alignr_epi64(above.raw, lanes.raw, 2)};
+#endif
+  if constexpr (hn::MaxLanes(d) == 32) return hn::ConcatLowerUpper(d, above, lanes);
+}
+
+/// The costs of all disparities of a pixel.
+template <class D, std::size_t kVectors>
+struct Costs {
+  hn::Vec<D> v[kVectors];
+};
+
+template <class D, std::size_t kVectors>
+class Sweep {
+ public:
+  using V = hn::Vec<D>;
+  using C = Costs<D, kVectors>;
+  static constexpr std::size_t kLanes = hn::MaxLanes(D());
+  static constexpr std::size_t kBytes = kLanes * kVectors;  // of a pixel's costs
+
+  Sweep(const Stripe& stripe, const SemiGlobal& options, Scratch& scratch)
+      : stripe_(stripe),
+        options_(options),
+        width_(static_cast<std::size_t>(stripe.width)),
+        plane_(round_up(width_ + kBytes + std::size_t{2} * kReadBeyond, kLanes)) {
+    const auto rows =
+        static_cast<std::size_t>(stripe.end - std::max(0, stripe.begin - kWarmUpRows));
+    const std::size_t row = (width_ + kGroup) * kBytes, bytes = width_ + 1 + kLanes;
+    const struct {
+      Byte** memory;
+      std::size_t size;
+    } parts[] = {{&left_, kPlanes * plane_},
+                 {&right_, kPlanes * plane_},
+                 {&rows_[0].costs, row},
+                 {&rows_[0].sums, row},
+                 {&rows_[0].along, bytes},
+                 {&rows_[1].costs, row},
+                 {&rows_[1].sums, row},
+                 {&rows_[1].along, bytes},
+                 {&north_, row},
+                 {&north_east_, row + kBytes},
+                 {&north_west_, row + rows * kBytes},
+                 {&winners_, sizeof(Winner) * (width_ + kGroup)},
+                 {&best_, bytes},
+                 {&found_, bytes},
+                 {&down_, bytes},
+                 {&down_right_, bytes},
+                 {&down_left_, bytes}};
+    std::size_t total = 2 * kGuard;
+    for (const auto& part : parts) total += round_up(part.size, kGuard) + kGuard;
+    scratch.assign(total, 0);
+    const auto begin = reinterpret_cast<std::uintptr_t>(scratch.data());
+    Byte* next = scratch.data() + (round_up(begin, kGuard) - begin) + kGuard;
+    for (const auto& part : parts) {
+      *part.memory = next;
+      next += round_up(part.size, kGuard) + kGuard;
+    }
+    north_west_ += rows * kBytes;
+  }
+
+  void run() {
+    const int first = std::max(0, stripe_.begin - kWarmUpRows);
+    for (int y = first; y <= stripe_.end; ++y) {
+      Row &row = rows_[y % 2], &above = rows_[(y + 1) % 2];
+      if (y < stripe_.end) prepare(y, row);
+      if (y == stripe_.end)
+        sweep<false, true>(row, above);
+      else if (y <= stripe_.begin)
+        sweep<true, false>(row, above);
+      else
+        sweep<true, true>(row, above);
+      if (y > stripe_.begin)
+        write_row(stripe_.disparity->ptr<std::uint16_t>(y - 1), stripe_.margin->ptr(y - 1));
+    }
+  }
+
+ private:
+  // Alignment, and room before and behind: vectors read one byte beyond the costs of a pixel.
+  static constexpr std::size_t kGuard = 64;
+  static constexpr std::size_t kGroup = 4;  // pixels whose winners are found together
+
+  struct Winner {
+    Byte disparity, cost, margin;
+    std::int8_t fraction;
+  };
+
+  /// What one walk along a row leaves for the other.
+  struct Row {
+    Byte* costs;  // of matching
+    Byte* sums;   // over the paths
+    Byte* along;  // how the grey levels differ from those of the pixel before
+  };
+
+  void prepare(int y, Row& row) {
+    census(*stripe_.left, y, 1, left_);
+    census(*stripe_.right, y, -1, right_);
+    const Byte* grey = stripe_.left->ptr(y + kBorder) + kBorder;
+    const auto step = static_cast<std::ptrdiff_t>(stripe_.left->step[0]);
+    differences(grey, 1, row.along);
+    differences(grey, step, down_);
+    differences(grey, step + 1, down_right_);
+    differences(grey, step - 1, down_left_);
+    // Paths from the north-west come from the column before: the same memory, one further down.
+    north_west_ -= kBytes;
+  }
+
+  /// Census words of a row: a plane for each byte. @param flip  1, or -1 for the flipped image.
+  void census(const cv::Mat& image, int y, int flip, Byte* planes) {
+    const D d;
+    for (std::size_t x = 0; x < width_; x += kLanes) {
+      const auto at = [&](int dy, int dx) {
+        return hn::LoadU(d,
+                         image.ptr(y + kBorder + dy) + x + static_cast<std::size_t>(kBorder + dx));
+      };
+      const V mean = hn::AverageRound(hn::AverageRound(at(0, -1), at(0, 1)),
+                                      hn::AverageRound(at(-1, 0), at(1, 0)));
+      for (std::size_t p = 0; p < kPlanes; ++p) {
+        V word = hn::Zero(d);
+        for (std::size_t bit = 0; bit < 8; ++bit) {
+          const auto [dy, dx] = kCensus[8 * p + bit];
+          const V is_less = hn::VecFromMask(d, hn::Lt(at(dy, flip * dx), mean));
+          word = hn::Or(word, hn::And(is_less, hn::Set(d, static_cast<Byte>(1 << bit))));
+        }
+        hn::StoreU(word, d, planes + p * plane_ + x);
+      }
+    }
+  }
+
+  /// How much a pixel differs from each of its partners.
+  HWY_INLINE C matching_costs(std::size_t x) const {
+    const D d;
+    C costs;
+    const Byte* right = right_ + (width_ - 1 - x);
+    V word[kPlanes];
+    for (std::size_t p = 0; p < kPlanes; ++p) word[p] = hn::Set(d, left_[p * plane_ + x]);
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      V sum = hn::Zero(d);
+      for (std::size_t p = 0; p < kPlanes; ++p) {
+        const V other = hn::LoadU(d, right + p * plane_ + k * kLanes);
+        sum = hn::Add(sum, hn::PopulationCount(hn::Xor(other, word[p])));
+      }
+      costs.v[k] = sum;
+    }
+    const auto count = static_cast<std::size_t>(options_.disparities);
+    if (x + 1 >= kBytes && count == kBytes) return costs;
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const V index = indices(k);
+      const auto is_outside = hn::Gt(index, hn::Set(d, static_cast<Byte>(std::min(x, kBytes - 1))));
+      const auto is_unwanted = hn::Gt(index, hn::Set(d, static_cast<Byte>(count - 1)));
+      costs.v[k] = hn::IfThenElse(is_outside, hn::Set(d, kOutside), costs.v[k]);
+      costs.v[k] = hn::Or(costs.v[k], hn::VecFromMask(d, is_unwanted));
+    }
+    return costs;
+  }
+
+  /// A step of a path: the costs of a pixel, given those of the path's pixel before.
+  /// @returns  the least of each lane, which is to be taken off later.
+  static HWY_INLINE V arrive(const C& costs, const C& from, const C& next_to, V slope, V jump,
+                             C& to) {
+    V least;
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const V way = hn::Min(hn::Min(from.v[k], jump), hn::SaturatedAdd(next_to.v[k], slope));
+      to.v[k] = hn::SaturatedAdd(costs.v[k], way);
+      least = k == 0 ? to.v[k] : hn::Min(least, to.v[k]);
+    }
+    return least;
+  }
+
+  /// The same from costs in memory.
+  HWY_INLINE V arrive(const C& costs, const Byte* from, V slope, V jump, C& to) const {
+    const D d;
+    C same, next_to;
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      V below = hn::LoadU(d, from + k * kLanes - 1);
+      V above = hn::LoadU(d, from + k * kLanes + 1);
+      if (k == 0) below = hn::Or(below, before_first_);
+      if (k == kVectors - 1) above = hn::Or(above, after_last_);
+      same.v[k] = hn::Load(d, from + k * kLanes);
+      next_to.v[k] = hn::Min(below, above);
+    }
+    return arrive(costs, same, next_to, slope, jump, to);
+  }
+
+  /// Takes the least off the costs of a path, and adds them to sums.
+  static HWY_INLINE void settle(C& path, V least, C& sums) {
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      path.v[k] = hn::Sub(path.v[k], least);
+      sums.v[k] = hn::SaturatedAdd(sums.v[k], path.v[k]);
+    }
+  }
+
+  static HWY_INLINE void store(const C& costs, Byte* to) {
+    for (std::size_t k = 0; k < kVectors; ++k) hn::Store(costs.v[k], D(), to + k * kLanes);
+  }
+  static HWY_INLINE C load(const Byte* from) {
+    C costs;
+    for (std::size_t k = 0; k < kVectors; ++k) costs.v[k] = hn::Load(D(), from + k * kLanes);
+    return costs;
+  }
+
+  /// The lesser of the costs of the disparities next to each one.
+  static HWY_INLINE C next_to(const C& costs) {
+    const D d;
+    C least;
+    const V never = hn::Set(d, kNever);
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const V below = blocks_up(d, costs.v[k], k == 0 ? never : costs.v[k - 1]);
+      const V above = blocks_down(d, costs.v[k], k + 1 == kVectors ? never : costs.v[k + 1]);
+      least.v[k] = hn::Min(hn::CombineShiftRightBytes<15>(d, costs.v[k], below),
+                           hn::CombineShiftRightBytes<1>(d, above, costs.v[k]));
+    }
+    return least;
+  }
+
+  /// The disparities of a vector of costs.
+  static HWY_INLINE V indices(std::size_t k) {
+    return hn::Add(hn::Iota(D(), Byte{0}), hn::Set(D(), static_cast<Byte>(k * kLanes)));
+  }
+
+  /// How the grey levels of a row differ from those `step` bytes before them.
+  void differences(const Byte* grey, std::ptrdiff_t step, Byte* to) const {
+    const D d;
+    for (std::size_t x = 0; x <= width_; x += kLanes) {
+      const V here = hn::LoadU(d, grey + x);
+      const V there = hn::LoadU(d, grey + static_cast<std::ptrdiff_t>(x) - step);
+      hn::StoreU(hn::Or(hn::SaturatedSub(here, there), hn::SaturatedSub(there, here)), d, to + x);
+    }
+  }
+
+  V jump(Byte difference) const { return hn::Set(D(), options_.penalties.jump[difference]); }
+
+  /// Walks along a row to the right, and along the row above it to the left. Each has steps that
+  /// wait for the step before; the other's fill the time.
+  template <bool kRight, bool kLeft>
+  void sweep(const Row& right, const Row& left) {
+    C west, east;
+    for (std::size_t k = 0; k < kVectors; ++k) west.v[k] = east.v[k] = hn::Zero(D());
+    for (std::size_t i = 0; i < width_; ++i) {
+      if constexpr (kRight) step_right(right, i, west);
+      if constexpr (kLeft) {
+        const std::size_t x = width_ - 1 - i;
+        step_left(left, x, east);
+        if (x % kGroup == 0) find_winners(left, x);
+      }
+    }
+  }
+
+  /// The matching costs of a pixel, and the paths to it from the west and from the row above.
+  HWY_INLINE void step_right(const Row& row, std::size_t x, C& west) {
+    const D d;
+    const V slope = hn::Set(d, options_.penalties.slope);
+    const std::size_t at = x * kBytes;
+    const C costs = matching_costs(x);
+    store(costs, row.costs + at);
+    C to, north, north_west, north_east, sums;
+    for (auto& v : sums.v) v = hn::Zero(d);
+    const V least = arrive(costs, west, next_to(west), slope, jump(row.along[x]), to);
+    settle(to, least_of_lanes(d, least), sums);
+    west = to;
+    V least_n = arrive(costs, north_ + at, slope, jump(down_[x]), north);
+    V least_nw = arrive(costs, north_west_ + at, slope, jump(down_right_[x]), north_west);
+    V least_ne = arrive(costs, north_east_ + at + kBytes, slope, jump(down_left_[x]), north_east);
+    V none = least_n;
+    least_of_lanes(d, least_n, least_nw, least_ne, none);
+    settle(north, least_n, sums);
+    settle(north_west, least_nw, sums);
+    settle(north_east, least_ne, sums);
+    store(north, north_ + at);
+    store(north_west, north_west_ + at);
+    store(north_east, north_east_ + at);
+    store(sums, row.sums + at);
+  }
+
+  /// The path to a pixel from the east, which makes its sums complete.
+  HWY_INLINE void step_left(const Row& row, std::size_t x, C& east) {
+    const D d;
+    const V slope = hn::Set(d, options_.penalties.slope);
+    const std::size_t at = x * kBytes;
+    C to, sums = load(row.sums + at);
+    const V least =
+        arrive(load(row.costs + at), east, next_to(east), slope, jump(row.along[x + 1]), to);
+    settle(to, least_of_lanes(d, least), sums);
+    east = to;
+    store(sums, row.sums + at);
+  }
+
+  /// The disparities of least cost, the smallest of several, of kGroup pixels.
+  HWY_INLINE void find_winners(const Row& row, std::size_t begin) {
+    const D d;
+    const V never = hn::Set(d, kNever);
+    const Byte* sums[kGroup];
+    V least[kGroup], first[kGroup], other[kGroup];
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      sums[i] = row.sums + (begin + i) * kBytes;
+      least[i] = hn::Load(d, sums[i]);
+      for (std::size_t k = 1; k < kVectors; ++k)
+        least[i] = hn::Min(least[i], hn::Load(d, sums[i] + k * kLanes));
+    }
+    least_of_lanes(d, least[0], least[1], least[2], least[3]);
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      first[i] = never;
+      for (std::size_t k = 0; k < kVectors; ++k) {
+        const auto is_least = hn::Eq(hn::Load(d, sums[i] + k * kLanes), least[i]);
+        first[i] = hn::Min(first[i], hn::IfThenElse(is_least, indices(k), never));
+      }
+    }
+    least_of_lanes(d, first[0], first[1], first[2], first[3]);
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      other[i] = never;
+      for (std::size_t k = 0; k < kVectors; ++k) {
+        // Unsigned: the disparities next to the first and itself come to 0, 1, 2.
+        const V away = hn::Add(hn::Sub(indices(k), first[i]), hn::Set(d, Byte{1}));
+        const auto is_far = hn::Gt(away, hn::Set(d, Byte{2}));
+        other[i] =
+            hn::Min(other[i], hn::IfThenElse(is_far, hn::Load(d, sums[i] + k * kLanes), never));
+      }
+    }
+    least_of_lanes(d, other[0], other[1], other[2], other[3]);
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      Winner& winner = reinterpret_cast<Winner*>(winners_)[begin + i];
+      winner.cost = hn::GetLane(least[i]);
+      winner.disparity = hn::GetLane(first[i]);
+      winner.margin = static_cast<Byte>(hn::GetLane(other[i]) - winner.cost);
+      winner.fraction = fraction(sums[i], winner.disparity);
+    }
+  }
+
+  /// Where between its neighbours the minimum of a V through the three costs is [1/64 px].
+  HWY_INLINE std::int8_t fraction(const Byte* sums, int disparity) const {
+    if (disparity == 0 || disparity + 1 >= options_.disparities) return 0;
+    const int below = sums[disparity - 1], at = sums[disparity], above = sums[disparity + 1];
+    const int rise = std::max(below, above) - at;
+    if (rise <= 0 || std::max(below, above) == kNever) return 0;
+    return static_cast<std::int8_t>((below - above) * (kSubPixels / 2) / rise);
+  }
+
+  /// The disparities that the right image agrees with: there each pixel has the disparity of the
+  /// left pixel that matches it best.
+  void write_row(std::uint16_t* disparity, Byte* margin) {
+    const auto* winners = reinterpret_cast<const Winner*>(winners_);
+    std::memset(best_, kNever, width_);
+    for (std::size_t x = 0; x < width_; ++x) {
+      const Winner& winner = winners[x];
+      if (winner.margin < options_.margin || winner.disparity > x) continue;
+      const std::size_t partner = x - winner.disparity;
+      if (winner.cost >= best_[partner]) continue;
+      best_[partner] = winner.cost;
+      found_[partner] = winner.disparity;
+    }
+    for (std::size_t x = 0; x < width_; ++x) {
+      const Winner& winner = winners[x];
+      disparity[x] = 0;
+      margin[x] = 0;
+      if (winner.margin < options_.margin || winner.disparity > x || winner.cost == kNever)
+        continue;
+      const int other = found_[x - winner.disparity];
+      if (std::abs(other - winner.disparity) > options_.left_right) continue;
+      disparity[x] =
+          static_cast<std::uint16_t>(std::max(1, winner.disparity * kSubPixels + winner.fraction));
+      margin[x] = winner.margin;
+    }
+  }
+
+  const Stripe& stripe_;
+  const SemiGlobal& options_;
+  const std::size_t width_, plane_;
+  const V before_first_ = hn::VecFromMask(D(), hn::FirstN(D(), 1));
+  const V after_last_ =
+      hn::VecFromMask(D(), hn::Eq(hn::Iota(D(), Byte{0}), hn::Set(D(), Byte{kLanes - 1})));
+  Byte* left_ = nullptr;
+  Byte* right_ = nullptr;
+  Row rows_[2] = {};
+  Byte* north_ = nullptr;
+  Byte* north_east_ = nullptr;
+  Byte* north_west_ = nullptr;
+  Byte* winners_ = nullptr;
+  Byte* best_ = nullptr;   // cost of each pixel of the right image,
+  Byte* found_ = nullptr;  // and its disparity
+  // How the grey levels of a row differ from those of the row above.
+  Byte* down_ = nullptr;
+  Byte* down_right_ = nullptr;
+  Byte* down_left_ = nullptr;
+};
+
+template <std::size_t kBytes>
+void sweep(const Stripe& stripe, const SemiGlobal& options, Scratch& scratch) {
+  using D = hn::CappedTag<Byte, kBytes % 64 == 0 ? 64 : 32>;
+  Sweep<D, kBytes / hn::MaxLanes(D())>(stripe, options, scratch).run();
+}
+
+}  // namespace
+
+void match_rows(const Stripe& stripe, const SemiGlobal& options, Scratch& scratch) {
+  const int count = options.disparities;
+  if (count <= 32) return sweep<32>(stripe, options, scratch);
+  if (count <= 64) return sweep<64>(stripe, options, scratch);
+  if (count <= 96) return sweep<96>(stripe, options, scratch);
+  if (count <= 128) return sweep<128>(stripe, options, scratch);
+  if (count <= 192) return sweep<192>(stripe, options, scratch);
+  sweep<256>(stripe, options, scratch);
+}
+
+}  // namespace hc::vision::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hc::vision {
+
+HWY_EXPORT(match_rows);
+
+Penalties Penalties::with_jumps(int slope, int most, int least) {
+  Penalties penalties;
+  penalties.slope = static_cast<std::uint8_t>(slope);
+  // Half of what is above the least is left where the grey levels differ by 8.
+  for (int difference = 0; difference < 256; ++difference)
+    penalties.jump[static_cast<std::size_t>(difference)] =
+        static_cast<std::uint8_t>(least + (most - least) * 8 / (8 + difference));
+  return penalties;
+}
+
+void match_rows(const Stripe& stripe, const SemiGlobal& options, Scratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(match_rows)(stripe, options, scratch);
+}
+
+std::vector<int> stripes_of(int height) {
+  // Two to a pair of cores, tall enough that the rows above them are few beside their own.
+  constexpr int kRows = 256;
+  const int count = 2 * std::max(1, (height + kRows / 2) / kRows);
+  std::vector<int> begins;
+  for (int i = 0; i <= count; ++i) begins.push_back(height * i / count);
+  return begins;
+}
+
+}  // namespace hc::vision
+#endif  // HWY_ONCE
