@@ -72,13 +72,13 @@ TEST(Module, SendsWhatIsOnDemandOnlyByALinkOfItsOwn) {
     auto always = module.output("always", table<double>(), "a number");
     auto seldom = module.output("seldom", table<double>(), "another");
     module.on_demand(seldom);
-    std::pair<bool, bool> linked;
+    std::pair<bool, bool> found;
     module.generate([&] {
-      linked = {always.linked(), seldom.linked()};
+      found = {always.linked(), seldom.linked()};
       return false;
     });
     EXPECT_EQ(run(module, arguments), 0);
-    return linked;
+    return found;
   };
   EXPECT_EQ(linked({}), std::pair(true, false));
   EXPECT_EQ(linked({"--out", "seldom=-"}), std::pair(false, true));
