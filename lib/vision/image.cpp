@@ -45,7 +45,7 @@ cv::Mat grey_of(const cv::Mat& image) {
   return grey;
 }
 
-cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
+Span span_of(const cv::Mat& values) {
   cv::Mat numbers;
   values.convertTo(numbers, CV_32F);
   std::vector<float> known;
@@ -53,10 +53,13 @@ cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
     for (int x = 0; x < numbers.cols; ++x)
       if (float value = numbers.at<float>(y, x); std::isfinite(value) && value != 0)
         known.push_back(value);
-  if (least == 0 && most == 0 && !known.empty()) {
-    least = percentile(known, 0.02);
-    most = percentile(known, 0.98);
-  }
+  if (known.empty()) return {};
+  return {percentile(known, 0.02), percentile(known, 0.98)};
+}
+
+cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
+  cv::Mat numbers;
+  values.convertTo(numbers, CV_32F);
   // The scale's own end is nearly as black as what is unknown; from here on it is a clear blue.
   constexpr long kLowest = 28;
   double span = most > least ? most - least : 1;
@@ -76,14 +79,6 @@ cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
   cv::cvtColor(coloured, coloured, cv::COLOR_BGR2RGB);
   coloured.setTo(0, unknown);
   return coloured;
-}
-
-cv::Mat displayable(const cv::Mat& image, double least, double most) {
-  if (image.depth() == CV_8U && image.channels() == 1) return image;
-  cv::Mat bgr;
-  cv::cvtColor(image.depth() == CV_8U ? image : colour_coded(image, least, most), bgr,
-               cv::COLOR_RGB2BGR);
-  return bgr;
 }
 
 }  // namespace hc::vision

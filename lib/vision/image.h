@@ -19,17 +19,19 @@ double fit_scale(const cv::Size& size, int width, int height);
 /// Red, green, blue to grey, as bright as it looks; (H, W) u8. A grey image is given as it is.
 cv::Mat grey_of(const cv::Mat& image);
 
-/// An image of one channel of any depth in colours, from blue (far or small) over green to red
-/// (near or large).
+/// The ends of a scale of colours.
+struct Span {
+  double least = 0, most = 0;
+};
+
+/// The 2nd and the 98th percentile of the known values of an image, (H, W) of any scalar.
+Span span_of(const cv::Mat& values);
+
+/// An image of one channel of any depth in colours, from blue (small) over green to red (large).
 ///
 /// @param values  (H, W) of any scalar; 0, nan and inf are unknown and become black.
-/// @param least, most  the values that are bluest and reddest; both 0: the 2nd and 98th percentile
-///     of the known values.
+/// @param least, most  the values that are bluest and reddest.
 /// @returns  (H, W, 3) u8, red, green, blue.
-cv::Mat colour_coded(const cv::Mat& values, double least = 0, double most = 0);
-
-/// An image as windows and files take it, (H, W) u8 or (H, W, 3) u8 in blue, green, red: of u8 as
-/// it is, other numbers by colour_coded().
-cv::Mat displayable(const cv::Mat& image, double least, double most);
+cv::Mat colour_coded(const cv::Mat& values, double least, double most);
 
 }  // namespace hc::vision

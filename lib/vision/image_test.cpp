@@ -37,7 +37,15 @@ TEST(ColourCoded, GoesFromBlueToRedAndUnknownIsBlack) {
   EXPECT_GT(most[0], most[2]);
   EXPECT_EQ(colours.at<cv::Vec3b>(0, 2), cv::Vec3b(0, 0, 0));
   EXPECT_EQ(colours.at<cv::Vec3b>(0, 3), cv::Vec3b(0, 0, 0));
-  EXPECT_EQ(colour_coded(cv::Mat::zeros(2, 2, CV_32F)).at<cv::Vec3b>(1, 1), cv::Vec3b(0, 0, 0));
+  EXPECT_EQ(colour_coded(cv::Mat::zeros(2, 2, CV_32F), 0, 0).at<cv::Vec3b>(1, 1),
+            cv::Vec3b(0, 0, 0));
+}
+
+TEST(SpanOf, IsThatOfTheKnownValues) {
+  cv::Mat values = (cv::Mat_<float>(1, 5) << 0, 3, NAN, 1, 2);
+  EXPECT_EQ(span_of(values).least, 1);
+  EXPECT_EQ(span_of(values).most, 2) << "the 98th percentile of three";
+  EXPECT_EQ(span_of(cv::Mat::zeros(2, 2, CV_8U)).most, 0);
 }
 
 }  // namespace

@@ -1,16 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows images in a window and saves them as PNG files.
-#include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <set>
+#include <memory>
+#include <thread>
 
 #include <hc/module/module.h>
 #include <hc/os/program.h>
 #include <vision/image.h>
 #include <vision/messages.h>
+#include <vision/stereo/display.h>
 #include <vision/window.h>
-#include <opencv2/highgui.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+/// Images of the same time by both eyes.
+struct Eyes {
+  hc::Header header;
+  cv::Mat left, right;
+};
+
+bool is_right(const hc::Header& header) {
+  return header.coord == hc::Coord::kRightImage || header.coord == hc::Coord::kRightRectified;
+}
+
+const char* unit_of(const hc::Header& header) {
+  return header.coord == hc::Coord::kDepth       ? "m"
+         : header.coord == hc::Coord::kDisparity ? "px"
+                                                 : "";
+}
+
+std::vector<std::string> layouts() {
+  std::vector<std::string> names = {"none"};
+  for (const auto layout : hc::vision::stereo_layouts()) names.emplace_back(layout);
+  return names;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;
@@ -25,54 +52,90 @@ int main(int argc, char** argv) {
                                {.positional = true});
   auto window = module.parameter("window", "auto", "", "show a window",
                                  {.choices = {"auto", "yes", "no"}, .fixed = true});
+  auto monitor =
+      module.parameter("monitor", -1, "", "which windows fill, from 0 on; -1: windows do not",
+                       {.min = -1, .max = 15, .fixed = true});
   auto stay = module.parameter("stay", true, "",
                                "keep windows after the last image, until a key is pressed");
+  auto stereo = module.parameter("stereo", "none", "",
+                                 "how the images of both eyes (by coordinate system) become one",
+                                 {.choices = layouts()});
+  auto relief = module.parameter("relief", false, "", "shade depth as a relief");
+  auto legend = module.parameter("legend", true, "", "a scale beside images in colours");
   auto min =
       module.parameter("min", 0.0, "", "lower end of the colour scale; both 0: from the image");
   auto max =
       module.parameter("max", 0.0, "", "upper end of the colour scale; both 0: from the image");
-
   auto count = module.parameter("count", 0, "", "end after so many images, 0: never", {.min = 0});
 
-  bool shows = false;
+  std::unique_ptr<hc::vision::Display> display;
   int seen = 0;
-  std::set<std::string> windows;
+  Eyes eyes;
   fs::path last;  // that was saved
   module.on_start([&] {
     if (*min > *max) throw hc::ModuleError("min is above max");
-    bool wants_window = *window == "yes" || (*window == "auto" && save->empty());
-    shows = wants_window && hc::vision::has_display();
-    if (*window == "yes" && !shows) throw hc::ModuleError("window: there is no display");
-    if (!shows && save->empty())
+    if (*window == "yes" || (*window == "auto" && save->empty())) {
+      auto opened = hc::vision::Display::open(static_cast<int>(*monitor));
+      if (opened)
+        display = std::move(*opened);
+      else if (*window == "yes")
+        throw hc::ModuleError("window: " + opened.error().detail);
+    }
+    if (!display && save->empty())
       throw hc::ModuleError("no display for a window and no file to save to: give --save");
   });
 
-  module.on(image, [&](const hc::Message& message) {
-    const hc::Header& header = message.header;
-    if (header.empty() || (*count > 0 && seen == *count)) return;
-    const cv::Mat bgr = hc::vision::displayable(hc::value_or_end(hc::as_mat(message)), *min, *max);
+  /// In blue, green, red.
+  auto visible = [&](const hc::Header& header, const cv::Mat& values) {
+    cv::Mat bgr;
+    if (values.depth() == CV_8U) {
+      if (values.channels() == 1) return values;
+      cv::cvtColor(values, bgr, cv::COLOR_RGB2BGR);
+      return bgr;
+    }
+    hc::vision::Span span{*min, *max};
+    if (span.least == 0 && span.most == 0) span = hc::vision::span_of(values);
+    cv::cvtColor(hc::vision::colour_coded(values, span.least, span.most), bgr, cv::COLOR_RGB2BGR);
+    if (*relief && values.type() == CV_32F) hc::vision::shade(bgr, values);
+    if (!*legend) return bgr;
+    return hc::vision::with_legend(bgr, span.least, span.most, unit_of(header));
+  };
+  auto show = [&](const hc::Header& header, const cv::Mat& bgr) {
     if (!save->empty()) {
-      bool all = save->ends_with('/');
-      std::string file = std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";
+      const bool all = save->ends_with('/');
+      const std::string file =
+          std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";
       last = all ? fs::path(*save) / file : fs::path(*save);
       if (auto saved = hc::vision::save_image(last, bgr); !saved)
         throw hc::ModuleError(saved.error());
     }
-    if (shows) {
-      std::string title = "hypercolumn " + std::to_string(header.src);
-      cv::imshow(title, bgr);
-      cv::pollKey();
-      windows.insert(title);
+    if (display) {
+      display->show("hypercolumn " + std::to_string(header.src), bgr);
+      display->any_open();
     }
     if (++seen == *count) std::raise(SIGTERM);  // as anybody else would end it
+  };
+  module.on(image, [&](const hc::Message& message) {
+    const hc::Header& header = message.header;
+    if (header.empty() || (*count > 0 && seen == *count)) return;
+    const cv::Mat bgr = visible(header, hc::value_or_end(hc::as_mat(message)));
+    if (*stereo == "none") return show(header, bgr);
+    if (header.time != eyes.header.time) eyes = {header, {}, {}};
+    (is_right(header) ? eyes.right : eyes.left) = bgr.clone();
+    if (eyes.left.empty() || eyes.right.empty()) return;
+    if (eyes.left.size() != eyes.right.size() || eyes.left.type() != eyes.right.type())
+      return module.log_once("stereo", "the images of both eyes have different sizes or types");
+    // Rows keep their places only where nothing scales them afterwards.
+    if (display && *stereo == "rows" && !display->monitor_size().empty())
+      for (cv::Mat* eye : {&eyes.left, &eyes.right})
+        cv::resize(*eye, *eye, display->monitor_size());
+    show(eyes.header, hc::vision::join_eyes(eyes.left, eyes.right, *stereo));
+    eyes = {};
   });
   module.on_end([&] {
-    auto is_open = [](const std::string& title) {
-      return cv::getWindowProperty(title, cv::WND_PROP_VISIBLE) >= 1;
-    };
-    constexpr int kPause = 50;  // [ms] between looks for a signal
-    while (*stay && !hc::stop_requested() && std::any_of(windows.begin(), windows.end(), is_open))
-      if (cv::waitKey(kPause) >= 0) break;
+    constexpr std::chrono::milliseconds kPause{20};  // between looks for a signal
+    while (display && *stay && !hc::stop_requested() && display->any_open())
+      std::this_thread::sleep_for(kPause);
   });
   const int status = module.run(argc, argv);
   if (!last.empty()) module.log("result: image saved to " + fs::absolute(last).string());

@@ -25,7 +25,7 @@ class Graph(Pipes):
         self.assertRegex(out, r"depth\.depth → view\.image +1 message +1\.92 MB")
         image = self.read_bytes("depth.png")
         self.assertEqual(image[:8], b"\x89PNG\r\n\x1a\n")
-        self.assertEqual(image[16:24], b"\0\0\3\x20\0\0\2\x58")  # 800 x 600
+        self.assertEqual(image[16:24], b"\0\0\3\x8e\0\0\2\x58")  # 800 x 600, and the legend
 
     def test_depth_graph_is_better_with_its_own_matcher(self):
         def holes_and_bad(matcher):
@@ -203,22 +203,32 @@ inputs.in = "camera.left"
             self.assertEqual((process.returncode, err), (0, b""))
 
     def test_a_window_shows_the_image(self):
-        """On a virtual display, whose memory is looked at."""
+        """On a virtual display, whose memory is looked at: in a window, and over a whole monitor."""
         command = (
-            "hc camera %s/aloeL.jpg --count 0 --loop --rate 20 --width 320 --height 240" % DATA
+            "hc camera {0}/aloeL.jpg {0}/aloeR.jpg --count 0 --loop --rate 20 --width 320 "
+            "--height 240".format(DATA)
         )
         display = self.start("exec Xvfb -displayfd 1 -screen 0 640x480x24 -fbdir . -nolisten tcp")
         self.environment["DISPLAY"] = ":" + display.stdout.readline().decode().strip()
-        view = self.start("%s | hc view --window yes" % command)
         screen = pathlib.Path(self.path("Xvfb_screen0"))
 
-        def colours():
-            self.assertIsNone(view.poll(), view.poll() is not None and view.stderr.read())
-            pixels = screen.read_bytes()[-640 * 480 * 4 :]
-            return {pixels[i : i + 3] for i in range(0, len(pixels), 4)}
+        def pixels():
+            memory = screen.read_bytes()[-640 * 480 * 4 :]
+            return [memory[i : i + 3] for i in range(0, len(memory), 4)]
 
-        wait_until(lambda: len(colours()) > 1000)  # a photograph, not a grey window
-        self.end(view)
+        for options in ("", "--monitor 0 --stereo top_bottom"):
+            view = self.start("%s | hc view --window yes %s" % (command, options))
+
+            def photograph():
+                self.assertIsNone(view.poll(), view.poll() is not None and view.stderr.read())
+                shown = pixels()
+                middle = shown[170], shown[470], shown[-470], shown[-170]  # first and last row
+                return len(set(shown)) > 1000 and (b"\0\0\0" not in middle or not options)
+
+            wait_until(photograph)
+            self.end(view)
+        self.shell("hc view --window yes --monitor 3", 1)
+        self.assertEqual(self.err, "view: window: there is no monitor 3, but 0 alone\n")
         self.end(display)
 
     def test_a_killed_runner_leaves_nothing_that_a_wrapper_started(self):
