@@ -78,10 +78,8 @@ Result<Eigen::Isometry3d> rigid_of(const Message& message) {
 inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
   const Header& header = message.header;
   if (header.info.type != MatrixType::Transformation || header.width != 4 || header.height != 4)
-    return Error{Code::Unsupported, "a pose is a transformation of 4 x 4, not a " +
-                                        std::string(name(header.info.type)) + " of " +
-                                        std::to_string(header.width) + " x " +
-                                        std::to_string(header.height)};
+    return Error{Code::Unsupported, "a pose is a transformation 4 x 4, not " +
+                                        matrix_text(header.info, header.width, header.height)};
   return header.info.scalar == Scalar::F32 ? internal::rigid_of<float>(message)
                                            : internal::rigid_of<double>(message);
 }
@@ -127,9 +125,8 @@ inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& mess
 inline Result<Eigen::Quaterniond> rotation_of(const Message& message) {
   const Header& header = message.header;
   if (header.info.type != MatrixType::Rotation || header.width != 1 || header.height != 1)
-    return Error{Code::Unsupported,
-                 "one rotation is asked for, not a " + std::string(name(header.info.type)) +
-                     " of " + std::to_string(header.width) + " x " + std::to_string(header.height)};
+    return Error{Code::Unsupported, "one rotation is asked for, not " +
+                                        matrix_text(header.info, header.width, header.height)};
   Eigen::Vector3d angles;
   if (header.info.scalar == Scalar::F32) {
     auto row = as_eigen<float>(message);

@@ -75,9 +75,9 @@ TEST(Pose, FeedsTheFramesOfAGraph) {
 
 TEST(Pose, RefusesWhatIsNone) {
   EXPECT_EQ(refusal("4 4\n0 -1 0 0\n1 0 0 0\n0 0 1 0.3\n", "4 1\n"),
-            "Unsupported: a pose is a transformation of 4 x 4, not a transformation of 4 x 1");
+            "Unsupported: a pose is a transformation 4 x 4, not transformation 4 x 1 of 1 x f64");
   EXPECT_EQ(refusal("70190", "120190"),
-            "Unsupported: a pose is a transformation of 4 x 4, not a table of 4 x 4");
+            "Unsupported: a pose is a transformation 4 x 4, not table 4 x 4 of 1 x f64");
   for (std::string_view coord : {"0", "3", "2000", "1000003", "2147483647"})
     EXPECT_EQ(refusal("2003", coord),
               "Malformed: a pose's coord is 1000 x to + from, not " + std::string(coord));
@@ -109,9 +109,9 @@ TEST(Rotation, RefusesWhatIsNone) {
     return rotation_of(message_of(bytes)).error().text();
   };
   EXPECT_EQ(refused("1 7 0 0 8 1 10390 1 13 1 1\n0 0 0\n"),
-            "Unsupported: one rotation is asked for, not a position of 1 x 1");
+            "Unsupported: one rotation is asked for, not position 1 x 1 of 3 x f64");
   EXPECT_EQ(refused("1 7 0 0 8 1 20390 1 13 1 0\n\n"),
-            "Unsupported: one rotation is asked for, not a rotation of 1 x 0");
+            "Unsupported: one rotation is asked for, not rotation 1 x 0 of 3 x f64");
   EXPECT_EQ(refused("1 7 0 0 8 1 20390 1 13 1 1\n0 inf 0\n"),
             "Malformed: a rotation's angle is not finite");
 }

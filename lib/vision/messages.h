@@ -49,7 +49,8 @@ concept OpenCvKind = ScalarType<typename K::Scalar> && cv::DataType<typename K::
 /// Errors: Unsupported (compressed; a scalar that OpenCV does not have).
 inline Result<cv::Mat> as_mat(const Message& message) {
   if (!message.plain())
-    return Error{Code::Unsupported, "the elements are " + text(message.header.info)};
+    return Error{Code::Unsupported,
+                 "the elements are compressed: " + std::string(name(message.header.info.encoding))};
   auto depth = cv_depth(message.header.info.scalar);
   if (!depth) return depth.error();
   return cv::Mat(message.header.height, message.header.width,

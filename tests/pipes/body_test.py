@@ -286,7 +286,7 @@ public <words> = (hello | robot | seven | window | yellow | river | tomorrow | e
         for text in texts:
             data += b"1 1 0 0 8 5 60100 0 30 %d 1\n%s\n" % (len(text), text)
         out = self.shell("hc speak --paced=false --out sound=- | hc info", data=data)
-        self.assertIn("sound 1 x i16", out)
+        self.assertRegex(out, r"sound \d+ x 1 of 1 x i16")
         long = b"1 1 0 0 8 5 60100 0 30 200000 1\n%s\n" % (b"ab " * 66666 + b"ab")
         self.shell("hc speak --voice no_such --out sound=file:sound.mtp", data=2 * long)
         self.assertEqual(self.err.count('speak: there is no voice "no_such"'), 1, self.err)

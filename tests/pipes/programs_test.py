@@ -16,7 +16,7 @@ class Programs(Pipes):
         self.shell("nc -N localhost %d" % port, data=b"1 7 0 1 8 0 10390 1 3 1 1\n0.1 0.2 0.3\n")
         out, _ = cat.communicate(timeout=WATCHDOG)
         self.assertEqual(
-            out.decode(), "position 1 x 1 of 3 f64, src 7 seq 1 mode 1 in head\n  0.1 0.2 0.3\n"
+            out.decode(), "position 1 x 1 of 3 x f64, src 7 seq 1 mode 1 in head\n  0.1 0.2 0.3\n"
         )
 
     def test_telnet_line_ends_are_taken(self):

@@ -94,7 +94,7 @@ class Sight(Pipes):
         )
         self.assertEqual(self.messages("head -n 2 i.mtp")[0], [600, 600, 399.5, 299.5, 0.1])
         for name in ("l.mtp", "r.mtp"):
-            self.assertIn("800x600 rgb_image", self.shell("hc info " + name))
+            self.assertIn("rgb_image 800 x 600", self.shell("hc info " + name))
         # The disparities of an ideal pair are its depth: 600 px · 0.1 m / disparity.
         found = self.shell(
             "hc depth --focal 600 --baseline 0.1 --disparities 48 --in left=l.mtp --in right=r.mtp "

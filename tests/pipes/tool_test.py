@@ -174,7 +174,7 @@ class Tool(Pipes):
         out = json.loads(self.shell("hc send --npy a.npy | hc cat --json"))
         self.assertEqual((out["type"], out["elements"]), ("table", [[0, 1, 2], [3, 4, 5]]))
         out = self.shell("hc send --image %s/aloeL.jpg --src 4 --encoding jpeg | hc info" % DATA)
-        self.assertIn("1282x1110 rgb_image 3 x u8, jpeg", out)
+        self.assertIn("rgb_image 1282 x 1110 of 3 x u8, jpeg", out)
 
     def record(self):
         """Ten positions, 20 ms apart, of two senders; one lost."""
@@ -192,8 +192,12 @@ class Tool(Pipes):
     def test_info_tells_rates_gaps_and_sizes(self):
         self.record()
         out = self.shell("hc info r.mtp")
-        self.assertRegex(out, r" 7 +10 +240 B +0\.180 s +50 Hz +0 +0  1x1 position 3 x f64, text")
-        self.assertRegex(out, r" 8 +9 +72 B +0\.180 s +44\.4 Hz +1 +0  1x1 table 1 x f64, text")
+        self.assertRegex(
+            out, r" 7 +10 +240 B +0\.180 s +50 Hz +0 +0  position 1 x 1 of 3 x f64, text"
+        )
+        self.assertRegex(
+            out, r" 8 +9 +72 B +0\.180 s +44\.4 Hz +1 +0  table 1 x 1 of 1 x f64, text"
+        )
         self.assertIn("19 messages", out)
         self.assertIn("\n3 messages", self.shell("hc info r.mtp --count 3"))
         self.shell("cat r.mtp r.mtp >twice.mtp")

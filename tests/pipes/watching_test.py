@@ -172,7 +172,7 @@ class Watching(Graphs):
         self.assertRegex(self.hc("cat brightness.image --count 1" + of), "rgb_image 80 x 60")
         self.assertRegex(self.hc("cat brightness.mean --json --count 3" + of), '"elements"')
         self.hc("record r.mtp --in camera.left --in brightness.mean --count 4" + of)
-        self.assertRegex(self.hc("info r.mtp"), "80x60 rgb_image")
+        self.assertRegex(self.hc("info r.mtp"), "rgb_image 80 x 60")
         after = self.state(messages)
         self.assertEqual(
             [(each["from"], each["to"]) for each in before["links"]],

@@ -26,7 +26,8 @@ struct Sender {
     const hc::Header& header = message.header;
     constexpr std::size_t kMostTypes = 8;
     if (types.size() < kMostTypes)
-      types.insert(hc::format("{}x{} {}", header.width, header.height, text(header.info)));
+      types.insert(hc::format("{}, {}", matrix_text(header.info, header.width, header.height),
+                              name(header.info.encoding)));
     if (last_seq >= 0) {  // R41
       if (header.seq > last_seq + 1) lost += static_cast<std::uint64_t>(header.seq - last_seq - 1);
       if (header.seq == last_seq) ++repeated;

@@ -75,9 +75,9 @@ std::string time_in_words(std::int64_t time) {
 
 std::string to_readable(const hc::Message& message) {
   const hc::Header& header = message.header;
-  std::string text = hc::format("{} {} x {} of {} {}, src {} seq {}", name(header.info.type),
-                                header.width, header.height, header.info.components,
-                                name(header.info.scalar), header.src, header.seq);
+  std::string text =
+      hc::format("{}, src {} seq {}", matrix_text(header.info, header.width, header.height),
+                 header.src, header.seq);
   if (header.dst != 0) text += hc::format(" dst {}", header.dst);
   if (header.mode != 0) text += hc::format(" mode {}", header.mode);
   if (header.coord != 0) text += " in " + hc::coord_text(header.coord);

@@ -46,7 +46,7 @@ TEST(Description, PortsAndParametersAreEnough) {
   EXPECT_EQ(find_input(*parsed, "focus"), nullptr);
   parsed->control = true;
   ASSERT_NE(find_input(*parsed, "focus"), nullptr);
-  EXPECT_EQ(in_words(find_input(*parsed, "focus")->types), "table 1 x i32, width 1, height 1");
+  EXPECT_EQ(in_words(find_input(*parsed, "focus")->types), "table 1 x 1 of 1 x i32");
 }
 
 TEST(Description, WhatIsNoneIsRefused) {

@@ -2,6 +2,7 @@
 #include <hc/contract/port_type.h>
 
 #include <algorithm>
+#include <optional>
 
 #include <hc/mtp/coords.h>
 
@@ -48,10 +49,8 @@ bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken
 }
 
 std::string in_words(const PortType& type) {
-  std::string text(name(type.info.type));
-  text += " " + std::to_string(type.info.components) + " x " + std::string(name(type.info.scalar));
-  if (type.width != 0) text += ", width " + std::to_string(type.width);
-  if (type.height != 0) text += ", height " + std::to_string(type.height);
+  auto side = [](std::int32_t given) { return given != 0 ? std::optional(given) : std::nullopt; };
+  std::string text = matrix_text(type.info, side(type.width), side(type.height));
   if (type.coord != 0) text += " in coordinate system " + coord_and_number(type.coord);
   return text;
 }

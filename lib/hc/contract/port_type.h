@@ -36,7 +36,7 @@ Error misfit(const Header& header, const PortType& type);
 /// is anything.
 bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken);
 
-/// "rgb_image 3 x u8 in coordinate system left_rectified (9)"; several with "or" between them,
+/// "rgb_image of 3 x u8 in coordinate system left_rectified (9)"; several with "or" between them,
 /// none: "anything".
 std::string in_words(const PortType& type);
 std::string in_words(const std::vector<PortType>& types);

@@ -152,7 +152,7 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.source]\nencodings.x = \"text\"", "g.toml:3: module source has no output \"x\""},
       {"[modules.source]\n\nencodings.left = \"jpeg\"",
        "g.toml:4: module source: R21 left: jpeg is for images of 1 or 3 components of u8, not map "
-       "1 x f32"},
+       "of 1 x f32"},
       {"[modules.source]\naddresses = { left = 3, right = 3 }",
        "g.toml:3: address 3 is used twice"},
       {"[modules.source]\nparameters.rate = 10",
@@ -163,8 +163,9 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {link("source.up", "filter.in"), "g.toml:5: module source has no output \"up\""},
       {link("source.left", "filter.into"), "g.toml:5: module filter has no input \"into\""},
       {link("source.left", "sink.in"),
-       "g.toml:5: source.left sends map 1 x f32 in coordinate system left_image (7), sink.in takes "
-       "map 1 x f32 in coordinate system right_image (8)"},
+       "g.toml:5: source.left sends map of 1 x f32 in coordinate system left_image (7), sink.in "
+       "takes "
+       "map of 1 x f32 in coordinate system right_image (8)"},
       {link("source.left", "sink.text"), "g.toml:5: source.left sends map"},
       {link("source.left", "filter.in") + "[[modules.filter.inputs.in]]\nfrom = \"source.left\"\n",
        "g.toml:7: duplicate link from source.left to filter.in"},
@@ -223,8 +224,8 @@ g.toml:3: module source: parameter rate: "10" is not from 0 to 9
 g.toml:4: module source has no port "lft", did you mean "left"?
 g.toml:5: module x: no such program
 g.toml:7: module sink has no input "inn", did you mean "in"?
-g.toml:8: source.left sends map 1 x f32 in coordinate system left_image (7), sink.in takes )"
-      "map 1 x f32 in coordinate system right_image (8)\ng.toml:9: module snk: no such program");
+g.toml:8: source.left sends map of 1 x f32 in coordinate system left_image (7), sink.in takes )"
+      "map of 1 x f32 in coordinate system right_image (8)\ng.toml:9: module snk: no such program");
 }
 
 TEST(Plan, ALoopHasARate) {

@@ -399,9 +399,9 @@ void Module::Loop::refuse(const Inlet& link, const Message& message) const {
   std::string takers;
   for (const auto* input : link.inputs)
     takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
-  std::string what = text(message.header.info);
-  if (message.header.coord != 0)
-    what += ", coordinate system " + coord_and_number(message.header.coord);
+  const Header& header = message.header;
+  std::string what = matrix_text(header.info, header.width, header.height);
+  if (header.coord != 0) what += " in coordinate system " + coord_and_number(header.coord);
   fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
 }
 

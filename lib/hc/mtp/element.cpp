@@ -74,9 +74,14 @@ std::optional<Encoding> encoding_of(std::string_view name) {
   return find_name<Encoding>(kEncodingNames, name, 0);
 }
 
-std::string text(const Info& info) {
-  return std::string(name(info.type)) + " " + std::to_string(info.components) + " x " +
-         std::string(name(info.scalar)) + ", " + std::string(name(info.encoding));
+std::string matrix_text(const Info& info, std::optional<std::int32_t> width,
+                        std::optional<std::int32_t> height) {
+  auto side = [](std::optional<std::int32_t> given) {
+    return given ? std::to_string(*given) : "any";
+  };
+  std::string text{name(info.type)};
+  if (width || height) text += " " + side(width) + " x " + side(height);
+  return text + " of " + std::to_string(info.components) + " x " + std::string(name(info.scalar));
 }
 
 int broken_rule(const Info& info) {
@@ -113,8 +118,8 @@ std::optional<InfoError> find_error(const Info& info) {
       return InfoError{20, "encoding " + std::to_string(static_cast<int>(info.encoding)) +
                                " is reserved (0 text, 1 binary, 2 zstd, 3 jpeg)"};
     default:
-      return InfoError{rule, "jpeg is for images of 1 or 3 components of u8, not " + type + " " +
-                                 components + " x " + std::string(name(info.scalar))};
+      return InfoError{rule,
+                       "jpeg is for images of 1 or 3 components of u8, not " + matrix_text(info)};
   }
 }
 

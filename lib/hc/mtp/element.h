@@ -118,8 +118,10 @@ struct Info {
   bool operator==(const Info&) const = default;
 };
 
-/// "position 3 x f64, text"
-std::string text(const Info& info);
+/// A matrix for a person to read, "rgb_image 800 x 600 of 3 x u8"; a side that is not given may be
+/// any: "position any x 1 of 3 x f64", and "rgb_image of 3 x u8" when neither is.
+std::string matrix_text(const Info& info, std::optional<std::int32_t> width = std::nullopt,
+                        std::optional<std::int32_t> height = std::nullopt);
 
 /// The rule of the specification that type, components, scalar and encoding break together
 /// (R17 … R21, judged in this order); 0 when they go together.

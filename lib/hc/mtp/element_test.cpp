@@ -10,7 +10,10 @@ TEST(Info, IsReadByEye) {
   EXPECT_EQ(Info().code(), 10390);
   Info sound{MatrixType::Sound, 2, Scalar::I16, Encoding::Binary};
   EXPECT_EQ(sound.code(), 100231);
-  EXPECT_EQ(text(sound), "sound 2 x i16, binary");
+  EXPECT_EQ(matrix_text(sound, 800, 1), "sound 800 x 1 of 2 x i16");
+  EXPECT_EQ(matrix_text(sound, 0, 1), "sound 0 x 1 of 2 x i16");
+  EXPECT_EQ(matrix_text(sound, std::nullopt, 1), "sound any x 1 of 2 x i16");
+  EXPECT_EQ(matrix_text(sound), "sound of 2 x i16");
   EXPECT_EQ(sound.element_bytes(), 4U);
   EXPECT_EQ(*parse_info(100231), sound);
 }

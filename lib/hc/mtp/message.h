@@ -81,7 +81,8 @@ struct Message {
   template <ScalarType T>
   [[nodiscard]] Result<MatrixView<const T>> view() const {
     if (!plain() || header.info.scalar != scalar_for<T>())
-      return Error{Code::Unsupported, "the elements are " + text(header.info) + ", not plain " +
+      return Error{Code::Unsupported, "the elements are " + matrix_text(header.info) + ", " +
+                                          std::string(name(header.info.encoding)) + ", not plain " +
                                           std::string(name(scalar_for<T>()))};
     return MatrixView<const T>(reinterpret_cast<const T*>(elements.data()),
                                static_cast<std::size_t>(header.width),
@@ -120,7 +121,7 @@ class Draft {
   /// The elements as numbers of type T. Another scalar than the info's is a bug.
   template <ScalarType T>
   [[nodiscard]] MatrixView<T> view() const {
-    HC_CHECK(header.info.scalar == scalar_for<T>(), text(header.info));
+    HC_CHECK(header.info.scalar == scalar_for<T>(), matrix_text(header.info));
     return {reinterpret_cast<T*>(bytes_.get()), static_cast<std::size_t>(header.width),
             static_cast<std::size_t>(header.height), header.info.components};
   }

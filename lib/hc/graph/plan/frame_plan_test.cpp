@@ -120,13 +120,13 @@ TEST(Frames, PosesMakeNoLoop) {
 TEST(Frames, WhatMovesThemTellsPoses) {
   EXPECT_EQ(wrong("[modules.source]\n[modules.seeker]\n[frames.head]\nparent = \"robot\"\n"
                   "moved_by = \"source.left\"\n"),
-            "g.toml:6: source.left sends map 1 x f32 in coordinate system left_image (7), "
+            "g.toml:6: source.left sends map of 1 x f32 in coordinate system left_image (7), "
             "seeker.frames takes "
-            "transformation 1 x f64, width 4, height 4");
+            "transformation 4 x 4 of 1 x f64");
   EXPECT_EQ(
       wrong("[modules.source]\n[frames.head]\nparent = \"robot\"\n"
             "moved_by = \"source.left\"\n"),
-      "g.toml:5: source.left sends map 1 x f32 in coordinate system left_image (7), not a pose, "
+      "g.toml:5: source.left sends map of 1 x f32 in coordinate system left_image (7), not a pose, "
       "transformation 4 x 4");
   EXPECT_EQ(wrong("[modules.neck]\n[frames.a]\nparent = \"root\"\nmoved_by = \"neck.pose\"\n"
                   "[frames.b]\nparent = \"a\"\nmoved_by = \"neck.pose\"\n"),
