@@ -4,6 +4,7 @@
 
 #include <GL/glcorearb.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -99,7 +100,7 @@ struct Surface {
   GLsizei count = 0;
 };
 
-/// Where is drawn to.
+/// Where is drawn to: as large as the largest image so far.
 struct Target {
   int width = 0, height = 0;
   GLuint frame = 0, colour = 0, depth = 0;
@@ -138,6 +139,7 @@ Result<std::unique_ptr<Renderer>> Renderer::make() {
   state->ambient = place("ambient");
   state->diffuse = place("diffuse");
   glEnable(GL_DEPTH_TEST);
+  glEnable(GL_SCISSOR_TEST);  // what is cleared is what is drawn on
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);  // as y is turned over
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -178,13 +180,17 @@ void Renderer::set_texture(SurfaceId surface, const cv::Mat& texture) {
 }
 
 Status Renderer::State::aim(int width, int height) {
-  if (target.width == width && target.height == height) return {};
+  glViewport(0, 0, width, height);
+  glScissor(0, 0, width, height);
+  if (width <= target.width && height <= target.height && width > 0 && height > 0) return {};
   GLint most = 0;
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
   if (width < 1 || height < 1 || width > most || height > most)
     return Error{Code::Unsupported, "graphics: an image of " + std::to_string(width) + " x " +
                                         std::to_string(height) + " cannot be drawn, " +
                                         std::to_string(most) + " is the most"};
+  width = std::max(width, target.width);
+  height = std::max(height, target.height);
   if (target.frame == 0) {
     glGenFramebuffers(1, &target.frame);
     glGenRenderbuffers(1, &target.colour);
@@ -199,15 +205,13 @@ Status Renderer::State::aim(int width, int height) {
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     return Error{Code::Unsupported, "graphics: OpenGL does not draw into memory here"};
-  glViewport(0, 0, width, height);
   target.width = width;
   target.height = height;
   return {};
 }
 
-Status Renderer::draw(std::span<const Item> items, const PinholeCamera& camera,
-                      const Eigen::Isometry3d& T_world_camera, const Light& light, cv::Mat& rgb,
-                      cv::Mat* depth) {
+Status Renderer::render(std::span<const Item> items, const PinholeCamera& camera,
+                        const Eigen::Isometry3d& T_world_camera, const Light& light) {
   if (auto aimed = state_->aim(camera.width, camera.height); !aimed) return aimed;
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   const Eigen::Isometry3f T_camera_world = T_world_camera.inverse().cast<float>();
@@ -225,11 +229,11 @@ Status Renderer::draw(std::span<const Item> items, const PinholeCamera& camera,
     glBindVertexArray(surface.vertices);
     glDrawElements(GL_TRIANGLES, surface.count, GL_UNSIGNED_INT, nullptr);
   }
-  state_->rgba.create(camera.height, camera.width, CV_8UC4);
-  glReadPixels(0, 0, camera.width, camera.height, GL_RGBA, GL_UNSIGNED_BYTE, state_->rgba.data);
-  cv::cvtColor(state_->rgba, rgb, cv::COLOR_RGBA2RGB);
-  if (depth == nullptr) return {};
-  depth->create(camera.height, camera.width, CV_32F);
+  return {};
+}
+
+void Renderer::read_depth(const PinholeCamera& camera, cv::Mat& depth) {
+  depth.create(camera.height, camera.width, CV_32F);
   state_->raw_depth.create(camera.height, camera.width, CV_32F);
   glReadPixels(0, 0, camera.width, camera.height, GL_DEPTH_COMPONENT, GL_FLOAT,
                state_->raw_depth.data);
@@ -237,10 +241,35 @@ Status Renderer::draw(std::span<const Item> items, const PinholeCamera& camera,
   const auto near = static_cast<float>(camera.near), far = static_cast<float>(camera.far);
   for (int row = 0; row < camera.height; ++row) {
     const float* from = state_->raw_depth.ptr<float>(row);
-    float* to = depth->ptr<float>(row);
+    float* to = depth.ptr<float>(row);
     for (int column = 0; column < camera.width; ++column)
       to[column] = from[column] >= 1 ? 0 : near * far / (far - from[column] * (far - near));
   }
+}
+
+Status Renderer::draw(std::span<const Item> items, const PinholeCamera& camera,
+                      const Eigen::Isometry3d& T_world_camera, const Light& light, cv::Mat& rgb,
+                      cv::Mat* depth) {
+  if (auto drawn = render(items, camera, T_world_camera, light); !drawn) return drawn;
+  state_->rgba.create(camera.height, camera.width, CV_8UC4);
+  glReadPixels(0, 0, camera.width, camera.height, GL_RGBA, GL_UNSIGNED_BYTE, state_->rgba.data);
+  cv::cvtColor(state_->rgba, rgb, cv::COLOR_RGBA2RGB);
+  if (depth != nullptr) read_depth(camera, *depth);
+  return {};
+}
+
+Status Renderer::draw_part(std::span<const Item> items, const PinholeCamera& camera,
+                           const cv::Rect& part, const Eigen::Isometry3d& T_world_camera,
+                           const Light& light, cv::Mat& rgba, cv::Mat& depth) {
+  PinholeCamera window = camera;
+  window.width = part.width;
+  window.height = part.height;
+  window.cx -= part.x;
+  window.cy -= part.y;
+  if (auto drawn = render(items, window, T_world_camera, light); !drawn) return drawn;
+  rgba.create(part.size(), CV_8UC4);
+  glReadPixels(0, 0, part.width, part.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data);
+  read_depth(window, depth);
   return {};
 }
 

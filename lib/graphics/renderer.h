@@ -60,8 +60,21 @@ class Renderer {
               const Eigen::Isometry3d& T_world_camera, const Light& light, cv::Mat& rgb,
               cv::Mat* depth = nullptr);
 
+  /// The same of a part of the image alone, without what is around it.
+  ///
+  /// @param part  of the image [px].
+  /// @param[out] rgba  (H, W, 4) u8 of the part; the last is 255, or 0 where nothing is.
+  /// @param[out] depth  (H, W) f32 of the part, as above.
+  /// Errors: as above.
+  Status draw_part(std::span<const Item> items, const PinholeCamera& camera, const cv::Rect& part,
+                   const Eigen::Isometry3d& T_world_camera, const Light& light, cv::Mat& rgba,
+                   cv::Mat& depth);
+
  private:
   struct State;
+  Status render(std::span<const Item> items, const PinholeCamera& camera,
+                const Eigen::Isometry3d& T_world_camera, const Light& light);
+  void read_depth(const PinholeCamera& camera, cv::Mat& depth);
   explicit Renderer(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
