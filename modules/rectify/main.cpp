@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <gaze/eyes.h>
 #include <hc/module/module.h>
@@ -25,6 +26,11 @@ int main(int argc, char** argv) {
   auto intrinsics = module.output("intrinsics", hc::table<double>().of(5, 1),
                                   "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
                                   "the first image and then once a second");
+  auto cameras = module.output(
+      "cameras", hc::transformation<double>(4, 4),
+      "with the intrinsics: T_head_left_eye as calibrated (coord 3004), and from the left camera "
+      "of the rectified pair to the left eye (coord 4009)");
+  module.on_demand(cameras);
   auto file = module.parameter(
       "calibration_file", "", "",
       "written by stereo_calibration and calibrate; without it an ideal pair is assumed",
@@ -40,8 +46,25 @@ int main(int argc, char** argv) {
   bool is_new = true;                  // since `intrinsics` was sent
   std::optional<std::int64_t> time;    // of the last image
 
+  auto send_cameras = [&] {
+    if (!cameras.linked()) return;
+    hc::gaze::Eyes eyes(frames.fixed("head", "left_eye"), frames.fixed("head", "right_eye"));
+    eyes.set_baseline(calibration->baseline());
+    if (has_message || !calibration->head.empty()) eyes.calibrate(mounting);
+    Eigen::Isometry3d T_left_rectified = Eigen::Isometry3d::Identity();
+    T_left_rectified.linear() =
+        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(calibration->R1.val)
+            .transpose();
+    cameras.send(hc::transformation(eyes.T_head_eye(hc::gaze::Side::Left))
+                     .in(hc::transform_coord(Coord::kHead, Coord::kLeftEye))
+                     .at(*time));
+    cameras.send(hc::transformation(T_left_rectified)
+                     .in(hc::transform_coord(Coord::kLeftEye, Coord::kLeftRectified))
+                     .at(*time));
+  };
   auto send_intrinsics = [&] {
     if (!time) return;
+    send_cameras();
     const auto camera = calibration->rectified();
     intrinsics.send(
         hc::table({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()}).at(*time));
