@@ -69,6 +69,61 @@ class Sight(Pipes):
             coords = {json.loads(line)["coord"] for line in out.splitlines()}
             self.assertLessEqual({number + 101, number + 103}, coords)
 
+    def augment(self, options, output):
+        links = " ".join("--in %s=%s.mtp" % (name, name) for name in ("left", "right", "depth"))
+        return "hc augment --focal 600 %s %s --out %s" % (links, options, output)
+
+    def corners_of(self, place, size):
+        """Where the corners of a box are seen by both eyes [px], the head looking straight ahead."""
+        for z in (-size / 2, size / 2):
+            for y in (-size / 2, size / 2):
+                for x in (-size / 2, size / 2):
+                    p = self.in_left_eye([place[0] + x, place[1] + y, place[2] + z])
+                    yield [
+                        399.5 + 600 * p[0] / p[2],
+                        299.5 + 600 * p[1] / p[2],
+                        399.5 + 600 * (p[0] - 0.1) / p[2],
+                        299.5 + 600 * p[1] / p[2],
+                    ]
+
+    def test_an_object_is_drawn_where_it_would_be_seen(self):
+        self.simulate("--ball absent", left="left.mtp", right="right.mtp", depth="depth.mtp")
+        cube = "--objects 'cube at world 2 0.1 1.2 size 0.3'"
+        found = self.messages(self.augment(cube, "corners=-"))
+        truth = list(self.corners_of([2, 0.1, 1.2], 0.3)) * 3
+        self.assertEqual(len(found), len(truth))
+        for corner, true_corner in zip(found, truth):
+            self.assertLess(math.dist(corner, true_corner), 0.01)
+
+    def test_an_object_stands_on_a_marker(self):
+        self.simulate(
+            "--seed 1", left="left.mtp", right="right.mtp", depth="depth.mtp", markers="m.mtp"
+        )
+        self.shell(
+            "hc marker --marker_frames colour:300=103 --sides colour:300=0.14 --focal 600 "
+            "--in image=left.mtp --out poses=poses.mtp"
+        )
+        cube = "--objects 'cube at 103 size 0.14' --in poses=poses.mtp --clock messages"
+        found = self.messages(self.augment(cube, "corners=-"))
+        marker = next(row for row in self.messages("cat m.mtp") if row[1] == 300)
+        truth = list(self.corners_of(marker[3:6], 0))[0]
+        middle = [sum(corner[i] for corner in found[-8:]) / 8 for i in range(4)]
+        self.assertLess(math.dist(middle, truth), 2, "px")
+
+    def test_what_is_before_an_object_hides_it(self):
+        self.simulate("--ball absent", left="left.mtp", right="right.mtp", depth="depth.mtp")
+        for place, is_seen in (("2.0 0.1 1.2", True), ("9.0 0.1 1.2", False)):
+            with self.subTest(place=place):
+                cube = "--objects 'cube at world %s size 0.3'" % place
+                masks = self.messages(self.augment(cube, "mask=-"))
+                self.assertEqual(max(max(row) for row in masks) == 255, is_seen)
+
+    def test_images_pass_where_there_is_nothing_to_draw(self):
+        self.simulate("", left="left.mtp", right="right.mtp", depth="depth.mtp")
+        self.shell(self.augment("--objects ''", "left=augmented.mtp"))
+        passed, taken = (self.shell("hc cat --json <%s" % f) for f in ("augmented.mtp", "left.mtp"))
+        self.assertEqual(passed, taken)
+
     def test_the_ball_is_where_it_is_seen(self):
         for noise in (0, 20):
             with self.subTest(noise=noise):

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "instruments.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <sstream>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kYellow(255, 220, 0);
+
+cv::Point point(const Eigen::Vector2d& pixel) {
+  constexpr double kMost = 1e5;  // an image is smaller
+  return {static_cast<int>(std::clamp(pixel.x(), -kMost, kMost)),
+          static_cast<int>(std::clamp(pixel.y(), -kMost, kMost))};
+}
+
+/// White on a black rim, which is read on any image.
+void write(cv::Mat& image, const std::string& words, const cv::Point& at) {
+  constexpr double kSize = 0.5;
+  for (const auto& [colour, thick] : {std::pair{kBlack, 3}, std::pair{kWhite, 1}})
+    cv::putText(image, words, at, cv::FONT_HERSHEY_SIMPLEX, kSize, colour, thick, cv::LINE_AA);
+}
+
+void draw_line(cv::Mat& image, const cv::Point& from, const cv::Point& to,
+               const cv::Scalar& colour) {
+  cv::line(image, from, to, colour, 2, cv::LINE_AA);
+}
+
+std::vector<std::string> words_of(std::string text) {
+  std::ranges::replace(text, ',', ' ');
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+}  // namespace
+
+hc::Result<Instruments> read_instruments(const std::string& text) {
+  Instruments shown;
+  const std::pair<const char*, bool*> known[] = {{"gaze", &shown.gaze},
+                                                 {"frames", &shown.frames},
+                                                 {"depth", &shown.depth},
+                                                 {"confidence", &shown.confidence},
+                                                 {"task", &shown.task}};
+  for (const auto& word : words_of(text)) {
+    const auto* found =
+        std::ranges::find_if(known, [&](const auto& each) { return word == each.first; });
+    if (found == std::end(known))
+      return hc::Error{hc::Code::Invalid, "instruments: \"" + word +
+                                              "\" is none of gaze, frames, depth, confidence, task"};
+    *found->second = true;
+  }
+  return shown;
+}
+
+hc::Result<std::map<int, std::string>> read_tasks(const std::string& text) {
+  std::map<int, std::string> names;
+  for (const auto& word : words_of(text)) {
+    const auto equals = std::min(word.find('='), word.size() - 1);
+    const char* end = word.data() + word.size();
+    int number = 0;
+    const auto [after, error] = std::from_chars(word.data() + equals + 1, end, number);
+    if (error != std::errc() || after != end || equals == 0 || number < 1)
+      return hc::Error{hc::Code::Invalid, "tasks: \"" + word + "\" is not as in track=4"};
+    names[number] = word.substr(0, equals);
+  }
+  return names;
+}
+
+void draw_ring(cv::Mat& image, const Eigen::Vector2d& pixel, const std::string& name) {
+  constexpr int kRadius = 16;
+  const auto middle = point(pixel);
+  cv::circle(image, middle, kRadius, kYellow, 2, cv::LINE_AA);
+  write(image, name, middle + cv::Point(kRadius + 4, 5));
+}
+
+void draw_cross(cv::Mat& image, const Eigen::Vector2d& pixel, const std::string& words) {
+  constexpr int kArm = 8;
+  const auto middle = point(pixel);
+  draw_line(image, middle - cv::Point(kArm, 0), middle + cv::Point(kArm, 0), kWhite);
+  draw_line(image, middle - cv::Point(0, kArm), middle + cv::Point(0, kArm), kWhite);
+  write(image, words, middle + cv::Point(kArm + 4, -4));
+}
+
+void draw_axes(cv::Mat& image, const hc::graphics::PinholeCamera& camera,
+               const Eigen::Isometry3d& T_camera_frame, const std::string& name, double length) {
+  const Eigen::Vector3d origin = T_camera_frame.translation();
+  const std::array colours = {cv::Scalar(230, 40, 40), cv::Scalar(40, 200, 40),
+                              cv::Scalar(60, 90, 255)};
+  std::array<Eigen::Vector3d, 3> ends;
+  for (int axis = 0; axis < 3; ++axis)
+    ends[static_cast<std::size_t>(axis)] =
+        origin + length * T_camera_frame.linear().col(axis);
+  const auto is_behind = [&](const auto& p) { return p.z() < camera.near; };
+  if (is_behind(origin) || std::ranges::any_of(ends, is_behind)) return;
+  const auto from = point(camera.project(origin));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    draw_line(image, from, point(camera.project(ends[axis])), colours[axis]);
+  write(image, name, from + cv::Point(6, 16));
+}
+
+void draw_title(cv::Mat& image, const std::string& words) {
+  write(image, words, {10, 22});
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "objects.h"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include <frames/rigid.h>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+constexpr double kFarthest = 1e4;  // [m], [degree]
+
+bool read_number(const std::string& word, double& number) {
+  const char* end = word.data() + word.size();
+  const auto [after, error] = std::from_chars(word.data(), end, number);
+  return error == std::errc() && after == end && std::abs(number) <= kFarthest;
+}
+
+bool read_frame(const std::string& word, Object& object) {
+  object.frame = word;
+  if (word.find_first_not_of("0123456789") != std::string::npos) return true;
+  double number = 0;
+  if (!read_number(word, number) || number < 1 || number > 999) return false;
+  object.frame_number = static_cast<int>(number);
+  return true;
+}
+
+hc::Result<Object> read_object(const std::string& text) {
+  auto wrong = [&](const char* why) {
+    return hc::Error{hc::Code::Invalid, "objects: \"" + text + "\" " + why};
+  };
+  std::istringstream words(text);
+  std::vector<std::string> all;
+  for (std::string word; words >> word;) all.push_back(word);
+  if (all.size() < 3 || all[1] != "at") return wrong("is not as in cube at world 2 0 0.8 size 0.3");
+  Object object;
+  object.model = all[0];
+  if (!read_frame(all[2], object)) return wrong("is in a frame with a number that is not 1 to 999");
+  if (all.size() >= 5 && all[all.size() - 2] == "size") {
+    if (!read_number(all.back(), object.size) || object.size <= 0)
+      return wrong("has a size that is no number of metres over 0");
+    all.resize(all.size() - 2);
+  }
+  std::vector<double> numbers;
+  for (std::size_t i = 3; i < all.size(); ++i) {
+    double number = 0;
+    if (!read_number(all[i], number)) return wrong("has a place that is no numbers");
+    numbers.push_back(number);
+  }
+  if (numbers.size() != 0 && numbers.size() != 3 && numbers.size() != 6)
+    return wrong("has neither a place x y z nor x y z and roll pitch yaw");
+  numbers.resize(6);
+  constexpr double kDegree = std::numbers::pi / 180;
+  object.T_frame_object =
+      Eigen::Translation3d(numbers[0], numbers[1], numbers[2]) *
+      hc::frames::rotation(kDegree * numbers[3], kDegree * numbers[4], kDegree * numbers[5]);
+  return object;
+}
+
+/// Squares, so that it is seen how a surface turns.
+cv::Mat paint_squares(int columns, int rows, const cv::Vec3b& one, const cv::Vec3b& other) {
+  cv::Mat squares(rows, columns, CV_8UC3);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x)
+      squares.at<cv::Vec3b>(y, x) = (x + y) % 2 == 0 ? one : other;
+  constexpr int kPixels = 32;
+  cv::resize(squares, squares, {}, kPixels, kPixels, cv::INTER_NEAREST);
+  return squares;
+}
+
+}  // namespace
+
+hc::Result<std::vector<Object>> read_objects(std::string_view text) {
+  std::vector<Object> objects;
+  while (!text.empty()) {
+    const auto one = text.substr(0, text.find(';'));
+    text.remove_prefix(std::min(text.size(), one.size() + 1));
+    if (one.find_first_not_of(" \t\n") == std::string_view::npos) continue;
+    auto object = read_object(std::string(one));
+    if (!object) return object.error();
+    objects.push_back(*object);
+  }
+  return objects;
+}
+
+hc::Result<std::vector<hc::graphics::Part>> load(const std::string& model) {
+  using hc::graphics::Part;
+  const cv::Vec3b yellow(250, 205, 50), blue(35, 65, 200), green(60, 190, 90), white(240, 240, 235);
+  if (model == "cube")
+    return std::vector<Part>{{hc::graphics::make_box({1, 1, 1}), paint_squares(4, 4, yellow, blue)}};
+  if (model == "ball")
+    return std::vector<Part>{{hc::graphics::make_ball(0.5F), paint_squares(12, 6, green, white)}};
+  return hc::graphics::read_model(model);
+}

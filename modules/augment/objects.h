@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What is to be drawn and where, as a parameter says it. Pure, but for reading models.
+//
+//     cube at world 2 0 0.8 size 0.3; robot.glb at 101 0 0 0 90 0 0; ball at left_ear
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <graphics/model.h>
+#include <hc/base/result.h>
+
+/// A model at a place.
+struct Object {
+  std::string model;       ///< "cube", "ball", or a file: .obj, .stl, .gltf, .glb
+  std::string frame;       ///< in which it is
+  int frame_number = 0;    ///< the same, where it is said by number; 0: by name
+  Eigen::Isometry3d T_frame_object = Eigen::Isometry3d::Identity();
+  double size = 0;  ///< of its longest side [m]; 0: as the model has it
+};
+
+/// Reads objects with ; between them, each `MODEL at FRAME [X Y Z [ROLL PITCH YAW]] [size METRES]`:
+/// metres and degrees, as in a graph's [frames].
+///
+/// Errors: Invalid, with the object that is wrong.
+hc::Result<std::vector<Object>> read_objects(std::string_view text);
+
+/// A cube or a ball, 1 m wide, or what a file has. Errors: as hc::graphics::read_model().
+hc::Result<std::vector<hc::graphics::Part>> load(const std::string& model);

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <graphics/occlusion.h>
+
+void Markers::see(int number, std::int64_t time, const Eigen::Isometry3d& T_world_marker,
+                  double smoothing) {
+  constexpr double kMoved = 0.1;  // it was moved [m]
+  const auto [at, is_new] = seen_.try_emplace(number, Seen{time, T_world_marker});
+  if (is_new) return;
+  auto& [last, pose] = at->second;
+  const double passed = static_cast<double>(time - last) * 1e-9;
+  const bool is_moved = (pose.translation() - T_world_marker.translation()).norm() > kMoved;
+  const double share =
+      is_moved || smoothing <= 0 || passed < 0 ? 1 : 1 - std::exp(-passed / smoothing);
+  using hc::frames::Pose;
+  pose = between(Pose(pose), Pose(T_world_marker), share).transformation();
+  last = time;
+}
+
+const Eigen::Isometry3d* Markers::find(int number) const {
+  const auto at = seen_.find(number);
+  return at == seen_.end() ? nullptr : &at->second.pose;
+}
+
+hc::Result<std::unique_ptr<Scene>> Scene::make(const std::string& text) {
+  auto objects = read_objects(text);
+  if (!objects) return objects.error();
+  auto renderer = hc::graphics::Renderer::make();
+  if (!renderer) return renderer.error();
+  std::unique_ptr<Scene> scene(new Scene(std::move(*renderer)));
+  for (const auto& object : *objects) {
+    auto parts = load(object.model);
+    if (!parts) return parts.error();
+    scene->bodies_.push_back(
+        hc::graphics::make_body(*scene->renderer_, std::move(*parts), object.size));
+  }
+  scene->objects_ = std::move(*objects);
+  return scene;
+}
+
+void Scene::place(hc::ModuleFrames& frames, const Markers& markers, std::int64_t time) {
+  placed_.clear();
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const Object& object = objects_[i];
+    hc::graphics::Body body = bodies_[i];
+    if (const auto* T_world_marker = markers.find(object.frame_number); T_world_marker != nullptr) {
+      body.T_world_body = *T_world_marker * object.T_frame_object;
+    } else {
+      const hc::frames::Frame frame =
+          object.frame_number > 0 ? hc::frames::Frame(object.frame_number)
+                                  : hc::frames::Frame(std::string_view(object.frame));
+      const auto T_world_frame = frames.tree().nearest("world", frame, time);
+      if (!T_world_frame) continue;
+      body.T_world_body = *T_world_frame * object.T_frame_object;
+    }
+    placed_.push_back(std::move(body));
+  }
+}
+
+bool Scene::is_seen(const Sight& sight) const {
+  return std::ranges::any_of(placed_, [&](const auto& body) {
+    return std::ranges::any_of(sight.T_world_eye, [&](const auto& T_world_eye) {
+      return !hc::graphics::part_of(body, sight.camera, T_world_eye).empty();
+    });
+  });
+}
+
+hc::Status Scene::draw(const Sight& sight, std::size_t eye, const cv::Mat& depth, cv::Mat& image,
+                       cv::Mat* mask) {
+  hc::graphics::Overlay::View view;
+  view.camera = sight.camera;
+  view.T_world_camera = sight.T_world_eye.at(eye);
+  view.scale = sight.scale;
+  view.nearness = [&](const cv::Rect& part, cv::Mat& nearness) {
+    if (eye == 0)
+      hc::graphics::nearness_of_left(depth, sight.scale, part, nearness);
+    else
+      hc::graphics::nearness_of_right(depth, sight.scale, part, nearness);
+  };
+  return overlay_.draw(placed_, view, image, mask);
+}
