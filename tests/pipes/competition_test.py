@@ -194,6 +194,27 @@ class Demonstrations(Graphs):
         self.assertIn("workspace: bid refused: Malformed: salience nan", self.read("errors"))
         self.assertIn("bids refused: 3 for their salience", self.read("errors"))
 
+    def test_the_focus_is_shown_though_no_module_hears_it(self):
+        self.write(
+            "g.toml",
+            """version = 1
+[modes]
+look = 1
+[workspace]
+module = "workspace"
+[modules.workspace]
+inputs.bids = "looking.bid"
+[modules.looking]
+program = "bidder"
+mode = "look"
+""",
+        )
+        name = "unheard_%d" % os.getpid()
+        process = self.start("exec hc run g.toml --as %s 2>errors" % name)
+        top = lambda: self.shell("hc top %s 2>&1 || true" % name)
+        self.wait_for(lambda: ", focus look" in top(), "errors")
+        self.interrupt(process)
+
     def test_nobody_commands_the_actor_while_the_workspace_hangs_or_is_dead(self):
         self.write_copy("contest.toml", "actor.done", "looking.command", never="failure")
         process = self.start(

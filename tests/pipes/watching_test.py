@@ -210,6 +210,35 @@ class Watching(Graphs):
         )
         self.stop_named(name, process)
 
+    def test_what_is_lost_without_a_reader_is_counted(self):
+        port = free_port()
+        end = "tcp-listen:%d?readers=0" % port
+        text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
+        name, process = self.run_named("unread", text, "camera: started")
+        lost = r"camera.left → tcp-listen:%d.* [1-9]\d* lost without a reader" % port
+        wait_until(lambda: re.search(lost, self.hc("top " + name)))
+        self.stop_named(name, process)
+
+    def test_a_link_that_is_back_is_no_trouble(self):
+        port = free_port()
+        text = '[modules.brightness]\ninputs.image = "tcp:%d?reconnect=60"\n' % port
+        name, process = self.run_named("back", text)
+        messages = self.observe(process, name)
+        link = lambda condition: self.state(messages, lambda each: condition(each["links"][0]))
+        camera = "exec hc camera %s/aloeL.jpg --loop --rate 50 --width 80 --height 60" % DATA
+        publish = camera + " --out tcp-listen:%d" % port
+        writer = self.start(publish)
+        link(lambda link: link["per_second"] > 0)
+        os.kill(writer.pid, signal.SIGKILL)
+        link(lambda link: link["status"] == "sender closed; reconnecting")
+        writer = self.start(publish)
+        link(lambda link: link["per_second"] > 0)
+        os.kill(writer.pid, signal.SIGSTOP)  # what the link has said last is shown when it is still
+        state = link(lambda link: link["per_second"] == 0)
+        self.assertEqual(state["links"][0]["status"], "")
+        self.assertRegex(self.hc("top " + name), r"brightness .* running \| .*: reconnected")
+        self.stop_named(name, process)
+
     def test_an_observer_outlives_restarts_and_ends_with_the_graph(self):
         name, process = self.run_named("restarted")
         observer = self.start("exec hc cat camera.left --json --of %s >out" % name)

@@ -279,6 +279,19 @@ TEST_F(HostileReader, GoesAtOnce) {
   expect_to_continue();
 }
 
+/// One whose answer cannot be sent is let go of, and then not touched: AddressSanitizer would see it.
+TEST_F(HostileReader, TakesNoAnswer) {
+  auto socket = connect_to_publisher(name_);
+  auto page = make_memfd(kPageBytes, kSealed);
+  auto pipe = make_pipe();
+  ASSERT_EQ(::shutdown(socket.get(), SHUT_RD), 0);
+  hand_over(socket.get(), hello(), {page.get(), pipe.get()});
+  pollfd polled{socket.get(), 0, 0};  // until the publisher closes
+  ASSERT_EQ(::poll(&polled, 1, -1), 1);
+  EXPECT_EQ(polled.revents & POLLHUP, POLLHUP);
+  expect_to_continue();
+}
+
 /// Neither a pipe that is full nor one whose open file is set to wait keeps the publisher.
 TEST_F(HostileReader, NeverTakesWhatWakesIt) {
   auto socket = connect_to_publisher(name_);
