@@ -74,11 +74,14 @@ endif()
 
 set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
 set(HC_TEST_SECONDS 120) # a test that takes longer hangs
-# What sanitizers find in other people's libraries is overlooked. ThreadSanitizer would have each
-# process wait for a second at its end, which tests that start many, or measure, take for ours.
-set(HC_TSAN_OPTIONS "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/races.supp:print_suppressions=0:die_after_fork=0:atexit_sleep_ms=0")
-set(HC_TEST_ENVIRONMENT ${HC_TSAN_OPTIONS}
+# What a sanitizer finds in other people's libraries is overlooked. ThreadSanitizer would have each
+# process wait for a second at its end, which tests that start many, or measure, take for ours. One
+# variable, since gtest_discover_tests() hands on the first of a list alone.
+set(HC_TEST_ENVIRONMENT
     "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp:print_suppressions=0")
+if(HC_SANITIZE MATCHES thread)
+  set(HC_TEST_ENVIRONMENT "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/races.supp:print_suppressions=0:die_after_fork=0:atexit_sleep_ms=0")
+endif()
 
 # hc_layer(mtp DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
 # One layer of the core: target hc::mtp, its headers installed, each of its tests a program.
@@ -117,7 +120,7 @@ function(hc_test name)
   target_link_libraries(${name} PRIVATE hc_flags ${arg_LIBS} GTest::gtest_main)
   target_compile_options(${name} PRIVATE -O1)  # most of what a build takes is tests
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
-                       ENVIRONMENT ${HC_TSAN_OPTIONS}
+                       ENVIRONMENT "${HC_TEST_ENVIRONMENT}"
                        DISCOVERY_TIMEOUT 60)
 endfunction()
 
