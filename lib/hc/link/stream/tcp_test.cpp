@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <utility>
 
 #include <hc/link/stream/dialing.h>
 #include <hc/link/stream/listening.h>
@@ -42,6 +43,24 @@ internal::Descriptor connect(const std::string& place) {
   sockaddr_in address = loopback(parse_host_port(place)->port);
   EXPECT_EQ(::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   return socket;
+}
+
+std::string place_of(const internal::Descriptor& listening) {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  EXPECT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+  return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+}
+
+/// The two ends of a connection.
+struct Ends {
+  internal::Descriptor dialed, accepted;
+};
+
+Ends make_connection() {
+  auto listening = *internal::listen_on(loopback_address(0), "any");
+  auto dialed = connect(place_of(listening));
+  return {std::move(dialed), internal::Descriptor(::accept(listening.get(), nullptr, nullptr))};
 }
 
 const SocketScheme kTcp{"tcp", free_port, "tcp:", "tcp-listen:", connect};
@@ -170,12 +189,7 @@ TEST(Tcp, AConnectionWithItselfIsNone) {
 }
 
 TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
-  auto listening = *internal::listen_on(loopback_address(0), "any");
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
-  auto peer = connect("127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
-  internal::Descriptor accepted(::accept(listening.get(), nullptr, nullptr));
+  auto [peer, accepted] = make_connection();
   const int reading = accepted.get();
   internal::StreamSource source(std::move(accepted), {});
   auto wakes_at = [&] {
@@ -273,10 +287,7 @@ TEST(Tcp, AnotherUserIsRefusedWhereOnlyTheSameIsLetIn) {
 TEST(Tcp, AListenerOfAnotherUserIsRefused) {
   Foreign foreign;
   auto listening = foreign.make([] { return *internal::listen_on(loopback_address(0), "any"); });
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
-  const std::string place = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  const std::string place = place_of(listening);
   auto refused = open_source(*parse_uri("tcp:" + place + "?same_user=1"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().detail,
@@ -287,12 +298,7 @@ TEST(Tcp, AListenerOfAnotherUserIsRefused) {
 }
 
 TEST(Tcp, APeerThatHasLeftIsOfNoUser) {
-  auto listening = *internal::listen_on(loopback_address(0), "any");
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
-  auto peer = connect("127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
-  internal::Descriptor accepted(::accept(listening.get(), nullptr, nullptr));
+  auto [peer, accepted] = make_connection();
   ASSERT_TRUE(accepted);
   EXPECT_TRUE(internal::tcp_peer_user(accepted.get(), internal::Connected::Accepted));
   peer.reset();
