@@ -279,7 +279,8 @@ TEST_F(HostileReader, GoesAtOnce) {
   expect_to_continue();
 }
 
-/// One whose answer cannot be sent is let go of, and then not touched: AddressSanitizer would see it.
+/// One whose answer cannot be sent is let go of, and then not touched: AddressSanitizer would see
+/// it.
 TEST_F(HostileReader, TakesNoAnswer) {
   auto socket = connect_to_publisher(name_);
   auto page = make_memfd(kPageBytes, kSealed);

@@ -93,15 +93,15 @@ class Parser {
   }
   Status mode(const std::string& value) {
     const auto wrong = "--mode needs a number from 1 on, not \"" + value + "\"";
-    auto read = read_number(value, arguments_.attention.own, wrong);
-    return read && arguments_.attention.own < 1 ? invalid(wrong) : read;
+    auto read = read_number(value, arguments_.focus.own, wrong);
+    return read && arguments_.focus.own < 1 ? invalid(wrong) : read;
   }
   Status modes(const std::string& value) {
     const auto wrong = "--modes needs numbers from 1 on, not \"" + value + "\"";
     for (std::string_view rest = value; !rest.empty();) {
       auto word = std::string(rest.substr(0, rest.find(',')));
       rest.remove_prefix(std::min(rest.size(), word.size() + 1));
-      auto& number = arguments_.attention.modes.emplace_back();
+      auto& number = arguments_.focus.modes.emplace_back();
       if (auto read = read_number(word, number, wrong); !read || number < 1) return invalid(wrong);
     }
     return {};
@@ -140,7 +140,7 @@ class Parser {
     auto link = parse_port_link(module_, is_input, value);
     if (!link) return link.error();
     if (link->is_focus)
-      arguments_.focus.push_back(link->uri);
+      arguments_.focus_links.push_back(link->uri);
     else
       (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(link->port, link->uri);
     return {};

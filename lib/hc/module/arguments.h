@@ -21,9 +21,9 @@ struct Arguments {
   std::string instance;                               ///< --name
   std::vector<std::pair<std::size_t, Uri>> inputs;    ///< port, link
   std::vector<std::pair<std::size_t, Uri>> outputs;   ///< port, link
-  std::vector<Uri> focus;                             ///< --in focus=URI
+  std::vector<Uri> focus_links;                       ///< --in focus=URI
   std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
-  Attention attention;                                ///< --mode, --modes
+  Focus focus;                                        ///< --mode, --modes
   bool by_messages = false;                           ///< --clock messages
   std::optional<Uri> manage;                          ///< --manage
   std::optional<Uri> control;                         ///< --control

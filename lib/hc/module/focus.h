@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A module's place among the system modes. Pure. Internal.
+// The modes in which a module works, and which mode is in focus. Pure. Internal.
 
 #include <algorithm>
 #include <chrono>
@@ -16,34 +16,34 @@ namespace hc::internal {
 constexpr std::chrono::milliseconds kFocusExpiry{200};
 
 /// Modes are numbers from 1 on; 0 is none.
-struct Attention {
+struct Focus {
   std::vector<std::int32_t> modes;  ///< in which the module works; empty: in all
   std::int32_t own = 0;             ///< mode of all its messages, where it is a task
-  std::int32_t focus = 0;           ///< as last received; 0: none, or that has expired
-  std::int32_t decided = 0;         ///< of who decides on the focus: which has it
-  MonotonicTime received{0};        ///< when that was
-  bool is_linked = false;           ///< whether there is a link from a workspace
+  std::int32_t current = 0;   ///< mode in focus, as last received; 0: none, or that has expired
+  MonotonicTime received{0};  ///< when `current` was
+  std::int32_t decided = 0;   ///< of who decides on the focus: which has it
+  bool is_linked = false;     ///< whether there is a link from a workspace
 
   [[nodiscard]] bool in_focus() const {
-    return modes.empty() || std::find(modes.begin(), modes.end(), focus) != modes.end();
+    return modes.empty() || std::find(modes.begin(), modes.end(), current) != modes.end();
   }
   /// Whether an input takes a message of a mode: an exclusive one only of the mode in focus, and
   /// none while no mode has the focus.
   [[nodiscard]] bool admits(bool is_exclusive, std::int32_t mode) const {
-    return !is_exclusive || (mode != 0 && mode == focus);
+    return !is_exclusive || (mode != 0 && mode == current);
   }
   /// Whether an exclusive input takes what the module sends of its own mode, as far as it knows.
   [[nodiscard]] bool has_own_focus() const { return !is_linked || own == 0 || admits(true, own); }
   /// Forgets a focus that was not repeated in time; whether it was forgotten now.
   bool expire(MonotonicTime now) {
-    if (focus == 0 || now - received <= kFocusExpiry) return false;
-    focus = 0;
+    if (current == 0 || now - received <= kFocusExpiry) return false;
+    current = 0;
     return true;
   }
   /// The mode of a message that is made while one of `handled` mode is handled, or none is (0).
   [[nodiscard]] std::int32_t mode_of(std::int32_t handled) const {
     if (own != 0) return own;
-    return handled != 0 ? handled : focus;
+    return handled != 0 ? handled : current;
   }
 };
 

@@ -44,7 +44,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
     : module_(module), waits_(stop), pauses_(stop) {
   options_.limits = arguments.limits;
   options_.stop = stop;
-  module_.attention_ = arguments.attention;
+  module_.focus_ = arguments.focus;
   std::unique_ptr<Sink> reports;
   if (arguments.manage) {
     Uri uri = *arguments.manage;
@@ -57,7 +57,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
       std::move(reports), arguments.control ? open(*arguments.control, "commands") : nullptr);
   open_outputs(arguments);
   open_inputs(arguments);
-  for (const auto& uri : arguments.focus) open_focus(uri);
+  for (const auto& uri : arguments.focus_links) open_focus(uri);
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   module_.loop_ = this;
 }
@@ -99,7 +99,7 @@ std::unique_ptr<Source> Module::Loop::open(const Uri& uri, const std::string& po
 
 void Module::Loop::open_focus(const Uri& uri) {
   focus_.push_back({.uri = uri.text(), .source = open(uri, "focus")});
-  module_.attention_.is_linked = true;
+  module_.focus_.is_linked = true;
 }
 
 std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port) {
@@ -379,7 +379,7 @@ void Module::Loop::deliver(Inlet& link, Message& message) {
                     [&](const PortType& type) { return fits(message.header, type); });
     if (!fits_any) continue;
     if (!input->handler) return;
-    if (!module_.attention_.admits(input->is_exclusive, message.header.mode)) {
+    if (!module_.focus_.admits(input->is_exclusive, message.header.mode)) {
       ++link.ignored;
       return;
     }

@@ -62,15 +62,15 @@ void Module::Loop::receive_focus() {
 }
 
 void Module::Loop::set_focus(const Message& message) {
-  auto& attention = module_.attention_;
+  auto& focus = module_.focus_;
   const auto modes = message.view<std::int32_t>();
   if (!modes || modes->empty()) return;
-  attention.received = time();
-  if (std::exchange(attention.focus, modes->at(0, 0)) != attention.focus) report_state();
+  focus.received = time();
+  if (std::exchange(focus.current, modes->at(0, 0)) != focus.current) report_state();
 }
 
 void Module::Loop::expire_focus() {
-  if (module_.attention_.expire(time())) report_state();
+  if (module_.focus_.expire(time())) report_state();
 }
 
 void Module::Loop::obey(const std::string& command) {
@@ -275,13 +275,12 @@ void Module::Loop::report_parameters() {
 }
 
 void Module::Loop::report_state(const LinkedSink* blocked) {
-  const auto& attention = module_.attention_;
+  const auto& focus = module_.focus_;
   const auto found = std::find_if(sinks_.begin(), sinks_.end(),
                                   [&](const auto& sink) { return sink.get() == blocked; });
   const auto row = static_cast<std::int64_t>(sources_.size()) + (found - sinks_.begin()) + 1;
-  send(Report::State,
-       make_state({attention.own, attention.decided != 0 ? attention.decided : attention.focus,
-                   attention.in_focus(), blocked == nullptr ? 0 : row}));
+  send(Report::State, make_state({focus.own, focus.decided != 0 ? focus.decided : focus.current,
+                                  focus.in_focus(), blocked == nullptr ? 0 : row}));
 }
 
 }  // namespace hc

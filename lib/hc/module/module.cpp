@@ -155,7 +155,7 @@ void Timeout::restart(std::chrono::nanoseconds duration) {
 }
 
 void Module::report_focus(std::int32_t mode) {
-  if (std::exchange(attention_.decided, mode) != mode) loop_->report_state();
+  if (std::exchange(focus_.decided, mode) != mode) loop_->report_state();
 }
 
 void Module::keep_rate(double rate) {
@@ -205,7 +205,7 @@ void internal::send(OutputState& output, Message message) {
   header.src = output.address;
   header.seq = output.seq++;
   if (header.dst == 0) header.dst = output.to;
-  if (header.mode == 0) header.mode = module.attention_.mode_of(module.handled_.mode);
+  if (header.mode == 0) header.mode = module.focus_.mode_of(module.handled_.mode);
   if (header.coord == 0) header.coord = output.type().coord;
   if (header.coord == 0) header.coord = module.handled_.coord_for(header.info.type);
   if (header.time == 0) header.time = module.handled_.time;

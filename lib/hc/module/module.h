@@ -26,7 +26,7 @@
 #include <vector>
 
 #include <hc/base/parameter.h>
-#include <hc/module/attention.h>
+#include <hc/module/focus.h>
 #include <hc/module/period.h>
 #include <hc/module/port.h>
 
@@ -246,7 +246,7 @@ class Module {
   }
 
   /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 200 ms.
-  [[nodiscard]] std::int32_t focus() const { return attention_.focus; }
+  [[nodiscard]] std::int32_t focus() const { return focus_.current; }
 
   /// For who decides on the focus, and so does not hear it: reports which mode has it, as `hc ps`
   /// shows it. Nothing else changes.
@@ -254,7 +254,7 @@ class Module {
 
   /// Whether the module's mode has the focus, so that exclusive inputs take what it sends. Also
   /// when it has no mode of its own (`--mode`), and when it has no link from a workspace.
-  [[nodiscard]] bool has_focus() const { return attention_.has_own_focus(); }
+  [[nodiscard]] bool has_focus() const { return focus_.has_own_focus(); }
 
   /// Runs the module as the command line says, until its inputs end, all its readers have
   /// disconnected, or it is asked to stop (SIGINT, SIGTERM).
@@ -323,7 +323,7 @@ class Module {
   std::map<std::string, std::int64_t> logged_;  // problems of a kind
   bool routes_ = false, is_background_ = false, keeps_running_ = false;
   const Clock& clock_;
-  internal::Attention attention_;
+  internal::Focus focus_;
   Loop* loop_ = nullptr;                      // while it runs
   std::optional<std::int64_t> message_time_;  // with --clock messages [ns]
   internal::Handled handled_;                 // the message being handled

@@ -25,7 +25,9 @@ std::string short_number(double value, const std::string& unit) {
 
 }  // namespace
 
-std::span<const std::string_view> stereo_layouts() { return kLayouts; }
+std::span<const std::string_view> stereo_layouts() {
+  return kLayouts;
+}
 
 cv::Mat join_eyes(const cv::Mat& left, const cv::Mat& right, std::string_view layout) {
   CV_Assert(left.size() == right.size() && left.type() == right.type());
@@ -68,7 +70,8 @@ void shade(cv::Mat& bgr, const cv::Mat& values) {
       // Relative, so that a slope looks alike near and far.
       const double rise = ((left - here) + (up - here)) / here;
       const double light = std::clamp(1 - kHeight * rise, kLeast, kMost);
-      for (int c = 0; c < 3; ++c) pixel[x][c] = cv::saturate_cast<std::uint8_t>(pixel[x][c] * light);
+      for (int c = 0; c < 3; ++c)
+        pixel[x][c] = cv::saturate_cast<std::uint8_t>(pixel[x][c] * light);
     }
   }
 }

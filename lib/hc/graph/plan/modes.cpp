@@ -7,9 +7,9 @@ namespace {
 
 constexpr const char* kFocus = "focus";  // a workspace's output, and everybody's input
 
-class Attention {
+class Modes {
  public:
-  explicit Attention(Planning& planning)
+  explicit Modes(Planning& planning)
       : planning_(planning), graph_(planning.graph), problems_(planning.problems) {}
 
   void run() {
@@ -134,7 +134,7 @@ class Attention {
 }  // namespace
 
 void plan_modes(Planning& planning) {
-  Attention(planning).run();
+  Modes(planning).run();
 }
 
 /// A mode gets the focus by the bids of a module that has it, which go to a workspace, perhaps

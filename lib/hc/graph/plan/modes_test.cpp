@@ -29,7 +29,7 @@ module = "workspace"
                            link_text("read.bid", "workspace.bids");
 const std::string kBid = link_text("track.bid", "workspace.bids");
 
-TEST(Attention, ModulesAreToldTheirModes) {
+TEST(Modes, ModulesAreToldTheirModes) {
   auto planned = plan(kModes + kBid);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"read", 3}, {"track", 1}}));
@@ -43,7 +43,7 @@ TEST(Attention, ModulesAreToldTheirModes) {
   EXPECT_EQ(planned->modules[2].exclusive, (std::set<std::string>{"command"}));
 }
 
-TEST(Attention, TheFocusIsLinkedToWhoFollowsIt) {
+TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {
   auto planned = plan(kModes + kBid);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(
@@ -67,7 +67,7 @@ TEST(Attention, TheFocusIsLinkedToWhoFollowsIt) {
   EXPECT_EQ(own->links.size(), 6U);
 }
 
-TEST(Attention, ErrorsNameTheLineAndWhatWouldBeRight) {
+TEST(Modes, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_EQ(wrong("[modules.task]\nmode = \"trak\"\n[modes]\ntrack = 1\n[modules.other]\n"
                   "program = \"task\"\nmode = \"track\"\n"),
             "g.toml:3: no mode \"trak\", did you mean \"track\"?");
@@ -89,7 +89,7 @@ TEST(Attention, ErrorsNameTheLineAndWhatWouldBeRight) {
             "g.toml:4: module task has no output \"focus\"");
 }
 
-TEST(Attention, ProgramsThatKnowNoControlAreNotAsked) {
+TEST(Modes, ProgramsThatKnowNoControlAreNotAsked) {
   auto refused = [](const std::string& line, const std::string& key) {
     EXPECT_TRUE(wrong("[modules.filter]\n" + line + "\n")
                     .starts_with("g.toml:3: module filter cannot have \"" + key +
@@ -101,7 +101,7 @@ TEST(Attention, ProgramsThatKnowNoControlAreNotAsked) {
   refused("exclusive = [\"in\"]", "exclusive");
 }
 
-TEST(Attention, AnActorHasOneWriterUnlessItIsExclusiveOrRouted) {
+TEST(Modes, AnActorHasOneWriterUnlessItIsExclusiveOrRouted) {
   const std::string modules =
       "[modules.a]\nprogram = \"task\"\n[modules.b]\nprogram = \"task\"\n[modules.actor]\n"
       "[modules.router]\n[modules.other]\nprogram = \"router\"\n";
@@ -115,7 +115,7 @@ TEST(Attention, AnActorHasOneWriterUnlessItIsExclusiveOrRouted) {
             "");
 }
 
-TEST(Attention, ModulesAreStartedAgainAsTheFileSays) {
+TEST(Modes, ModulesAreStartedAgainAsTheFileSays) {
   auto planned = plan(
       "restart = \"never\"\n[modules.source]\n[modules.sink]\nrestart = \"always\"\n"
       "[modules.any]\nrestart = \"failure\"\n");
