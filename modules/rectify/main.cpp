@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The images of both eyes, rectified.
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -69,27 +70,15 @@ int main(int argc, char** argv) {
     intrinsics.send(
         hc::table({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()}).at(*time));
   };
-  auto rectify = [&](const auto& message, auto& output, Eye eye) {
-    const cv::Size size(message.header.width, message.header.height);
-    if (size.area() == 0) return;
+  auto prepare = [&](Eye eye, const hc::Header& header) {
+    const cv::Size size(header.width, header.height);
     auto& rectifier = rectifiers[eye == Eye::Left ? 0 : 1];
-    if (!rectifier || rectifier->size() != size) {
-      const double baseline = frames.fixed("left_eye", "right_eye").translation().norm();
-      if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, baseline);
-      if (calibration->size.area() == 0) calibration->size = size;
-      if (has_message) hc::vision::turn(*calibration, mounting.R_left_right());
-      rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
-    }
-    time = message.header.time;
-    if (std::exchange(is_new, false)) send_intrinsics();
-    if (!output.linked()) return;
-    auto draft = output.loan(size.width, size.height);
-    hc::fill(draft, [&](cv::Mat& mat) { rectifier->rectify(hc::as_mat(message), mat); });
-    output.send(std::move(draft));
-  };
-  auto take = [&](const auto& message, Eye plug) {
-    const bool is_left = (plug == Eye::Left) != mounting.swapped;
-    rectify(message, is_left ? left_rectified : right_rectified, is_left ? Eye::Left : Eye::Right);
+    if (rectifier && rectifier->size() == size) return;
+    const double baseline = frames.fixed("left_eye", "right_eye").translation().norm();
+    if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, baseline);
+    if (calibration->size.area() == 0) calibration->size = size;
+    if (has_message) hc::vision::turn(*calibration, mounting.R_left_right());
+    rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
   };
 
   module.on_start([&] {
@@ -106,8 +95,25 @@ int main(int argc, char** argv) {
     has_message = is_new = true;
     for (auto& rectifier : rectifiers) rectifier.reset();
   });
-  module.on(left, [&](const auto& message) { take(message, Eye::Left); });
-  module.on(right, [&](const auto& message) { take(message, Eye::Right); });
+  module.on(hc::together(left, right), [&](const auto& first, const auto& second) {
+    if (first.header.empty() || second.header.empty()) return;
+    const std::array images = {mounting.swapped ? &second : &first,
+                               mounting.swapped ? &first : &second};
+    prepare(Eye::Left, images[0]->header);
+    prepare(Eye::Right, images[1]->header);
+    time = first.header.time;
+    if (std::exchange(is_new, false)) send_intrinsics();
+    std::array drafts = {left_rectified.loan(images[0]->header.width, images[0]->header.height),
+                         right_rectified.loan(images[1]->header.width, images[1]->header.height)};
+    cv::parallel_for_({0, 2}, [&](const cv::Range& eyes) {
+      for (auto eye = static_cast<std::size_t>(eyes.start);
+           eye < static_cast<std::size_t>(eyes.end); ++eye)
+        hc::fill(drafts[eye],
+                 [&](cv::Mat& mat) { rectifiers[eye]->rectify(hc::as_mat(*images[eye]), mat); });
+    });
+    left_rectified.send(std::move(drafts[0]));
+    right_rectified.send(std::move(drafts[1]));
+  });
   module.every(std::chrono::seconds(1), send_intrinsics);
   return module.run(argc, argv);
 }

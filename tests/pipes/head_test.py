@@ -166,8 +166,8 @@ class CalibrationFile(Head):
         self.assertGreater(float(error[2]), 0, said)
         self.shell(
             "hc simulator --count 1 --paced=false --start 1000000000 --in gaze=/dev/null"
-            " --out right=r.mtp;"
-            " hc rectify cal.yml --in left=/dev/null --in right=r.mtp --out left=rectified.mtp"
+            " --out left=l.mtp --out right=r.mtp;"
+            " hc rectify cal.yml --in left=l.mtp --in right=r.mtp --out left=rectified.mtp"
         )
         # Swapped: what the right camera's cable brings is the left eye's.
         self.assertGreater(len(self.read_bytes("rectified.mtp")), 3 * 800 * 600)
