@@ -229,6 +229,8 @@ function(hc_install_package)
                                    COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/hypercolumn-config.cmake
                 ${PROJECT_BINARY_DIR}/hypercolumn-config-version.cmake DESTINATION ${folder})
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/hypercolumn)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/graphs ${PROJECT_BINARY_DIR}/share/hypercolumn/graphs SYMBOLIC)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/graphs DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn)
   install(FILES ${PROJECT_SOURCE_DIR}/spec/mtp-1.md
           DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn/spec)

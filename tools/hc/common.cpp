@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <set>
@@ -32,10 +31,9 @@ hc::Uri parse(const std::string& uri) {
   return parsed;
 }
 
-/// Where graphs that came with hc are: installed, or built in a folder of the project.
-std::array<fs::path, 2> graph_folders() {
-  const fs::path prefix = module_folder().parent_path().parent_path();
-  return {prefix / "share" / "hypercolumn" / "graphs", prefix.parent_path() / "graphs"};
+/// Where graphs that came with hc are; in a folder that it is built in, a link.
+fs::path graph_folder() {
+  return module_folder().parent_path().parent_path() / "share" / "hypercolumn" / "graphs";
 }
 
 /// Text to the person; it does not matter whether it arrives.
@@ -115,18 +113,17 @@ void say(std::string_view line) {
 std::string find_graph(const std::string& name) {
   std::error_code missing;
   if (name.find('/') != std::string::npos || fs::exists(name, missing)) return name;
-  for (const auto& folder : graph_folders())
-    for (const char* suffix : {"", ".toml"})
-      if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);
+  const fs::path folder = graph_folder();
+  for (const char* suffix : {"", ".toml"})
+    if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);
   return name;
 }
 
 std::vector<std::string> shipped_graphs() {
   std::set<std::string> names;
   std::error_code missing;
-  for (const auto& folder : graph_folders())
-    for (const auto& entry : fs::directory_iterator(folder, missing))
-      if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+  for (const auto& entry : fs::directory_iterator(graph_folder(), missing))
+    if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
   return {names.begin(), names.end()};
 }
 
