@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// vision [--rounds N]: speed and quality of stereo matching beside OpenCV's matchers, on the Aloe
-// pair and on rooms that are drawn with exact depth, as Markdown.
+// vision [--rounds N]: quality and, unless N is 0, speed of stereo matching beside OpenCV's
+// matchers, on the Aloe pair and on rooms that are drawn with exact depth, as Markdown.
 
 #include <algorithm>
 #include <chrono>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 
 #include <graphics/camera.h>
 #include <graphics/renderer.h>
@@ -178,6 +178,83 @@ void compare_speed(const Pair& pair, int rounds) {
   }
 }
 
+/// How far off depth is, by distance: median and 90th percentile of the error in the drawn rooms.
+void print_errors_by_distance(const std::vector<Pair>& pairs, int disparities) {
+  std::printf(
+      "\n| distance [m] | pixels | error, median [m] | 90 %% below [m] | median [%%] |\n"
+      "|---|---:|---:|---:|---:|\n");
+  const double bounds[] = {1, 1.5, 2, 2.5, 3, 4, 5, 7};
+  std::vector<double> errors[std::size(bounds) - 1];
+  const auto matcher = hc::vision::semi_global_matcher({.disparities = disparities});
+  for (const Pair& pair : pairs) {
+    Disparities found;
+    if (!matcher->match(pair.left, pair.right, found)) std::abort();
+    cv::Mat depth, true_depth;
+    const hc::vision::StereoGeometry geometry{.focal = kFocal, .baseline = kBaseline};
+    hc::vision::depth_of(found.disparity, geometry, depth);
+    hc::vision::depth_of(pair.truth, geometry, true_depth);
+    for (int y = 0; y < depth.rows; ++y)
+      for (int x = 0; x < depth.cols; ++x) {
+        const double known = true_depth.at<float>(y, x), z = depth.at<float>(y, x);
+        for (std::size_t i = 0; z > 0 && i < std::size(errors); ++i)
+          if (known >= bounds[i] && known < bounds[i + 1]) errors[i].push_back(std::abs(z - known));
+      }
+  }
+  for (std::size_t i = 0; i < std::size(errors); ++i) {
+    auto& all = errors[i];
+    if (all.empty()) continue;
+    std::sort(all.begin(), all.end());
+    const double middle = all[all.size() / 2], high = all[all.size() * 9 / 10];
+    std::printf("| %g … %g | %zu | %.3f | %.3f | %.1f |\n", bounds[i], bounds[i + 1], all.size(),
+                middle, high, 200 * middle / (bounds[i] + bounds[i + 1]));
+  }
+}
+
+/// The cost over pixels and disparities: t = a · pixels + b · pixels · disparities.
+void fit_cost(const Pair& pair, int rounds) {
+  struct Point {
+    double pixels, disparities;
+    std::vector<double> times;
+  };
+  std::vector<Point> points;
+  std::vector<Pair> images;
+  std::vector<std::unique_ptr<StereoMatcher>> matchers;
+  for (const cv::Size size : {cv::Size(400, 300), cv::Size(800, 600), cv::Size(1280, 960)})
+    for (const int disparities : {64, 128, 192, 256}) {
+      Pair scaled;
+      cv::resize(pair.left, scaled.left, size);
+      cv::resize(pair.right, scaled.right, size);
+      images.push_back(scaled);
+      matchers.push_back(hc::vision::semi_global_matcher({.disparities = disparities}));
+      points.push_back({static_cast<double>(size.area()), static_cast<double>(disparities), {}});
+    }
+  cv::setNumThreads(cv::getNumberOfCPUs());
+  Disparities found;
+  for (int round = 0; round <= rounds; ++round)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double time = milliseconds([&] {
+        if (!matchers[i]->match(images[i].left, images[i].right, found)) std::abort();
+      });
+      if (round > 0) points[i].times.push_back(time);
+    }
+  Eigen::MatrixXd A(points.size(), 2);
+  Eigen::VectorXd t(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    A.row(row) << points[i].pixels * 1e-6, points[i].pixels * points[i].disparities * 1e-6;
+    t(row) = median(points[i].times);
+  }
+  // Each point weighs by its relative error.
+  const Eigen::VectorXd weight = t.cwiseInverse();
+  const Eigen::VectorXd x =
+      (weight.asDiagonal() * A).colPivHouseholderQr().solve(Eigen::VectorXd::Ones(t.size()));
+  const double worst = ((A * x - t).cwiseQuotient(t)).cwiseAbs().maxCoeff();
+  std::printf(
+      "\nt = %.2f ms · Mpx + %.4f ms · Mpx · disparities, all cores; at most %.0f %% off, "
+      "from 400 x 300 to 1280 x 960 and 64 to 256 disparities\n",
+      x(0), x(1), 100 * worst);
+}
+
 void compare_quality(const char* title, const std::vector<Pair>& pairs, int disparities) {
   std::printf(
       "\n%s, %d disparities\n\n| matcher | bad 1 px | bad 2 px | bad 4 px | holes | bad 2 px "
@@ -237,5 +314,9 @@ int main(int argc, char** argv) {
   for (int number = 0; number < kRooms; ++number) rooms.push_back(draw_room(**renderer, number));
   compare_quality("Aloe", {aloe}, 128);
   compare_quality("Ten rooms", rooms, 64);
-  if (rounds > 0) compare_speed(aloe, rounds);
+  print_errors_by_distance(rooms, 64);
+  if (rounds == 0) return 0;
+  std::printf("\n");
+  compare_speed(aloe, rounds);
+  fit_cost(aloe, rounds);
 }

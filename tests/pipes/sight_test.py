@@ -4,9 +4,10 @@
 
 import json
 import math
+import re
 import unittest
 
-from harness import Pipes
+from harness import Pipes, ROOT
 
 
 def turn(q, v):
@@ -160,6 +161,30 @@ class Sight(Pipes):
         self.assertGreater(len(pairs), 900)
         close = sum(abs(a - b) < 0.05 * b for a, b in pairs)
         self.assertGreater(close, 0.9 * len(pairs))
+
+
+class Pipeline(Pipes):
+    def run_pipeline(self, keep, *settings):
+        self.environment["HC_KEEP"] = keep
+        words = "".join(" --set " + setting for setting in settings)
+        out = self.shell("hc run %s/graphs/pipeline.toml --links --quiet%s" % (ROOT, words))
+        return {
+            link: int(count)
+            for link, count in re.findall(r"^(\S+ → \S+) +(\d+) messages? ", out, re.M)
+        }
+
+    def test_every_pair_goes_through_where_none_is_to_be_dropped(self):
+        links = self.run_pipeline("all", "camera.rate=0", "camera.count=12")
+        for link in ("camera.left → rectify.left", "rectify.right → depth.right"):
+            self.assertEqual(links[link], 12, links)
+        self.assertEqual(links["depth.depth → view.image"], 12, links)
+
+    def test_a_slow_module_takes_the_newest_and_no_other_waits_for_it(self):
+        links = self.run_pipeline(
+            "latest", "depth.matcher=opencv", "camera.rate=40", "camera.count=40"
+        )
+        self.assertGreater(links["camera.left → rectify.left"], 30, links)
+        self.assertLess(links["depth.depth → view.image"], links["rectify.left → depth.left"])
 
 
 if __name__ == "__main__":
