@@ -37,6 +37,7 @@ void Conversation::end() {
   phase_ = Phase::Closed;
   awaited_.clear();
   bytes_.clear();
+  written_ = {};
   wanted_.reset();
   quiet_at_.reset();
   is_heading_sure_ = false;
@@ -147,7 +148,21 @@ void Conversation::say(MonotonicTime now, const std::string& bytes,
                        std::initializer_list<Awaits> answers) {
   if (awaited_.empty()) overdue_ = now + kTimeOut;
   bytes_ += bytes;
+  written_ = std::max(written_, now) + on_line(bytes.size());
   awaited_.insert(awaited_.end(), answers);
+}
+
+std::chrono::nanoseconds Conversation::on_line(std::size_t bytes) const {
+  if (bytes_per_second_ <= 0) return {};
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double>(static_cast<double>(bytes) / bytes_per_second_));
+}
+
+/// When the unit was where its answers of so many bytes say.
+MonotonicTime Conversation::seen_at(MonotonicTime now, std::size_t answered) const {
+  const auto earliest = asked_place_, latest = now - on_line(answered);
+  if (latest >= earliest) return earliest + (latest - earliest) / 2;
+  return looked_ + (now - looked_) / 2;  // a faster line
 }
 
 bool Conversation::awaits(Awaits answer) const {
@@ -157,7 +172,9 @@ bool Conversation::awaits(Awaits answer) const {
 void Conversation::look(MonotonicTime now) {
   if (phase_ != Phase::Ready || awaits(Awaits::Tilt)) return;
   looked_ = now;
-  say(now, pan_tilt::command("pp") + pan_tilt::command("tp"), {Awaits::Pan, Awaits::Tilt});
+  say(now, pan_tilt::command("pp"), {Awaits::Pan});
+  asked_place_ = written_;
+  say(now, pan_tilt::command("tp"), {Awaits::Tilt});
 }
 
 bool Conversation::command(MonotonicTime now, double pan, double tilt,
@@ -252,12 +269,14 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
       (place_ && std::abs(*value - (*place_)[i]) > most))
     return fail(now, {Code::Malformed, "garbage: it cannot be at " + text});
   heard_[i] = static_cast<int>(*value);
+  constexpr std::size_t kFrame = 4;  // "* " before it, the end of the line after it
+  heard_bytes_ = (axis == 0 ? 0 : heard_bytes_) + text.size() + kFrame;
   if (axis == 0) return;
   place_ = heard_;
   place_time_ = looked_;
   // An answer to a query so long ago has waited to be read: its time is unknown.
   if (now - looked_ >= kTimeOut) return;
-  gaze_ = Gaze{heard_[0] * step(0), -heard_[1] * step(1), looked_ + (now - looked_) / 2};
+  gaze_ = Gaze{heard_[0] * step(0), -heard_[1] * step(1), seen_at(now, heard_bytes_)};
 }
 
 /// Whether the unit has been seen where it was commanded to go.

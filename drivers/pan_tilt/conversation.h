@@ -19,7 +19,7 @@ namespace hc::pan_tilt {
 /// Where a head looks [rad]: pan > 0 to the left, tilt > 0 down. (The unit's own tilt is up.)
 struct Gaze {
   double pan = 0, tilt = 0;
-  MonotonicTime time{0};  ///< between question and answer
+  MonotonicTime time{0};  ///< when it looked there: see Conversation::set_line()
 };
 
 /// Begins with `- ft ed ci`, asks what the unit is like, twice, since a wrong answer would stay,
@@ -62,6 +62,10 @@ class Conversation {
   /// How fast it turns [rad/s, rad/s²], or the nearest it can; 0: as it did when it was met. While
   /// the unit refuses a pace it is asked again every kTimeOut, and takes no commands.
   void set_pace(double speed, double acceleration);
+  /// How fast bytes go either way [1/s]; 0, as at first: at once. A unit answers with where it is as
+  /// the question arrives, behind all that was written before; the answer then takes its time, too.
+  /// What time is left is taken to be as long before that as after it.
+  void set_line(double bytes_per_second) { bytes_per_second_ = bytes_per_second; }
   /// Halts a motion that was commanded when no command was taken for so long, and what the unit may
   /// be at when it is met; 0: never.
   void set_hold(std::chrono::nanoseconds hold) { hold_ = hold; }
@@ -94,6 +98,8 @@ class Conversation {
   void send_wanted(MonotonicTime now);
   void send_pace(MonotonicTime now);
   [[nodiscard]] bool awaits(Awaits answer) const;
+  [[nodiscard]] std::chrono::nanoseconds on_line(std::size_t bytes) const;
+  [[nodiscard]] MonotonicTime seen_at(MonotonicTime now, std::size_t answered) const;
   [[nodiscard]] bool arrived() const;
   [[nodiscard]] bool is_late(MonotonicTime now) const;
   void halt_unheard(MonotonicTime now);
@@ -121,10 +127,14 @@ class Conversation {
   std::deque<Awaits> awaited_;
   MonotonicTime overdue_{0};  // when the oldest answer is
   MonotonicTime looked_{0}, heading_since_{0}, commanded_{0};
+  double bytes_per_second_ = 0;
+  MonotonicTime written_{0};     // when all bytes have gone
+  MonotonicTime asked_place_{0};  // when the question for the place has gone
   std::optional<Places> wanted_, heading_, place_;
   MonotonicTime wanted_until_{0};
   bool is_heading_sure_ = false;  // the unit has taken the command
   Places heard_ = {};
+  std::size_t heard_bytes_ = 0;
   MonotonicTime place_time_{0};  // when place_ was asked
   std::chrono::nanoseconds hold_{0};
 };

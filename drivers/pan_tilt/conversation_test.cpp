@@ -37,6 +37,32 @@ TEST(Conversation, reports_where_the_unit_looks_and_when) {
   EXPECT_NEAR(last.tilt, 100 * kStep, 10 * kStep);
 }
 
+TEST(Conversation, on_a_slow_line_a_gaze_has_the_time_at_which_the_unit_looked_there) {
+  Line line;
+  line.delay = milliseconds(0);
+  line.bytes_per_second = 960;
+  line.host.set_line(960);
+  line.host.begin(line.now);
+  line.run(milliseconds(2000));
+  ASSERT_EQ(line.host.phase(), Phase::Ready);
+  line.gazes.clear();
+  std::deque<std::pair<MonotonicTime, double>> turned;  // when it was where
+  line.host.command(line.now, 1, 0);
+  for (int i = 0; i < 800; ++i) {
+    turned.emplace_back(line.now, line.unit.pan(std::chrono::duration<double>(line.now).count()));
+    if (i % 30 == 0) line.host.command(line.now, 1 + 0.001 * i, 0);  // before the question
+    line.step();
+  }
+  ASSERT_GT(line.gazes.size(), 10U);
+  for (const auto& gaze : line.gazes) {
+    const auto at = std::find_if(turned.begin(), turned.end(),
+                                 [&](const auto& each) { return each.first >= gaze.time; });
+    ASSERT_NE(at, turned.end());
+    constexpr double kFastest = 1.05, kOff = 0.0035;  // [rad/s], [s]
+    EXPECT_NEAR(gaze.pan, at->second * kStep, kFastest * kOff);
+  }
+}
+
 TEST(Conversation, a_command_goes_at_once_beside_a_question) {
   Line line;
   line.begin();

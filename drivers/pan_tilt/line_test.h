@@ -27,23 +27,36 @@ struct Line {
   Conversation host;
   MonotonicTime now = milliseconds(1000);
   milliseconds delay{2};
+  double bytes_per_second = 0;  // 0: at once
   bool is_silent = false;
   double garbage = 0;
   bool looks = true;
   std::string asked;  // all that the host wrote
   std::vector<Gaze> gazes;
   std::vector<std::string> faults, remarks;
-  std::deque<std::pair<MonotonicTime, char>> coming;
+  std::deque<std::pair<MonotonicTime, char>> going, coming;
+  MonotonicTime going_at{0}, coming_at{0};  // when the last of them has gone
   std::mt19937 random{1};
 
+  /// When a byte has gone that is put on the line now, behind another.
+  MonotonicTime after(MonotonicTime& last, MonotonicTime put) const {
+    last = std::max(last, put);
+    if (bytes_per_second > 0)
+      last += std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / bytes_per_second));
+    return last;
+  }
   void exchange() {
-    const std::string bytes = host.bytes();
-    asked += bytes;
+    const std::string written = host.bytes();
+    asked += written;
+    for (char byte : written) going.emplace_back(after(going_at, now), byte);
+    std::string bytes;
+    for (; !going.empty() && going.front().first <= now; going.pop_front())
+      bytes += going.front().second;
     const double time = std::chrono::duration<double>(now).count();
     for (char byte : unit.take(time, bytes) + unit.pass(time)) {
       if (is_silent) continue;
       const bool is_corrupted = static_cast<double>(random() % 1000) < garbage * 1000;
-      coming.emplace_back(now + delay, is_corrupted ? static_cast<char>(random() % 256) : byte);
+      coming.emplace_back(after(coming_at, now + delay), is_corrupted ? static_cast<char>(random() % 256) : byte);
     }
   }
   void step() {

@@ -38,6 +38,8 @@ void Neck::open(MonotonicTime now) {
     return backoff_.fail(now);
   }
   serial_ = std::move(*opened);
+  constexpr double kBits = 10;  // of a byte on the line
+  conversation_.set_line(baud_ / kBits);
   conversation_.begin(now);
   work(now);
 }
