@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // augment [--rounds N] [--save FOLDER]: objects drawn into what the simulated head sees, as
 // Markdown: speed of both eyes, and how right what hides them is, against rooms in which they
-// really stand. Depth is the truth, or what the matcher finds in images with a camera's noise.
+// stand. Depth is the truth, or what the matcher finds in images with a camera's noise.
 
 #include <algorithm>
+#include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -39,12 +40,12 @@ void end_if_failed(const hc::Status& status) {
   std::exit(1);
 }
 
-Eigen::Isometry3d left_eye(double pan, double tilt) {
+Eigen::Isometry3d look_to(double pan, double tilt, bool is_right) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translate(Eigen::Vector3d(0, 0, hc::room::kHeadHeight));
   T.rotate(Eigen::AngleAxisd(pan, Eigen::Vector3d::UnitZ()) *
            Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()));
-  T.translate(Eigen::Vector3d(0.06, kBaseline / 2, 0.05));
+  T.translate(Eigen::Vector3d(0.06, is_right ? -kBaseline / 2 : kBaseline / 2, 0.05));
   Eigen::Matrix3d optical;
   optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   T.rotate(optical);
@@ -52,112 +53,192 @@ Eigen::Isometry3d left_eye(double pan, double tilt) {
 }
 
 Body make_cube(Renderer& renderer, double size) {
-  cv::Mat squares(8, 8, CV_8UC3);
-  for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x)
-      squares.at<cv::Vec3b>(y, x) = (x + y) % 2 == 0 ? cv::Vec3b(250, 200, 40) : cv::Vec3b(40, 60, 200);
-  cv::resize(squares, squares, {256, 256}, 0, 0, cv::INTER_NEAREST);
+  cv::Mat squares(4, 4, CV_8UC3, cv::Scalar(40, 60, 200));
+  for (int i = 0; i < 16; ++i)
+    if ((i / 4 + i) % 2 == 0) squares.at<cv::Vec3b>(i / 4, i % 4) = cv::Vec3b(250, 200, 40);
+  cv::resize(squares, squares, {}, 32, 32, cv::INTER_NEAREST);
   return hc::graphics::make_body(renderer, {{hc::graphics::make_box({1, 1, 1}), squares}}, size);
 }
 
-/// What both eyes see.
-struct Seen {
-  cv::Mat left, right;              // (H, W, 3) u8
-  cv::Mat left_truth, right_truth;  // depth (H, W) f32 [m]
-  cv::Mat found;                    // depth (H, W) f32 [m]
+/// What an eye sees, and how it is.
+struct Eye {
+  Eigen::Isometry3d T_world_eye;
+  cv::Mat image;  // (H, W, 3) u8
+  cv::Mat truth;  // depth (H, W) f32 [m]
 };
 
-Seen look(Renderer& renderer, hc::room::World& world, const Eigen::Vector3d& ball,
-          const Eigen::Isometry3d& T_world_left, std::uint64_t number) {
-  Seen seen;
-  const auto& items = world.items(ball);
-  const Eigen::Isometry3d T_world_right = T_world_left * Eigen::Translation3d(kBaseline, 0, 0);
-  end_if_failed(renderer.draw(items, kCamera, T_world_left, world.light(), seen.left, &seen.left_truth));
-  end_if_failed(renderer.draw(items, kCamera, T_world_right, world.light(), seen.right, &seen.right_truth));
-  hc::room::Sensor(1).apply(seen.left, 0, 2, number);
-  hc::room::Sensor(2).apply(seen.right, 0, 2, number);
+/// A room, seen by both eyes.
+struct View {
+  hc::graphics::Light light;
+  std::array<Eye, 2> eyes;  // left, right
+  cv::Mat found;            // depth of the left image by matching (H, W) f32 [m]
+};
+
+View look(Renderer& renderer, hc::room::World& world, int number) {
+  View view;
+  view.light = world.light();
+  const auto& items = world.items({2.38, 0.2, 0.65});
+  for (const bool is_right : {false, true}) {
+    Eye& eye = view.eyes.at(is_right ? 1 : 0);
+    eye.T_world_eye = look_to(0.1, 0.2, is_right);
+    end_if_failed(
+        renderer.draw(items, kCamera, eye.T_world_eye, view.light, eye.image, &eye.truth));
+    hc::room::Sensor(is_right ? 1 : 2).apply(eye.image, 0, 2, static_cast<std::uint64_t>(number));
+  }
   static const auto matcher = hc::vision::semi_global_matcher({.disparities = 64});
-  hc::vision::Disparities disparities;
-  end_if_failed(matcher->match(seen.left, seen.right, disparities));
-  hc::vision::depth_of(disparities.disparity, {.focal = kCamera.fx, .baseline = kBaseline}, seen.found);
-  return seen;
+  hc::vision::Disparities found;
+  end_if_failed(matcher->match(view.eyes[0].image, view.eyes[1].image, found));
+  hc::vision::depth_of(found.disparity, {.focal = kCamera.fx, .baseline = kBaseline}, view.found);
+  return view;
+}
+
+void augment(Overlay& overlay, const Body& body, const View& view, std::size_t eye,
+             const cv::Mat& depth, cv::Mat& image, cv::Mat* mask) {
+  const auto nearness_of =
+      eye == 0 ? hc::graphics::nearness_of_left : hc::graphics::nearness_of_right;
+  const Overlay::View seen{
+      kCamera, view.eyes.at(eye).T_world_eye, view.light, kScale,
+      [&](const cv::Rect& part, cv::Mat& near) { nearness_of(depth, kScale, part, near); }};
+  end_if_failed(overlay.draw({&body, 1}, seen, image, mask));
+}
+
+/// What is drawn of a body in an image of its own.
+cv::Mat mask_of(Overlay& overlay, const Body& body, const View& view, std::size_t eye,
+                const cv::Mat& depth, const std::string& file) {
+  cv::Mat image = view.eyes.at(eye).image.clone(), mask = cv::Mat::zeros(image.size(), CV_8U);
+  augment(overlay, body, view, eye, depth, image, &mask);
+  if (!file.empty()) {
+    cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
+    cv::imwrite(file, image);
+  }
+  return mask > 127;
+}
+
+/// Pixels of a body, and which of them nothing hides, 255 each.
+struct Truth {
+  cv::Mat body, seen;
+};
+
+Truth truth_of(Renderer& renderer, const Body& body, const View& view, std::size_t eye) {
+  const hc::graphics::Item item{body.surfaces.front(), body.T_world_body.cast<float>()};
+  const Eye& at = view.eyes.at(eye);
+  cv::Mat rgb, depth;
+  end_if_failed(renderer.draw({&item, 1}, kCamera, at.T_world_eye, view.light, rgb, &depth));
+  Truth truth;
+  truth.body = depth > 0;
+  truth.seen = truth.body & (depth < at.truth);
+  return truth;
+}
+
+double share(const cv::Mat& of, const cv::Mat& all) {
+  return static_cast<double>(cv::countNonZero(of)) / cv::countNonZero(all);
 }
 
 double milliseconds(const std::function<void()>& work) {
   const auto begin = std::chrono::steady_clock::now();
   work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
 }
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
-struct Augmented {
-  cv::Mat image, mask;
-};
+Body cube_behind_the_bench(Renderer& renderer, double size) {
+  Body cube = make_cube(renderer, size);
+  cube.T_world_body =
+      Eigen::Translation3d(2.75, 0.35, 0.6) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ());
+  return cube;
+}
 
-Augmented augment(Overlay& overlay, const Body& body, const Eigen::Isometry3d& T_world_eye,
-                  const hc::graphics::Light& light, const cv::Mat& image, const cv::Mat& depth, bool is_right) {
-  Augmented result{image.clone(), cv::Mat::zeros(image.size(), CV_8U)};
-  const Overlay::View view{kCamera, T_world_eye, light, kScale, [&](const cv::Rect& part, cv::Mat& nearness) {
-    (is_right ? hc::graphics::nearness_of_right : hc::graphics::nearness_of_left)(depth, kScale, part, nearness);
-  }};
-  end_if_failed(overlay.draw({&body, 1}, view, result.image, &result.mask));
-  return result;
+void compare_masks(Renderer& renderer, Overlay& overlay, const std::string& folder) {
+  constexpr int kRooms = 10, kFrames = 8;
+  std::printf(
+      "| depth | eye | pixels right, mean of %d rooms | worst room | switch between two frames |\n"
+      "|---|---|---:|---:|---:|\n",
+      kRooms);
+  const Body cube = cube_behind_the_bench(renderer, 0.3);
+  struct Sums {
+    double sum = 0, worst = 1, switched = 0;
+  };
+  std::array<std::array<Sums, 2>, 2> sums;  // by is_found, eye
+  for (int number = 1; number <= kRooms; ++number) {
+    hc::room::World world(renderer, static_cast<std::uint64_t>(number), "HELLO");
+    std::array<std::array<cv::Mat, 2>, 2> before;
+    std::array<std::array<double, 2>, 2> right = {};
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const View view = look(renderer, world, frame);
+      for (const std::size_t is_found : {0U, 1U})
+        for (const std::size_t eye : {0U, 1U}) {
+          const std::string name = std::string(is_found != 0 ? "matched" : "true") +
+                                   (eye == 0 ? "_left_" : "_right_") + std::to_string(number);
+          const cv::Mat mask =
+              mask_of(overlay, cube, view, eye, is_found != 0 ? view.found : view.eyes[0].truth,
+                      folder.empty() || frame > 0 ? "" : folder + "/" + name + ".png");
+          const Truth truth = truth_of(renderer, cube, view, eye);
+          right.at(is_found).at(eye) += share((mask == truth.seen) & truth.body, truth.body);
+          cv::Mat& last = before.at(is_found).at(eye);
+          if (!last.empty())
+            sums.at(is_found).at(eye).switched +=
+                share((mask != last) & truth.body, truth.body) / (kFrames - 1) / kRooms;
+          last = mask;
+        }
+    }
+    for (const std::size_t is_found : {0U, 1U})
+      for (const std::size_t eye : {0U, 1U}) {
+        const double mean = right.at(is_found).at(eye) / kFrames;
+        Sums& each = sums.at(is_found).at(eye);
+        each.sum += mean / kRooms;
+        each.worst = std::min(each.worst, mean);
+      }
+  }
+  for (const std::size_t is_found : {0U, 1U})
+    for (const std::size_t eye : {0U, 1U}) {
+      const Sums& each = sums.at(is_found).at(eye);
+      std::printf("| %s | %s | %.1f %% | %.1f %% | %.2f %% |\n", is_found != 0 ? "matched" : "true",
+                  eye == 0 ? "left" : "right", 100 * each.sum, 100 * each.worst,
+                  100 * each.switched);
+    }
+}
+
+void measure_speed(Renderer& renderer, Overlay& overlay, int rounds) {
+  std::printf("\n| cube [m] | its part of the image [px] | both eyes [ms] |\n|---|---|---:|\n");
+  hc::room::World world(renderer, 1, "HELLO");
+  const View view = look(renderer, world, 1);
+  for (const double size : {0.3, 0.6, 1.0, 1.4}) {
+    const Body cube = cube_behind_the_bench(renderer, size);
+    const cv::Rect part = hc::graphics::part_of(cube, kCamera, view.eyes[0].T_world_eye);
+    std::array<cv::Mat, 2> images = {view.eyes[0].image.clone(), view.eyes[1].image.clone()};
+    std::vector<double> times;
+    for (int round = 0; round < rounds; ++round)
+      times.push_back(milliseconds([&] {
+        for (const std::size_t eye : {0U, 1U}) {
+          view.eyes.at(eye).image.copyTo(images.at(eye));
+          augment(overlay, cube, view, eye, view.found, images.at(eye), nullptr);
+        }
+      }));
+    std::printf("| %.1f | %d × %d | %.2f |\n", size, part.width, part.height, median(times));
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  int rounds = 9;
+  int rounds = 101;
   std::string folder;
-  for (int i = 1; i + 1 < argc; i += 2)
+  for (int i = 1; i + 1 < argc; i += 2) {
     if (std::string(argv[i]) == "--rounds") rounds = std::atoi(argv[i + 1]);
-    else folder = argv[i + 1];
-  auto made = Renderer::make();
-  if (!made) end_if_failed(made.error());
-  Renderer& renderer = **made;
-  Overlay overlay(renderer);
-  for (int number = 1; number <= 5; ++number) {
-    hc::room::World world(renderer, static_cast<std::uint64_t>(number), "HELLO");
-    Body cube = make_cube(renderer, 0.3);
-    cube.T_world_body = Eigen::Translation3d(2.75, 0.35, 0.6) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ());
-    const auto T = left_eye(0.1, 0.2);
-    const auto T_right = T * Eigen::Translation3d(kBaseline, 0, 0);
-    const auto seen = look(renderer, world, {2.38, 0.2, 0.65}, T, 1);
-    for (bool truth : {true, false}) for (bool is_right : {false, true}) {
-      const auto result = augment(overlay, cube, is_right ? T_right : T, world.light(), is_right ? seen.right : seen.left, truth ? seen.left_truth : seen.found, is_right);
-      // truth
-      cv::Mat rgba, depth;
-      end_if_failed(renderer.draw_part({{ hc::graphics::Item{cube.surfaces[0], cube.T_world_body.cast<float>()}}}, kCamera, cv::Rect(0,0,800,600), is_right ? T_right : T, world.light(), rgba, depth));
-      const cv::Mat& scene = is_right ? seen.right_truth : seen.left_truth;
-      int pixels = 0, right = 0, hidden = 0;
-      for (int y = 0; y < 600; ++y) for (int x = 0; x < 800; ++x) {
-        const float z = depth.at<float>(y, x);
-        if (z == 0) continue;
-        ++pixels;
-        const bool is_seen = z < scene.at<float>(y, x);
-        hidden += !is_seen;
-        right += is_seen == (result.mask.at<std::uint8_t>(y, x) > 127);
-      }
-      std::printf("room %d %s %s: %d pixels, %.1f %% hidden, %.2f %% right\n", number, truth ? "truth" : "found", is_right ? "right" : "left", pixels, 100.0*hidden/pixels, 100.0 * right / pixels);
-      if (!folder.empty()) {
-        cv::Mat bgr; cv::cvtColor(result.image, bgr, cv::COLOR_RGB2BGR);
-        cv::imwrite(folder + "/" + std::to_string(number) + (truth ? "t" : "f") + (is_right ? "r" : "l") + ".png", bgr);
-      }
-    }
-    if (number == 1) {
-      std::vector<double> times, copies;
-      for (int round = 0; round < rounds * 10; ++round) {
-        cv::Mat l, r;
-        times.push_back(milliseconds([&] {
-          l = augment(overlay, cube, T, world.light(), seen.left, seen.found, false).image;
-          r = augment(overlay, cube, T_right, world.light(), seen.right, seen.found, true).image;
-        }));
-      }
-      std::printf("both eyes %.2f ms\n", median(times));
-    }
+    if (std::string(argv[i]) == "--save") folder = argv[i + 1];
   }
+  auto renderer = Renderer::make();
+  if (!renderer) {
+    std::fprintf(stderr, "augment: %s\n", renderer.error().text().c_str());
+    return 1;
+  }
+  Overlay overlay(**renderer);
+  compare_masks(**renderer, overlay, folder);
+  measure_speed(**renderer, overlay, std::max(rounds, 1));
 }

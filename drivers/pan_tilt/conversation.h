@@ -62,9 +62,9 @@ class Conversation {
   /// How fast it turns [rad/s, rad/s²], or the nearest it can; 0: as it did when it was met. While
   /// the unit refuses a pace it is asked again every kTimeOut, and takes no commands.
   void set_pace(double speed, double acceleration);
-  /// How fast bytes go either way [1/s]; 0, as at first: at once. A unit answers with where it is as
-  /// the question arrives, behind all that was written before; the answer then takes its time, too.
-  /// What time is left is taken to be as long before that as after it.
+  /// How fast bytes go either way [1/s]; 0, as at first: at once. A unit answers with where it is
+  /// as the question arrives, behind all that was written before; the answer then takes its time,
+  /// too. What time is left is taken to be as long before that as after it.
   void set_line(double bytes_per_second) { bytes_per_second_ = bytes_per_second; }
   /// Halts a motion that was commanded when no command was taken for so long, and what the unit may
   /// be at when it is met; 0: never.
@@ -128,7 +128,7 @@ class Conversation {
   MonotonicTime overdue_{0};  // when the oldest answer is
   MonotonicTime looked_{0}, heading_since_{0}, commanded_{0};
   double bytes_per_second_ = 0;
-  MonotonicTime written_{0};     // when all bytes have gone
+  MonotonicTime written_{0};      // when all bytes have gone
   MonotonicTime asked_place_{0};  // when the question for the place has gone
   std::optional<Places> wanted_, heading_, place_;
   MonotonicTime wanted_until_{0};

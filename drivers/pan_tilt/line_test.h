@@ -56,7 +56,8 @@ struct Line {
     for (char byte : unit.take(time, bytes) + unit.pass(time)) {
       if (is_silent) continue;
       const bool is_corrupted = static_cast<double>(random() % 1000) < garbage * 1000;
-      coming.emplace_back(after(coming_at, now + delay), is_corrupted ? static_cast<char>(random() % 256) : byte);
+      coming.emplace_back(after(coming_at, now + delay),
+                          is_corrupted ? static_cast<char>(random() % 256) : byte);
     }
   }
   void step() {

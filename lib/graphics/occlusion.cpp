@@ -20,21 +20,19 @@ void invert(const float* depth, float scale, std::vector<float>& row) {
 /// Moves each pixel to where the right eye sees it; the nearest stays.
 void move_right(const std::vector<float>& left, std::vector<float>& right) {
   std::fill(right.begin(), right.end(), 0.0F);
-  const auto put = [&](int u, float nearness) {
-    if (u < 0 || u >= static_cast<int>(right.size())) return;
-    auto& there = right[static_cast<std::size_t>(u)];
+  const auto put = [&](float u, float nearness) {
+    auto& there = right[static_cast<std::size_t>(u)];  // rounded down
     there = std::max(there, nearness);
   };
   for (std::size_t x = 0; x < left.size(); ++x) {
     const float here = left[x];
-    if (here == 0) continue;
     const float u = static_cast<float>(x) - here;
-    put(static_cast<int>(std::lround(u)), here);
+    if (here == 0 || u < 0) continue;
+    put(u + 0.5F, here);
     if (x + 1 == left.size()) continue;
     // What is stretched leaves no gap between two pixels.
     const float next = left[x + 1];
-    if (next == 0 || std::abs(next - here) > kSurface) continue;
-    put(static_cast<int>(std::floor(u)) + 1, std::min(here, next));
+    if (next != 0 && std::abs(next - here) < kSurface) put(u + 1, std::min(here, next));
   }
 }
 

@@ -72,8 +72,8 @@ TEST(Occlusion, a_part_is_as_in_the_whole) {
 
 TEST(Occlusion, no_depth_is_too_strange) {
   using Limits = std::numeric_limits<float>;
-  const float strange[] = {Limits::quiet_NaN(), Limits::infinity(), -1, Limits::denorm_min(),
-                           Limits::max(), 0};
+  const float strange[] = {Limits::quiet_NaN(),  Limits::infinity(), -1,
+                           Limits::denorm_min(), Limits::max(),      0};
   cv::Mat depth(1, 6, CV_32F), found;
   for (int x = 0; x < 6; ++x) depth.at<float>(0, x) = strange[x];
   for (const auto& nearness_of : {nearness_of_left, nearness_of_right}) {

@@ -40,8 +40,8 @@ std::vector<Group> group(std::span<const Body> bodies, const PinholeCamera& came
   return groups;
 }
 
-/// How much the scene lets be seen of what is drawn in a row, 0 … 255; beside it, of the last that is
-/// drawn in the row, so that edges can be looked for on both of their sides.
+/// How much the scene lets be seen of what is drawn in a row, 0 … 255; beside it, of the last that
+/// is drawn in the row, so that edges can be looked for on both of their sides.
 void see(const float* depth, const float* nearness, float scale, int width, std::uint8_t* seen) {
   float drawn = 0;  // nearness
   for (int x = 0; x < width; ++x) {
@@ -52,7 +52,8 @@ void see(const float* depth, const float* nearness, float scale, int width, std:
   }
 }
 
-constexpr int kReach = 9, kStep = 3;  // of the pixels that are asked about an edge [px]
+constexpr int kNear = 6;              // of an edge [px]
+constexpr int kReach = 9, kStep = 3;  // of the pixels that are asked about it [px]
 
 /// How alike two colours are, by the sum of their channels' differences.
 std::array<float, 3 * 255 + 1> make_likeness() {
@@ -89,20 +90,23 @@ std::uint8_t seen_as_alike(const cv::Mat& image, const cv::Mat& seen, int y, int
 /// Moves the edges of what is seen to edges of the image.
 ///
 /// Source: Kopf et al., Joint Bilateral Upsampling, 2007.
-void refine(const cv::Mat& image, const cv::Mat& seen, cv::Mat& refined) {
+///
+/// @param rgba  where nothing is drawn, nothing is done.
+void refine(const cv::Mat& image, const cv::Mat& rgba, const cv::Mat& seen, cv::Mat& refined) {
   seen.copyTo(refined);
   double least = 0;
   cv::minMaxLoc(seen, &least);
   if (least == 255) return;  // nothing is hidden
   cv::Mat lowest, highest;
-  const cv::Mat window = cv::Mat::ones(2 * kReach + 1, 2 * kReach + 1, CV_8U);
+  const cv::Mat window = cv::Mat::ones(2 * kNear + 1, 2 * kNear + 1, CV_8U);
   cv::erode(seen, lowest, window);
   cv::dilate(seen, highest, window);
   cv::parallel_for_({0, seen.rows}, [&](const cv::Range& rows) {
     for (int y = rows.start; y < rows.end; ++y) {
       const std::uint8_t *low = lowest.ptr(y), *high = highest.ptr(y);
+      const auto* drawn = rgba.ptr<cv::Vec4b>(y);
       for (int x = 0; x < seen.cols; ++x)
-        if (low[x] != high[x])
+        if (drawn[x][3] != 0 && low[x] != high[x])
           refined.at<std::uint8_t>(y, x) = seen_as_alike(image, seen, y, x);
     }
   });
@@ -128,8 +132,7 @@ void blend(const cv::Vec4b* rgba, const std::uint8_t* opacity, int width, cv::Ve
 std::array<Eigen::Vector3d, 8> Body::corners() const {
   std::array<Eigen::Vector3d, 8> all;
   for (std::size_t i = 0; i < all.size(); ++i)
-    all[i] =
-        T_world_body * bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)).eval();
+    all[i] = T_world_body * bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)).eval();
   return all;
 }
 
@@ -200,9 +203,8 @@ Status Overlay::draw_part(const std::vector<Item>& items, const View& view, cons
   } else {
     seen_ = 255;
   }
-  refine(image(part), seen_, opacity_);
-  for (int y = 0; y < part.height; ++y)
-    cover(rgba.ptr<cv::Vec4b>(y), part.width, opacity_.ptr(y));
+  refine(image(part), rgba, seen_, opacity_);
+  for (int y = 0; y < part.height; ++y) cover(rgba.ptr<cv::Vec4b>(y), part.width, opacity_.ptr(y));
   // The rim of what is drawn is softened, too, inwards: there is no colour beside it.
   cv::blur(opacity_, seen_, {3, 3}, {-1, -1}, cv::BORDER_REPLICATE);
   cv::parallel_for_({0, part.height}, [&](const cv::Range& rows) {

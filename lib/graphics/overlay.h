@@ -63,7 +63,7 @@ class Overlay {
               cv::Mat* mask = nullptr);
 
   static constexpr float kMargin = 0.25F;  ///< by which what is drawn may be behind the scene [px]
-  static constexpr float kSoft = 0.5F;    ///< over which it vanishes then [px]
+  static constexpr float kSoft = 0.5F;     ///< over which it vanishes then [px]
 
  private:
   Status draw_part(const std::vector<Item>& items, const View& view, const cv::Rect& part,

@@ -52,8 +52,9 @@ hc::Result<Instruments> read_instruments(const std::string& text) {
     const auto* found =
         std::ranges::find_if(known, [&](const auto& each) { return word == each.first; });
     if (found == std::end(known))
-      return hc::Error{hc::Code::Invalid, "instruments: \"" + word +
-                                              "\" is none of gaze, frames, depth, confidence, task"};
+      return hc::Error{
+          hc::Code::Invalid,
+          "instruments: \"" + word + "\" is none of gaze, frames, depth, confidence, task"};
     *found->second = true;
   }
   return shown;
@@ -95,8 +96,7 @@ void draw_axes(cv::Mat& image, const hc::graphics::PinholeCamera& camera,
                               cv::Scalar(60, 90, 255)};
   std::array<Eigen::Vector3d, 3> ends;
   for (int axis = 0; axis < 3; ++axis)
-    ends[static_cast<std::size_t>(axis)] =
-        origin + length * T_camera_frame.linear().col(axis);
+    ends[static_cast<std::size_t>(axis)] = origin + length * T_camera_frame.linear().col(axis);
   const auto is_behind = [&](const auto& p) { return p.z() < camera.near; };
   if (is_behind(origin) || std::ranges::any_of(ends, is_behind)) return;
   const auto from = point(camera.project(origin));

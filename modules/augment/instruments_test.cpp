@@ -5,7 +5,9 @@
 
 namespace {
 
-cv::Mat black() { return cv::Mat::zeros(120, 160, CV_8UC3); }
+cv::Mat black() {
+  return cv::Mat::zeros(120, 160, CV_8UC3);
+}
 
 TEST(Instruments, are_read_by_name) {
   const auto some = read_instruments("gaze, task");

@@ -64,8 +64,7 @@ hc::Result<Object> read_object(const std::string& text) {
 cv::Mat paint_squares(int columns, int rows, const cv::Vec3b& one, const cv::Vec3b& other) {
   cv::Mat squares(rows, columns, CV_8UC3);
   for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x)
-      squares.at<cv::Vec3b>(y, x) = (x + y) % 2 == 0 ? one : other;
+    for (int x = 0; x < columns; ++x) squares.at<cv::Vec3b>(y, x) = (x + y) % 2 == 0 ? one : other;
   constexpr int kPixels = 32;
   cv::resize(squares, squares, {}, kPixels, kPixels, cv::INTER_NEAREST);
   return squares;
@@ -90,7 +89,8 @@ hc::Result<std::vector<hc::graphics::Part>> load(const std::string& model) {
   using hc::graphics::Part;
   const cv::Vec3b yellow(250, 205, 50), blue(35, 65, 200), green(60, 190, 90), white(240, 240, 235);
   if (model == "cube")
-    return std::vector<Part>{{hc::graphics::make_box({1, 1, 1}), paint_squares(4, 4, yellow, blue)}};
+    return std::vector<Part>{
+        {hc::graphics::make_box({1, 1, 1}), paint_squares(4, 4, yellow, blue)}};
   if (model == "ball")
     return std::vector<Part>{{hc::graphics::make_ball(0.5F), paint_squares(12, 6, green, white)}};
   return hc::graphics::read_model(model);

@@ -15,9 +15,9 @@
 
 /// A model at a place.
 struct Object {
-  std::string model;       ///< "cube", "ball", or a file: .obj, .stl, .gltf, .glb
-  std::string frame;       ///< in which it is
-  int frame_number = 0;    ///< the same, where it is said by number; 0: by name
+  std::string model;     ///< "cube", "ball", or a file: .obj, .stl, .gltf, .glb
+  std::string frame;     ///< in which it is
+  int frame_number = 0;  ///< the same, where it is said by number; 0: by name
   Eigen::Isometry3d T_frame_object = Eigen::Isometry3d::Identity();
   double size = 0;  ///< of its longest side [m]; 0: as the model has it
 };

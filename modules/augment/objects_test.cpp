@@ -14,7 +14,8 @@ TEST(Objects, are_read_with_place_turn_and_size) {
   EXPECT_EQ(cube.frame, "world");
   EXPECT_EQ(cube.frame_number, 0);
   EXPECT_EQ(cube.size, 0.3);
-  EXPECT_TRUE((cube.T_frame_object * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(2, 1, 0.8)));
+  EXPECT_TRUE(
+      (cube.T_frame_object * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(2, 1, 0.8)));
   const Object& robot = all->at(1);
   EXPECT_EQ(robot.model, "m/robot.glb");
   EXPECT_EQ(robot.frame_number, 101);

@@ -49,12 +49,12 @@ void Scene::place(hc::ModuleFrames& frames, const Markers& markers, std::int64_t
     hc::graphics::Body body = bodies_[i];
     if (const auto* T_world_marker = markers.find(object.frame_number); T_world_marker != nullptr) {
       body.T_world_body = *T_world_marker * object.T_frame_object;
+    } else if (object.frame_number == 0) {
+      body.T_world_body =
+          frames.nearest("world", std::string_view(object.frame), time) * object.T_frame_object;
     } else {
-      const hc::frames::Frame frame =
-          object.frame_number > 0 ? hc::frames::Frame(object.frame_number)
-                                  : hc::frames::Frame(std::string_view(object.frame));
-      const auto T_world_frame = frames.tree().nearest("world", frame, time);
-      if (!T_world_frame) continue;
+      const auto T_world_frame = frames.tree().nearest("world", object.frame_number, time);
+      if (!T_world_frame) continue;  // a marker that has not been seen
       body.T_world_body = *T_world_frame * object.T_frame_object;
     }
     placed_.push_back(std::move(body));
@@ -67,6 +67,19 @@ bool Scene::is_seen(const Sight& sight) const {
       return !hc::graphics::part_of(body, sight.camera, T_world_eye).empty();
     });
   });
+}
+
+std::vector<double> Scene::corners(const Sight& sight) const {
+  std::vector<double> numbers;
+  for (const auto& body : placed_)
+    for (const auto& corner : body.corners())
+      for (const std::size_t eye : {0U, 1U}) {
+        const Eigen::Vector3d p = sight.in_eye(eye, corner);
+        const Eigen::Vector2d pixel =
+            p.z() > 0 ? sight.camera.project(p) : Eigen::Vector2d::Constant(std::nan(""));
+        numbers.insert(numbers.end(), {pixel.x(), pixel.y()});
+      }
+  return numbers;
 }
 
 hc::Status Scene::draw(const Sight& sight, std::size_t eye, const cv::Mat& depth, cv::Mat& image,

@@ -2,7 +2,6 @@
 #pragma once
 // The objects, where they are in the world, and how the two eyes see them. Knows no ports.
 
-#include <array>
 #include <map>
 #include <memory>
 #include <vector>
@@ -12,22 +11,7 @@
 #include <graphics/overlay.h>
 
 #include "objects.h"
-
-/// The rectified pair as `rectify` describes it.
-struct Pair {
-  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]; fx 0: unknown
-  double baseline = 0;                    ///< [m]
-  /// From the left camera of the pair into the head, where it is known.
-  std::optional<Eigen::Isometry3d> T_head_left;
-  Eigen::Isometry3d T_left_rectified = Eigen::Isometry3d::Identity();
-};
-
-/// Where the eyes are at the time of an image, and what they are.
-struct Sight {
-  hc::graphics::PinholeCamera camera;
-  std::array<Eigen::Isometry3d, 2> T_world_eye;  ///< left and right, as rectified
-  double scale = 0;                              ///< focal length · baseline [px · m]
-};
+#include "pair.h"
 
 /// Markers' poses in the world, made smooth: a marker's is known until another is seen, since what
 /// it is fixed to does not go away when it is hidden.
@@ -54,11 +38,16 @@ class Scene {
   /// Errors: as hc::graphics::Renderer::make(), read_objects(), load().
   static hc::Result<std::unique_ptr<Scene>> make(const std::string& objects);
 
-  /// Puts all objects to their places at a time; those whose frame is not known then are left out.
+  /// Puts all objects to their places at a time; those at markers that have not been seen are left
+  /// out. A name that no frame has ends the module.
   void place(hc::ModuleFrames& frames, const Markers& markers, std::int64_t time);
   [[nodiscard]] const std::vector<hc::graphics::Body>& bodies() const { return placed_; }
   /// Whether an eye sees any of them.
   [[nodiscard]] bool is_seen(const Sight& sight) const;
+
+  /// The corners of the boxes around them, 8 an object: x, y in the left and x, y in the right
+  /// image [px]; NaN where they are not before the eye.
+  [[nodiscard]] std::vector<double> corners(const Sight& sight) const;
 
   /// Draws what an eye sees of them. @param depth  (H, W) f32 of the left image [m], 0 unknown.
   /// Errors: as hc::graphics::Overlay::draw().
@@ -72,5 +61,6 @@ class Scene {
   std::unique_ptr<hc::graphics::Renderer> renderer_;
   hc::graphics::Overlay overlay_;
   std::vector<Object> objects_;
-  std::vector<hc::graphics::Body> bodies_, placed_;  // of each object; of those whose place is known
+  std::vector<hc::graphics::Body> bodies_,
+      placed_;  // of each object; of those whose place is known
 };

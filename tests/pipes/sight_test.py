@@ -96,6 +96,44 @@ class Sight(Pipes):
         for corner, true_corner in zip(found, truth):
             self.assertLess(math.dist(corner, true_corner), 0.01)
 
+    def turn_head(self, seconds, speed):
+        """What a head says that begins to turn to the left at 1 s, [rad/s]: its gaze, 200 times a
+        second, and as often as a pan-tilt unit on a slow line, its pose."""
+        gaze, pose = [], []
+        for ms in range(0, 1000 * seconds + 100, 5):
+            time, pan = 1_000_000_000 + 1_000_000 * ms, speed * ms / 1000
+            gaze.append("1 0 0 %d 8 %d 20390 13 0 1 1\n0 0 %.9f\n" % (ms, time, pan))
+            if ms % 45 == 0:
+                c, s = math.cos(pan), math.sin(pan)
+                pose.append("1 1 0 %d 8 %d 70190 0 2003 4 4\n" % (ms, time))
+                pose.append("%.9f %.9f 0 0\n%.9f %.9f 0 0\n0 0 1 0\n0 0 0 1\n" % (c, -s, s, c))
+        self.write("gaze.mtp", "".join(gaze))
+        self.write("pose.mtp", "".join(pose))
+
+    def test_an_object_stays_where_it_is_while_the_head_turns(self):
+        self.turn_head(1, math.radians(60))
+        self.simulate(
+            "--count 20 --ball absent --in gaze=gaze.mtp",
+            left="left.mtp",
+            right="right.mtp",
+            depth="depth.mtp",
+            left_pose="left_pose.mtp",
+        )
+        cube = "--objects 'cube at world 2 0.9 1.2 size 0.3' --in frames=pose.mtp --clock messages"
+        found = self.messages(self.augment(cube, "corners=-"))
+        poses = self.messages("cat left_pose.mtp")
+        self.assertEqual(len(found), 8 * 20)
+        errors = []
+        for i, corner in enumerate(found):
+            eye = poses[4 * (i // 8) : 4 * (i // 8) + 4]
+            bits = [(i >> bit) & 1 for bit in range(3)]
+            world = [m + 0.3 * (b - 0.5) for m, b in zip((2, 0.9, 1.2), bits)]
+            away = [w - row[3] for w, row in zip(world, eye)]
+            p = [sum(eye[k][axis] * away[k] for k in range(3)) for axis in range(3)]
+            truth = [399.5 + 600 * p[0] / p[2], 299.5 + 600 * p[1] / p[2]]
+            errors.append(math.dist(corner[:2], truth))
+        self.assertLess(max(errors), 0.01, "px")
+
     def test_an_object_stands_on_a_marker(self):
         self.simulate(
             "--seed 1", left="left.mtp", right="right.mtp", depth="depth.mtp", markers="m.mtp"

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+Eigen::Isometry3d at(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
+
+TEST(Markers, are_known_once_they_were_seen) {
+  Markers markers;
+  EXPECT_EQ(markers.find(101), nullptr);
+  markers.see(101, kSecond, at(1), 0.2);
+  EXPECT_EQ(markers.find(102), nullptr);
+  ASSERT_NE(markers.find(101), nullptr);
+  EXPECT_EQ(markers.find(101)->translation().x(), 1);
+}
+
+TEST(Markers, that_tremble_are_smoothed_and_that_are_moved_are_not) {
+  Markers markers;
+  markers.see(101, kSecond, at(1), 0.2);
+  markers.see(101, kSecond + kSecond / 20, at(1.01), 0.2);
+  EXPECT_NEAR(markers.find(101)->translation().x(), 1 + 0.01 * (1 - std::exp(-0.05 / 0.2)), 1e-9);
+  markers.see(101, 2 * kSecond, at(2), 0.2);
+  EXPECT_EQ(markers.find(101)->translation().x(), 2);
+}
+
+class Scenes : public testing::Test {
+ protected:
+  void make(const std::string& objects) {
+    auto made = Scene::make(objects);
+    ASSERT_TRUE(made) << made.error().text();
+    scene = std::move(*made);
+  }
+
+  hc::Module module{"test", "A test."};
+  hc::ModuleFrames frames{module, {.input = false}};
+  std::unique_ptr<Scene> scene;
+  Markers markers;
+};
+
+TEST_F(Scenes, have_objects_in_frames_and_at_markers) {
+  make("cube at left_eye 0 0 2 size 0.2; ball at 101 size 0.1; ball at 4");
+  scene->place(frames, markers, kSecond);
+  ASSERT_EQ(scene->bodies().size(), 2U);  // those of the left eye, 4
+  EXPECT_TRUE(scene->bodies()[0].T_world_body.translation().isApprox(
+      Eigen::Vector3d(2.06, 0.05, 1.25)));
+  markers.see(101, kSecond, at(3), 0);
+  scene->place(frames, markers, kSecond);
+  ASSERT_EQ(scene->bodies().size(), 3U);
+  EXPECT_EQ(scene->bodies()[1].T_world_body.translation().x(), 3);
+}
+
+TEST_F(Scenes, have_no_objects_in_frames_that_there_are_not) {
+  make("ball at nowhere");
+  EXPECT_THROW(scene->place(frames, markers, kSecond), hc::ModuleError);
+}
+
+TEST_F(Scenes, say_whether_an_eye_sees_anything) {
+  hc::Header header;
+  header.width = 80;
+  header.height = 60;
+  const Sight sight = Pair().at(header, 100, frames);
+  for (const auto& [objects, is_seen] : {std::pair{"cube at left_eye 0 0 2 size 0.2", true},
+                                         {"cube at left_eye 0 0 -2 size 0.2", false},
+                                         {"", false}}) {
+    scene.reset();
+    make(objects);
+    scene->place(frames, markers, kSecond);
+    EXPECT_EQ(scene->is_seen(sight), is_seen) << objects;
+  }
+}
+
+}  // namespace
