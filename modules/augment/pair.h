@@ -33,8 +33,8 @@ class Pair {
 
   /// The eyes as they took an image.
   ///
-  /// @param focal  what is assumed until intrinsics are known [px]; then the baseline is that of the
-  /// frames, and the optical axis goes through the middle.
+  /// @param focal  what is assumed until intrinsics are known [px]; then the baseline is that of
+  /// the frames, and the optical axis goes through the middle.
   [[nodiscard]] Sight at(const hc::Header& image, double focal, hc::ModuleFrames& frames) const;
 
  private:

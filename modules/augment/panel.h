@@ -28,7 +28,7 @@ class Panel {
   std::map<int, std::string> tasks;  ///< names of modes
   std::int32_t focus = 0;            ///< the mode in focus, 0: none
   std::optional<Target> target;
-  cv::Mat confidence;  ///< (H, W) u8 of the latest depth; empty: unknown
+  cv::Mat confidence;                   ///< (H, W) u8 of the latest depth; empty: unknown
   double cursor_x = -1, cursor_y = -1;  ///< [px]; -1: the middle
 
   /// Draws the instruments over an eye's image. @param depth  (H, W) f32 of the left one [m].

@@ -7,7 +7,9 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-Eigen::Isometry3d at(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
+Eigen::Isometry3d at(double x) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0));
+}
 
 TEST(Markers, are_known_once_they_were_seen) {
   Markers markers;
@@ -45,8 +47,8 @@ TEST_F(Scenes, have_objects_in_frames_and_at_markers) {
   make("cube at left_eye 0 0 2 size 0.2; ball at 101 size 0.1; ball at 4");
   scene->place(frames, markers, kSecond);
   ASSERT_EQ(scene->bodies().size(), 2U);  // those of the left eye, 4
-  EXPECT_TRUE(scene->bodies()[0].T_world_body.translation().isApprox(
-      Eigen::Vector3d(2.06, 0.05, 1.25)));
+  EXPECT_TRUE(
+      scene->bodies()[0].T_world_body.translation().isApprox(Eigen::Vector3d(2.06, 0.05, 1.25)));
   markers.see(101, kSecond, at(3), 0);
   scene->place(frames, markers, kSecond);
   ASSERT_EQ(scene->bodies().size(), 3U);

@@ -74,8 +74,9 @@ int main(int argc, char** argv) {
   auto z = module.parameter("z", 0.7, "m", "the same");
   auto size = module.parameter("size", 0.3, "m", "of the cube", {.min = 1e-3, .max = 100});
   auto focal = module.parameter("focal", 600.0, "px", "of the eyes", {.min = 1, .max = 1e6});
-  auto turning = module.parameter("turning", 0.7, "rad/s",
-                                  "images are scored while the head turns as fast as this", {.min = 0});
+  auto turning =
+      module.parameter("turning", 0.7, "rad/s",
+                       "images are scored while the head turns as fast as this", {.min = 0});
   auto images = module.parameter("images", 100, "", "to be scored", {.min = 1, .max = 1e6});
   auto timeout =
       module.parameter("timeout", 60.0, "s", "to wait for an image", {.min = 1, .max = 3600});
@@ -125,8 +126,8 @@ int main(int argc, char** argv) {
   module.on_start([&] {
     renderer = hc::value_or_end(hc::graphics::Renderer::make());
     cube = hc::graphics::make_body(
-        *renderer, {{hc::graphics::make_box({1, 1, 1}), cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(255))}},
-        *size);
+        *renderer,
+        {{hc::graphics::make_box({1, 1, 1}), cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(255))}}, *size);
     cube.T_world_body = Eigen::Translation3d(*x, *y, *z);
   });
   module.on(hc::together(left_pose, right_pose, depth, corners, mask),
@@ -155,8 +156,8 @@ int main(int argc, char** argv) {
     const double error = median(samples.errors), share = median(samples.right);
     const double worst = *std::ranges::max_element(samples.errors);
     const double least = *std::ranges::min_element(samples.right);
-    result.send(hc::table({error, worst, share, least, samples.fastest,
-                           static_cast<double>(samples.right.size())}));
+    result.send(hc::table(
+        {error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())}));
     char line[200];
     std::snprintf(line, sizeof line,
                   "corners off by %.2f px median, %.2f px at most, pixels right %.1f %% median, "
