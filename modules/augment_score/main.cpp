@@ -69,10 +69,11 @@ int main(int argc, char** argv) {
                               "reprojection error of the corners, median and most [px], share of "
                               "the object's pixels that are right, median and least, fastest turn "
                               "[rad/s], images");
-  auto x = module.parameter("x", 2.75, "m", "middle of the cube in the world");
-  auto y = module.parameter("y", 0.35, "m", "the same");
-  auto z = module.parameter("z", 0.7, "m", "the same");
-  auto size = module.parameter("size", 0.3, "m", "of the cube", {.min = 1e-3, .max = 100});
+  auto x = module.parameter("x", 2.75, "m", "middle of the cube in the world", {.fixed = true});
+  auto y = module.parameter("y", 0.35, "m", "the same", {.fixed = true});
+  auto z = module.parameter("z", 0.7, "m", "the same", {.fixed = true});
+  auto size =
+      module.parameter("size", 0.3, "m", "of the cube", {.min = 1e-3, .max = 100, .fixed = true});
   auto focal = module.parameter("focal", 600.0, "px", "of the eyes", {.min = 1, .max = 1e6});
   auto turning =
       module.parameter("turning", 0.7, "rad/s",
