@@ -85,9 +85,9 @@ View look(Renderer& renderer, hc::room::World& world, int number) {
         renderer.draw(items, kCamera, eye.T_world_eye, view.light, eye.image, &eye.truth));
     hc::room::Sensor(is_right ? 1 : 2).apply(eye.image, 0, 2, static_cast<std::uint64_t>(number));
   }
-  static const auto matcher = hc::vision::semi_global_matcher({.disparities = 64});
+  static const auto kMatcher = hc::vision::semi_global_matcher({.disparities = 64});
   hc::vision::Disparities found;
-  end_if_failed(matcher->match(view.eyes[0].image, view.eyes[1].image, found));
+  end_if_failed(kMatcher->match(view.eyes[0].image, view.eyes[1].image, found));
   hc::vision::depth_of(found.disparity, {.focal = kCamera.fx, .baseline = kBaseline}, view.found);
   return view;
 }
@@ -213,6 +213,7 @@ void measure_speed(Renderer& renderer, Overlay& overlay, int rounds) {
     const cv::Rect part = hc::graphics::part_of(cube, kCamera, view.eyes[0].T_world_eye);
     std::array<cv::Mat, 2> images = {view.eyes[0].image.clone(), view.eyes[1].image.clone()};
     std::vector<double> times;
+    times.reserve(static_cast<std::size_t>(rounds));
     for (int round = 0; round < rounds; ++round)
       times.push_back(milliseconds([&] {
         for (const std::size_t eye : {0U, 1U}) {

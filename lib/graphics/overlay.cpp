@@ -66,8 +66,8 @@ std::array<float, 3 * 255 + 1> make_likeness() {
 
 /// How much is seen of a pixel near an edge: as much as of those that are near and alike.
 std::uint8_t seen_as_alike(const cv::Mat& image, const cv::Mat& seen, int y, int x) {
-  static const auto likeness = make_likeness();
-  const auto here = image.at<cv::Vec3b>(y, x);
+  static const auto kLikeness = make_likeness();
+  const auto& here = image.at<cv::Vec3b>(y, x);
   float sum = 0, weights = 0;
   for (int v = y - kReach; v <= y + kReach; v += kStep) {
     if (v < 0 || v >= seen.rows) continue;
@@ -78,7 +78,7 @@ std::uint8_t seen_as_alike(const cv::Mat& image, const cv::Mat& seen, int y, int
       const auto& there = pixels[u];
       const int difference = std::abs(here[0] - there[0]) + std::abs(here[1] - there[1]) +
                              std::abs(here[2] - there[2]);
-      const float weight = likeness[static_cast<std::size_t>(difference)];
+      const float weight = kLikeness[static_cast<std::size_t>(difference)];
       weights += weight;
       sum += weight * static_cast<float>(shares[u]);
     }

@@ -240,8 +240,8 @@ void Renderer::read_depth(const PinholeCamera& camera, cv::Mat& depth) {
   // d = (1 + clip z / clip w) / 2, turned round.
   const auto near = static_cast<float>(camera.near), far = static_cast<float>(camera.far);
   for (int row = 0; row < camera.height; ++row) {
-    const float* from = state_->raw_depth.ptr<float>(row);
-    float* to = depth.ptr<float>(row);
+    const auto* from = state_->raw_depth.ptr<float>(row);
+    auto* to = depth.ptr<float>(row);
     for (int column = 0; column < camera.width; ++column)
       to[column] = from[column] >= 1 ? 0 : near * far / (far - from[column] * (far - near));
   }

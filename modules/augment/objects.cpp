@@ -50,7 +50,7 @@ hc::Result<Object> read_object(const std::string& text) {
     if (!read_number(all[i], number)) return wrong("has a place that is no numbers");
     numbers.push_back(number);
   }
-  if (numbers.size() != 0 && numbers.size() != 3 && numbers.size() != 6)
+  if (!numbers.empty() && numbers.size() != 3 && numbers.size() != 6)
     return wrong("has neither a place x y z nor x y z and roll pitch yaw");
   numbers.resize(6);
   constexpr double kDegree = std::numbers::pi / 180;
