@@ -215,14 +215,15 @@ class Pipeline(Pipes):
         links = self.run_pipeline("all", "camera.rate=0", "camera.count=12")
         for link in ("camera.left → rectify.left", "rectify.right → depth.right"):
             self.assertEqual(links[link], 12, links)
-        self.assertEqual(links["depth.depth → view.image"], 12, links)
+        self.assertEqual(links["depth.depth → augment.depth"], 12, links)
+        self.assertEqual(links["augment.right → view.image"], 12, links)
 
     def test_a_slow_module_takes_the_newest_and_no_other_waits_for_it(self):
         links = self.run_pipeline(
             "latest", "depth.matcher=opencv", "camera.rate=40", "camera.count=40"
         )
         self.assertGreater(links["camera.left → rectify.left"], 30, links)
-        self.assertLess(links["depth.depth → view.image"], links["rectify.left → depth.left"])
+        self.assertLess(links["augment.left → view.image"], links["rectify.left → depth.left"])
 
 
 if __name__ == "__main__":
