@@ -139,6 +139,9 @@ class Documents(Pipes):
     def test_body(self):
         self.run_document("doc/body.md")
 
+    def test_sight(self):
+        self.run_document("doc/sight.md")
+
     def test_head(self):
         self.run_document("doc/head.md")
 
