@@ -4,6 +4,7 @@
 #include <hc/base/check.h>
 #include <vision/stereo/matcher.h>
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it so
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kHead = 6;
   if (size < kHead) return 0;
