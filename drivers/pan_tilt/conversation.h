@@ -128,8 +128,8 @@ class Conversation {
   MonotonicTime overdue_{0};  // when the oldest answer is
   MonotonicTime looked_{0}, heading_since_{0}, commanded_{0};
   double bytes_per_second_ = 0;
-  MonotonicTime written_{0};      // when all bytes have gone
-  MonotonicTime asked_place_{0};  // when the question for the place has gone
+  MonotonicTime written_{0};      // when all bytes are sent
+  MonotonicTime asked_place_{0};  // when the query of the place was sent
   std::optional<Places> wanted_, heading_, place_;
   MonotonicTime wanted_until_{0};
   bool is_heading_sure_ = false;  // the unit has taken the command

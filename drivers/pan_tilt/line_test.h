@@ -35,10 +35,10 @@ struct Line {
   std::vector<Gaze> gazes;
   std::vector<std::string> faults, remarks;
   std::deque<std::pair<MonotonicTime, char>> going, coming;
-  MonotonicTime going_at{0}, coming_at{0};  // when the last of them has gone
+  MonotonicTime going_at{0}, coming_at{0};  // when the last of them is through
   std::mt19937 random{1};
 
-  /// When a byte has gone that is put on the line now, behind another.
+  /// When a byte that is queued now will be through.
   MonotonicTime after(MonotonicTime& last, MonotonicTime put) const {
     last = std::max(last, put);
     if (bytes_per_second > 0)

@@ -10,7 +10,7 @@
 namespace hc::graphics {
 
 /// The nearness of all that a part of the left image shows. Where depth is unknown, it is that of
-/// the nearest known pixels to the left and right in the row, of the one that is further away:
+/// the nearest known pixels to the left and right in the row, of the farther one:
 /// what only one eye sees belongs to what is behind. 0 in a row without any.
 ///
 /// @param depth  (H, W) f32 of the left image [m]; 0 where unknown.
