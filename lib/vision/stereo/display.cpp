@@ -83,7 +83,7 @@ cv::Mat with_legend(const cv::Mat& bgr, double least, double most, const std::st
   bgr.copyTo(whole(cv::Rect({0, 0}, bgr.size())));
   const int x = bgr.cols + kMargin, top = kMargin;
   const int bottom = bgr.rows - kMargin - 2 * kBar;
-  // The scale: from the most, on top, to the least.
+  // The scale: from the maximum, on top, to the minimum.
   cv::Mat scale(bottom - top, 1, CV_32F);
   for (int y = 0; y < scale.rows; ++y)
     scale.at<float>(y) = 1 + static_cast<float>(scale.rows - 1 - y);

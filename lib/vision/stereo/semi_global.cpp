@@ -31,9 +31,9 @@ constexpr std::size_t round_up(std::size_t value, std::size_t unit) {
   return (value + unit - 1) / unit * unit;
 }
 
-/// The least lane of each block of 16, in all lanes of the block.
+/// The minimum of each block of 16, in all lanes of the block.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V least_of_blocks(D d, V v) {
+HWY_INLINE V min_of_blocks(D d, V v) {
   const hn::Repartition<std::uint16_t, D> d16;
   const hn::Repartition<std::uint32_t, D> d32;
   v = hn::Min(v, hn::BitCast(d, hn::Shuffle1032(hn::BitCast(d32, v))));
@@ -43,26 +43,26 @@ HWY_INLINE V least_of_blocks(D d, V v) {
   return hn::TableLookupBytes(v, hn::Zero(d));
 }
 
-/// The least lane, in all lanes.
+/// The minimum of all lanes, in each lane.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V least_of_lanes(D d, V v) {
+HWY_INLINE V min_of_lanes(D d, V v) {
   if constexpr (hn::MaxLanes(d) >= 64) v = hn::Min(v, hn::ReverseBlocks(d, v));
   if constexpr (hn::MaxLanes(d) >= 32) v = hn::Min(v, hn::SwapAdjacentBlocks(v));
-  return least_of_blocks(d, v);
+  return min_of_blocks(d, v);
 }
 
 /// The same of four vectors at once, which takes fewer steps.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void least_of_lanes(D d, V& a, V& b, V& c, V& e) {
+HWY_INLINE void min_of_lanes(D d, V& a, V& b, V& c, V& e) {
   if constexpr (hn::MaxLanes(d) <= 16) {
-    for (V* v : {&a, &b, &c, &e}) *v = least_of_blocks(d, *v);
+    for (V* v : {&a, &b, &c, &e}) *v = min_of_blocks(d, *v);
     return;
   } else {
     // Halves of a and b, then of c and e, side by side.
     const V ab = hn::Min(hn::ConcatLowerLower(d, b, a), hn::ConcatUpperUpper(d, b, a));
     const V ce = hn::Min(hn::ConcatLowerLower(d, e, c), hn::ConcatUpperUpper(d, e, c));
     if constexpr (hn::MaxLanes(d) == 32) {
-      const V of_ab = least_of_blocks(d, ab), of_ce = least_of_blocks(d, ce);
+      const V of_ab = min_of_blocks(d, ab), of_ce = min_of_blocks(d, ce);
       a = hn::ConcatLowerLower(d, of_ab, of_ab);
       b = hn::ConcatUpperUpper(d, of_ab, of_ab);
       c = hn::ConcatLowerLower(d, of_ce, of_ce);
@@ -70,35 +70,26 @@ HWY_INLINE void least_of_lanes(D d, V& a, V& b, V& c, V& e) {
     }
 #if HWY_TARGET <= HWY_AVX3
     if constexpr (hn::MaxLanes(d) == 64) {  // four blocks: of a, c, b, e
-      const V least = least_of_blocks(
+      const V min = min_of_blocks(
           d, hn::Min(hn::OddEvenBlocks(ce, ab), hn::SwapAdjacentBlocks(hn::OddEvenBlocks(ab, ce))));
-      a = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0x00)};
-      c = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0x55)};
-      b = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0xAA)};
-      e = V{_mm512_shuffle_i64x2(least.raw, least.raw, 0xFF)};
+      a = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0x00)};
+      c = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0x55)};
+      b = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0xAA)};
+      e = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0xFF)};
     }
 #endif
   }
 }
 
-/// The blocks of 16 bytes of `lanes`, moved up by one, with the last one of `below` before them.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V blocks_up(D d, V lanes, V below) {
-  if constexpr (hn::MaxLanes(d) <= 16) return below;
+/// As many blocks of 16 bytes as a vector has, of those of `low` and then of `high`, from block
+/// `kFirst` on, which is 1 or the last one of `low`.
+template <std::size_t kFirst, class D, class V = hn::Vec<D>>
+HWY_INLINE V blocks_from(D d, V low, V high) {
+  if constexpr (hn::MaxLanes(d) <= 16) return kFirst == 0 ? low : high;
+  if constexpr (hn::MaxLanes(d) == 32) return hn::ConcatLowerUpper(d, high, low);
 #if HWY_TARGET <= HWY_AVX3
-  if constexpr (hn::MaxLanes(d) == 64) return V{_mm512_alignr_epi64(lanes.raw, below.raw, 6)};
+  if constexpr (hn::MaxLanes(d) == 64) return V{_mm512_alignr_epi64(high.raw, low.raw, 2 * kFirst)};
 #endif
-  if constexpr (hn::MaxLanes(d) == 32) return hn::ConcatLowerUpper(d, lanes, below);
-}
-
-/// The same down, with the first block of `above` behind them.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V blocks_down(D d, V lanes, V above) {
-  if constexpr (hn::MaxLanes(d) <= 16) return above;
-#if HWY_TARGET <= HWY_AVX3
-  if constexpr (hn::MaxLanes(d) == 64) return V{_mm512_alignr_epi64(above.raw, lanes.raw, 2)};
-#endif
-  if constexpr (hn::MaxLanes(d) == 32) return hn::ConcatLowerUpper(d, above, lanes);
 }
 
 /// The costs of all disparities of a pixel.
@@ -251,16 +242,16 @@ class Sweep {
   }
 
   /// A step of a path: the costs of a pixel, given those of the path's pixel before.
-  /// @returns  the least of each lane, which is to be taken off later.
+  /// @returns  the minimum of each lane, to be subtracted later.
   static HWY_INLINE V arrive(const C& costs, const C& from, const C& next_to, V slope, V jump,
                              C& to) {
-    V least;
+    V min;
     for (std::size_t k = 0; k < kVectors; ++k) {
       const V way = hn::Min(hn::Min(from.v[k], jump), hn::SaturatedAdd(next_to.v[k], slope));
       to.v[k] = hn::SaturatedAdd(costs.v[k], way);
-      least = k == 0 ? to.v[k] : hn::Min(least, to.v[k]);
+      min = k == 0 ? to.v[k] : hn::Min(min, to.v[k]);
     }
-    return least;
+    return min;
   }
 
   /// The same from costs in memory.
@@ -278,10 +269,10 @@ class Sweep {
     return arrive(costs, same, next_to, slope, jump, to);
   }
 
-  /// Takes the least off the costs of a path, and adds them to sums.
-  static HWY_INLINE void settle(C& path, V least, C& sums) {
+  /// Subtracts the minimum from the costs of a path, and adds them to sums.
+  static HWY_INLINE void settle(C& path, V min, C& sums) {
     for (std::size_t k = 0; k < kVectors; ++k) {
-      path.v[k] = hn::Sub(path.v[k], least);
+      path.v[k] = hn::Sub(path.v[k], min);
       sums.v[k] = hn::SaturatedAdd(sums.v[k], path.v[k]);
     }
   }
@@ -298,15 +289,16 @@ class Sweep {
   /// The lesser of the costs of the disparities next to each one.
   static HWY_INLINE C next_to(const C& costs) {
     const D d;
-    C least;
+    C min;
+    constexpr std::size_t kLastBlock = kLanes <= 16 ? 0 : kLanes / 16 - 1;
     const V never = hn::Set(d, kNever);
     for (std::size_t k = 0; k < kVectors; ++k) {
-      const V below = blocks_up(d, costs.v[k], k == 0 ? never : costs.v[k - 1]);
-      const V above = blocks_down(d, costs.v[k], k + 1 == kVectors ? never : costs.v[k + 1]);
-      least.v[k] = hn::Min(hn::CombineShiftRightBytes<15>(d, costs.v[k], below),
-                           hn::CombineShiftRightBytes<1>(d, above, costs.v[k]));
+      const V below = blocks_from<kLastBlock>(d, k == 0 ? never : costs.v[k - 1], costs.v[k]);
+      const V above = blocks_from<1>(d, costs.v[k], k + 1 == kVectors ? never : costs.v[k + 1]);
+      min.v[k] = hn::Min(hn::CombineShiftRightBytes<15>(d, costs.v[k], below),
+                         hn::CombineShiftRightBytes<1>(d, above, costs.v[k]));
     }
-    return least;
+    return min;
   }
 
   /// The disparities of a vector of costs.
@@ -351,17 +343,17 @@ class Sweep {
     store(costs, row.costs + at);
     C to, north, north_west, north_east, sums;
     for (auto& v : sums.v) v = hn::Zero(d);
-    const V least = arrive(costs, west, next_to(west), slope, jump(row.along[x]), to);
-    settle(to, least_of_lanes(d, least), sums);
+    const V min = arrive(costs, west, next_to(west), slope, jump(row.along[x]), to);
+    settle(to, min_of_lanes(d, min), sums);
     west = to;
-    V least_n = arrive(costs, north_ + at, slope, jump(down_[x]), north);
-    V least_nw = arrive(costs, north_west_ + at, slope, jump(down_right_[x]), north_west);
-    V least_ne = arrive(costs, north_east_ + at + kBytes, slope, jump(down_left_[x]), north_east);
-    V none = least_n;
-    least_of_lanes(d, least_n, least_nw, least_ne, none);
-    settle(north, least_n, sums);
-    settle(north_west, least_nw, sums);
-    settle(north_east, least_ne, sums);
+    V min_n = arrive(costs, north_ + at, slope, jump(down_[x]), north);
+    V min_nw = arrive(costs, north_west_ + at, slope, jump(down_right_[x]), north_west);
+    V min_ne = arrive(costs, north_east_ + at + kBytes, slope, jump(down_left_[x]), north_east);
+    V none = min_n;
+    min_of_lanes(d, min_n, min_nw, min_ne, none);
+    settle(north, min_n, sums);
+    settle(north_west, min_nw, sums);
+    settle(north_east, min_ne, sums);
     store(north, north_ + at);
     store(north_west, north_west_ + at);
     store(north_east, north_east_ + at);
@@ -374,34 +366,34 @@ class Sweep {
     const V slope = hn::Set(d, options_.penalties.slope);
     const std::size_t at = x * kBytes;
     C to, sums = load(row.sums + at);
-    const V least =
+    const V min =
         arrive(load(row.costs + at), east, next_to(east), slope, jump(row.along[x + 1]), to);
-    settle(to, least_of_lanes(d, least), sums);
+    settle(to, min_of_lanes(d, min), sums);
     east = to;
     store(sums, row.sums + at);
   }
 
-  /// The disparities of least cost, the smallest of several, of kGroup pixels.
+  /// The disparities of minimal cost, the smallest of several, of kGroup pixels.
   HWY_INLINE void find_winners(const Row& row, std::size_t begin) {
     const D d;
     const V never = hn::Set(d, kNever);
     const Byte* sums[kGroup];
-    V least[kGroup], first[kGroup], other[kGroup];
+    V min[kGroup], first[kGroup], other[kGroup];
     for (std::size_t i = 0; i < kGroup; ++i) {
       sums[i] = row.sums + (begin + i) * kBytes;
-      least[i] = hn::Load(d, sums[i]);
+      min[i] = hn::Load(d, sums[i]);
       for (std::size_t k = 1; k < kVectors; ++k)
-        least[i] = hn::Min(least[i], hn::Load(d, sums[i] + k * kLanes));
+        min[i] = hn::Min(min[i], hn::Load(d, sums[i] + k * kLanes));
     }
-    least_of_lanes(d, least[0], least[1], least[2], least[3]);
+    min_of_lanes(d, min[0], min[1], min[2], min[3]);
     for (std::size_t i = 0; i < kGroup; ++i) {
       first[i] = never;
       for (std::size_t k = 0; k < kVectors; ++k) {
-        const auto is_least = hn::Eq(hn::Load(d, sums[i] + k * kLanes), least[i]);
-        first[i] = hn::Min(first[i], hn::IfThenElse(is_least, indices(k), never));
+        const auto is_min = hn::Eq(hn::Load(d, sums[i] + k * kLanes), min[i]);
+        first[i] = hn::Min(first[i], hn::IfThenElse(is_min, indices(k), never));
       }
     }
-    least_of_lanes(d, first[0], first[1], first[2], first[3]);
+    min_of_lanes(d, first[0], first[1], first[2], first[3]);
     for (std::size_t i = 0; i < kGroup; ++i) {
       other[i] = never;
       for (std::size_t k = 0; k < kVectors; ++k) {
@@ -412,10 +404,10 @@ class Sweep {
             hn::Min(other[i], hn::IfThenElse(is_far, hn::Load(d, sums[i] + k * kLanes), never));
       }
     }
-    least_of_lanes(d, other[0], other[1], other[2], other[3]);
+    min_of_lanes(d, other[0], other[1], other[2], other[3]);
     for (std::size_t i = 0; i < kGroup; ++i) {
       Winner& winner = reinterpret_cast<Winner*>(winners_)[begin + i];
-      winner.cost = hn::GetLane(least[i]);
+      winner.cost = hn::GetLane(min[i]);
       winner.disparity = hn::GetLane(first[i]);
       winner.margin = static_cast<Byte>(hn::GetLane(other[i]) - winner.cost);
       winner.fraction = fraction(sums[i], winner.disparity);
@@ -505,13 +497,13 @@ namespace hc::vision {
 
 HWY_EXPORT(match_rows);
 
-Penalties Penalties::with_jumps(int slope, int most, int least) {
+Penalties Penalties::with_jumps(int slope, int max, int min) {
   Penalties penalties;
   penalties.slope = static_cast<std::uint8_t>(slope);
-  // Half of what is above the least is left where the grey levels differ by 8.
+  // Half of what is above the minimum is left where the grey levels differ by 8.
   for (int difference = 0; difference < 256; ++difference)
     penalties.jump[static_cast<std::size_t>(difference)] =
-        static_cast<std::uint8_t>(least + (most - least) * 8 / (8 + difference));
+        static_cast<std::uint8_t>(min + (max - min) * 8 / (8 + difference));
   return penalties;
 }
 

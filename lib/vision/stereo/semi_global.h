@@ -32,8 +32,8 @@ struct Penalties {
   std::uint8_t slope = 0;                ///< a change by one
   std::array<std::uint8_t, 256> jump{};  ///< any other, by the difference of the two grey levels
 
-  /// Jumps cost `most` where the grey levels are alike, and less, down to `least`, at edges.
-  static Penalties with_jumps(int slope, int most, int least);
+  /// Jumps cost `max` where the grey levels are alike, and less, down to `min`, at edges.
+  static Penalties with_jumps(int slope, int max, int min);
 };
 
 /// Disparities in fixed point.

@@ -75,8 +75,8 @@ class Plain {
       }
       to[at] = std::min(kMost, to[at] + way);
     }
-    const int least = *std::min_element(to.begin(), to.end());
-    for (int& cost : to) cost -= least;
+    const int min = *std::min_element(to.begin(), to.end());
+    for (int& cost : to) cost -= min;
     return to;
   }
 

@@ -24,7 +24,7 @@ void SpeckleFilter::join(std::uint32_t a, std::uint32_t b) {
   runs_[a].pixels += runs_[b].pixels;
 }
 
-void SpeckleFilter::remove(cv::Mat& disparity, int least, int range) {
+void SpeckleFilter::remove(cv::Mat& disparity, int min_size, int range) {
   runs_.clear();
   rows_.assign(1, 0);
   for (int y = 0; y < disparity.rows; ++y) {
@@ -59,7 +59,7 @@ void SpeckleFilter::remove(cv::Mat& disparity, int least, int range) {
     auto* row = disparity.ptr<std::uint16_t>(y);
     for (auto run = rows_[static_cast<std::size_t>(y)];
          run < rows_[static_cast<std::size_t>(y) + 1]; ++run)
-      if (runs_[patch_of(run)].pixels < least)
+      if (runs_[patch_of(run)].pixels < min_size)
         std::fill(row + runs_[run].begin, row + runs_[run].end, std::uint16_t{0});
   }
 }

@@ -12,12 +12,12 @@ namespace hc::vision {
 /// Keeps its memory between images; for one thread at a time.
 class SpeckleFilter {
  public:
-  /// Clears the patches of fewer than `least` pixels. Two pixels that are one above or beside the
-  /// other belong to one patch when both are known and differ by at most `range`.
+  /// Clears the patches of fewer than `min_size` pixels. Two pixels that are one above or beside
+  /// the other belong to one patch when both are known and differ by at most `range`.
   ///
   /// @param[in,out] disparity  (H, W) u16, 0 where unknown.
   /// Cost: linear in the pixels.
-  void remove(cv::Mat& disparity, int least, int range);
+  void remove(cv::Mat& disparity, int min_size, int range);
 
  private:
   /// Pixels of a row that belong together.

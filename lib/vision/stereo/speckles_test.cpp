@@ -17,11 +17,12 @@ TEST(Speckles, AreThoseOfOpenCv) {
     rng.fill(disparity, cv::RNG::UNIFORM, 0, rng.uniform(2, 12));
     cv::Mat expected = disparity.clone(), found;
     disparity.convertTo(found, CV_16U);
-    const int least = rng.uniform(0, 60), range = rng.uniform(0, 4);
-    cv::filterSpeckles(expected, 0, least - 1, range);  // clears up to its limit
-    filter.remove(found, least, range);
+    const int min_size = rng.uniform(0, 60), range = rng.uniform(0, 4);
+    cv::filterSpeckles(expected, 0, min_size - 1, range);  // clears up to its limit
+    filter.remove(found, min_size, range);
     expected.convertTo(expected, CV_16U);
-    ASSERT_EQ(cv::norm(found, expected, cv::NORM_INF), 0) << size << ", " << least << ", " << range;
+    ASSERT_EQ(cv::norm(found, expected, cv::NORM_INF), 0)
+        << size << ", " << min_size << ", " << range;
   }
 }
 
