@@ -57,7 +57,9 @@ Body make_cube(Renderer& renderer, double size) {
   for (int i = 0; i < 16; ++i)
     if ((i / 4 + i) % 2 == 0) squares.at<cv::Vec3b>(i / 4, i % 4) = cv::Vec3b(250, 200, 40);
   cv::resize(squares, squares, {}, 32, 32, cv::INTER_NEAREST);
-  return hc::graphics::make_body(renderer, {{hc::graphics::make_box({1, 1, 1}), squares}}, size);
+  Body cube = hc::graphics::make_body(renderer, {{hc::graphics::make_box({1, 1, 1}), squares}});
+  cube.set_size(size);
+  return cube;
 }
 
 /// What an eye sees, and how it is.
@@ -120,10 +122,9 @@ struct Truth {
 };
 
 Truth truth_of(Renderer& renderer, const Body& body, const View& view, std::size_t eye) {
-  const hc::graphics::Item item{body.surfaces.front(), body.T_world_body.cast<float>()};
   const Eye& at = view.eyes.at(eye);
   cv::Mat rgb, depth;
-  end_if_failed(renderer.draw({&item, 1}, kCamera, at.T_world_eye, view.light, rgb, &depth));
+  end_if_failed(renderer.draw(body.items(), kCamera, at.T_world_eye, view.light, rgb, &depth));
   Truth truth;
   truth.body = depth > 0;
   truth.seen = truth.body & (depth < at.truth);

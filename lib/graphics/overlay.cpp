@@ -20,10 +20,8 @@ std::vector<Group> group(std::span<const Body> bodies, const PinholeCamera& came
                          const Eigen::Isometry3d& T_world_camera) {
   std::vector<Group> groups;
   for (const auto& body : bodies) {
-    Group all{part_of(body, camera, T_world_camera), {}};
+    Group all{part_of(body, camera, T_world_camera), body.items()};
     if (all.part.empty()) continue;
-    for (const auto surface : body.surfaces)
-      all.items.push_back({surface, body.T_world_body.cast<float>()});
     // What grows may reach another that it did not reach before.
     for (auto other = groups.begin(); other != groups.end();) {
       if ((other->part & all.part).empty()) {
@@ -129,24 +127,32 @@ void blend(const cv::Vec4b* rgba, const std::uint8_t* opacity, int width, cv::Ve
 
 }  // namespace
 
-std::array<Eigen::Vector3d, 8> Body::corners() const {
-  std::array<Eigen::Vector3d, 8> all;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    all[i] = T_world_body * bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)).eval();
+void Body::set_size(double size) {
+  const double longest = bounds.sizes().maxCoeff();
+  if (longest > 0) scale = size / longest;
+}
+
+std::vector<Item> Body::items() const {
+  std::vector<Item> all;
+  for (const auto surface : surfaces)
+    all.push_back({surface, T_world_body.cast<float>(), static_cast<float>(scale)});
   return all;
 }
 
-Body make_body(Renderer& renderer, std::vector<Part> parts, double size) {
+std::array<Eigen::Vector3d, 8> Body::corners() const {
+  std::array<Eigen::Vector3d, 8> all;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
+    all[i] = T_world_body * (scale * bounds.corner(corner));
+  }
+  return all;
+}
+
+Body make_body(Renderer& renderer, const std::vector<Part>& parts) {
   Body body;
-  for (const auto& part : parts)
+  for (const auto& part : parts) {
     for (const auto& vertex : part.mesh.vertices)
       body.bounds.extend(vertex.position.cast<double>());
-  const double longest = body.bounds.sizes().maxCoeff();
-  const double scale = size > 0 && longest > 0 ? size / longest : 1;
-  body.bounds.min() *= scale;
-  body.bounds.max() *= scale;
-  for (auto& part : parts) {
-    for (auto& vertex : part.mesh.vertices) vertex.position *= static_cast<float>(scale);
     body.surfaces.push_back(renderer.add(part.mesh, part.texture));
   }
   return body;

@@ -19,17 +19,19 @@ namespace hc::graphics {
 /// A thing at a place.
 struct Body {
   std::vector<SurfaceId> surfaces;
-  Eigen::AlignedBox3d bounds;  ///< of all its corners, in its own frame [m]
+  Eigen::AlignedBox3d bounds;  ///< of all its corners, in its own frame, before it is scaled [m]
+  double scale = 1;            ///< of its size [1]
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
 
+  /// Makes its longest side so long [m].
+  void set_size(double size);
+  [[nodiscard]] std::vector<Item> items() const;
   /// The corners of its bounds, in the world [m].
   [[nodiscard]] std::array<Eigen::Vector3d, 8> corners() const;
 };
 
 /// Has a renderer hold a model.
-///
-/// @param size  its longest side is made so long [m]; 0: as it is.
-Body make_body(Renderer& renderer, std::vector<Part> parts, double size);
+Body make_body(Renderer& renderer, const std::vector<Part>& parts);
 
 /// The part of an image in which a body is seen; empty where it is not.
 cv::Rect part_of(const Body& body, const PinholeCamera& camera,

@@ -19,8 +19,9 @@ class Augmenting : public testing::Test {
   }
 
   Body cube_at(double x, double y, double z, const cv::Vec3b& colour = {250, 0, 0}) {
-    Body body = make_body(*renderer,
-                          {{make_box({1, 1, 1}), cv::Mat(1, 1, CV_8UC3, cv::Scalar(colour))}}, 0.4);
+    Body body =
+        make_body(*renderer, {{make_box({1, 1, 1}), cv::Mat(1, 1, CV_8UC3, cv::Scalar(colour))}});
+    body.set_size(0.4);
     body.T_world_body = Eigen::Translation3d(x, y, z);
     return body;
   }
@@ -51,8 +52,7 @@ class Augmenting : public testing::Test {
 TEST_F(Augmenting, a_body_is_where_the_whole_image_would_have_it) {
   const auto body = cube_at(0.3, -0.2, 2);
   cv::Mat rgb, depth;
-  std::vector<Item> items{{body.surfaces[0], body.T_world_body.cast<float>()}};
-  ASSERT_TRUE(renderer->draw(items, camera, Eigen::Isometry3d::Identity(), {}, rgb, &depth));
+  ASSERT_TRUE(renderer->draw(body.items(), camera, Eigen::Isometry3d::Identity(), {}, rgb, &depth));
   draw({body});
   for (int y = 0; y < 240; ++y)
     for (int x = 0; x < 320; ++x) {
@@ -114,9 +114,25 @@ TEST_F(Augmenting, a_body_around_the_camera_is_no_error) {
 }
 
 TEST_F(Augmenting, a_size_is_that_of_the_longest_side) {
-  const Body body =
-      make_body(*renderer, {{make_box({1, 4, 2}), cv::Mat(1, 1, CV_8UC3, cv::Scalar(9, 9, 9))}}, 2);
-  EXPECT_TRUE(body.bounds.sizes().isApprox(Eigen::Vector3d(0.5, 2, 1), 1e-6));
+  Body body =
+      make_body(*renderer, {{make_box({1, 4, 2}), cv::Mat(1, 1, CV_8UC3, cv::Scalar(9, 9, 9))}});
+  EXPECT_TRUE(body.corners().back().isApprox(Eigen::Vector3d(0.5, 2, 1)));
+  body.set_size(2);
+  EXPECT_TRUE(body.corners().back().isApprox(Eigen::Vector3d(0.25, 1, 0.5)));
+}
+
+TEST_F(Augmenting, a_body_is_as_bright_whatever_its_size) {
+  cv::Vec3b before;
+  for (const double size : {0.2, 0.4, 0.8}) {
+    Body body = cube_at(0, 0, 2);
+    body.set_size(size);
+    draw({body});
+    const auto now = image.at<cv::Vec3b>(120, 160);
+    if (size > 0.2) {
+      EXPECT_EQ(now, before) << size;
+    }
+    before = now;
+  }
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ out float brightness;
 void main() {
   gl_Position = projection * (T_camera_object * vec4(position, 1.0));
   place = texture_place;
-  brightness = ambient + diffuse * max(dot(mat3(T_camera_object) * normal, to_light), 0.0);
+  brightness = ambient + diffuse *
+      max(dot(normalize(mat3(T_camera_object) * normal), to_light), 0.0);
 }
 )";
 
@@ -223,7 +224,8 @@ Status Renderer::render(std::span<const Item> items, const PinholeCamera& camera
   // The last first: what is small and before the walls hides them, and they are not shaded there.
   for (auto item = items.rbegin(); item != items.rend(); ++item) {
     const Surface& surface = state_->surfaces.at(item->surface);
-    const Eigen::Matrix4f T_camera_object = (T_camera_world * item->T_world_object).matrix();
+    const Eigen::Matrix4f T_camera_object =
+        (T_camera_world * item->T_world_object * Eigen::Scaling(item->scale)).matrix();
     glUniformMatrix4fv(state_->T_camera_object, 1, GL_FALSE, T_camera_object.data());
     glBindTexture(GL_TEXTURE_2D, surface.texture);
     glBindVertexArray(surface.vertices);

@@ -23,6 +23,7 @@ using SurfaceId = std::size_t;
 struct Item {
   SurfaceId surface = 0;
   Eigen::Isometry3f T_world_object = Eigen::Isometry3f::Identity();
+  float scale = 1;  ///< its size, by that of its mesh [1]
 };
 
 /// Where light comes from, and how much.

@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
   module.on_demand(mask);
   auto objects =
       module.parameter("objects", "cube at world 2 0 1.2 size 0.3", "",
-                       "MODEL at FRAME [X Y Z [ROLL PITCH YAW]] [size SIZE], with ; "
+                       "MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size SIZE|fit], with ; "
                        "between them: cube, ball or a file of .obj, .stl, .gltf, .glb; a "
                        "frame by name, or the number of a frame or marker; m, degrees");
   auto smoothing = module.parameter("smoothing", 0.2, "s", "time constant of markers' poses",

@@ -19,13 +19,11 @@ bool read_number(const std::string& word, double& number) {
   return error == std::errc() && after == end && std::abs(number) <= kFarthest;
 }
 
-bool read_frame(const std::string& word, Object& object) {
-  object.frame = word;
-  if (word.find_first_not_of("0123456789") != std::string::npos) return true;
+std::optional<NamedFrame> read_frame(const std::string& word) {
+  if (word.find_first_not_of("0123456789") != std::string::npos) return NamedFrame{word};
   double number = 0;
-  if (!read_number(word, number) || number < 1 || number > 999) return false;
-  object.frame_number = static_cast<int>(number);
-  return true;
+  if (!read_number(word, number) || number < 1 || number > 999) return std::nullopt;
+  return NamedFrame{word, static_cast<int>(number)};
 }
 
 hc::Result<Object> read_object(const std::string& text) {
@@ -38,14 +36,24 @@ hc::Result<Object> read_object(const std::string& text) {
   if (all.size() < 3 || all[1] != "at") return wrong("is not as in cube at world 2 0 0.8 size 0.3");
   Object object;
   object.model = all[0];
-  if (!read_frame(all[2], object)) return wrong("is in a frame with a number that is not 1 to 999");
-  if (all.size() >= 5 && all[all.size() - 2] == "size") {
-    if (!read_number(all.back(), object.size) || object.size <= 0)
-      return wrong("has a size that is no number of metres over 0");
+  constexpr const char* kWrongFrame = "is in a frame with a number that is not 1 to 999";
+  const auto frame = read_frame(all[2]);
+  if (!frame) return wrong(kWrongFrame);
+  object.frame = *frame;
+  std::size_t first = 3;  // word of the place
+  if (all.size() >= 5 && all[3] == "to") {
+    object.other = read_frame(all[4]);
+    if (!object.other) return wrong(kWrongFrame);
+    first = 5;
+  }
+  if (all.size() >= first + 2 && all[all.size() - 2] == "size") {
+    object.fits = object.other && all.back() == "fit";
+    if (!object.fits && (!read_number(all.back(), object.size) || object.size <= 0))
+      return wrong("has a size that is no number of metres over 0, nor fit between two frames");
     all.resize(all.size() - 2);
   }
   std::vector<double> numbers;
-  for (std::size_t i = 3; i < all.size(); ++i) {
+  for (std::size_t i = first; i < all.size(); ++i) {
     double number = 0;
     if (!read_number(all[i], number)) return wrong("has a place that is no numbers");
     numbers.push_back(number);
@@ -83,6 +91,19 @@ hc::Result<std::vector<Object>> read_objects(std::string_view text) {
     objects.push_back(*object);
   }
   return objects;
+}
+
+Eigen::Isometry3d between_points(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  constexpr double kUpright = 1e-6;  // its y axis would be made of rounding
+  const Eigen::Vector3d x = (to - from).normalized();
+  Eigen::Vector3d y = Eigen::Vector3d::UnitZ().cross(x);
+  if (y.norm() < kUpright) y = Eigen::Vector3d::UnitY();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = (from + to) / 2;
+  T.linear().col(2) = x.cross(y).normalized();
+  T.linear().col(1) = T.linear().col(2).cross(x);
+  T.linear().col(0) = x;
+  return T;
 }
 
 hc::Result<std::vector<hc::graphics::Part>> load(const std::string& model) {

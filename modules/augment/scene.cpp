@@ -6,6 +6,20 @@
 
 #include <graphics/occlusion.h>
 
+namespace {
+
+/// T_world_frame; nothing for a marker that has not been seen.
+std::optional<Eigen::Isometry3d> find_frame(hc::ModuleFrames& frames, const Markers& markers,
+                                            const NamedFrame& frame, std::int64_t time) {
+  if (frame.number == 0) return frames.nearest("world", std::string_view(frame.name), time);
+  if (const auto* T_world_marker = markers.find(frame.number); T_world_marker != nullptr)
+    return *T_world_marker;
+  const auto known = frames.tree().nearest("world", frame.number, time);
+  return known ? std::optional(*known) : std::nullopt;
+}
+
+}  // namespace
+
 void Markers::see(int number, std::int64_t time, const Eigen::Isometry3d& T_world_marker,
                   double smoothing) {
   constexpr double kMoved = 0.1;  // it was moved [m]
@@ -35,8 +49,8 @@ hc::Result<std::unique_ptr<Scene>> Scene::make(const std::string& text) {
   for (const auto& object : *objects) {
     auto parts = load(object.model);
     if (!parts) return parts.error();
-    scene->bodies_.push_back(
-        hc::graphics::make_body(*scene->renderer_, std::move(*parts), object.size));
+    scene->bodies_.push_back(hc::graphics::make_body(*scene->renderer_, *parts));
+    if (object.size > 0) scene->bodies_.back().set_size(object.size);
   }
   scene->objects_ = std::move(*objects);
   return scene;
@@ -47,16 +61,17 @@ void Scene::place(hc::ModuleFrames& frames, const Markers& markers, std::int64_t
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const Object& object = objects_[i];
     hc::graphics::Body body = bodies_[i];
-    if (const auto* T_world_marker = markers.find(object.frame_number); T_world_marker != nullptr) {
-      body.T_world_body = *T_world_marker * object.T_frame_object;
-    } else if (object.frame_number == 0) {
-      body.T_world_body =
-          frames.nearest("world", std::string_view(object.frame), time) * object.T_frame_object;
-    } else {
-      const auto T_world_frame = frames.tree().nearest("world", object.frame_number, time);
-      if (!T_world_frame) continue;  // a marker that has not been seen
-      body.T_world_body = *T_world_frame * object.T_frame_object;
+    auto T_world_frame = find_frame(frames, markers, object.frame, time);
+    if (!T_world_frame) continue;
+    if (object.other) {
+      const auto T_world_other = find_frame(frames, markers, *object.other, time);
+      if (!T_world_other) continue;
+      const Eigen::Vector3d from = T_world_frame->translation(), to = T_world_other->translation();
+      if (from == to) continue;  // there is no direction
+      T_world_frame = between_points(from, to);
+      if (object.fits) body.set_size((to - from).norm());
     }
+    body.T_world_body = *T_world_frame * object.T_frame_object;
     placed_.push_back(std::move(body));
   }
 }

@@ -55,6 +55,21 @@ TEST_F(Scenes, have_objects_in_frames_and_at_markers) {
   EXPECT_EQ(scene->bodies()[1].T_world_body.translation().x(), 3);
 }
 
+TEST_F(Scenes, have_objects_between_two_markers) {
+  make("cube at 101 to 102 size fit; cube at 101 to 102 0 0 1 size 0.5");
+  markers.see(101, kSecond, at(3), 0);
+  scene->place(frames, markers, kSecond);
+  EXPECT_TRUE(scene->bodies().empty()) << "one of them has not been seen";
+  markers.see(102, kSecond, at(5), 0);
+  scene->place(frames, markers, kSecond);
+  ASSERT_EQ(scene->bodies().size(), 2U);
+  EXPECT_TRUE(scene->bodies()[0].corners().back().isApprox(Eigen::Vector3d(5, 1, 1)));
+  EXPECT_TRUE(scene->bodies()[1].corners().back().isApprox(Eigen::Vector3d(4.25, 0.25, 1.25)));
+  markers.see(102, kSecond, at(3), 0);
+  scene->place(frames, markers, kSecond);
+  EXPECT_TRUE(scene->bodies().empty()) << "they are at one place";
+}
+
 TEST_F(Scenes, have_no_objects_in_frames_that_there_are_not) {
   make("ball at nowhere");
   EXPECT_THROW(scene->place(frames, markers, kSecond), hc::ModuleError);

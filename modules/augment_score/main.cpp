@@ -117,18 +117,17 @@ int main(int argc, char** argv) {
   };
   auto compare_mask = [&](const Eigen::Isometry3d& T_world_left, const cv::Mat& scene,
                           const cv::Mat& found) {
-    const hc::graphics::Item item{cube.surfaces.front(), cube.T_world_body.cast<float>()};
     cv::Mat rgb, object;
-    if (auto drawn = renderer->draw({&item, 1}, camera, T_world_left, {}, rgb, &object); !drawn)
+    if (auto drawn = renderer->draw(cube.items(), camera, T_world_left, {}, rgb, &object); !drawn)
       throw hc::ModuleError(drawn.error());
     if (const auto share = share_right(object, scene, found)) samples.right.push_back(*share);
   };
 
   module.on_start([&] {
     renderer = hc::value_or_end(hc::graphics::Renderer::make());
-    cube = hc::graphics::make_body(
-        *renderer,
-        {{hc::graphics::make_box({1, 1, 1}), cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(255))}}, *size);
+    cube = hc::graphics::make_body(*renderer, {{hc::graphics::make_box({1, 1, 1}),
+                                                cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(255))}});
+    cube.set_size(*size);
     cube.T_world_body = Eigen::Translation3d(*x, *y, *z);
   });
   module.on(hc::together(left_pose, right_pose, depth, corners, mask),

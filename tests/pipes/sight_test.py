@@ -21,6 +21,25 @@ def turn(q, v):
     ]
 
 
+# A stick of 2 m along x, in the format of Wavefront.
+STICK = """
+v -1 -0.01 -0.01
+v 1 -0.01 -0.01
+v 1 0.01 -0.01
+v -1 0.01 -0.01
+v -1 -0.01 0.01
+v 1 -0.01 0.01
+v 1 0.01 0.01
+v -1 0.01 0.01
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+"""
+
+
 class Sight(Pipes):
     """The head looks straight ahead; its left eye is at (0.06, 0.05, 1.25) m of the world."""
 
@@ -148,6 +167,32 @@ class Sight(Pipes):
         truth = list(self.corners_of(marker[3:6], 0))[0]
         middle = [sum(corner[i] for corner in found[-8:]) / 8 for i in range(4)]
         self.assertLess(math.dist(middle, truth), 2, "px")
+
+    def test_an_object_is_held_between_two_markers(self):
+        self.simulate(
+            "--seed 1", left="left.mtp", right="right.mtp", depth="depth.mtp", markers="m.mtp"
+        )
+        self.shell(
+            "hc marker --marker_frames 'colour:300=103 colour:120=104' --focal 600 "
+            "--sides 'colour:300=0.14 colour:120=0.12' --in image=left.mtp --out poses=poses.mtp"
+        )
+        ends = [
+            next(row for row in self.messages("cat m.mtp") if row[1] == hue)[3:6]
+            for hue in (300, 120)
+        ]
+        self.write("stick.obj", STICK)
+        length = math.dist(*ends)
+        middle = [sum(pair) / 2 for pair in zip(*ends)]
+        for size, share in (("fit", 1), ("0.3", 0.3 / length)):
+            with self.subTest(size=size):
+                stick = "--objects 'stick.obj at 103 to 104 size %s' --clock messages" % size
+                found = self.messages(self.augment(stick + " --in poses=poses.mtp", "corners=-"))
+                for number, end in enumerate(ends):  # its x axis goes from the first to the second
+                    tip = [m + share * (e - m) for e, m in zip(end, middle)]
+                    truth = list(self.corners_of(tip, 0))[0]
+                    corners = [found[-8 + i] for i in range(8) if i % 2 == number]
+                    seen = [sum(corner[i] for corner in corners) / 4 for i in range(4)]
+                    self.assertLess(math.dist(seen, truth), 3, "px")
 
     def test_what_is_before_an_object_hides_it(self):
         self.simulate("--ball absent", left="left.mtp", right="right.mtp", depth="depth.mtp")
