@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bundles the page: node build.mjs OUT. OUT gets index.html, page.js, page.css and the chunks that
+// page.js loads later, and keeps nothing else. Fails where the first load is above the limit.
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+import { build } from "esbuild";
+
+const firstLoadLimit = 500_000; // bytes, compressed
+const here = dirname(fileURLToPath(import.meta.url));
+if (!process.argv[2]) {
+  console.error("usage: node build.mjs OUT");
+  process.exit(2);
+}
+const out = resolve(process.argv[2]);
+mkdirSync(out, { recursive: true });
+for (const name of readdirSync(out)) {
+  if (/\.(html|js|css)$/.test(name)) rmSync(join(out, name));
+}
+
+const result = await build({
+  absWorkingDir: here,
+  entryPoints: ["src/page.ts", "src/page.css"],
+  outdir: out,
+  bundle: true,
+  splitting: true,
+  format: "esm",
+  target: "es2022",
+  minify: true,
+  legalComments: "none",
+  chunkNames: "[name]-[hash]",
+  logLevel: "warning",
+  metafile: true,
+});
+copyFileSync(join(here, "index.html"), join(out, "index.html"));
+
+/** The files that are loaded at once: the page, and all that page.js imports statically. */
+function firstLoad() {
+  const names = new Set(["index.html", "page.css"]);
+  const outputs = Object.entries(result.metafile.outputs).map(([path, output]) => ({
+    name: path.split("/").pop(),
+    imports: output.imports
+      .filter((each) => each.kind === "import-statement")
+      .map((each) => each.path.split("/").pop()),
+  }));
+  const add = (name) => {
+    if (names.has(name)) return;
+    names.add(name);
+    outputs.find((output) => output.name === name)?.imports.forEach(add);
+  };
+  add("page.js");
+  return names;
+}
+
+const first = firstLoad();
+let total = 0;
+for (const name of readdirSync(out).sort()) {
+  if (!/\.(html|js|css)$/.test(name)) continue;
+  const bytes = gzipSync(readFileSync(join(out, name)), { level: 9 }).length;
+  if (first.has(name)) total += bytes;
+  console.log(`${String(bytes).padStart(8)} B ${name}${first.has(name) ? "" : " (later)"}`);
+}
+console.log(`${String(total).padStart(8)} B first load, compressed`);
+if (total > firstLoadLimit) {
+  console.error(`the first load is above ${firstLoadLimit} B`);
+  process.exit(1);
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+import { headerOf, writeMessage, type Message } from "../mtp";
+import { Signal, type Unsubscribe } from "./signal";
+import { Socket } from "./socket";
+import type { DriveOutput } from "./types";
+
+/** The `src` of what a driver sends (W12). */
+export const driveSource: Record<DriveOutput, number> = {
+  stick: 1,
+  rotation: 2,
+  target: 3,
+  text: 4,
+  bid: 5,
+};
+
+export type DriveStatus =
+  | { readonly status: "connecting" }
+  | { readonly status: "driving" }
+  /** `taken`: somebody else drives. */
+  | { readonly status: "closed"; readonly taken: boolean; readonly why: string };
+
+const beat = writeMessage({
+  header: headerOf({ type: "table", components: 1, scalar: "u8", encoding: "text" }, 0, 0),
+  elements: new Uint8Array(0),
+});
+
+/**
+ * The driver's seat. While it is open, the server hears from it each 50 ms, so that what was sent
+ * last counts on (W13); it stops with the page, or with close().
+ */
+export class Drive {
+  private readonly statuses = new Signal<DriveStatus>({ status: "connecting" });
+  private readonly socket: Socket;
+  private readonly timer: number;
+  private seq = 0n;
+
+  /** @param take  take the seat from whoever has it. */
+  constructor(take: boolean) {
+    this.socket = new Socket(take ? "/drive?take=1" : "/drive", {
+      open: () => this.statuses.set({ status: "driving" }),
+      lost: (code, reason, retry) => {
+        if (retry !== null) return this.statuses.set({ status: "connecting" });
+        const taken = code === 4409;
+        const why = taken
+          ? "Somebody else drives."
+          : reason || `The server has closed it: ${code}.`;
+        this.statuses.set({ status: "closed", taken, why });
+        this.close();
+      },
+    });
+    this.timer = window.setInterval(() => this.socket.send(beat), 50);
+  }
+
+  onStatus(listener: (status: DriveStatus) => void): Unsubscribe {
+    return this.statuses.on(listener);
+  }
+
+  get status(): DriveStatus {
+    return this.statuses.value ?? { status: "connecting" };
+  }
+
+  /** Sends to an output of `web`, with the next seq; returns whether the socket was open. */
+  send(output: DriveOutput, message: Message): boolean {
+    const header = { ...message.header, src: driveSource[output], seq: this.seq++ };
+    return this.socket.send(writeMessage({ ...message, header }));
+  }
+
+  close(): void {
+    clearInterval(this.timer);
+    this.socket.close();
+  }
+}

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
+export * from "./drive";
+export * from "./server";
+export * from "./signal";
+export * from "./stream";
+export * from "./types";

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+import { readMessage, rowsOf } from "../mtp";
+import { Drive } from "./drive";
+import { Signal, type Unsubscribe } from "./signal";
+import { Socket } from "./socket";
+import { Stream, type StreamOptions } from "./stream";
+import type { Connection, GraphState, Recording, Session } from "./types";
+
+/** A command that was not done; `rows` say what is wrong. */
+export class CommandError extends Error {
+  constructor(readonly rows: readonly string[]) {
+    super(rows.join("\n"));
+    this.name = "CommandError";
+  }
+}
+
+interface Waiting {
+  resolve(rows: string[]): void;
+  reject(error: CommandError): void;
+}
+
+const logLines = 2000;
+
+/** The server of this page: the graph's state, the session, the log, commands, streams. */
+export class Server {
+  private readonly states = new Signal<GraphState>();
+  private readonly sessions = new Signal<Session>();
+  private readonly lines = new Signal<string>();
+  private readonly connections = new Signal<Connection>({ status: "connecting" });
+  private readonly waiting: Waiting[] = [];
+  private readonly logged: string[] = [];
+  private readonly socket: Socket;
+
+  constructor() {
+    this.socket = new Socket("/graph", {
+      open: () => {
+        this.logged.length = 0; // the server sends the last lines again
+        this.connections.set({ status: "open" });
+      },
+      binary: (bytes) => this.receive(bytes),
+      lost: (code, reason, retry) => {
+        for (const each of this.waiting.splice(0)) {
+          each.reject(
+            new CommandError(["The connection was lost; it is not known if it was done."]),
+          );
+        }
+        this.connections.set({ status: "lost", why: whyLost(code, reason), retry });
+      },
+    });
+  }
+
+  get state(): GraphState | undefined {
+    return this.states.value;
+  }
+
+  get session(): Session | undefined {
+    return this.sessions.value;
+  }
+
+  get connection(): Connection {
+    return this.connections.value ?? { status: "connecting" };
+  }
+
+  /** The last lines of the log. */
+  get log(): readonly string[] {
+    return this.logged;
+  }
+
+  onState(listener: (state: GraphState) => void): Unsubscribe {
+    return this.states.on(listener);
+  }
+
+  onSession(listener: (session: Session) => void): Unsubscribe {
+    return this.sessions.on(listener);
+  }
+
+  onConnection(listener: (connection: Connection) => void): Unsubscribe {
+    return this.connections.on(listener);
+  }
+
+  /** Each line of the log as it comes (G46); those before are in `log`. */
+  onLog(listener: (line: string) => void): Unsubscribe {
+    return this.lines.on(listener);
+  }
+
+  /**
+   * Sends commands, a row each (W7).
+   *
+   * @returns  the rows after `ok`.
+   * Errors: CommandError with the rows of what is wrong.
+   */
+  command(text: string): Promise<string[]> {
+    return new Promise((resolve, reject) => {
+      if (this.socket.send(text)) this.waiting.push({ resolve, reject });
+      else reject(new CommandError(["There is no connection to the server."]));
+    });
+  }
+
+  /** Opens the stream MODULE.PORT. */
+  stream(port: string, options: StreamOptions = {}): Stream {
+    return new Stream(port, options);
+  }
+
+  /** Opens the driver's seat. */
+  drive(options: { take?: boolean } = {}): Drive {
+    return new Drive(options.take ?? false);
+  }
+
+  /** The recordings that the server keeps (W14). */
+  async recordings(): Promise<Recording[]> {
+    const response = await fetch("/recordings");
+    if (!response.ok) throw new Error(`The server gives no recordings: ${response.status}.`);
+    return (await response.json()) as Recording[];
+  }
+
+  /** Connects at once, where it would have waited. */
+  reconnect(): void {
+    this.socket.retry();
+  }
+
+  close(): void {
+    this.socket.close();
+  }
+
+  private receive(bytes: Uint8Array<ArrayBuffer>): void {
+    const message = readMessage(bytes);
+    const rows = rowsOf(message);
+    switch (message.header.src) {
+      case 1:
+        return this.states.set(JSON.parse(rows.join("")) as GraphState);
+      case 2:
+        for (const row of rows) {
+          this.logged.push(row);
+          if (this.logged.length > logLines) this.logged.shift();
+          this.lines.emit(row);
+        }
+        return;
+      case 3:
+        return this.sessions.set(JSON.parse(rows.join("")) as Session);
+      case 4: {
+        const [first, ...others] = rows;
+        const answer = this.waiting.shift();
+        if (first === "ok") answer?.resolve(others);
+        else answer?.reject(new CommandError(rows));
+      }
+    }
+  }
+}
+
+function whyLost(code: number, reason: string): string {
+  if (code === 1000) return "The graph has ended. Start it again, then open the URL it prints.";
+  const detail = reason && ` (${reason})`;
+  return `No connection to the server${detail}. If it runs again, open the URL that it prints.`;
+}

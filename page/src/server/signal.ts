@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+
+export type Unsubscribe = () => void;
+
+/** A value that others are told of: each listener at once, if there is a value, and on changes. */
+export class Signal<T> {
+  private readonly listeners = new Set<(value: T) => void>();
+
+  constructor(private current?: T) {}
+
+  get value(): T | undefined {
+    return this.current;
+  }
+
+  set(value: T): void {
+    this.current = value;
+    this.emit(value);
+  }
+
+  /** Tells the listeners, and keeps nothing. */
+  emit(value: T): void {
+    for (const listener of [...this.listeners]) listener(value);
+  }
+
+  on(listener: (value: T) => void): Unsubscribe {
+    this.listeners.add(listener);
+    if (this.current !== undefined) listener(this.current);
+    return () => this.listeners.delete(listener);
+  }
+}

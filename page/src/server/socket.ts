@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/** What a socket of this page tells. */
+export interface SocketEvents {
+  open?(): void;
+  text?(text: string): void;
+  binary?(bytes: Uint8Array<ArrayBuffer>): void;
+  /** The socket is shut. `retry`: seconds until it is tried again; null: it is not. */
+  lost?(code: number, reason: string, retry: number | null): void;
+}
+
+/** Close codes after which another try would end the same way (spec/page.md). */
+const final = new Set([1000, 1007, 1008, 1009, 4404, 4409]);
+
+/**
+ * A WebSocket to a path of this server that connects again, after 0.25 s, then twice as long each
+ * time, up to 5 s.
+ */
+export class Socket {
+  private socket?: WebSocket;
+  private delay = 0.25; // [s]
+  private timer?: number;
+  private closed = false;
+
+  constructor(
+    readonly path: string,
+    private readonly events: SocketEvents,
+  ) {
+    this.connect();
+  }
+
+  get isOpen(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  /** Bytes that have not gone out yet. */
+  get waiting(): number {
+    return this.socket?.bufferedAmount ?? 0;
+  }
+
+  /** Sends if the socket is open; returns whether it was. */
+  send(data: string | Uint8Array<ArrayBuffer>): boolean {
+    if (!this.isOpen) return false;
+    this.socket?.send(data);
+    return true;
+  }
+
+  /** Tries at once, where it would have waited. */
+  retry(): void {
+    if (this.closed || !this.socket || this.socket.readyState < WebSocket.CLOSING) return;
+    clearTimeout(this.timer);
+    this.connect();
+  }
+
+  close(): void {
+    this.closed = true;
+    clearTimeout(this.timer);
+    this.socket?.close();
+  }
+
+  private connect(): void {
+    const url = new URL(this.path, location.href);
+    url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+    url.hash = "";
+    const socket = new WebSocket(url);
+    this.socket = socket;
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      this.delay = 0.25;
+      this.events.open?.();
+    };
+    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
+      if (this.closed) return;
+      if (typeof event.data === "string") this.events.text?.(event.data);
+      else this.events.binary?.(new Uint8Array(event.data));
+    };
+    socket.onclose = (event) => {
+      if (this.closed || this.socket !== socket) return;
+      const retry = final.has(event.code) ? null : this.delay;
+      if (retry !== null) {
+        this.timer = window.setTimeout(() => this.connect(), retry * 1000);
+        this.delay = Math.min(5, this.delay * 2);
+      }
+      this.events.lost?.(event.code, event.reason, retry);
+    };
+  }
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+import { MtpError, readMessage, type Message } from "../mtp";
+import { Signal, type Unsubscribe } from "./signal";
+import { Socket } from "./socket";
+
+/** How a stream is sent (W9). */
+export interface StreamOptions {
+  as?: "raw" | "jpeg" | "vp8";
+  /** At most so many elements in a row. */
+  width?: number;
+  /** At most so many messages a second. */
+  rate?: number;
+  /** Begin with the last message there was. */
+  last?: boolean;
+}
+
+/** A message, and when it came [ms, performance.timeOrigin + performance.now()]. */
+export interface Arrival {
+  readonly message: Message;
+  readonly at: number;
+  readonly bytes: number;
+}
+
+/** Says that a message has been used; the server then sends a further one (W11). */
+export type Done = () => void;
+
+/**
+ * The messages of an output. The newest only: a listener that returns a promise holds the stream
+ * up until it is settled.
+ */
+export class Stream {
+  private readonly arrivals = new Signal<Arrival>();
+  private readonly headers = new Signal<string>();
+  private readonly problems = new Signal<string>();
+  private readonly consumers = new Set<(arrival: Arrival) => void | Promise<void>>();
+  private readonly socket: Socket;
+
+  constructor(
+    readonly port: string,
+    private options: StreamOptions = {},
+  ) {
+    const query = Object.entries({ ...options, last: options.last ? 1 : undefined })
+      .filter(([, value]) => value !== undefined)
+      .map(([key, value]) => `${key}=${value}`)
+      .join("&");
+    this.socket = new Socket(`/streams/${port}${query && "?" + query}`, {
+      open: () => this.problems.set(""),
+      text: (text) => this.headers.set(text.trimEnd()),
+      binary: (bytes) => void this.receive(bytes),
+      lost: (code, reason, retry) => this.problems.set(problemOf(port, code, reason, retry)),
+    });
+  }
+
+  /** Each message; the next one comes when the promises of all listeners are settled. */
+  on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
+  /** The header line as it was sent, before it was scaled or encoded (W10). */
+  on(event: "header", listener: (line: string) => void): Unsubscribe;
+  /** A sentence that says what is wrong; empty: nothing. */
+  on(event: "problem", listener: (problem: string) => void): Unsubscribe;
+  on(
+    event: "message" | "header" | "problem",
+    listener: ((arrival: Arrival) => void | Promise<void>) | ((text: string) => void),
+  ): Unsubscribe {
+    if (event === "header") return this.headers.on(listener as (line: string) => void);
+    if (event === "problem") return this.problems.on(listener as (problem: string) => void);
+    const consumer = listener as (arrival: Arrival) => void | Promise<void>;
+    this.consumers.add(consumer);
+    return () => this.consumers.delete(consumer);
+  }
+
+  /** The last header line as it was sent. */
+  get header(): string | undefined {
+    return this.headers.value;
+  }
+
+  get last(): Arrival | undefined {
+    return this.arrivals.value;
+  }
+
+  setWidth(width: number): void {
+    if (width === this.options.width) return;
+    this.options = { ...this.options, width };
+    this.socket.send(`width=${width}`);
+  }
+
+  setRate(rate: number): void {
+    if (rate === this.options.rate) return;
+    this.options = { ...this.options, rate };
+    this.socket.send(`rate=${rate}`);
+  }
+
+  close(): void {
+    this.socket.close();
+    this.consumers.clear();
+  }
+
+  private async receive(bytes: Uint8Array<ArrayBuffer>): Promise<void> {
+    const at = performance.timeOrigin + performance.now();
+    try {
+      const arrival = { message: readMessage(bytes), at, bytes: bytes.length };
+      this.arrivals.set(arrival);
+      await Promise.all([...this.consumers].map((consumer) => consumer(arrival)));
+    } catch (error) {
+      if (!(error instanceof MtpError)) console.error(error);
+      this.problems.set(`${this.port}: ${error instanceof Error ? error.message : String(error)}`);
+    } finally {
+      this.socket.send("ok");
+    }
+  }
+}
+
+function problemOf(port: string, code: number, reason: string, retry: number | null): string {
+  if (code === 4404) return reason || `There is no output ${port}.`;
+  if (code === 1000) return "The graph has ended.";
+  return retry === null
+    ? `The server has closed this stream: ${reason || `code ${code}`}.`
+    : "The stream is interrupted; it is being opened again.";
+}

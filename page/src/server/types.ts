@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the server says of the graph and the session: JSON of G45 (spec/graph.md) and W6
+// (spec/page.md).
+
+export type ModuleStatus =
+  "starting" | "running" | "stalled" | "waiting" | "stopping" | "ended" | "given up";
+
+/** Median, 99th percentile and maximum [s]. */
+export type Percentiles = readonly [number, number, number];
+
+export interface GraphModule {
+  readonly name: string;
+  readonly program: string;
+  /** The included graph that it is of; empty: the file itself. */
+  readonly group: string;
+  readonly pid: number;
+  readonly status: ModuleStatus;
+  readonly detail: string;
+  readonly restarts: number;
+  readonly exit: number | null;
+  /** Part of one processor. */
+  readonly cpu: number;
+  /** [byte] */
+  readonly memory: number;
+  readonly mode: string;
+  readonly modes: readonly string[];
+  readonly in_focus: boolean;
+  readonly in_workspace: boolean;
+  readonly last_line: string;
+  /** [s] */
+  readonly last_line_age: number | null;
+  readonly parameters: Readonly<Record<string, string>>;
+}
+
+export interface GraphLink {
+  readonly from: string;
+  readonly to: string;
+  readonly transport: string;
+  /** Empty, or why nothing can go over it. */
+  readonly status: string;
+  readonly keep: string | number;
+  readonly rate: number;
+  readonly messages: number;
+  readonly bytes: number;
+  readonly per_second: number;
+  readonly bytes_per_second: number;
+  readonly delayed: number;
+  readonly throttled: number;
+  readonly dropped_newer: number;
+  readonly dropped_memory: number;
+  readonly dropped_disconnect: number;
+  readonly ignored: number;
+  readonly in_workspace: boolean;
+  readonly age: Percentiles | null;
+  readonly gap: Percentiles | null;
+}
+
+export interface GraphState {
+  readonly graph: string;
+  readonly file: string;
+  readonly pid: number;
+  /** [s] */
+  readonly uptime: number;
+  readonly status: "running" | "stopping";
+  readonly focus: { readonly mode: string; readonly number: number } | null;
+  readonly modules: readonly GraphModule[];
+  readonly links: readonly GraphLink[];
+  readonly workspaces: readonly string[];
+  readonly modes: Readonly<Record<string, number>>;
+  readonly addresses: Readonly<Record<string, number>>;
+}
+
+export type DriveOutput = "stick" | "rotation" | "target" | "text" | "bid";
+
+export interface RecordingState {
+  readonly name: string;
+  readonly bytes: number;
+  readonly seconds: number;
+  readonly streams: readonly string[];
+}
+
+export interface Session {
+  readonly right: "view" | "drive";
+  readonly driver: "you" | "other" | null;
+  readonly stopped: boolean | null;
+  readonly recording: RecordingState | null;
+  readonly drives: readonly DriveOutput[];
+  /** The text of G31. */
+  readonly frames: string;
+  /** Name of the module that serves this page. */
+  readonly web: string;
+}
+
+export interface Recording {
+  readonly name: string;
+  readonly bytes: number;
+  readonly streams: readonly string[];
+}
+
+/** How the page and the server are joined. */
+export type Connection =
+  | { readonly status: "connecting" }
+  | { readonly status: "open" }
+  /** `retry`: seconds until it is tried again; null: not again by itself. */
+  | { readonly status: "lost"; readonly why: string; readonly retry: number | null };
