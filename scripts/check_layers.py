@@ -17,6 +17,7 @@ ALLOWED = {
     "compress": {"base", "mtp"},
     "testing": set(),  # what tests share
     "link": {"base", "os", "mtp"},
+    "observe": {"base", "os", "mtp", "link"},
     "module": {"base", "os", "mtp", "contract", "compress", "link"},
     "graph": {"base", "os", "mtp", "contract", "link"},
     "frames": {"base"},
@@ -26,10 +27,11 @@ ALLOWED = {
     "room": {"base", "graphics"},
     "sound": {"base"},
     "drivers": {"base"},
-    "modules": {"base", "os", "mtp", "contract", "compress", "module", "drivers"} | PACKAGES,
-    "tools": {"base", "os", "mtp", "contract", "compress", "link", "graph", "frames"},
+    "modules": {"base", "os", "mtp", "contract", "compress", "module", "observe", "drivers"}
+    | PACKAGES,
+    "tools": {"base", "os", "mtp", "contract", "compress", "link", "observe", "graph", "frames"},
 }
-CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "graph"}
+CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "observe", "graph"}
 # The mtp layer is pure: no input or output, no threads, no clock.
 IMPURE = re.compile(
     r"<(sys/.*|unistd\.h|fcntl\.h|poll\.h|net.*|thread|mutex|atomic|condition_variable|future"

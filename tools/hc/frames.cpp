@@ -82,7 +82,7 @@ void observe(GraphFrames& frames, const FramesOptions& options,
   std::vector<std::unique_ptr<hc::Source>> sources;
   std::vector<int> descriptors;
   for (const auto& output : outputs) {
-    observations.emplace_back(graph, output);
+    observations.push_back(make_observation(graph, output));
     sources.push_back(open_source(observations.back().uri(), kDefaultLimit));
     descriptors.push_back(sources.back()->descriptor());
   }

@@ -169,7 +169,7 @@ void change(const GraphOptions& options, const std::vector<std::string>& command
     if (command.find('\n') != std::string::npos)
       throw Failure(hc::Error{hc::Code::Invalid, "a command is one line"});
   const auto graph = choose_running(options.running);
-  ask(graph, commands);
+  command_graph(graph, commands);
   const std::string_view set = "set ";
   std::optional<hc::GraphState> state;
   for (const auto& command : commands) {

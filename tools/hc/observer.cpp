@@ -7,34 +7,20 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/contract/description.h>
-#include <hc/mtp/rows.h>
 #include <hc/os/program.h>
 
 #include "common.h"
 
 namespace tool {
 namespace {
-
-constexpr std::string_view kPrefix = "hypercolumn.", kAnswerPrefix = "hypercolumn-answer.";
-constexpr std::int32_t kState = 1;                            // src of what a graph says of itself
-constexpr std::uint64_t kMostSaid = std::uint64_t{16} << 20;  // [byte]
-constexpr std::chrono::seconds kAnswerTime{10};
-constexpr int kMostWaits = 12;                       // so long
-constexpr std::chrono::milliseconds kSilence{5000};  // a graph speaks twice a second
-
-std::string place(const RunningGraph& graph) {
-  return hc::format("unix:@{}{}", kPrefix, graph.text());
-}
 
 constexpr char kGranted = 'u';  // begins the URI of an observation; no code of an error
 
@@ -60,53 +46,7 @@ bool is_port_name(std::string_view text) {
          is_word(text.substr(dot + 1));
 }
 
-/// NAME.PROCESS, which stands behind the prefix in a socket's name. Anybody may bind any other.
-std::optional<RunningGraph> parse(std::string_view word) {
-  auto dot = word.find('.');
-  if (dot == std::string_view::npos || dot == 0 || dot > kMaxGraphName) return std::nullopt;
-  if (!std::all_of(word.begin(), word.begin() + dot, is_of_graph_name)) return std::nullopt;
-  RunningGraph graph;
-  graph.name = word.substr(0, dot);
-  auto number = word.substr(dot + 1);
-  auto [stop, status] =
-      std::from_chars(number.data(), number.data() + number.size(), graph.process);
-  if (status != std::errc() || stop != number.data() + number.size() || graph.process <= 0)
-    return std::nullopt;
-  return graph;
-}
-
 }  // namespace
-
-bool is_of_graph_name(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-         c == '_';
-}
-
-std::vector<RunningGraph> find_running(std::string_view sockets) {
-  std::vector<RunningGraph> found;
-  std::istringstream lines{std::string(sockets)};
-  const std::string begin = "@" + std::string(kPrefix);
-  for (std::string line; std::getline(lines, line);) {
-    // Of those that listen alone; each connection to one stands there with its name too.
-    std::istringstream words(line);
-    std::string slot, references, protocol, flags, type, state, inode, path;
-    words >> slot >> references >> protocol >> flags >> type >> state >> inode >> path;
-    if (flags != "00010000" || !path.starts_with(begin)) continue;
-    auto graph = parse(std::string_view(path).substr(begin.size()));
-    if (graph) found.push_back(std::move(*graph));
-  }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.name, a.process) < std::tie(b.name, b.process);
-  });
-  return found;
-}
-
-std::vector<RunningGraph> find_running() {
-  std::ifstream table("/proc/net/unix");
-  std::stringstream text;
-  text << table.rdbuf();
-  return find_running(text.str());
-}
 
 RunningGraph choose_running(const std::string& wanted) {
   const char* variable = std::getenv("HC_GRAPH");
@@ -137,7 +77,7 @@ RunningGraph choose_running(const std::string& wanted) {
 }
 
 Observer::Observer(const RunningGraph& graph)
-    : name_(graph.text()), source_(open_source(place(graph), kMostSaid)) {}
+    : name_(graph.text()), source_(open_source(graph.state_uri(), hc::kMaxStateBytes)) {}
 
 std::optional<hc::GraphState> Observer::next(const std::vector<int>& inputs) {
   bool is_new = false;
@@ -145,7 +85,7 @@ std::optional<hc::GraphState> Observer::next(const std::vector<int>& inputs) {
   while (true) {
     auto got = source_->take(message);
     if (!got || *got == hc::Got::End) return std::nullopt;
-    if (*got == hc::Got::Message && message.header.src == kState) {
+    if (*got == hc::Got::Message && message.header.src == hc::kStateSource) {
       state_ = value_or_fail(hc::parse_graph_state(message.characters()), name_);
       is_new = true;
     }
@@ -153,7 +93,7 @@ std::optional<hc::GraphState> Observer::next(const std::vector<int>& inputs) {
     if (is_new) return state_;
     std::vector<int> descriptors = {source_->descriptor()};
     descriptors.insert(descriptors.end(), inputs.begin(), inputs.end());
-    auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kSilence);
+    auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), hc::kSilence);
     if (!ready && ready.error().code == hc::Code::Stopped) return std::nullopt;
     if (!ready) throw Failure(ready.error());
     if (*ready == descriptors.size())
@@ -170,44 +110,18 @@ std::optional<hc::GraphState> Observer::next_measured() {
   return next();
 }
 
-std::vector<std::string> ask(const RunningGraph& graph, const std::vector<std::string>& commands) {
-  const std::string answers = hc::format("@{}{}", kAnswerPrefix, ::getpid());
-  auto source = open_source("unix-listen:" + answers, kMostSaid);
-  std::vector<std::string> rows = {"reply unix:" + answers};
-  rows.insert(rows.end(), commands.begin(), commands.end());
-  const std::string where = place(graph) + ".ask";
-  auto sink = open_sink(where);
-  send(*sink, hc::make_rows(rows), where);
-  if (auto closed = sink->close(); !closed) throw Failure(where, closed.error());
-  hc::Message message;
-  int waits = 0;
-  while (true) {
-    auto got = source->take(message);
-    if (!got) throw Failure(graph.text(), got.error());
-    if (*got == hc::Got::Message) break;
-    std::array<int, 1> descriptors = {source->descriptor()};
-    auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kAnswerTime);
-    if (!ready) throw Failure(ready.error());
-    if (*ready == 0) continue;
-    // It may be waiting for a slow program, or have others to answer first.
-    if (++waits == kMostWaits || !Observer(graph).next())
-      throw Failure(hc::Error{hc::Code::Closed, graph.text() + " does not answer"});
-  }
-  auto answer = hc::rows_of(message);
-  if (answer.empty()) answer.emplace_back("an empty answer");
-  if (answer.front() == "ok") return {answer.begin() + 1, answer.end()};
-  for (std::size_t i = 0; i + 1 < answer.size(); ++i) say("hc: " + answer[i]);
-  throw Failure(hc::Error{hc::Code::Invalid, answer.back()});
+std::vector<std::string> command_graph(const RunningGraph& graph,
+                                       const std::vector<std::string>& commands) {
+  auto answer = value_or_fail(hc::ask(graph, commands, hc::stop_descriptor()), graph.text());
+  if (answer.is_ok) return answer.rows;
+  for (std::size_t i = 0; i + 1 < answer.rows.size(); ++i) say("hc: " + answer.rows[i]);
+  throw Failure(hc::Error{hc::Code::Invalid, answer.rows.back()});
 }
 
-Observation::Observation(const RunningGraph& graph, const std::string& port)
-    : command_("observe " + port),
-      uri_(ask(graph, {command_}).at(0) + "?reconnect=86400"),
-      place_(place(graph) + ".ask"),
-      sink_(open_sink(place_)) {}
-
-bool Observation::renew() {
-  return sink_->send(hc::make_rows(std::array{command_})).has_value();
+Observation make_observation(const RunningGraph& graph, const std::string& port) {
+  auto made = Observation::make(graph, port, hc::stop_descriptor());
+  if (!made) throw Failure(made.error());
+  return std::move(*made);
 }
 
 std::string observe(const RunningGraph& graph, const std::string& port) {
@@ -236,7 +150,7 @@ std::string observe(const RunningGraph& graph, const std::string& port) {
     ::close(ends[1]);
   };
   try {
-    Observation observation(graph, port);
+    auto observation = make_observation(graph, port);
     reply(kGranted, observation.uri());
     // Whoever reads our parent's output is not to wait for us.
     for (int number : {STDIN_FILENO, STDOUT_FILENO}) ::close(number);

@@ -10,25 +10,13 @@
 #include <vector>
 
 #include <hc/graph/state.h>
-#include <hc/link/link.h>
+#include <hc/observe/running.h>
 
 namespace tool {
 
-/// Of what a graph's name is made, and how long it is at most. [byte]
-bool is_of_graph_name(char c);
-inline constexpr std::size_t kMaxGraphName = 40;
-
-/// A graph that runs: one `hc run`.
-struct RunningGraph {
-  std::string name;
-  int process = 0;
-
-  [[nodiscard]] std::string text() const { return name + "." + std::to_string(process); }
-};
-
-/// Those of all users, by name and process number, from a table as /proc/net/unix is.
-std::vector<RunningGraph> find_running(std::string_view sockets);
-std::vector<RunningGraph> find_running();
+using hc::find_running;
+using hc::Observation;
+using hc::RunningGraph;
 
 /// The graph that a person means: by its name, or NAME.PROCESS where several have that. Without a
 /// name: $HC_GRAPH; else the only one; else the only one that was started in this terminal, or in
@@ -55,23 +43,11 @@ class Observer {
 
 /// Has a graph do what the commands say, a row each; gives what it answers behind "ok", and fails
 /// with any other answer.
-std::vector<std::string> ask(const RunningGraph& graph, const std::vector<std::string>& commands);
+std::vector<std::string> command_graph(const RunningGraph& graph,
+                                       const std::vector<std::string>& commands);
 
-/// An output that a graph holds open for observers, while it is asked so once in 5 s.
-class Observation {
- public:
-  /// @param port  MODULE.PORT; of an input, what feeds it.
-  Observation(const RunningGraph& graph, const std::string& port);
-
-  /// What to read; the link outlives restarts of the module.
-  [[nodiscard]] const std::string& uri() const { return uri_; }
-  /// Asks for more time; false when the graph has ended.
-  bool renew();
-
- private:
-  std::string command_, uri_, place_;
-  std::unique_ptr<hc::Sink> sink_;
-};
+/// As Observation::make(); fails where that does.
+Observation make_observation(const RunningGraph& graph, const std::string& port);
 
 /// An observation that lasts as long as this process; a child process renews it, and ends this one
 /// with SIGTERM when the graph ends.

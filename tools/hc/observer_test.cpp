@@ -8,33 +8,6 @@
 namespace tool {
 namespace {
 
-TEST(Observer, FindsGraphsAmongSockets) {
-  auto found = find_running(
-      "Num       RefCount Protocol Flags    Type St Inode Path\n"
-      "0000: 00000002 00000000 00010000 0001 01 1 @hypercolumn.head.12\n"
-      "0000: 00000003 00000000 00000000 0001 03 2 @hypercolumn.head.12\n"
-      "0000: 00000002 00000000 00010000 0001 01 3 @hypercolumn.head.12.ask\n"
-      "0000: 00000002 00000000 00010000 0001 01 4 @hypercolumn.a-B_2.7\n"
-      "0000: 00000002 00000000 00010000 0001 01 5 @hypercolumn.head.x\n"
-      "0000: 00000002 00000000 00010000 0001 01 6 /run/other\n"
-      "0000: 00000002 00000000 00010000 0001 01 7\n");
-  ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0].text(), "a-B_2.7");
-  EXPECT_EQ(found[1].text(), "head.12");
-}
-
-TEST(Observer, SocketsWithAnyOtherNameAreNoGraphs) {
-  // Anybody may bind a name, with bytes that a terminal obeys; and whoever asks a graph listens.
-  for (const std::string& name :
-       {std::string("a.b.7"), std::string("\x1b[2J.7"), std::string("å.7"), std::string(".7"),
-        std::string("a.-7"), std::string("a.0"), std::string("a."), std::string("a.7.ask"),
-        std::string(41, 'a') + ".7"})
-    EXPECT_TRUE(
-        find_running("0000: 00000002 00000000 00010000 0001 01 1 @hypercolumn." + name + "\n")
-            .empty())
-        << name;
-}
-
 TEST(Screen, NumbersAreShort) {
   const std::pair<double, const char*> cases[] = {
       {0, "0"},          {1, "1"},         {30, "30"},       {1.5, "1.50"},

@@ -77,9 +77,9 @@ std::string name_of(const RunOptions& options) {
   std::string name = options.name.empty()
                          ? std::filesystem::path(options.graph.file).stem().string()
                          : options.name;
-  name.resize(std::min(name.size(), kMaxGraphName));
+  name.resize(std::min(name.size(), hc::kMaxGraphName));
   std::replace_if(
-      name.begin(), name.end(), [](char c) { return !is_of_graph_name(c); }, '_');
+      name.begin(), name.end(), [](char c) { return !hc::is_of_graph_name(c); }, '_');
   return name.empty() ? "graph" : name;
 }
 
@@ -132,6 +132,8 @@ void run(const RunOptions& options) {
     for (const auto& output : unlinked) list += (list.empty() ? "" : ", ") + output;
     status.say("graph: not recorded, as not linked: " + list);
   }
+  // What a module starts, such as `hc`, means this graph; no thread reads the environment yet.
+  ::setenv("HC_GRAPH", (name_of(options) + "." + std::to_string(::getpid())).c_str(), 1);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
   run_options.tells_lines = !options.quiet;

@@ -64,7 +64,7 @@ class Bids {
  public:
   Bids(const RunningGraph& graph, const hc::GraphState& state) {
     for (const auto& workspace : state.workspaces) try {
-        Observation observation(graph, workspace + ".standings");
+        auto observation = make_observation(graph, workspace + ".standings");
         auto source = open_source(observation.uri(), kDefaultLimit);
         all_.push_back({std::move(observation), std::move(source), {}});
       } catch (const Failure&) {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/observe/running.h>
+
+#include <gtest/gtest.h>
+
+namespace hc {
+namespace {
+
+TEST(Running, graphs_are_found_among_sockets) {
+  auto found = find_running(
+      "Num       RefCount Protocol Flags    Type St Inode Path\n"
+      "0000: 00000002 00000000 00010000 0001 01 1 @hypercolumn.head.12\n"
+      "0000: 00000003 00000000 00000000 0001 03 2 @hypercolumn.head.12\n"
+      "0000: 00000002 00000000 00010000 0001 01 3 @hypercolumn.head.12.ask\n"
+      "0000: 00000002 00000000 00010000 0001 01 4 @hypercolumn.a-B_2.7\n"
+      "0000: 00000002 00000000 00010000 0001 01 5 @hypercolumn.head.x\n"
+      "0000: 00000002 00000000 00010000 0001 01 6 /run/other\n"
+      "0000: 00000002 00000000 00010000 0001 01 7\n");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].text(), "a-B_2.7");
+  EXPECT_EQ(found[1].text(), "head.12");
+}
+
+TEST(Running, sockets_with_any_other_name_are_no_graphs) {
+  // Anybody may bind a name, with bytes that a terminal obeys; and whoever asks a graph listens.
+  for (const std::string& name :
+       {std::string("a.b.7"), std::string("\x1b[2J.7"), std::string("å.7"), std::string(".7"),
+        std::string("a.-7"), std::string("a.0"), std::string("a."), std::string("a.7.ask"),
+        std::string(41, 'a') + ".7"})
+    EXPECT_TRUE(
+        find_running("0000: 00000002 00000000 00010000 0001 01 1 @hypercolumn." + name + "\n")
+            .empty())
+        << name;
+}
+
+TEST(Running, a_graph_that_has_ended_is_an_error) {
+  const RunningGraph gone{"no_such_graph", 1};
+  const auto answer = ask(gone, {"stop"});
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, Code::Closed);
+  EXPECT_FALSE(Observation::make(gone, "camera.left"));
+}
+
+}  // namespace
+}  // namespace hc
