@@ -2,7 +2,10 @@
 // MTP/1 (spec/mtp-1.md) in TypeScript.
 export * from "./coord";
 export * from "./error";
+export * from "./header";
 export * from "./info";
+export * from "./json";
 export * from "./message";
+export * from "./number";
 export * from "./reader";
 export * from "./writer";

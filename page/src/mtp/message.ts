@@ -84,7 +84,7 @@ export function numbersOf(message: Message): Numbers {
 export function rowsOf(message: Message): string[] {
   const { width, height } = message.header;
   const bytes = numbersOf(message) as Uint8Array<ArrayBuffer>;
-  const decoder = new TextDecoder();
+  const decoder = new TextDecoder("utf-8", { ignoreBOM: true });
   return Array.from({ length: width === 0 ? 0 : height }, (_, row) =>
     decoder.decode(bytes.subarray(row * width, (row + 1) * width)).replace(/ +$/, ""),
   );

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers as text: how they are read (R27, R28) and written (R39).
+import type { Scalar } from "./info";
+
+const integer = /^(0|-?[1-9][0-9]*)$/;
+const decimal = /^-?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?$/;
+const special = /^(-?)(nan|inf|infinity)$/i;
+
+/** Least and greatest value of the integer scalars. */
+const ranges: Partial<Record<Scalar, readonly [bigint, bigint]>> = {
+  u8: [0n, 0xffn],
+  i8: [-0x80n, 0x7fn],
+  u16: [0n, 0xffffn],
+  i16: [-0x8000n, 0x7fffn],
+  u32: [0n, 0xffff_ffffn],
+  i32: [-0x8000_0000n, 0x7fff_ffffn],
+  u64: [0n, 0xffff_ffff_ffff_ffffn],
+  i64: [-0x8000_0000_0000_0000n, 0x7fff_ffff_ffff_ffffn],
+};
+
+export function isInteger(text: string): boolean {
+  return integer.test(text);
+}
+
+/** The number that `text` spells, or the rule that it breaks: "R27" or "R28". */
+export function numberOf(text: string, scalar: Scalar): number | bigint | "R27" | "R28" {
+  const range = ranges[scalar];
+  if (range) {
+    if (!integer.test(text)) return "R27";
+    const value = BigInt(text);
+    if (value < range[0] || value > range[1]) return "R28";
+    return scalar === "u64" || scalar === "i64" ? value : Number(value);
+  }
+  const found = special.exec(text);
+  if (found) {
+    const size = found[2]!.toLowerCase() === "nan" ? NaN : Infinity;
+    return found[1] ? -size : size;
+  }
+  if (!decimal.test(text)) return "R27";
+  const value = scalar === "f32" ? single(text) : Number(text);
+  return Number.isFinite(value) ? value : "R28";
+}
+
+/** The f32 nearest to a decimal number, ties to even, rounded once. */
+function single(text: string): number {
+  const double = Number(text);
+  const rounded = Math.fround(double);
+  if (rounded === double || Number.isNaN(double)) return rounded;
+  const [below, above] = neighbours(double, rounded);
+  const middle = (below.at + above.at) / 2;
+  if (middle !== double) return rounded;
+  // The f64 lies just between two f32, so it does not say on which side the text itself is.
+  const side = compare(text, double);
+  return side === 0 ? rounded : side < 0 ? below.value : above.value;
+}
+
+interface Neighbour {
+  readonly value: number;
+  /** Where it counts as lying: infinity as the number that would follow the greatest f32. */
+  readonly at: number;
+}
+
+/** The f32 at either side of `double`, of which `rounded` is one. */
+function neighbours(double: number, rounded: number): [Neighbour, Neighbour] {
+  const here = { value: rounded, at: placeOf(rounded) };
+  const other = next(rounded, rounded < double ? 1 : -1);
+  const there = { value: other, at: placeOf(other) };
+  return rounded < double ? [here, there] : [there, here];
+}
+
+function placeOf(value: number): number {
+  return Number.isFinite(value) ? value : Math.sign(value) * 2 ** 128;
+}
+
+/** The next f32 up (1) or down (-1). */
+function next(value: number, direction: 1 | -1): number {
+  if (value === 0) return direction * 2 ** -149;
+  const view = new DataView(new ArrayBuffer(4));
+  view.setFloat32(0, value);
+  view.setInt32(0, view.getInt32(0) + (value > 0 === direction > 0 ? 1 : -1));
+  return view.getFloat32(0);
+}
+
+/** Sign of (decimal number − double), exactly. */
+function compare(text: string, double: number): number {
+  const [, sign, digits, exponent] = /^(-?)([0-9.]+)(?:[eE](.*))?$/.exec(text)!;
+  const [whole = "", fraction = ""] = digits!.split(".");
+  let left = BigInt(sign + (whole + fraction || "0"));
+  const tens = Number(exponent ?? 0) - fraction.length;
+  // double = right × 2^twos, with a whole `right`.
+  let twos = 0;
+  let scaled = double;
+  while (!Number.isInteger(scaled)) {
+    scaled *= 2;
+    twos -= 1;
+  }
+  let right = BigInt(scaled);
+  if (tens >= 0) left *= 10n ** BigInt(tens);
+  else right *= 10n ** BigInt(-tens);
+  left *= 2n ** BigInt(-twos);
+  return left < right ? -1 : left > right ? 1 : 0;
+}
+
+/** The text of a number in canonical form. */
+export function numberText(value: number | bigint, scalar: Scalar): string {
+  if (scalar !== "f32" && scalar !== "f64") return String(value);
+  const number = Number(value);
+  if (Number.isNaN(number)) return "nan";
+  if (!Number.isFinite(number)) return number < 0 ? "-inf" : "inf";
+  const sign = number < 0 || Object.is(number, -0) ? "-" : "";
+  const size = Math.abs(number);
+  if (size === 0) return sign + "0";
+  const { digits, exponent } = scalar === "f32" ? shortest32(size) : shortest64(size);
+  const mantissa = digits[0]! + (digits.length > 1 ? "." + digits.slice(1) : "");
+  const power = String(Math.abs(exponent)).padStart(2, "0");
+  const scientific = `${mantissa}e${exponent < 0 ? "-" : "+"}${power}`;
+  const fixedLength =
+    exponent < 0 ? digits.length - exponent + 1 : Math.max(exponent + 1, digits.length + 1);
+  const isWhole = exponent >= digits.length - 1;
+  if ((isWhole ? exponent + 1 : fixedLength) > scientific.length) return sign + scientific;
+  if (isWhole) return sign + BigInt(size);
+  if (exponent < 0) return `${sign}0.${"0".repeat(-exponent - 1)}${digits}`;
+  return `${sign}${digits.slice(0, exponent + 1)}.${digits.slice(exponent + 1)}`;
+}
+
+/** d₁.d₂d₃… × 10^exponent */
+interface Decimal {
+  readonly digits: string;
+  readonly exponent: number;
+}
+
+function decimalOf(scientific: string): Decimal {
+  const [mantissa = "", exponent] = scientific.split("e");
+  return {
+    digits: mantissa.replace(".", "").replace(/0+$/, "") || "0",
+    exponent: Number(exponent),
+  };
+}
+
+function shortest64(size: number): Decimal {
+  return decimalOf(size.toExponential());
+}
+
+/** The fewest digits that read back to the same f32; of several, the nearest. */
+function shortest32(size: number): Decimal {
+  for (let digits = 0; digits < 9; ++digits) {
+    const nearest = size.toExponential(digits);
+    if (single(nearest) === size) return decimalOf(nearest);
+    // At a power of two the room is wider above than below, where the nearest may not fit.
+    const [mantissa = "", exponent] = nearest.split("e");
+    const unit = BigInt(mantissa.replace(".", ""));
+    for (const other of [unit + 1n, unit - 1n]) {
+      const text = `${other}e${Number(exponent) - digits}`;
+      if (single(text) === size) return decimalOf(Number(text).toExponential(digits));
+    }
+  }
+  return decimalOf(size.toExponential(8));
+}
