@@ -312,7 +312,7 @@ class Watching(Graphs):
         listening = lambda: [
             line.split()[-1]
             for line in pathlib.Path("/proc/net/unix").read_text().splitlines()
-            if line.endswith(".%d" % asking.pid)
+            if "-answer.%d." % asking.pid in line
         ]
         wait_until(listening)
         self.assertRegex(listening()[0], "^@hypercolumn-answer")
