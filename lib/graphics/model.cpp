@@ -41,10 +41,21 @@ Mesh mesh_of(const aiMesh& from) {
   return mesh;
 }
 
-Result<cv::Mat> texture_of(const aiMaterial& material, const fs::path& folder) {
+/// An image of a model, which lies in its file or beside it; empty where it is none.
+cv::Mat read_texture(const aiScene& scene, const char* name, const fs::path& folder) {
+  const aiTexture* inside = scene.GetEmbeddedTexture(name);
+  if (inside == nullptr) return cv::imread((folder / name).string(), cv::IMREAD_COLOR);
+  const bool is_packed = inside->mHeight == 0;  // as PNG or JPEG, else not in these formats
+  if (!is_packed || inside->mWidth == 0) return {};
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
+  return cv::imdecode(std::vector<std::uint8_t>(bytes, bytes + inside->mWidth), cv::IMREAD_COLOR);
+}
+
+Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material,
+                           const fs::path& folder) {
   aiString name;
   if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS) {
-    cv::Mat image = cv::imread((folder / name.C_Str()).string(), cv::IMREAD_COLOR);
+    cv::Mat image = read_texture(scene, name.C_Str(), folder);
     if (image.empty())
       return Error{Code::Malformed, (folder / name.C_Str()).string() + ": is no image"};
     cv::cvtColor(image, image, cv::COLOR_BGR2RGB);
@@ -76,7 +87,7 @@ Result<std::vector<Part>> read_model(const std::string& path) {
     if (vertices > kMostVertices)
       return Error{Code::Malformed, path + ": has more than 10 million corners"};
     auto texture =
-        texture_of(*scene->mMaterials[mesh.mMaterialIndex], fs::path(path).parent_path());
+        texture_of(*scene, *scene->mMaterials[mesh.mMaterialIndex], fs::path(path).parent_path());
     if (!texture) return texture.error();
     parts.push_back({mesh_of(mesh), *texture});
   }

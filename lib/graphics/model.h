@@ -18,7 +18,7 @@ struct Part {
 };
 
 /// Reads a model: Wavefront .obj, .stl, .gltf or .glb. Its lengths are taken as metres, its axes as
-/// they are; textures lie beside it. Normals are made where it has none.
+/// they are; textures lie in it or beside it. Normals are made where it has none.
 ///
 /// Errors: NotFound (no such file); Unsupported (another format); Malformed (what assimp says; a
 /// texture that is no image; no triangle; more than 10 million corners).

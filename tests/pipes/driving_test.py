@@ -3,6 +3,7 @@
 """The scored tasks in which a person drives the head, shortened. Their figures depend on how busy
 the machine is; the bounds here are those that only a broken system exceeds."""
 
+import math
 import os
 import pathlib
 import re
@@ -102,6 +103,23 @@ class Driving(Pipes):
         # The head does not move before the stick, but for what the truth's period leaves open.
         self.assertGreater(median, -2)
         self.assertGreaterEqual(most, median)
+
+    def test_an_object_stays_in_the_room_while_the_head_turns(self):
+        port = free_udp_port()
+        median, most, right, least, fastest = self.score(
+            "score_augment",
+            r"off by ([\d.]+) px median, ([\d.]+) px at most, pixels right ([\d.]+) % median, "
+            r"([\d.]+) % at least, the head turning at up to ([\d.]+)°/s",
+            "fake_head_tracker.port=%d" % port,
+            "head_tracker.port=%d" % port,
+            "augment_score.images=10",
+        )
+        # One that turned with the head would be off by hundreds of pixels.
+        self.assertLess(median, 40)
+        self.assertGreaterEqual(most, median)
+        self.assertGreater(right, 60)
+        self.assertGreaterEqual(right, least)
+        self.assertGreaterEqual(fastest, math.degrees(0.7) - 1)
 
 
 class Gaze(Pipes):

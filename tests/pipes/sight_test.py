@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the eyes' modules see of the simulated room, compared with how it is."""
 
+import base64
 import json
 import math
 import re
+import struct
 import unittest
+import zlib
 
 from harness import Pipes, ROOT
 
@@ -38,6 +41,65 @@ f 2 3 7 6
 f 3 4 8 7
 f 4 1 5 8
 """
+
+
+def png(rgb):
+    """An image of one pixel."""
+
+    def chunk(kind, data):
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    header = struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)
+    pixels = zlib.compress(b"\0" + bytes(rgb))
+    return (
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", pixels) + chunk(b"IEND", b"")
+    )
+
+
+def gltf_parts(rgb):
+    """A square of 1 m that looks along -x, with an image of one colour on it: its description in
+    glTF, and its bytes."""
+    places = [0, -0.5, -0.5, 0, 0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5]
+    pieces = [
+        struct.pack("<12f", *places),
+        struct.pack("<8f", 0, 0, 1, 0, 1, 1, 0, 1),
+        struct.pack("<6H", 0, 2, 1, 0, 3, 2),
+        png(rgb),
+    ]
+    views, data = [], b""
+    for piece in pieces:
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(piece)})
+        data += piece + bytes(-len(piece) % 4)
+    bounds = {"min": [0, -0.5, -0.5], "max": [0, 0.5, 0.5]}
+    model = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [
+            {
+                "primitives": [
+                    {
+                        "attributes": {"POSITION": 0, "TEXCOORD_0": 1},
+                        "indices": 2,
+                        "material": 0,
+                    }
+                ]
+            }
+        ],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "textures": [{"source": 0}],
+        "images": [{"bufferView": 3, "mimeType": "image/png"}],
+        "accessors": [
+            dict(bounds, bufferView=0, componentType=5126, count=4, type="VEC3"),
+            {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"},
+            {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"},
+        ],
+        "bufferViews": views,
+    }
+    return model, data
 
 
 class Sight(Pipes):
@@ -201,6 +263,55 @@ class Sight(Pipes):
                 cube = "--objects 'cube at world %s size 0.3'" % place
                 masks = self.messages(self.augment(cube, "mask=-"))
                 self.assertEqual(max(max(row) for row in masks) == 255, is_seen)
+
+    def test_models_in_gltf_have_their_place_and_colour(self):
+        model, data = gltf_parts((20, 220, 60))
+        model["buffers"] = [{"byteLength": len(data)}]
+        text = json.dumps(model).encode()
+        text += b" " * (-len(text) % 4)
+        chunks = struct.pack("<I4s", len(text), b"JSON") + text
+        chunks += struct.pack("<I4s", len(data), b"BIN\0") + data
+        self.write("square.glb", struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)
+        uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+        model["buffers"][0]["uri"] = uri
+        self.write("square.gltf", json.dumps(model))
+        options = "--ball absent --count 1"
+        self.simulate(options, left="left.mtp", right="right.mtp", depth="depth.mtp")
+        for name in ("square.glb", "square.gltf"):
+            with self.subTest(name=name):
+                square = "--objects '%s at world 1.5 0.05 1.25 size 0.4'" % name
+                self.shell(self.augment(square, "left=augmented.mtp"))
+                rows = self.messages("cat augmented.mtp")
+                # 0.4 m at 1.44 m before the left eye are 167 px.
+                for x, y, is_square in (
+                    (400, 300, True),
+                    (325, 225, True),
+                    (475, 375, True),
+                    (300, 300, False),
+                    (400, 200, False),
+                ):
+                    red, green, blue = rows[y][x]
+                    is_green = green > 100 and red < green / 4 and blue < green / 2
+                    self.assertEqual(is_green, is_square, (x, y, red, green, blue))
+
+    def test_how_sure_depth_is_is_shown_of_the_cursor(self):
+        self.simulate("--count 1", left="left.mtp", right="right.mtp", depth="depth.mtp")
+        header = b"1 1 0 0 8 1 40101 0 12 800 600\n"
+        at = 200 * 800 + 100
+        maps = {
+            "unsure": bytes(480000),
+            "unsure_there": b"\xff" * at + b"\0" + b"\xff" * (480000 - at - 1),
+            "sure": b"\xff" * 480000,
+        }
+        shown = {}
+        options = "--objects '' --instruments confidence --cursor_x 100 --cursor_y 200 "
+        for name, pixels in maps.items():
+            self.write(name + ".mtp", header + pixels + b"\n")
+            link = "--in confidence=%s.mtp --clock messages" % name
+            self.shell(self.augment(options + link, "left=out.mtp"))
+            shown[name] = self.read_bytes("out.mtp")
+        self.assertEqual(shown["unsure"], shown["unsure_there"])
+        self.assertNotEqual(shown["unsure"], shown["sure"])
 
     def test_images_pass_where_there_is_nothing_to_draw(self):
         self.simulate("", left="left.mtp", right="right.mtp", depth="depth.mtp")
