@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+import { defaultLayout } from "./default_layout";
 import { graphPanel, modulePanel } from "./graph";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
-import { panelKinds, Shell } from "./shell";
+import { panelKinds, Shell, standardPanels } from "./shell";
 
 Object.assign(panelKinds, { graph: graphPanel, module: modulePanel, seat: seatPanel });
+standardPanels.push(
+  { label: "Graph", detail: "modules and links, live", args: { kind: "graph" } },
+  { label: "Seat", detail: "steer, speak, choose a task", args: { kind: "seat" } },
+);
 
-const shell = new Shell(new Server());
+const shell = new Shell(new Server(), defaultLayout);
 addStop(shell);
 document.body.append(shell.element);

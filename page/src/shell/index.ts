@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 export * from "./h";
+export * from "./layout";
+export { standardPanels } from "./opener";
 export * from "./panel";
 export * from "./shell";
+export { colour, onTheme } from "./theme";

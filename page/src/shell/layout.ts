@@ -16,7 +16,7 @@ export interface Column {
 
 export type Layout = Column[];
 
-const keep = (text: string) => encodeURIComponent(text).replace(/%20/g, "+");
+const keep = (text: string) => encodeURIComponent(text).replace(/%20/g, "+").replace(/\*/g, "%2A");
 const open = (text: string) => decodeURIComponent(text.replace(/\+/g, "%20"));
 const shareText = (share: number) => (share === 1 ? "" : `*${Number(share.toFixed(2))}`);
 

@@ -1,23 +1,143 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Server } from "../server";
-import { h } from "./h";
+import type { Connection, GraphState, Server, Session } from "../server";
+import { Board } from "./board";
+import { fill, h } from "./h";
+import { layoutOf, layoutText, type Layout } from "./layout";
+import { opener } from "./opener";
 import { panelKinds, type PanelArgs } from "./panel";
+import { themeButton } from "./theme";
+
+/** Chooses the panels of a page whose URL names none; undefined: not yet. */
+export type DefaultLayout = (state: GraphState, session: Session, width: number) => Layout;
 
 /** The page: header, panels, status line. */
 export class Shell {
-  readonly element = h("div", { class: "shell" });
-  /** Room in the header for what is always visible: the stop button, the task in focus. */
+  readonly element: HTMLElement;
+  /** Room in the header for what is always visible: the stop button. */
   readonly headerSlot = h("div", { class: "header-slot" });
+  private readonly graphName = h("h1", {}, "Hypercolumn");
+  private readonly connection = h("span", { class: "connection", role: "status" });
+  private readonly focus = h("span", { class: "focus" });
+  private readonly recording = h("button", {
+    class: "recording-now",
+    hidden: true,
+    onclick: () => this.openPanel({ kind: "recordings" }),
+  });
+  private readonly trouble = h("div", { class: "trouble", role: "alert", hidden: true });
+  private readonly status = h("div", {
+    class: "status-line",
+    role: "status",
+    "aria-live": "polite",
+  });
+  private readonly board: Board;
 
-  constructor(readonly server: Server) {
-    this.element.append(this.headerSlot);
+  constructor(
+    readonly server: Server,
+    private readonly defaultLayout: DefaultLayout,
+  ) {
+    this.board = new Board({
+      server,
+      say: (sentence) => this.say(sentence),
+      changed: () => this.store(),
+    });
+    const dialog = opener(server, (args) => this.openPanel(args));
+    this.element = h(
+      "div",
+      { class: "shell" },
+      h("button", { class: "skip", onclick: () => this.board.element.focus() }, "Go to the panels"),
+      h(
+        "header",
+        { class: "bar" },
+        this.graphName,
+        this.connection,
+        this.focus,
+        this.recording,
+        h("div", { class: "spring" }),
+        h("button", { onclick: () => dialog.showModal() }, "Open…"),
+        themeButton(),
+        this.headerSlot,
+      ),
+      this.trouble,
+      this.board.element,
+      this.status,
+      dialog,
+    );
+    server.onConnection((connection) => this.showConnection(connection));
+    server.onState((state) => this.showState(state));
+    server.onSession((session) => this.showSession(session));
+    addEventListener("hashchange", () => this.board.show(layoutOf(location.hash)));
+    if (location.hash.length > 1) this.board.show(layoutOf(location.hash));
+    else this.waitForDefault();
   }
 
   openPanel(args: PanelArgs): void {
-    if (!panelKinds[args.kind]) this.say(`There is no panel ${args.kind}.`);
+    if (panelKinds[args.kind]) this.board.open(args);
+    else this.say(`There is no panel ${args.kind}.`);
   }
 
+  /** Says a sentence in the status line. */
   say(sentence: string): void {
-    console.info(sentence);
+    this.status.textContent = sentence;
+  }
+
+  private store(): void {
+    history.replaceState(null, "", "#" + layoutText(this.board.current));
+  }
+
+  private waitForDefault(): void {
+    const attempt = () => {
+      const { state, session } = this.server;
+      if (!state || !session) return;
+      for (const end of ends) end();
+      if (location.hash.length > 1) return;
+      this.board.show(this.defaultLayout(state, session, innerWidth));
+      this.store();
+    };
+    const ends: (() => void)[] = [];
+    ends.push(this.server.onState(attempt), this.server.onSession(attempt));
+  }
+
+  private showConnection(connection: Connection): void {
+    this.connection.dataset.status = connection.status;
+    this.connection.textContent = { connecting: "connecting", open: "live", lost: "no connection" }[
+      connection.status
+    ];
+    this.element.classList.toggle("is-lost", connection.status === "lost");
+    if (connection.status === "open") this.trouble.hidden = true;
+    if (connection.status !== "lost" || this.trouble.textContent?.startsWith(connection.why))
+      return;
+    this.trouble.hidden = false;
+    fill(
+      this.trouble,
+      h("span", {}, connection.why),
+      connection.retry !== null &&
+        h("button", { onclick: () => this.server.reconnect() }, "Try now"),
+    );
+  }
+
+  private showState(state: GraphState): void {
+    if (this.graphName.textContent !== state.graph) {
+      this.graphName.textContent = state.graph;
+      this.graphName.title = state.file;
+      document.title = `${state.graph} – Hypercolumn`;
+    }
+    const hasFocus = state.workspaces.length > 0;
+    const task = state.focus?.mode ?? "no task";
+    const text = hasFocus ? task : "";
+    if (this.focus.textContent !== text) {
+      this.focus.textContent = text;
+      this.focus.setAttribute("aria-label", text && `Task in focus: ${text}`);
+    }
+    this.focus.classList.toggle("has-task", state.focus !== null);
+  }
+
+  private showSession(session: Session): void {
+    const { recording } = session;
+    this.recording.hidden = recording === null;
+    if (!recording) return;
+    const seconds = Math.floor(recording.seconds);
+    const time = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+    this.recording.textContent = `● ${recording.name} ${time}`;
+    this.recording.setAttribute("aria-label", `Recording ${recording.name}; show recordings`);
   }
 }

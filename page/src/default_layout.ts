@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { GraphState, Session } from "./server";
+import type { Layout, PanelArgs } from "./shell";
+
+/** The two eyes: outputs left and right of a module that nothing feeds. */
+function eyesOf(state: GraphState): string[] {
+  const outputs = new Set(state.links.map((link) => link.from));
+  const fed = new Set(state.links.map((link) => link.to.split(".")[0]));
+  const eyes = state.modules.filter(
+    ({ name }) => outputs.has(`${name}.left`) && outputs.has(`${name}.right`),
+  );
+  const name = (eyes.find((module) => !fed.has(module.name)) ?? eyes[0])?.name;
+  return name === undefined ? [] : [`${name}.left`, `${name}.right`];
+}
+
+/**
+ * Both eyes, the graph and the seat, as far as there are any, in so many columns as the page has
+ * room for.
+ *
+ * @param width  of the page [px].
+ */
+export function defaultLayout(state: GraphState, session: Session, width: number): Layout {
+  const eyes = eyesOf(state).map((port): PanelArgs => ({ kind: "stream", port }));
+  const graph: PanelArgs = { kind: "graph" };
+  const seat: PanelArgs[] = session.drives.length > 0 ? [{ kind: "seat" }] : [];
+  const column = (share: number, places: readonly PanelArgs[]) => ({
+    share,
+    places: places.map((args) => ({ args, share: 1 })),
+  });
+  const columns =
+    width < 700
+      ? [column(1, [...eyes.slice(0, 1), ...seat, ...eyes.slice(1), graph])]
+      : width < 1500
+        ? [column(1, [...eyes, ...seat]), column(1.4, [graph])]
+        : [column(1, eyes), column(1.6, [graph]), column(1, seat)];
+  return columns.filter(({ places }) => places.length > 0);
+}

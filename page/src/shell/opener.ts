@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { GraphState, Server } from "../server";
+import { fill, h } from "./h";
+import type { PanelArgs } from "./panel";
+
+interface Choice {
+  readonly label: string;
+  readonly detail: string;
+  readonly args: PanelArgs;
+}
+
+/** Panels that are there for any graph; src/page.ts fills it. */
+export const standardPanels: Choice[] = [];
+
+function choicesOf(state: GraphState | undefined): Choice[] {
+  const outputs = [...new Set(state?.links.map((link) => link.from))]
+    .filter((port) => /^[\w-]+\.[\w-]+$/.test(port))
+    .sort();
+  return [
+    ...standardPanels,
+    ...outputs.map((port) => ({ label: port, detail: "stream", args: { kind: "stream", port } })),
+    ...(state?.modules ?? []).map(({ name, program }) => ({
+      label: name,
+      detail: `module, ${program}`,
+      args: { kind: "module", name },
+    })),
+  ];
+}
+
+/** The dialog that opens panels. */
+export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDialogElement {
+  const list = h("ul", { class: "choices" });
+  const choose = (args: PanelArgs) => {
+    dialog.close();
+    open(args);
+  };
+  const item = ({ label, detail, args }: Choice) =>
+    h(
+      "li",
+      {},
+      h(
+        "button",
+        { onclick: () => choose(args) },
+        h("span", {}, label),
+        h("span", { class: "muted" }, detail),
+      ),
+    );
+  const show = () => {
+    const typed = search.value.trim();
+    const words = typed.toLowerCase().split(/\s+/);
+    const found = choicesOf(server.state).filter(({ label, detail }) =>
+      words.every((word) => `${label} ${detail}`.toLowerCase().includes(word)),
+    );
+    const isPort = /^[\w-]+\.[\w-]+$/.test(typed) && !found.some(({ label }) => label === typed);
+    if (isPort) {
+      found.push({ label: typed, detail: "stream", args: { kind: "stream", port: typed } });
+    }
+    fill(list, found.map(item));
+    if (found.length === 0) fill(list, h("li", { class: "muted" }, "Nothing is called so."));
+  };
+  const search = h("input", {
+    type: "search",
+    "aria-label": "Panel, stream or module",
+    placeholder: "panel, MODULE.PORT, or module",
+    oninput: show,
+    onkeydown: (event) => {
+      if (event.key === "Enter") list.querySelector("button")?.click();
+      else if (event.key === "ArrowDown") list.querySelector("button")?.focus();
+      else return;
+      event.preventDefault();
+    },
+  });
+  list.addEventListener("keydown", (event) => {
+    const buttons = [...list.querySelectorAll("button")];
+    const at = buttons.findIndex((button) => button === document.activeElement);
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    (buttons[at + step] ?? search).focus();
+  });
+  const dialog = h(
+    "dialog",
+    {
+      class: "opener",
+      "aria-label": "Open a panel",
+      onclick: (event) => event.target === dialog && dialog.close(),
+    },
+    h("div", { class: "opener-body" }, search, list),
+  );
+  dialog.addEventListener("toggle", () => {
+    if (dialog.open) show();
+  });
+  return dialog;
+}

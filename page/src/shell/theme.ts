@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+import { h } from "./h";
+
+const themes = ["system", "light", "dark"] as const;
+type Theme = (typeof themes)[number];
+const symbols: Record<Theme, string> = { system: "◐", light: "☀", dark: "☾" };
+
+function stored(): Theme {
+  return themes.find((theme) => theme === localStorage.getItem("theme")) ?? "system";
+}
+
+function apply(theme: Theme): void {
+  if (theme === "system") delete document.documentElement.dataset.theme;
+  else document.documentElement.dataset.theme = theme;
+  document.dispatchEvent(new Event("themechange"));
+}
+
+/** A button that goes from the system's theme to light, to dark, and round. */
+export function themeButton(): HTMLButtonElement {
+  const button = h("button", { class: "icon theme-button", onclick: () => show(following()) });
+  const following = () => themes[(themes.indexOf(stored()) + 1) % themes.length]!;
+  const show = (theme: Theme) => {
+    localStorage.setItem("theme", theme);
+    button.textContent = symbols[theme];
+    button.title = `Theme: ${theme}. Press for ${following()}.`;
+    button.setAttribute("aria-label", button.title);
+    apply(theme);
+  };
+  show(stored());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => apply(stored()));
+  return button;
+}
+
+/** Calls at once and after each change of the theme; what draws on a canvas asks for colours then. */
+export function onTheme(listener: () => void): () => void {
+  document.addEventListener("themechange", listener);
+  listener();
+  return () => document.removeEventListener("themechange", listener);
+}
+
+/** A colour of the theme, as in colour("accent"). */
+export function colour(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
