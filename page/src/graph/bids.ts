@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who bids for the focus, and why the winner wins. Pure.
+import { numbersOf, type Message } from "../mtp";
+
+/** A row of a workspace's `standings`. */
+export interface Bid {
+  readonly mode: number;
+  /** 0 … 1 */
+  readonly salience: number;
+  /** [s] */
+  readonly age: number;
+  readonly inFocus: boolean;
+  /** Made by a person; above all others. */
+  readonly ofPerson: boolean;
+}
+
+/** Bids of a message of `standings`: rows mode, salience, age, in focus, a person's. */
+export function bidsOf(message: Message): Bid[] {
+  const numbers = numbersOf(message);
+  const columns = message.header.width * message.header.components;
+  if (columns < 5) return [];
+  return Array.from({ length: message.header.height }, (_, row) => {
+    const [mode = 0, salience = 0, age = 0, inFocus = 0, ofPerson = 0] = numbers.subarray(
+      row * columns,
+      row * columns + 5,
+    );
+    return { mode, salience, age, inFocus: inFocus !== 0, ofPerson: ofPerson !== 0 };
+  });
+}
+
+/** What decides beside the bids. */
+export interface Rules {
+  /** A challenger must bid more than the focus does by this. */
+  readonly margin: number;
+  /** How long a task keeps the focus at least [s]. */
+  readonly dwell: number;
+  readonly stopped: boolean;
+}
+
+/** One sentence: who has the focus, and why. @param nameOf  the name of a mode's number. */
+export function whyText(
+  bids: readonly Bid[],
+  rules: Rules,
+  nameOf: (mode: number) => string,
+): string {
+  if (rules.stopped) return "The robot is stopped: no task has the focus.";
+  const holder = bids.find((bid) => bid.inFocus);
+  const others = bids.filter((bid) => bid !== holder).sort((a, b) => b.salience - a.salience);
+  const next = others[0];
+  if (!holder)
+    return next
+      ? `No task has the focus yet: ${nameOf(next.mode)} bids.`
+      : "No task bids for the focus.";
+  const name = nameOf(holder.mode);
+  const bid = holder.salience.toFixed(2);
+  if (holder.ofPerson) return `${name} has the focus: a person's bid is above all others.`;
+  if (!next) return `${name} has the focus: it alone bids, with ${bid}.`;
+  const second = `${nameOf(next.mode)} with ${next.salience.toFixed(2)}`;
+  if (next.salience <= holder.salience) {
+    return `${name} has the focus: it bids ${bid}, next is ${second}.`;
+  }
+  return next.salience <= holder.salience + rules.margin
+    ? `${name} keeps the focus with ${bid}: ${second} is not above it by more than ${rules.margin}.`
+    : `${name} keeps the focus with ${bid} for its first ${rules.dwell} s; next is ${second}.`;
+}
+
+interface Sample {
+  /** [s] */
+  readonly time: number;
+  readonly bids: readonly Bid[];
+}
+
+/** The bids of the last minute. */
+export class BidHistory {
+  private samples: Sample[] = [];
+  constructor(readonly seconds = 60) {}
+
+  add(time: number, bids: readonly Bid[]): void {
+    this.samples.push({ time, bids });
+    const first = this.samples.findIndex((sample) => sample.time >= time - this.seconds);
+    if (first > 0) this.samples.splice(0, first);
+  }
+
+  /** Modes that have bid, in order. */
+  modes(): number[] {
+    const modes = new Set(this.samples.flatMap((sample) => sample.bids.map((bid) => bid.mode)));
+    return [...modes].sort((a, b) => a - b);
+  }
+
+  /** Saliences of a mode over time; 0 where it did not bid. */
+  of(mode: number): { time: number; salience: number; inFocus: boolean }[] {
+    return this.samples.map(({ time, bids }) => {
+      const bid = bids.find((each) => each.mode === mode);
+      return { time, salience: bid?.salience ?? 0, inFocus: bid?.inFocus ?? false };
+    });
+  }
+}

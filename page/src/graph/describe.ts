@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a module says of itself: its ports and parameters (spec/module.md, section 2).
+import type { Server } from "../server";
+
+export interface PortType {
+  readonly type: string;
+  readonly components: number;
+  readonly scalar: string;
+  /** 0: any */
+  readonly width: number;
+  readonly height: number;
+  readonly coord: number;
+}
+
+export interface PortDescription {
+  readonly name: string;
+  readonly types: readonly PortType[];
+  readonly doc?: string;
+  readonly actor?: boolean;
+}
+
+export interface ParameterDescription {
+  readonly name: string;
+  readonly type: "bool" | "integer" | "number" | "string";
+  readonly unit?: string;
+  readonly doc?: string;
+  readonly default?: unknown;
+  readonly min?: number;
+  readonly max?: number;
+  readonly step?: number;
+  readonly choices?: readonly string[];
+  /** It cannot be set while the module runs. */
+  readonly fixed?: boolean;
+}
+
+export interface Description {
+  readonly summary?: string;
+  readonly inputs: readonly PortDescription[];
+  readonly outputs: readonly PortDescription[];
+  readonly parameters: readonly ParameterDescription[];
+}
+
+/** What a module says of itself; undefined where it cannot be asked. */
+export async function describe(server: Server, module: string): Promise<Description | undefined> {
+  try {
+    const [json] = await server.command(`describe ${module}`);
+    return json === undefined ? undefined : (JSON.parse(json) as Description);
+  } catch {
+    return undefined;
+  }
+}
+
+/** A type as a person reads it: "rgb_image of 3 × u8". */
+export function typeText({ type, components, scalar, width, height }: PortType): string {
+  const size = width || height ? `, ${width || "any"} × ${height || "any"}` : "";
+  return type === "string" ? "string" : `${type} of ${components} × ${scalar}${size}`;
+}

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { headerOf } from "../mtp";
+import type { GraphLink, GraphModule, GraphState } from "../server";
+import { BidHistory, bidsOf, whyText, type Bid } from "./bids";
+import { DropRates } from "./drops";
+import { layoutOf } from "./layout";
+import { structureOf } from "./structure";
+import { bytesText, dropTexts, durationText, moduleCondition, rateText } from "./words";
+
+function moduleNamed(name: string, other: Partial<GraphModule> = {}): GraphModule {
+  return {
+    name,
+    program: name,
+    group: "",
+    pid: 1,
+    status: "running",
+    detail: "",
+    restarts: 0,
+    exit: null,
+    cpu: 0,
+    memory: 0,
+    mode: "",
+    modes: [],
+    in_focus: true,
+    in_workspace: false,
+    last_line: "",
+    last_line_age: null,
+    parameters: {},
+    ...other,
+  };
+}
+
+function linkOf(from: string, to: string, other: Partial<GraphLink> = {}): GraphLink {
+  return {
+    from,
+    to,
+    transport: "shm",
+    status: "",
+    keep: "all",
+    rate: 0,
+    messages: 0,
+    bytes: 0,
+    per_second: 0,
+    bytes_per_second: 0,
+    delayed: 0,
+    throttled: 0,
+    dropped_newer: 0,
+    dropped_memory: 0,
+    dropped_disconnect: 0,
+    ignored: 0,
+    in_workspace: false,
+    age: null,
+    gap: null,
+    ...other,
+  };
+}
+
+function stateOf(modules: GraphModule[], links: GraphLink[], uptime = 0): GraphState {
+  return {
+    graph: "g",
+    file: "g.toml",
+    pid: 1,
+    uptime,
+    status: "running",
+    focus: null,
+    modules,
+    links,
+    workspaces: [],
+    modes: {},
+    addresses: {},
+  };
+}
+
+const head = stateOf(
+  [
+    moduleNamed("eyes", { group: "head" }),
+    moduleNamed("ball"),
+    moduleNamed("track"),
+    moduleNamed("neck", { group: "head" }),
+  ],
+  [
+    linkOf("eyes.left", "ball.left"),
+    linkOf("eyes.right", "ball.right"),
+    linkOf("ball.target", "track.target"),
+    linkOf("track.command", "neck.command"),
+    linkOf("neck.pose", "track.frames"),
+    linkOf("file:x.mtp", "track.calibration"),
+  ],
+);
+
+test("links between two modules are one edge, and those of poses are background", () => {
+  const { edges } = structureOf(head);
+  assert.deepEqual(
+    edges.map(({ key, links, background }) => [key, links.length, background]),
+    [
+      ["eyes>ball", 2, false],
+      ["ball>track", 1, false],
+      ["track>neck", 1, false],
+      ["neck>track", 1, true],
+    ],
+  );
+});
+
+test("the layout is the same for the same structure, from left to right, nothing overlaps", () => {
+  const layout = layoutOf(structureOf(head));
+  assert.deepEqual(layout, layoutOf(structureOf({ ...head, uptime: 7 })));
+  const boxes = ["eyes", "ball", "track", "neck"].map((name) => layout.nodes.get(name)!);
+  boxes.slice(1).forEach((box, i) => {
+    assert.ok(box.x - box.width / 2 > boxes[i]!.x + boxes[i]!.width / 2);
+  });
+  // Its members are far apart: each has its own box.
+  assert.deepEqual(
+    layout.groups.map(({ group }) => group),
+    ["head", "head"],
+  );
+});
+
+test("numbers are short", () => {
+  assert.deepEqual([0, 0.13, 9.96, 20.12, 1999.4].map(rateText), [
+    "",
+    "0.13/s",
+    "10/s",
+    "20/s",
+    "2 k/s",
+  ]);
+  assert.deepEqual([53e-6, 0.0294, 1.2, 61].map(durationText), [
+    "53 µs",
+    "29 ms",
+    "1.2 s",
+    "1 min 1 s",
+  ]);
+  assert.deepEqual([12, 105769984].map(bytesText), ["12 B", "106 MB"]);
+});
+
+test("a broken module says why", () => {
+  assert.deepEqual(moduleCondition(moduleNamed("a")), { is: "works", why: "" });
+  assert.deepEqual(moduleCondition(moduleNamed("a", { status: "waiting", exit: 137 })), {
+    is: "broken",
+    why: "was killed by signal 9; will be restarted",
+  });
+  const stalled = moduleNamed("a", { status: "stalled", detail: "stopped by a signal" });
+  assert.deepEqual(moduleCondition(stalled), { is: "broken", why: "stopped by a signal" });
+  const blocked = moduleNamed("a", { detail: "blocked: no reader on output left" });
+  assert.equal(moduleCondition(blocked).is, "slow");
+});
+
+test("drops are told with their reasons and counted per second", () => {
+  const link = linkOf("a.out", "b.in", { dropped_newer: 2, ignored: 1200 });
+  assert.deepEqual(dropTexts(link), [
+    "2 dropped, because a newer message came first",
+    "1,200 ignored, because another task had the focus",
+  ]);
+  const rates = new DropRates();
+  rates.take(stateOf([], [link], 1));
+  const later = { ...link, dropped_newer: 7 };
+  rates.take(stateOf([], [later], 1.5));
+  assert.equal(rates.of(later), 10);
+});
+
+const names = (mode: number): string =>
+  ["none", "calibrate", "point", "tele", "track", "read"][mode]!;
+const rules = { margin: 0.1, dwell: 1, stopped: false };
+
+test("one sentence says why the winner wins", () => {
+  const bid = (mode: number, salience: number, other: Partial<Bid> = {}): Bid => ({
+    mode,
+    salience,
+    age: 0,
+    inFocus: false,
+    ofPerson: false,
+    ...other,
+  });
+  const track = bid(4, 0.6, { inFocus: true });
+  const why = (...bids: Bid[]): string => whyText(bids, rules, names);
+  assert.equal(why(), "No task bids for the focus.");
+  assert.equal(why(track), "track has the focus: it alone bids, with 0.60.");
+  assert.equal(
+    why(track, bid(5, 0.4)),
+    "track has the focus: it bids 0.60, next is read with 0.40.",
+  );
+  assert.equal(
+    why(track, bid(5, 0.65)),
+    "track keeps the focus with 0.60: read with 0.65 is not above it by more than 0.1.",
+  );
+  assert.equal(
+    why(track, bid(5, 0.9)),
+    "track keeps the focus with 0.60 for its first 1 s; next is read with 0.90.",
+  );
+  assert.equal(
+    why(bid(2, 0.5, { inFocus: true, ofPerson: true }), bid(4, 0.6)),
+    "point has the focus: a person's bid is above all others.",
+  );
+  assert.match(whyText([track], { ...rules, stopped: true }, names), /stopped/);
+});
+
+test("bids are read from standings, and kept for a minute", () => {
+  const kind = { type: "table", components: 1, scalar: "f64", encoding: "binary" } as const;
+  const elements = Float64Array.from([4, 0.6, 0.05, 1, 0, 5, 0.4, 0.01, 0, 1]);
+  const bids = bidsOf({ header: headerOf(kind, 5, 2), elements });
+  assert.deepEqual(bids, [
+    { mode: 4, salience: 0.6, age: 0.05, inFocus: true, ofPerson: false },
+    { mode: 5, salience: 0.4, age: 0.01, inFocus: false, ofPerson: true },
+  ]);
+  const history = new BidHistory();
+  history.add(0, bids);
+  history.add(50, bids.slice(0, 1));
+  history.add(70, bids.slice(0, 1));
+  assert.deepEqual(history.modes(), [4]);
+  assert.deepEqual(
+    history.of(4).map(({ time }) => time),
+    [50, 70],
+  );
+});

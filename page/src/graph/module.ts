@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { GraphLink, GraphModule, GraphState } from "../server";
+import { fill, h, type PanelHost, type PanelKind } from "../shell";
+import { describe, typeText, type Description, type PortDescription } from "./describe";
+import { ParameterView } from "./parameter";
+import { linksOf, moduleOf, portOf } from "./structure";
+import { bytesText, latencyText, moduleCondition, percentText, rateText } from "./words";
+
+/** Lines of the log that are shown. */
+const logLines = 200;
+
+/** A module's ports, parameters and log: {kind: "module", name}. */
+export const modulePanel: PanelKind = (args, host) => {
+  const name = args.name ?? "";
+  host.setTitle(name || "module");
+  const view = new ModuleView(host, name);
+  return { element: view.element, close: () => view.close() };
+};
+
+class ModuleView {
+  private readonly status = h("p", { class: "module-status", role: "status" });
+  private readonly summary = h("p", { class: "summary" });
+  private readonly facts = h("dl", { class: "facts" });
+  private readonly ports = h("div", { class: "ports" });
+  private readonly parameters = h("div", { class: "parameters" });
+  private readonly log = h("pre", {
+    class: "log",
+    tabindex: 0,
+    role: "log",
+    "aria-label": "Log of the module",
+  });
+  private readonly restart: HTMLButtonElement;
+  readonly element: HTMLElement;
+  private description?: Description;
+  private parameterViews?: Map<string, ParameterView>;
+  private portsKey = "";
+  private readonly ends: (() => void)[] = [];
+
+  constructor(
+    private readonly host: PanelHost,
+    private readonly name: string,
+  ) {
+    this.restart = h("button", { onclick: () => void this.askRestart() }, "Restart");
+    host.tools.append(this.restart);
+    this.element = h(
+      "div",
+      { class: "module" },
+      this.status,
+      this.summary,
+      this.facts,
+      h("h3", {}, "Parameters"),
+      this.parameters,
+      h("h3", {}, "Ports"),
+      this.ports,
+      h("h3", {}, "Log"),
+      this.log,
+    );
+    const { server } = host;
+    this.ends.push(
+      // The server begins a connection with the last lines of the log.
+      server.onConnection(({ status }) => status === "open" && this.log.replaceChildren()),
+      server.onLog((line) => this.addLine(line)),
+      server.onState((state) => this.update(state)),
+      server.onSession((session) => {
+        this.restart.disabled = session.right !== "drive";
+      }),
+    );
+    for (const line of server.log) this.addLine(line);
+    void describe(server, name).then((description) => {
+      this.description = description;
+      this.summary.textContent = description?.summary ?? "";
+      this.parameterViews = undefined;
+      this.portsKey = "";
+      if (server.state) this.update(server.state);
+    });
+  }
+
+  close(): void {
+    for (const end of this.ends) end();
+  }
+
+  private update(state: GraphState): void {
+    const module = state.modules.find((each) => each.name === this.name);
+    if (!module) {
+      this.status.textContent = `There is no module ${this.name} in the graph.`;
+      this.status.className = "module-status broken";
+      return;
+    }
+    const { is, why } = moduleCondition(module);
+    const text = why ? `${module.status}: ${why}` : module.status;
+    if (this.status.textContent !== text) this.status.textContent = text;
+    this.status.className = `module-status ${is}`;
+    this.updateFacts(module);
+    this.updateParameters(module);
+    this.updatePorts(linksOf(state, module));
+  }
+
+  private updateFacts(module: GraphModule): void {
+    const facts: [string, string][] = [
+      ["program", module.program.split("/").at(-1) ?? ""],
+      ["process", module.pid ? String(module.pid) : "none"],
+      ["cpu", percentText(module.cpu)],
+      ["memory", bytesText(module.memory)],
+      ["restarts", String(module.restarts)],
+      ["task", module.mode || "none"],
+      ["group", module.group || "none"],
+    ];
+    fill(
+      this.facts,
+      facts.map(([title, value]) => h("div", {}, h("dt", {}, title), h("dd", {}, value))),
+    );
+  }
+
+  private updateParameters(module: GraphModule): void {
+    if (!this.parameterViews) {
+      const described = this.description?.parameters ?? [];
+      const known = new Map(described.map((each) => [each.name, each]));
+      const names = new Set([...known.keys(), ...Object.keys(module.parameters)]);
+      this.parameterViews = new Map(
+        [...names].map((name) => {
+          const is = known.get(name) ?? { name, type: "string" as const };
+          return [name, new ParameterView(this.host.server, this.name, is)];
+        }),
+      );
+      const views = [...this.parameterViews.values()].map((view) => view.element);
+      fill(this.parameters, views.length > 0 ? views : h("p", {}, "None."));
+    }
+    for (const [name, view] of this.parameterViews) {
+      const usual = this.description?.parameters.find((each) => each.name === name)?.default;
+      view.update(module.parameters[name] ?? String(usual ?? ""));
+    }
+  }
+
+  private updatePorts(links: readonly GraphLink[]): void {
+    const inputs = this.portsOf("inputs", links);
+    const outputs = this.portsOf("outputs", links);
+    const key = JSON.stringify([inputs, outputs, links.map((link) => [link.from, link.to])]);
+    if (key !== this.portsKey) {
+      this.portsKey = key;
+      fill(
+        this.ports,
+        inputs.map((port) => this.drawPort(port, "in")),
+        outputs.map((port) => this.drawPort(port, "out")),
+      );
+    }
+    for (const link of links) {
+      const selector = `[data-link="${CSS.escape(`${link.from} ${link.to}`)}"]`;
+      const element = this.ports.querySelector(selector);
+      const facts = [
+        link.status,
+        rateText(link.per_second) || "nothing comes",
+        latencyText(link.age),
+      ];
+      const text = facts.filter((fact) => fact !== "").join("; ");
+      if (element && element.textContent !== text) element.textContent = text;
+    }
+  }
+
+  /** Ports as described; those that were not, as they are linked. */
+  private portsOf(side: "inputs" | "outputs", links: readonly GraphLink[]): PortDescription[] {
+    const described = this.description?.[side] ?? [];
+    const ends = links.map((link) => (side === "inputs" ? link.to : link.from));
+    const linked = ends.filter((end) => moduleOf(end) === this.name).map(portOf);
+    const names = new Set([...described.map((port) => port.name), ...linked]);
+    return [...names].map(
+      (name) => described.find((port) => port.name === name) ?? { name, types: [] },
+    );
+  }
+
+  private drawPort(port: PortDescription, way: "in" | "out"): HTMLElement {
+    const full = `${this.name}.${port.name}`;
+    const all = this.host.server.state?.links ?? [];
+    const links = all.filter((link) => (way === "in" ? link.to : link.from) === full);
+    const types = port.types.map(typeText).join(", or ");
+    const open = h(
+      "button",
+      {
+        title: `Show ${full}`,
+        disabled: way === "in" && links.length === 0,
+        onclick: () => this.host.openPanel({ kind: "stream", port: full }),
+      },
+      port.name,
+    );
+    return h(
+      "div",
+      { class: "port" },
+      h("span", { class: "way" }, way === "in" ? "in" : "out"),
+      open,
+      h("span", { class: "port-doc" }, [types, port.doc].filter(Boolean).join("; ")),
+      links.map((link) =>
+        h(
+          "p",
+          { class: "port-link" },
+          way === "in" ? `from ${link.from}: ` : `to ${link.to}: `,
+          h("span", { "data-link": `${link.from} ${link.to}` }),
+        ),
+      ),
+    );
+  }
+
+  /** A line of the log that is of this module. */
+  private addLine(line: string): void {
+    if (!line.startsWith(`${this.name}: `)) return;
+    const atEnd = this.log.scrollTop + this.log.clientHeight >= this.log.scrollHeight - 4;
+    this.log.append(line.slice(this.name.length + 2) + "\n");
+    while (this.log.childNodes.length > logLines) this.log.firstChild?.remove();
+    if (atEnd) this.log.scrollTop = this.log.scrollHeight;
+  }
+
+  private async askRestart(): Promise<void> {
+    try {
+      await this.host.server.command(`restart ${this.name}`);
+      this.host.say(`${this.name} is being restarted.`);
+    } catch (error) {
+      this.host.say(error instanceof Error ? error.message : String(error));
+    }
+  }
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// A parameter of a module that can be changed while it runs.
+import type { Server } from "../server";
+import { h } from "../shell";
+import type { ParameterDescription } from "./describe";
+
+type Control = HTMLInputElement | HTMLSelectElement;
+
+/** Sliders are for ranges that a hand can set. */
+const widestSlider = 1000;
+
+export class ParameterView {
+  readonly element: HTMLElement;
+  private readonly control: Control;
+  private readonly slider?: HTMLInputElement;
+  private readonly problem = h("p", { class: "problem", role: "alert" });
+  /** As the module said it last. */
+  private value = "";
+
+  /** @param is  what is known of it; of one that was not described its name alone. */
+  constructor(
+    private readonly server: Server,
+    private readonly module: string,
+    private readonly is: ParameterDescription,
+  ) {
+    const id = `parameter-${module}-${is.name}`;
+    const note = `${id}-note`;
+    const common = { id, "aria-describedby": note, disabled: is.fixed ?? false };
+    this.control = this.makeControl(common);
+    this.control.addEventListener("change", () => void this.send(this.text()));
+    const { min, max } = is;
+    const number = is.type === "number" || is.type === "integer";
+    if (
+      number &&
+      !is.fixed &&
+      min !== undefined &&
+      max !== undefined &&
+      max - min <= widestSlider
+    ) {
+      const step = is.step ?? (is.type === "integer" ? 1 : "any");
+      this.slider = h("input", {
+        type: "range",
+        min,
+        max,
+        step,
+        "aria-label": `${is.name}, slider`,
+      });
+      this.slider.addEventListener("change", () => void this.send(this.slider!.value));
+      this.slider.addEventListener("input", () => {
+        this.control.value = shortest(this.slider!.value);
+      });
+    }
+    const unit = is.unit ? h("span", { class: "unit" }, is.unit) : null;
+    this.element = h(
+      "div",
+      { class: "parameter", "data-parameter": is.name },
+      h("label", { for: id }, is.name),
+      h("div", { class: "control" }, this.control, unit, this.slider),
+      h("p", { class: "note", id: note }, noteText(is)),
+      this.problem,
+    );
+  }
+
+  /** Shows what the module has, unless a person is changing it. */
+  update(value: string): void {
+    if (value === this.value) return;
+    this.value = value;
+    if (document.activeElement === this.control || document.activeElement === this.slider) return;
+    this.show(value);
+  }
+
+  private makeControl(common: Record<string, unknown>): Control {
+    const { is } = this;
+    if (is.choices && is.choices.length > 0) {
+      return h(
+        "select",
+        common,
+        is.choices.map((choice) => h("option", { value: choice }, choice)),
+      );
+    }
+    if (is.type === "bool") return h("input", { ...common, type: "checkbox" });
+    if (is.type === "string") return h("input", { ...common, type: "text", spellcheck: "false" });
+    const step = is.step ?? (is.type === "integer" ? 1 : "any");
+    return h("input", { ...common, type: "number", min: is.min, max: is.max, step });
+  }
+
+  private text(): string {
+    if (this.is.type === "bool") return String((this.control as HTMLInputElement).checked);
+    return this.control.value;
+  }
+
+  private show(value: string): void {
+    if (this.is.type === "bool") (this.control as HTMLInputElement).checked = value === "true";
+    else this.control.value = this.is.type === "string" ? value : shortest(value);
+    if (this.slider) this.slider.value = value;
+  }
+
+  private async send(value: string): Promise<void> {
+    try {
+      await this.server.command(`set ${this.module}.${this.is.name}=${value}`);
+      this.value = value;
+      this.show(value);
+      this.problem.textContent = "";
+    } catch (error) {
+      this.problem.textContent = error instanceof Error ? error.message : String(error);
+      this.show(this.value);
+    }
+  }
+}
+
+/** A number without digits that only binary fractions have: 0.05 for 0.050000000000000003. */
+function shortest(text: string): string {
+  const number = Number(text);
+  return text !== "" && Number.isFinite(number) ? String(number) : text;
+}
+
+function noteText({ doc, min, max, default: usual, fixed }: ParameterDescription): string {
+  const range =
+    min !== undefined && max !== undefined
+      ? `${min} … ${max}`
+      : min !== undefined
+        ? `at least ${min}`
+        : max !== undefined
+          ? `at most ${max}`
+          : "";
+  const notes = [
+    doc ?? "",
+    range,
+    usual !== undefined && usual !== "" ? `default ${String(usual)}` : "",
+    fixed ? "fixed: set it in the graph file" : "",
+  ];
+  return notes.filter((note) => note !== "").join("; ");
+}

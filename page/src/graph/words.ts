@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers and conditions of modules and links in words that a person reads.
+import type { GraphLink, GraphModule } from "../server";
+
+/** A rate: "20/s", "0.5/s", "1.2 k/s"; "" where nothing comes. */
+export function rateText(perSecond: number): string {
+  if (perSecond <= 0) return "";
+  if (perSecond >= 999.5) return `${shortNumber(perSecond / 1000)} k/s`;
+  return `${shortNumber(perSecond)}/s`;
+}
+
+/** A duration [s]: "31 ms", "85 µs", "1.2 s". */
+export function durationText(seconds: number): string {
+  if (seconds >= 59.95) return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
+  if (seconds >= 0.9995) return `${shortNumber(seconds)} s`;
+  if (seconds >= 0.0009995) return `${shortNumber(seconds * 1e3)} ms`;
+  return `${Math.round(seconds * 1e6)} µs`;
+}
+
+/** A size [byte]: "2.9 MB". */
+export function bytesText(bytes: number): string {
+  if (bytes >= 999.5e6) return `${shortNumber(bytes / 1e9)} GB`;
+  if (bytes >= 999.5e3) return `${shortNumber(bytes / 1e6)} MB`;
+  if (bytes >= 999.5) return `${shortNumber(bytes / 1e3)} kB`;
+  return `${Math.round(bytes)} B`;
+}
+
+/** Two digits, or as many as there are before the point. */
+function shortNumber(value: number): string {
+  return value >= 9.95 ? String(Math.round(value)) : String(Number(value.toPrecision(2)));
+}
+
+/** A part of one processor: "27 %". */
+export function percentText(part: number): string {
+  return `${Math.round(part * 100)} %`;
+}
+
+/** Why messages did not go over a link, or went late, and how that is called. */
+const dropWords: readonly [keyof GraphLink & string, (count: string) => string][] = [
+  ["delayed", (count) => `${count} went later, because the link has a rate`],
+  ["throttled", (count) => `${count} dropped, because the link has a rate`],
+  ["dropped_newer", (count) => `${count} dropped, because a newer message came first`],
+  ["dropped_memory", (count) => `${count} dropped, because there was no memory for them`],
+  ["dropped_disconnect", (count) => `${count} lost when the connection broke`],
+  ["ignored", (count) => `${count} ignored, because another task had the focus`],
+];
+
+/** What became of the messages of a link that did not get through in time, a sentence each. */
+export function dropTexts(link: GraphLink): string[] {
+  return dropWords
+    .filter(([key]) => Number(link[key]) > 0)
+    .map(([key, text]) => text(Number(link[key]).toLocaleString("en")));
+}
+
+/** Messages of a link that were dropped or lost; those that were ignored reached the reader. */
+export function droppedCount(link: GraphLink): number {
+  return link.throttled + link.dropped_newer + link.dropped_memory + link.dropped_disconnect;
+}
+
+/** "31 ms, at most 48 ms" of a latency: its median, and its 99th percentile. */
+export function latencyText(age: GraphLink["age"]): string {
+  return age ? `${durationText(age[0])}, p99 ${durationText(age[1])}` : "";
+}
+
+export type Condition = "works" | "slow" | "broken" | "ended";
+
+/** How a module is, and why, in words; the reason is empty where it works. */
+export function moduleCondition(module: GraphModule): { is: Condition; why: string } {
+  const detail = module.detail ? `: ${module.detail}` : "";
+  switch (module.status) {
+    case "running":
+      return module.detail ? { is: "slow", why: module.detail } : { is: "works", why: "" };
+    case "starting":
+      return { is: "works", why: "" };
+    case "ended":
+      return { is: "ended", why: "has ended" };
+    case "waiting":
+      return { is: "broken", why: `${exitText(module)}; will be restarted${detail}` };
+    case "stalled":
+      return { is: "broken", why: module.detail || "does not respond" };
+    case "stopping":
+      return { is: "broken", why: `is being stopped${detail}` };
+    default:
+      return { is: "broken", why: `has ${module.status}${detail}` };
+  }
+}
+
+/** How the last process of a module ended; above 128 it was killed by a signal. */
+function exitText(module: GraphModule): string {
+  if (module.exit === null) return "has ended";
+  if (module.exit > 128) return `was killed by signal ${module.exit - 128}`;
+  return `ended with status ${module.exit}`;
+}
