@@ -4,8 +4,14 @@ import { graphPanel, modulePanel } from "./graph";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
 import { panelKinds, Shell, standardPanels } from "./shell";
+import { streamPanel } from "./views";
 
-Object.assign(panelKinds, { graph: graphPanel, module: modulePanel, seat: seatPanel });
+Object.assign(panelKinds, {
+  graph: graphPanel,
+  module: modulePanel,
+  seat: seatPanel,
+  stream: streamPanel,
+});
 standardPanels.push(
   { label: "Graph", detail: "modules and links, live", args: { kind: "graph" } },
   { label: "Seat", detail: "steer, speak, choose a task", args: { kind: "seat" } },

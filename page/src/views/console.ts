@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strings as a console.
+import { rowsOf } from "../mtp";
+import type { Arrival } from "../server";
+import { h } from "../shell/h";
+import type { View, ViewKind } from "./view";
+
+const mostLines = 5000;
+
+export class ConsoleView implements View {
+  readonly keepsPast = true;
+  private readonly lines = h("ol", {
+    class: "console mono",
+    role: "log",
+    tabindex: 0,
+    "aria-label": "Lines as they came",
+  });
+  readonly element = this.lines;
+  private isPaused = false;
+
+  show(arrival: Arrival): void {
+    const { time } = arrival.message.header;
+    const at = new Date(time > 0n ? Number(time / 1_000_000n) : arrival.at);
+    const clock = at.toLocaleTimeString([], { hour12: false });
+    const isAtEnd = this.lines.scrollTop + this.lines.clientHeight >= this.lines.scrollHeight - 20;
+    for (const row of rowsOf(arrival.message)) {
+      this.lines.append(
+        h("li", {}, h("time", { class: "muted", datetime: at.toISOString() }, clock), " ", row),
+      );
+    }
+    while (this.lines.childElementCount > mostLines) this.lines.firstElementChild?.remove();
+    if (isAtEnd && !this.isPaused) this.lines.scrollTop = this.lines.scrollHeight;
+  }
+
+  setPaused(paused: boolean): void {
+    this.isPaused = paused;
+  }
+}
+
+export const consoleView: ViewKind = {
+  name: "console",
+  fits: (sent) => sent.type === "string",
+  make: () => new ConsoleView(),
+};

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+import { coordName, headerFields, type Header } from "../mtp";
+import type { Arrival } from "../server";
+import { fill, h } from "../shell/h";
+
+const meanings: Record<(typeof headerFields)[number], string> = {
+  version: "version of the protocol",
+  src: "address of the output that made the message",
+  dst: "0: follows the link; above: one port; below: everybody or a group",
+  seq: "counts up by one; a gap is a loss",
+  ttl: "routers left to pass",
+  time: "when the sensed thing happened [ns since 1970]",
+  info: "what the elements are: type, components, scalar, encoding",
+  mode: "system mode that the sender ran in",
+  coord: "coordinate system of the elements",
+  width: "elements in a row",
+  height: "rows",
+};
+
+const period = 2; // [s] that rates are measured over
+
+/** The header as it is on the wire, with its fields' names; rate, latency, loss. */
+export class HeaderStrip {
+  private readonly fields = headerFields.map((name) => {
+    const value = h("span", { class: "value" });
+    const element = h("span", { class: "field", title: `${name}: ${meanings[name]}` });
+    element.append(h("span", { class: "name" }, name), " ", value);
+    return { name, element, value };
+  });
+  private readonly summary = h("span", { class: "summary" });
+  readonly element = h(
+    "div",
+    { class: "header-strip", tabindex: 0, role: "group", "aria-label": "Header and figures" },
+    this.summary,
+    h(
+      "div",
+      { class: "fields mono" },
+      this.fields.map(({ element }) => element),
+    ),
+  );
+  private readonly times: number[] = [];
+  private latency?: number; // [s]
+  private lastSeq?: bigint;
+  private lost = 0n;
+  private sent?: Header;
+  private drawn = 0;
+
+  /** Takes the header line as it was sent. */
+  setLine(line: string): void {
+    const words = line.trim().split(/ +/);
+    this.fields.forEach(({ value }, i) => (value.textContent = words[i] ?? ""));
+  }
+
+  /** Counts a message. */
+  count(arrival: Arrival, sent: Header): void {
+    const { seq, time } = arrival.message.header;
+    this.sent = sent;
+    this.times.push(arrival.at);
+    while (this.times[0]! < arrival.at - period * 1000) this.times.shift();
+    if (this.lastSeq !== undefined && seq > this.lastSeq + 1n) this.lost += seq - this.lastSeq - 1n;
+    this.lastSeq = seq;
+    if (time > 0n) this.latency = arrival.at / 1000 - Number(time) / 1e9;
+    if (performance.now() - this.drawn > 250) this.draw();
+  }
+
+  /** Shows the figures; called from time to time too, so that a rate falls when nothing comes. */
+  draw(): void {
+    this.drawn = performance.now();
+    const { sent, times } = this;
+    if (!sent) return;
+    const now = performance.timeOrigin + this.drawn;
+    const recent = times.filter((time) => time > now - period * 1000);
+    const size = `${sent.width} × ${sent.height} of ${sent.components} × ${sent.scalar}`;
+    const parts = [
+      `${sent.type} ${size}, ${coordName(sent.coord)}`,
+      `${(recent.length / period).toFixed(1)}/s`,
+      this.latency !== undefined && Math.abs(this.latency) < 3600
+        ? `${(this.latency * 1000).toFixed(0)} ms old`
+        : "",
+      this.lost > 0n ? `${this.lost} not shown` : "",
+    ];
+    fill(this.summary, ...parts.filter(Boolean).map((part) => h("span", {}, part)));
+    this.summary.title =
+      "Type and size; messages a second here; time from sensing to arrival; gaps of seq: messages that " +
+      "this page did not take because a newer one was there";
+  }
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Images in colour and grey.
+import { headerOf, type Header } from "../mtp";
+import type { Arrival } from "../server";
+import { h } from "../shell/h";
+import { isImage, isMeasured, PictureDecoder } from "./picture";
+import { pixelAt, Probe } from "./probe";
+import { askForWidth } from "./room";
+import type { View, ViewHost, ViewKind } from "./view";
+
+export class ImageView implements View {
+  readonly element: HTMLElement;
+  private readonly canvas = h("canvas", { class: "picture", role: "img" });
+  private readonly context = this.canvas.getContext("2d", { alpha: false })!;
+  private readonly decoder = new PictureDecoder();
+  private readonly probe: Probe;
+  private readonly endRoom: () => void;
+  private shown?: { arrival: Arrival; sent: Header };
+  private latest = 0;
+
+  constructor(host: ViewHost) {
+    this.canvas.setAttribute("aria-label", `Image of ${host.source.port}`);
+    this.probe = new Probe(this.canvas, ({ across, down }) => {
+      const { sent } = this.shown ?? {};
+      if (!sent) return "";
+      const { x, y } = pixelAt({ across, down }, sent.width, sent.height);
+      const [r, g, b] = this.context.getImageData(
+        Math.floor(across * this.canvas.width),
+        Math.floor(down * this.canvas.height),
+        1,
+        1,
+      ).data;
+      return `${x.toFixed(0)}, ${y.toFixed(0)} px  ${sent.components === 1 ? r : `${r} ${g} ${b}`}`;
+    });
+    this.element = h("div", { class: "image-view" }, this.canvas, this.probe.output);
+    this.endRoom = askForWidth(this.canvas, host.source, () => this.shown?.sent);
+  }
+
+  async show(arrival: Arrival, sent: Header): Promise<void> {
+    const turn = ++this.latest;
+    const picture = await this.decoder.decode(arrival.message, sent);
+    if (!picture) return;
+    if (turn === this.latest) {
+      const [width, height] =
+        "displayWidth" in picture
+          ? [picture.displayWidth, picture.displayHeight]
+          : [picture.width, picture.height];
+      if (this.canvas.width !== width || this.canvas.height !== height) {
+        Object.assign(this.canvas, { width, height });
+      }
+      this.context.drawImage(picture, 0, 0);
+      this.shown = { arrival, sent };
+      this.probe.update();
+    }
+    picture.close();
+  }
+
+  async snapshot(): Promise<Arrival | undefined> {
+    const { shown, canvas } = this;
+    if (!shown) return undefined;
+    const blob = await new Promise<Blob | null>((resolve) =>
+      canvas.toBlob(resolve, "image/jpeg", 0.8),
+    );
+    if (!blob) return undefined;
+    const { src, dst, seq, ttl, time, mode, coord } = shown.sent;
+    const kind = { type: "rgb_image", components: 3, scalar: "u8", encoding: "jpeg" } as const;
+    const other = {
+      src,
+      dst,
+      seq,
+      ttl,
+      time: shown.arrival.message.header.time || time,
+      mode,
+      coord,
+    };
+    const header = headerOf(kind, canvas.width, canvas.height, other);
+    const elements = new Uint8Array(await blob.arrayBuffer());
+    return { message: { header, elements }, at: shown.arrival.at, bytes: elements.length };
+  }
+
+  close(): void {
+    this.endRoom();
+    this.decoder.close();
+  }
+}
+
+export const imageView: ViewKind = {
+  name: "image",
+  fits: (sent) => isImage(sent) && !isMeasured(sent),
+  make: (host) => new ImageView(host),
+};

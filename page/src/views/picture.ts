@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns messages of images into pictures that a canvas draws.
+import { Coord, numbersOf, type Header, type Message } from "../mtp";
+
+/** A decoded image; close() gives its memory back. */
+export type Picture = ImageBitmap | VideoFrame;
+
+/** The encoding of images to ask the server for: VP8 where the browser decodes it. */
+export async function bestEncoding(): Promise<"vp8" | "jpeg"> {
+  if (typeof VideoDecoder === "undefined") return "jpeg";
+  try {
+    const { supported } = await VideoDecoder.isConfigSupported(vp8);
+    return supported ? "vp8" : "jpeg";
+  } catch {
+    return "jpeg";
+  }
+}
+
+const vp8: VideoDecoderConfig = { codec: "vp8", optimizeForLatency: true };
+
+export function isImage(header: Header): boolean {
+  return header.type === "rgb_image" || header.type === "intensity_image";
+}
+
+/** Whether a message is a frame of VP8 of an image (W9). */
+export function isVideo(message: Message, sent: Header): boolean {
+  return isImage(sent) && message.header.type === "table";
+}
+
+/** Decodes the images of one stream. */
+export class PictureDecoder {
+  private decoder?: VideoDecoder;
+  private waiting: { resolve(frame: VideoFrame | undefined): void }[] = [];
+  private needsKey = true;
+  private count = 0;
+
+  /** The picture of a message; undefined: none can be made of it. */
+  async decode(message: Message, sent: Header): Promise<Picture | undefined> {
+    if (isVideo(message, sent))
+      return this.decodeVideo(message.elements as Uint8Array<ArrayBuffer>);
+    if (message.header.encoding === "jpeg") {
+      const blob = new Blob([message.elements as Uint8Array<ArrayBuffer>], { type: "image/jpeg" });
+      return createImageBitmap(blob);
+    }
+    const data = pixelsOf(message);
+    return data && createImageBitmap(data);
+  }
+
+  close(): void {
+    if (this.decoder?.state !== "closed") this.decoder?.close();
+    this.settle();
+  }
+
+  private settle(): void {
+    for (const { resolve } of this.waiting.splice(0)) resolve(undefined);
+  }
+
+  private decodeVideo(bytes: Uint8Array<ArrayBuffer>): Promise<VideoFrame | undefined> {
+    const isKey = bytes.length > 0 && (bytes[0]! & 1) === 0; // RFC 6386, 9.1
+    if (!this.decoder || this.decoder.state === "closed") {
+      this.needsKey = true;
+      this.decoder = new VideoDecoder({
+        output: (frame) => {
+          const next = this.waiting.shift();
+          if (next) next.resolve(frame);
+          else frame.close();
+        },
+        error: () => this.settle(),
+      });
+      this.decoder.configure(vp8);
+    }
+    if (bytes.length === 0 || (this.needsKey && !isKey)) return Promise.resolve(undefined);
+    this.needsKey = false;
+    const chunk = new EncodedVideoChunk({
+      type: isKey ? "key" : "delta",
+      timestamp: this.count++,
+      data: bytes,
+    });
+    return new Promise((resolve) => {
+      this.waiting.push({ resolve });
+      this.decoder?.decode(chunk);
+    });
+  }
+}
+
+/** Greatest value of what an image holds: white. */
+function whiteOf(header: Header): number {
+  return { u8: 255, u16: 65535, u32: 2 ** 32 - 1, u64: 2 ** 64 }[header.scalar as string] ?? 1;
+}
+
+/** An uncompressed image as pixels of a canvas. */
+export function pixelsOf(message: Message): ImageData | undefined {
+  const { header } = message;
+  const { width, height, components } = header;
+  if (width === 0 || height === 0) return undefined;
+  const numbers = numbersOf(message);
+  const data = new Uint8ClampedArray(4 * width * height);
+  const scale = 255 / whiteOf(header);
+  for (
+    let pixel = 0, from = 0, to = 0;
+    pixel < width * height;
+    ++pixel, from += components, to += 4
+  ) {
+    for (let i = 0; i < 3; ++i) data[to + i] = numbers[from + (components > 2 ? i : 0)]! * scale;
+    data[to + 3] = components === 4 ? numbers[from + 3]! * scale : 255;
+  }
+  return new ImageData(data, width, height);
+}
+
+/** Whether the values of an image are in a unit, and so not brightness: depth, disparity. */
+export function isMeasured(header: Header): boolean {
+  return (
+    header.type === "intensity_image" &&
+    header.scalar !== "u8" &&
+    (header.coord === Coord.depth || header.coord === Coord.disparity)
+  );
+}

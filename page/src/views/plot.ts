@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers over time.
+import uPlot from "uplot";
+import { numbersOf, type Header } from "../mtp";
+import type { Arrival } from "../server";
+import { h } from "../shell/h";
+import { colour, onTheme } from "../shell/theme";
+import { Sight } from "./room";
+import { Series } from "./series";
+import type { View, ViewKind } from "./view";
+
+const mostColumns = 24;
+const colours = 6;
+
+const axes = {
+  position: ["x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az"],
+  rotation: [
+    "roll",
+    "pitch",
+    "yaw",
+    "roll rate",
+    "pitch rate",
+    "yaw rate",
+    "roll acceleration",
+    "pitch acceleration",
+    "yaw acceleration",
+  ],
+};
+
+/** Names of the numbers of a message, up to mostColumns. */
+export function columnNames(header: Header): string[] {
+  const { type, width, height, components } = header;
+  const names: string[] = [];
+  for (let row = 0; row < height; ++row) {
+    for (let column = 0; column < width; ++column) {
+      for (let i = 0; i < components; ++i) {
+        if (names.length === mostColumns) return names;
+        const place =
+          width * height === 1
+            ? ""
+            : height === 1
+              ? `${column}`
+              : width === 1
+                ? `${row}`
+                : `${row},${column}`;
+        const axis =
+          type === "position" || type === "rotation"
+            ? axes[type][i]!
+            : components > 1
+              ? `[${i}]`
+              : "";
+        names.push(`${place} ${axis}`.trim() || "value");
+      }
+    }
+  }
+  return names;
+}
+
+function unitOf(header: Header): string {
+  if (header.coord >= 7 && header.coord <= 10) return "px";
+  if (header.type === "rotation" || header.coord === 13) return "rad";
+  return header.type === "position" ? "m" : "";
+}
+
+export class PlotView implements View {
+  readonly element: HTMLElement;
+  readonly keepsPast = true;
+  readonly tools: readonly HTMLElement[];
+  private readonly span = h(
+    "select",
+    { "aria-label": "Time shown", onchange: () => this.draw() },
+    h("option", { value: 10 }, "10 s"),
+    h("option", { value: 30, selected: true }, "30 s"),
+    h("option", { value: 120 }, "2 min"),
+    h("option", { value: 600 }, "10 min"),
+  );
+  private readonly buttons = h("div", { class: "series-buttons" });
+  private readonly room = h("div", { class: "plot-room" });
+  private readonly slider = h("input", {
+    type: "range",
+    min: 0,
+    max: 1000,
+    value: 1000,
+    hidden: true,
+    "aria-label": "Scroll back",
+    oninput: () => this.draw(),
+  });
+  private readonly sight: Sight;
+  private readonly observer: ResizeObserver;
+  private readonly endTheme: () => void;
+  private readonly timer: number;
+  private series?: Series;
+  private names: string[] = [];
+  private shape = "";
+  private chosen = new Set<number>();
+  private plot?: uPlot;
+  private isPaused = false;
+  private isNew = false;
+  private values: HTMLElement[] = [];
+  private last: ArrayLike<number> = [];
+  private unit = "";
+
+  constructor() {
+    this.element = h("div", { class: "plot-view" }, this.buttons, this.room, this.slider);
+    this.tools = [this.span];
+    this.sight = new Sight(this.element);
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(this.room);
+    this.endTheme = onTheme(() => this.build());
+    this.timer = window.setInterval(() => {
+      if (this.isNew && !this.isPaused && this.sight.isSeen) this.draw();
+    }, 66);
+  }
+
+  show(arrival: Arrival, sent: Header): void {
+    const { header } = arrival.message;
+    const numbers = numbersOf(arrival.message);
+    if (numbers.length === 0) return;
+    const shape = `${header.type} ${header.width}x${header.height}x${header.components}`;
+    const isCloud = header.width * header.height > 1 && header.type === "position";
+    if (shape !== this.shape && !(isCloud && this.series)) this.start(header, shape);
+    this.unit = unitOf(sent);
+    const time = header.time > 0n ? Number(header.time) / 1e9 : arrival.at / 1000;
+    this.series!.push(time, numbers);
+    this.last = numbers;
+    this.isNew = true;
+  }
+
+  setPaused(paused: boolean): void {
+    this.isPaused = paused;
+    this.slider.hidden = !paused;
+    this.slider.value = this.slider.max;
+    this.draw();
+  }
+
+  close(): void {
+    clearInterval(this.timer);
+    this.sight.close();
+    this.observer.disconnect();
+    this.endTheme();
+    this.plot?.destroy();
+  }
+
+  private start(header: Header, shape: string): void {
+    this.shape = shape;
+    this.names = columnNames(header);
+    this.series = new Series(this.names.length);
+    this.chosen = new Set(this.names.slice(0, 3).keys());
+    this.values = this.names.map(() => h("span", { class: "mono" }));
+    this.buttons.replaceChildren(
+      ...this.names.map((name, i) =>
+        h(
+          "button",
+          {
+            class: "series-button",
+            "aria-pressed": this.chosen.has(i),
+            "data-series": (i % colours) + 1,
+            onclick: (event) => this.choose(i, event.currentTarget as HTMLElement),
+          },
+          name,
+          " ",
+          this.values[i],
+        ),
+      ),
+    );
+    this.buttons.querySelectorAll("button").forEach((button, i) => {
+      button.setAttribute("aria-pressed", String(this.chosen.has(i)));
+    });
+    this.build();
+  }
+
+  private choose(which: number, button: HTMLElement): void {
+    if (!this.chosen.delete(which)) this.chosen.add(which);
+    button.setAttribute("aria-pressed", String(this.chosen.has(which)));
+    this.build();
+  }
+
+  /** Makes the plot anew, after its series or colours have changed. */
+  private build(): void {
+    if (!this.series) return;
+    this.plot?.destroy();
+    const axis = {
+      stroke: colour("muted"),
+      grid: { stroke: colour("line"), width: 1 },
+      ticks: { show: false },
+    };
+    const options: uPlot.Options = {
+      width: Math.max(80, this.room.clientWidth),
+      height: Math.max(60, this.room.clientHeight),
+      legend: { show: false },
+      cursor: { y: false },
+      scales: { x: { time: true } },
+      axes: [
+        axis,
+        {
+          ...axis,
+          size: 60,
+          values: (_, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6)))),
+        },
+      ],
+      series: [
+        {},
+        ...[...this.chosen].map((i) => ({
+          label: this.names[i]!,
+          stroke: colour(`series-${(i % colours) + 1}`),
+          width: 1.5,
+          points: { show: false },
+        })),
+      ],
+      hooks: { setCursor: [(plot) => this.showValues(plot)] },
+    };
+    this.plot = new uPlot(options, [[], ...[...this.chosen].map(() => [])], this.room);
+    this.draw();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.room;
+    if (width > 0 && height > 0) this.plot?.setSize({ width, height });
+  }
+
+  private draw(): void {
+    const { series, plot } = this;
+    if (!series || !plot || series.length === 0) return;
+    this.isNew = false;
+    const span = Number(this.span.value);
+    const first = Math.min(series.lastTime, series.firstTime + span);
+    const to = first + (Number(this.slider.value) / 1000) * (series.lastTime - first);
+    const data = series.window(to - span, to, [...this.chosen], 2000);
+    plot.setData(data as uPlot.AlignedData, false);
+    plot.batch(() => {
+      plot.setScale("x", { min: to - span, max: to });
+    });
+    this.showValues(plot);
+  }
+
+  /** The numbers at the cursor, else the last ones. */
+  private showValues(plot: uPlot): void {
+    const index = plot.cursor.idx;
+    const chosen = [...this.chosen];
+    this.values.forEach((element, i) => {
+      const at = chosen.indexOf(i) + 1;
+      const value =
+        index !== null && index !== undefined && at > 0 ? plot.data[at]?.[index] : this.last[i];
+      const text =
+        value === null || value === undefined ? "" : `${Number(value.toPrecision(4))} ${this.unit}`;
+      if (element.textContent !== text) element.textContent = text;
+    });
+  }
+}
+
+const never = ["string", "rgb_image", "intensity_image", "vector_field", "map", "sound"];
+
+export const plotView: ViewKind = {
+  name: "plot",
+  fits: (sent) => !never.includes(sent.type) && sent.width * sent.height * sent.components > 0,
+  make: () => new PlotView(),
+};

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/**
+ * Numbers over time, of the last ten minutes: columns that grow to a limit, then lose their oldest
+ * quarter.
+ */
+export class Series {
+  private times = new Float64Array(1024); // [s since 1970]
+  private columns: Float64Array[];
+  private count = 0;
+
+  /**
+   * @param width  numbers at a time.
+   * @param most  times that are kept at most.
+   */
+  constructor(
+    readonly width: number,
+    private readonly most = 120_000,
+  ) {
+    this.columns = Array.from({ length: width }, () => new Float64Array(1024));
+  }
+
+  get length(): number {
+    return this.count;
+  }
+
+  get firstTime(): number {
+    return this.times[0]!;
+  }
+
+  get lastTime(): number {
+    return this.times[this.count - 1]!;
+  }
+
+  /** Adds numbers; what is older than the last one or ten minutes before is left out. */
+  push(time: number, numbers: ArrayLike<number>): void {
+    if (this.count > 0 && time <= this.lastTime) {
+      if (time > this.lastTime - 1) return;
+      this.count = 0; // the source has begun anew
+    }
+    if (this.count === this.times.length) this.makeRoom();
+    this.times[this.count] = time;
+    this.columns.forEach((column, i) => (column[this.count] = numbers[i]!));
+    this.count += 1;
+  }
+
+  /**
+   * The times from `from` to `to` [s] and the numbers of a column at them, thinned to about `most`
+   * times: of each stretch the least and the greatest number.
+   */
+  window(from: number, to: number, columns: readonly number[], most: number): number[][] {
+    const first = Math.max(0, this.indexOf(from) - 1);
+    const last = Math.min(this.count, this.indexOf(to) + 1);
+    const step = Math.max(1, Math.ceil((2 * (last - first)) / most));
+    const times: number[] = [];
+    const rows: number[][] = columns.map(() => []);
+    for (let start = first; start < last; start += step) {
+      const end = Math.min(last, start + step);
+      times.push(this.times[start]!);
+      if (step > 1) times.push(this.times[end - 1]!);
+      columns.forEach((which, i) => {
+        const column = this.columns[which]!;
+        if (step === 1) {
+          rows[i]!.push(column[start]!);
+          return;
+        }
+        let least = start;
+        let greatest = start;
+        for (let at = start; at < end; ++at) {
+          if (column[at]! < column[least]!) least = at;
+          if (column[at]! > column[greatest]!) greatest = at;
+        }
+        const [a, b] = least < greatest ? [least, greatest] : [greatest, least];
+        rows[i]!.push(column[a]!, column[b]!);
+      });
+    }
+    return [times, ...rows];
+  }
+
+  /** Index of the first time that is not before `time`. */
+  private indexOf(time: number): number {
+    let [low, high] = [0, this.count];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.times[middle]! < time) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  private makeRoom(): void {
+    const old = this.lastTime - 600;
+    const isFull = 2 * this.count > this.most;
+    const drop = Math.max(this.indexOf(old), isFull ? Math.floor(this.count / 4) : 0);
+    if (drop > this.count / 8) {
+      for (const column of [this.times, ...this.columns]) column.copyWithin(0, drop, this.count);
+      this.count -= drop;
+      return;
+    }
+    const grown = (from: Float64Array) => {
+      const to = new Float64Array(2 * from.length);
+      to.set(from);
+      return to;
+    };
+    this.times = grown(this.times);
+    this.columns = this.columns.map(grown);
+  }
+}

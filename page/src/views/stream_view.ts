@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stream with its header, shown as what it is.
+import { MtpError, parseHeader, type Header } from "../mtp";
+import type { Arrival } from "../server";
+import { h } from "../shell/h";
+import { HeaderStrip } from "./header_strip";
+import { viewKinds } from "./kinds";
+import { Past } from "./past";
+import { isVideo } from "./picture";
+import { Sight } from "./room";
+import type { Source, Surroundings, View, ViewKind } from "./view";
+
+export interface StreamViewHost {
+  readonly surroundings: Surroundings;
+  say(sentence: string): void;
+  /** The person has chosen another way to show the stream. */
+  chosen?(view: string): void;
+  /** Room for controls. */
+  readonly tools: HTMLElement;
+}
+
+const snapshotPeriod = 500; // [ms]
+
+export class StreamView {
+  readonly element: HTMLElement;
+  private readonly strip = new HeaderStrip();
+  private readonly body = h("div", { class: "stream-body" });
+  private readonly problem = h("p", { class: "problem", role: "status", hidden: true });
+  private readonly choice = h("select", { "aria-label": "Shown as", hidden: true });
+  private readonly pause = h("button", { "aria-pressed": "false" }, "Pause");
+  private readonly viewTools = h("span", { class: "view-tools" });
+  private readonly slider = h("input", {
+    type: "range",
+    min: 0,
+    step: 1,
+    "aria-label": "Scroll back",
+  });
+  private readonly ago = h("span", { class: "ago mono" });
+  private readonly scroll = h("div", { class: "scroll-back", hidden: true }, this.slider, this.ago);
+  private readonly sight: Sight;
+  private readonly timer: number;
+  private readonly past = new Past();
+  private view?: View;
+  private kind?: ViewKind;
+  private making?: Promise<void>;
+  private sent?: Header;
+  private isPaused = false;
+  private lastSnapshot = 0;
+  private last?: Arrival;
+
+  /** @param wanted  name of the way to show the stream, where it fits; empty: the usual one. */
+  constructor(
+    private readonly source: Source,
+    private readonly host: StreamViewHost,
+    private wanted = "",
+  ) {
+    this.element = h(
+      "div",
+      { class: "stream-view" },
+      this.problem,
+      this.body,
+      this.scroll,
+      this.strip.element,
+    );
+    this.sight = new Sight(this.element);
+    host.tools.append(this.viewTools, this.choice, this.pause);
+    this.pause.onclick = () => this.setPaused(!this.isPaused);
+    this.choice.onchange = () => {
+      this.wanted = this.choice.value;
+      host.chosen?.(this.wanted);
+      if (this.sent) void this.choose(this.sent).then(() => this.showAgain());
+    };
+    this.slider.oninput = () => this.showPast();
+    source.on("header", (line) => this.setHeader(line));
+    source.on("problem", (text) => {
+      this.problem.hidden = text === "";
+      this.problem.textContent = text;
+    });
+    source.on("message", (arrival) => this.receive(arrival));
+    this.timer = window.setInterval(() => this.strip.draw(), 1000);
+  }
+
+  close(): void {
+    clearInterval(this.timer);
+    this.sight.close();
+    this.source.close();
+    this.view?.close?.();
+  }
+
+  private setHeader(line: string): void {
+    this.strip.setLine(line);
+    try {
+      this.sent = parseHeader(line.trim(), 0, Infinity);
+    } catch (error) {
+      if (!(error instanceof MtpError)) throw error;
+    }
+  }
+
+  private async receive(arrival: Arrival): Promise<void> {
+    const sent = this.sent ?? arrival.message.header;
+    this.last = arrival;
+    this.strip.count(arrival, sent);
+    await this.choose(sent);
+    const { view } = this;
+    if (!view) return;
+    if (view.keepsPast) {
+      await view.show(arrival, sent);
+      return;
+    }
+    if (this.isPaused) return;
+    if (!isVideo(arrival.message, sent)) this.past.push(arrival);
+    await this.sight.seen();
+    await view.show(arrival, sent);
+    if (isVideo(arrival.message, sent)) await this.keepSnapshot(arrival.at);
+  }
+
+  private async keepSnapshot(now: number): Promise<void> {
+    if (now < this.lastSnapshot + snapshotPeriod) return;
+    this.lastSnapshot = now;
+    const snapshot = await this.view?.snapshot?.();
+    if (snapshot) this.past.push(snapshot);
+  }
+
+  /** Makes the view that fits, if there is another one now. */
+  private async choose(sent: Header): Promise<void> {
+    await this.making;
+    const fitting = viewKinds.filter((kind) => kind.fits(sent));
+    const kind = fitting.find(({ name }) => name === this.wanted) ?? fitting[0];
+    if (kind === this.kind || !kind) return;
+    this.kind = kind;
+    this.choice.hidden = fitting.length < 2;
+    this.choice.replaceChildren(
+      ...fitting.map(({ name }) =>
+        h("option", { value: name, selected: name === kind.name }, name),
+      ),
+    );
+    this.making = this.make(kind);
+    await this.making;
+  }
+
+  private async make(kind: ViewKind): Promise<void> {
+    this.view?.close?.();
+    const { source, host } = this;
+    const { surroundings } = host;
+    const view = await kind.make({ source, surroundings, say: (text) => host.say(text) });
+    this.view = view;
+    this.body.replaceChildren(view.element);
+    this.viewTools.replaceChildren(...(view.tools ?? []));
+    view.setPaused?.(this.isPaused);
+  }
+
+  private async showAgain(): Promise<void> {
+    if (this.last && this.sent) await this.view?.show(this.last, this.sent);
+  }
+
+  private setPaused(paused: boolean): void {
+    this.isPaused = paused;
+    this.pause.setAttribute("aria-pressed", String(paused));
+    this.pause.textContent = paused ? "Go on" : "Pause";
+    this.view?.setPaused?.(paused);
+    this.scroll.hidden = !paused || this.view?.keepsPast === true || this.past.length < 2;
+    this.slider.max = String(this.past.length - 1);
+    this.slider.value = this.slider.max;
+    this.ago.textContent = "now";
+  }
+
+  private showPast(): void {
+    const arrival = this.past.at(Number(this.slider.value));
+    const newest = this.past.at(this.past.length - 1);
+    if (!arrival || !newest || !this.sent) return;
+    const seconds = (arrival.at - newest.at) / 1000;
+    this.ago.textContent = `${seconds.toFixed(1)} s`;
+    this.slider.setAttribute("aria-valuetext", `${-seconds.toFixed(1)} seconds ago`);
+    const { type } = arrival.message.header;
+    void this.view?.show(arrival, { ...this.sent, type });
+  }
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Depth, disparity and other measured grids in colours, blue near zero and red far off.
+import { Coord, numbersOf, type Header, type Numbers } from "../mtp";
+import type { Arrival } from "../server";
+import { h } from "../shell/h";
+import { isMeasured } from "./picture";
+import { pixelAt, Probe, type Spot } from "./probe";
+import { askForWidth } from "./room";
+import { turbo, turboPixels } from "./turbo";
+import type { View, ViewHost, ViewKind } from "./view";
+
+const palette = turboPixels();
+/** Holes are stripes of two greys, which no value has. */
+const holes = [0xff101010, 0xff585858] as const;
+
+function unitOf(header: Header): string {
+  if (header.coord === Coord.depth) return "m";
+  return header.coord === Coord.disparity ? "px" : "";
+}
+
+/** Whether a value is known: 0 is unknown where the coordinate system says so (R44). */
+function known(value: number, isZeroUnknown: boolean): boolean {
+  return Number.isFinite(value) && !(isZeroUnknown && value === 0);
+}
+
+/** 2nd and 98th percentile of what is known, of about 2000 samples. */
+export function usualRange(
+  values: ArrayLike<number>,
+  isZeroUnknown: boolean,
+): readonly [number, number] | undefined {
+  const step = Math.max(1, Math.floor(values.length / 2000));
+  const samples: number[] = [];
+  for (let i = 0; i < values.length; i += step) {
+    if (known(values[i]!, isZeroUnknown)) samples.push(values[i]!);
+  }
+  if (samples.length === 0) return undefined;
+  samples.sort((a, b) => a - b);
+  const at = (part: number) => samples[Math.floor(part * (samples.length - 1))]!;
+  return [at(0.02), at(0.98)];
+}
+
+export class ValuesView implements View {
+  readonly element: HTMLElement;
+  readonly tools: readonly HTMLElement[];
+  private readonly canvas = h("canvas", { class: "picture values", role: "img" });
+  private readonly context = this.canvas.getContext("2d", { alpha: false })!;
+  private readonly component = h("select", { "aria-label": "Component", hidden: true });
+  private readonly fixed = h("button", {
+    "aria-pressed": "false",
+    title: "Keep the range of the colours",
+  });
+  private readonly least = h("span", { class: "mono" });
+  private readonly most = h("span", { class: "mono" });
+  private readonly middle = h("span", { class: "mono" });
+  private readonly holePart = h("span", { class: "hole-part" });
+  private readonly probe: Probe;
+  private readonly endRoom: () => void;
+  private range?: readonly [number, number];
+  private image?: ImageData;
+  private shown?: { arrival: Arrival; sent: Header; values: Numbers };
+
+  constructor(host: ViewHost) {
+    this.canvas.setAttribute("aria-label", `Values of ${host.source.port} in colours`);
+    this.probe = new Probe(this.canvas, (spot) => this.words(spot));
+    this.fixed.textContent = "Fix colours";
+    this.fixed.onclick = () => {
+      const isFixed = this.fixed.getAttribute("aria-pressed") !== "true";
+      this.fixed.setAttribute("aria-pressed", String(isFixed));
+    };
+    this.component.onchange = () => {
+      this.range = undefined;
+      if (this.shown) this.show(this.shown.arrival, this.shown.sent);
+    };
+    this.tools = [this.component, this.fixed];
+    const bar = h("canvas", { class: "legend-bar", width: 256, height: 1, "aria-hidden": "true" });
+    drawBar(bar);
+    this.element = h(
+      "div",
+      { class: "image-view" },
+      this.canvas,
+      h(
+        "div",
+        { class: "legend" },
+        h("div", { class: "scale" }, bar, h("div", {}, this.least, this.middle, this.most)),
+        h("span", { class: "hole-swatch", "aria-hidden": "true" }),
+        this.holePart,
+      ),
+      this.probe.output,
+    );
+    this.endRoom = askForWidth(this.canvas, host.source, () => this.shown?.sent);
+  }
+
+  show(arrival: Arrival, sent: Header): void {
+    const { message } = arrival;
+    const values = numbersOf(message);
+    this.shown = { arrival, sent, values };
+    const { width, height, components } = message.header;
+    if (width === 0 || height === 0) return;
+    this.offerComponents(components);
+    if (!this.image || this.image.width !== width || this.image.height !== height) {
+      Object.assign(this.canvas, { width, height });
+      this.image = new ImageData(width, height);
+    }
+    const which = Math.min(Number(this.component.value || 0), components - 1);
+    this.draw(values, components, which, isMeasured(sent));
+    this.context.putImageData(this.image, 0, 0);
+    this.probe.update();
+  }
+
+  close(): void {
+    this.endRoom();
+  }
+
+  private offerComponents(count: number): void {
+    if (this.component.options.length === count) return;
+    this.component.hidden = count < 2;
+    this.component.replaceChildren(
+      ...Array.from({ length: count }, (_, i) => h("option", { value: i }, `component ${i}`)),
+    );
+  }
+
+  private draw(all: Numbers, components: number, which: number, isZeroUnknown: boolean): void {
+    const values =
+      components === 1
+        ? all
+        : Float64Array.from(
+            { length: all.length / components },
+            (_, i) => all[i * components + which]!,
+          );
+    this.updateRange(values, isZeroUnknown);
+    const [least, most] = this.range ?? [0, 1];
+    const scale = 255 / (most > least ? most - least : 1);
+    const image = this.image!;
+    const pixels = new Uint32Array(image.data.buffer);
+    let unknown = 0;
+    for (let i = 0, x = 0, y = 0; i < pixels.length; ++i) {
+      const value = values[i]!;
+      if (known(value, isZeroUnknown)) {
+        const level = Math.round((value - least) * scale);
+        pixels[i] = palette[level < 0 ? 0 : level > 255 ? 255 : level]!;
+      } else {
+        ++unknown;
+        pixels[i] = holes[((x + y) >> 2) & 1]!;
+      }
+      if (++x === image.width) {
+        x = 0;
+        ++y;
+      }
+    }
+    this.holePart.textContent = `${((100 * unknown) / pixels.length).toFixed(1)} % unknown`;
+  }
+
+  /** Follows the values slowly, so that colours do not flicker. */
+  private updateRange(values: ArrayLike<number>, isZeroUnknown: boolean): void {
+    const isFixed = this.fixed.getAttribute("aria-pressed") === "true";
+    if (isFixed && this.range) return;
+    const usual = usualRange(values, isZeroUnknown);
+    if (!usual) return;
+    const [least, most] = this.range ?? usual;
+    const follow = (now: number, to: number) => now + 0.2 * (to - now);
+    this.range = [follow(least, usual[0]), follow(most, usual[1])];
+    const unit = this.shown ? unitOf(this.shown.sent) : "";
+    const text = (value: number) => `${Number(value.toPrecision(3))} ${unit}`.trim();
+    this.least.textContent = `≤ ${text(this.range[0])}`;
+    this.middle.textContent = text((this.range[0] + this.range[1]) / 2);
+    this.most.textContent = `≥ ${text(this.range[1])}`;
+  }
+
+  private words({ across, down }: Spot): string {
+    if (!this.shown) return "";
+    const { arrival, sent, values } = this.shown;
+    const { width, height, components } = arrival.message.header;
+    const { x, y } = pixelAt({ across, down }, sent.width, sent.height);
+    const element = Math.floor(down * height) * width + Math.floor(across * width);
+    const unit = unitOf(sent);
+    const words = Array.from(values.subarray(element * components, (element + 1) * components))
+      .slice(0, 8)
+      .map((value) => (known(value, isMeasured(sent)) ? Number(value.toPrecision(4)) : "unknown"));
+    return `${x.toFixed(0)}, ${y.toFixed(0)} px: ${words.join(" ")} ${unit}`;
+  }
+}
+
+function drawBar(bar: HTMLCanvasElement): void {
+  const context = bar.getContext("2d")!;
+  for (let x = 0; x < bar.width; ++x) {
+    context.fillStyle = `rgb(${turbo(x / (bar.width - 1)).join(" ")})`;
+    context.fillRect(x, 0, 1, 1);
+  }
+}
+
+const grids = ["intensity_image", "vector_field", "map", "dense_graph"];
+
+export const valuesView: ViewKind = {
+  name: "colours",
+  fits: (sent) => grids.includes(sent.type),
+  make: (host) => new ValuesView(host),
+};
+
+/** Of what is measured; the first choice there. */
+export const depthView: ViewKind = { ...valuesView, fits: isMeasured };

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Header } from "../mtp";
+import type { Arrival, GraphState, Session, Unsubscribe } from "../server";
+
+/** Where messages come from: a stream of the server, or a recording. */
+export interface Source {
+  /** MODULE.PORT */
+  readonly port: string;
+  on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
+  on(event: "header", listener: (line: string) => void): Unsubscribe;
+  on(event: "problem", listener: (problem: string) => void): Unsubscribe;
+  /** Asks for no more elements in a row. */
+  setWidth(width: number): void;
+  close(): void;
+}
+
+/** What views may know of the graph. */
+export interface Surroundings {
+  readonly state: GraphState | undefined;
+  readonly session: Session | undefined;
+  /** Opens another source of the same time: live, or of the same recording. */
+  open(port: string): Source;
+}
+
+export interface ViewHost {
+  readonly source: Source;
+  readonly surroundings: Surroundings;
+  say(sentence: string): void;
+}
+
+/** Shows the messages of a stream. */
+export interface View {
+  readonly element: HTMLElement;
+  /** Controls for the panel's bar. */
+  readonly tools?: readonly HTMLElement[];
+  /**
+   * Shows a message.
+   *
+   * @param sent  header as it was sent, before the server scaled or encoded the message.
+   * @returns  where it takes time: when the view is ready for the next one.
+   */
+  show(arrival: Arrival, sent: Header): void | Promise<void>;
+  /** Whether the view itself keeps what was before and scrolls back. */
+  readonly keepsPast?: boolean;
+  /** Of such a view: stops or goes on with the present. */
+  setPaused?(paused: boolean): void;
+  /** What is shown now, as a message that can be shown again by itself. */
+  snapshot?(): Promise<Arrival | undefined>;
+  close?(): void;
+}
+
+/** A way to show streams. */
+export interface ViewKind {
+  readonly name: string;
+  fits(sent: Header): boolean;
+  make(host: ViewHost): View | Promise<View>;
+}
