@@ -13,6 +13,7 @@ constexpr std::array<const char*, 14> kQuestions = {"pr", "tr", "pn", "px", "tn"
                                                     "tu", "pl", "tl", "ps", "ts", "pa", "ta"};
 // A partial command left in the unit becomes an invalid one, which it refuses.
 constexpr const char* kNoWord = "-";
+constexpr std::string_view kAskPan = "pp", kAskTilt = "tp";
 constexpr double kArcsecond = std::numbers::pi / 180 / 3600;  // [rad]
 constexpr double kSlack = 50;  // of a place beyond what the greatest speed allows [position]
 
@@ -53,6 +54,7 @@ void Conversation::try_again(MonotonicTime now) {
   phase_ = Phase::Begins;
   reader_ = {};
   place_.reset();
+  tilt_seen_.reset();
   asked_ = 0;
   overdue_ = now + kTimeOut;
   bytes_ = pan_tilt::command(kNoWord);
@@ -172,9 +174,9 @@ bool Conversation::awaits(Awaits answer) const {
 void Conversation::look(MonotonicTime now) {
   if (phase_ != Phase::Ready || awaits(Awaits::Tilt)) return;
   looked_ = now;
-  say(now, pan_tilt::command("pp"), {Awaits::Pan});
+  say(now, pan_tilt::command(kAskPan), {Awaits::Pan});
   asked_place_ = written_;
-  say(now, pan_tilt::command("tp"), {Awaits::Tilt});
+  say(now, pan_tilt::command(kAskTilt), {Awaits::Tilt});
 }
 
 bool Conversation::command(MonotonicTime now, double pan, double tilt,
@@ -276,7 +278,16 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   place_time_ = looked_;
   // An answer to a query so long ago has waited to be read: its time is unknown.
   if (now - looked_ >= kTimeOut) return;
-  gaze_ = Gaze{heard_[0] * step(0), -heard_[1] * step(1), seen_at(now, heard_bytes_)};
+  gaze_ = Gaze{heard_[0] * step(0), tilt_at(seen_at(now, heard_bytes_), -heard_[1] * step(1)),
+               seen_at(now, heard_bytes_)};
+}
+
+/// Where the tilt was when the pan was seen: its own question arrived a little later.
+double Conversation::tilt_at(MonotonicTime time, double seen) {
+  const auto last = std::exchange(tilt_seen_, TiltSeen{time, seen});
+  if (!last || time <= last->time) return seen;
+  const double later = hc::seconds(on_line(kAskTilt.size() + 1));
+  return seen - (seen - last->tilt) * std::min(1.0, later / hc::seconds(time - last->time));
 }
 
 /// Whether the unit has been seen where it was commanded to go.

@@ -100,6 +100,7 @@ class Conversation {
   [[nodiscard]] bool awaits(Awaits answer) const;
   [[nodiscard]] std::chrono::nanoseconds on_line(std::size_t bytes) const;
   [[nodiscard]] MonotonicTime seen_at(MonotonicTime now, std::size_t answered) const;
+  [[nodiscard]] double tilt_at(MonotonicTime time, double seen);
   [[nodiscard]] bool arrived() const;
   [[nodiscard]] bool is_late(MonotonicTime now) const;
   void halt_unheard(MonotonicTime now);
@@ -136,6 +137,11 @@ class Conversation {
   Places heard_ = {};
   std::size_t heard_bytes_ = 0;
   MonotonicTime place_time_{0};  // when place_ was asked
+  struct TiltSeen {
+    MonotonicTime time;  // of the pan
+    double tilt;         // [rad], as it was answered
+  };
+  std::optional<TiltSeen> tilt_seen_;
   std::chrono::nanoseconds hold_{0};
 };
 

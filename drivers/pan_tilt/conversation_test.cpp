@@ -63,6 +63,34 @@ TEST(Conversation, on_a_slow_line_a_gaze_has_the_time_at_which_the_unit_looked_t
   }
 }
 
+TEST(Conversation, on_a_slow_line_the_tilt_is_that_of_the_time_of_the_pan) {
+  Line line;
+  line.delay = milliseconds(0);
+  line.bytes_per_second = 960;
+  line.host.set_line(960);
+  line.host.begin(line.now);
+  line.run(milliseconds(2000));
+  ASSERT_EQ(line.host.phase(), Phase::Ready);
+  line.host.command(line.now, 0, 0.8);
+  line.run(milliseconds(150));  // until it turns evenly
+  line.gazes.clear();
+  const auto begin = line.now;
+  const auto tilt = [&] {
+    return -line.unit.tilt(std::chrono::duration<double>(line.now).count()) * kStep;
+  };
+  const double first = tilt();
+  line.run(milliseconds(400));
+  const double speed = (tilt() - first) / 0.4;
+  ASSERT_GT(line.gazes.size(), 8U);
+  double late = 0;  // [s]
+  for (std::size_t i = 1; i < line.gazes.size(); ++i) {
+    const double passed = std::chrono::duration<double>(line.gazes[i].time - begin).count();
+    late += ((line.gazes[i].tilt - first) / speed - passed) /
+            static_cast<double>(line.gazes.size() - 1);
+  }
+  EXPECT_NEAR(late, 0, 0.0015) << "its question takes 3 ms";
+}
+
 TEST(Conversation, a_command_goes_at_once_beside_a_question) {
   Line line;
   line.begin();
