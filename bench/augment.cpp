@@ -5,13 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -19,38 +15,22 @@
 #include <graphics/occlusion.h>
 #include <graphics/overlay.h>
 #include <graphics/renderer.h>
-#include <room/sensor.h>
 #include <room/world.h>
 #include <vision/stereo/depth.h>
 #include <vision/stereo/matcher.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "head_sees.h"
+
 namespace {
 
 using hc::graphics::Body, hc::graphics::Overlay, hc::graphics::Renderer;
 
-constexpr double kBaseline = 0.1;  // of the simulated head [m]
-const hc::graphics::PinholeCamera kCamera;
+using bench::end_if_failed, bench::Eye, bench::kBaseline, bench::kCamera, bench::median,
+    bench::milliseconds;
+
 const double kScale = kCamera.fx * kBaseline;
-
-void end_if_failed(const hc::Status& status) {
-  if (status) return;
-  std::fprintf(stderr, "augment: %s\n", status.error().text().c_str());
-  std::exit(1);
-}
-
-Eigen::Isometry3d look_to(double pan, double tilt, bool is_right) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translate(Eigen::Vector3d(0, 0, hc::room::kHeadHeight));
-  T.rotate(Eigen::AngleAxisd(pan, Eigen::Vector3d::UnitZ()) *
-           Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()));
-  T.translate(Eigen::Vector3d(0.06, is_right ? -kBaseline / 2 : kBaseline / 2, 0.05));
-  Eigen::Matrix3d optical;
-  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  T.rotate(optical);
-  return T;
-}
 
 Body make_cube(Renderer& renderer, double size) {
   cv::Mat squares(4, 4, CV_8UC3, cv::Scalar(40, 60, 200));
@@ -62,13 +42,6 @@ Body make_cube(Renderer& renderer, double size) {
   return cube;
 }
 
-/// What an eye sees, and how it is.
-struct Eye {
-  Eigen::Isometry3d T_world_eye;
-  cv::Mat image;  // (H, W, 3) u8
-  cv::Mat truth;  // depth (H, W) f32 [m]
-};
-
 /// A room, seen by both eyes.
 struct View {
   hc::graphics::Light light;
@@ -79,14 +52,9 @@ struct View {
 View look(Renderer& renderer, hc::room::World& world, int number) {
   View view;
   view.light = world.light();
-  const auto& items = world.items({2.38, 0.2, 0.65});
-  for (const bool is_right : {false, true}) {
-    Eye& eye = view.eyes.at(is_right ? 1 : 0);
-    eye.T_world_eye = look_to(0.1, 0.2, is_right);
-    end_if_failed(
-        renderer.draw(items, kCamera, eye.T_world_eye, view.light, eye.image, &eye.truth));
-    hc::room::Sensor(is_right ? 1 : 2).apply(eye.image, 0, 2, static_cast<std::uint64_t>(number));
-  }
+  const bench::Gaze gaze{
+      .pan = 0.1, .tilt = 0.2, .seeds = {2, 1}, .image = static_cast<std::uint64_t>(number)};
+  view.eyes = bench::look(renderer, world, {2.38, 0.2, 0.65}, gaze);
   static const auto kMatcher = hc::vision::semi_global_matcher({.disparities = 64});
   hc::vision::Disparities found;
   end_if_failed(kMatcher->match(view.eyes[0].image, view.eyes[1].image, found));
@@ -133,19 +101,6 @@ Truth truth_of(Renderer& renderer, const Body& body, const View& view, std::size
 
 double share(const cv::Mat& of, const cv::Mat& all) {
   return static_cast<double>(cv::countNonZero(of)) / cv::countNonZero(all);
-}
-
-double milliseconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 Body cube_behind_the_bench(Renderer& renderer, double size) {
@@ -209,7 +164,7 @@ void measure_speed(Renderer& renderer, Overlay& overlay, int rounds) {
   std::printf("\n| cube [m] | its part of the image [px] | both eyes [ms] |\n|---|---|---:|\n");
   hc::room::World world(renderer, 1, "HELLO");
   const View view = look(renderer, world, 1);
-  for (const double size : {0.3, 0.6, 1.0, 1.4}) {
+  for (const double size : {0.3, 0.6, 1.0, 1.4, 2.0, 2.6}) {
     const Body cube = cube_behind_the_bench(renderer, size);
     const cv::Rect part = hc::graphics::part_of(cube, kCamera, view.eyes[0].T_world_eye);
     std::array<cv::Mat, 2> images = {view.eyes[0].image.clone(), view.eyes[1].image.clone()};
@@ -235,12 +190,8 @@ int main(int argc, char** argv) {
     if (std::string(argv[i]) == "--rounds") rounds = std::atoi(argv[i + 1]);
     if (std::string(argv[i]) == "--save") folder = argv[i + 1];
   }
-  auto renderer = Renderer::make();
-  if (!renderer) {
-    std::fprintf(stderr, "augment: %s\n", renderer.error().text().c_str());
-    return 1;
-  }
-  Overlay overlay(**renderer);
-  compare_masks(**renderer, overlay, folder);
-  measure_speed(**renderer, overlay, std::max(rounds, 1));
+  const auto renderer = bench::make_renderer();
+  Overlay overlay(*renderer);
+  compare_masks(*renderer, overlay, folder);
+  measure_speed(*renderer, overlay, std::max(rounds, 1));
 }

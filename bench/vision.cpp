@@ -3,7 +3,6 @@
 // matchers, on the Aloe pair and on rooms that are drawn with exact depth, as Markdown.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,11 +14,7 @@
 
 #include <Eigen/Dense>
 
-#include <graphics/camera.h>
-#include <graphics/renderer.h>
 #include <room/room.h>
-#include <room/sensor.h>
-#include <room/world.h>
 #include <vision/image.h>
 #include <vision/stereo/depth.h>
 #include <vision/stereo/matcher.h>
@@ -28,8 +23,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "head_sees.h"
+
 namespace {
 
+using bench::kBaseline, bench::kCamera, bench::median, bench::milliseconds;
 using hc::vision::Disparities, hc::vision::StereoMatcher;
 
 struct Pair {
@@ -57,44 +55,28 @@ Pair read_aloe() {
 }
 
 constexpr int kRooms = 10;
-constexpr double kFocal = 600, kBaseline = 0.1;  // of the simulated head [px], [m]
+const double kFocal = kCamera.fx;
 
 /// What the simulated head sees, looking somewhere in a room of its own.
 Pair draw_room(hc::graphics::Renderer& renderer, int number) {
   hc::room::World world(renderer, static_cast<std::uint64_t>(number), "HELLO");
-  const hc::graphics::PinholeCamera camera;
-  const double pan = 0.25 * (number - 5), tilt = 0.12 * (number % 3);
-  Eigen::Isometry3d T_world_left = Eigen::Isometry3d::Identity();
-  T_world_left.translate(Eigen::Vector3d(0, 0, hc::room::kHeadHeight));
-  T_world_left.rotate(Eigen::AngleAxisd(pan, Eigen::Vector3d::UnitZ()) *
-                      Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()));
-  T_world_left.translate(Eigen::Vector3d(0.06, kBaseline / 2, 0.05));
-  Eigen::Matrix3d optical;
-  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  T_world_left.rotate(optical);
-  const Eigen::Isometry3d T_world_right = T_world_left * Eigen::Translation3d(kBaseline, 0, 0);
+  const auto seed = static_cast<std::uint64_t>(2 * number);
+  const bench::Gaze gaze{
+      .pan = 0.25 * (number - 5), .tilt = 0.12 * (number % 3), .seeds = {seed, seed + 1}};
+  const auto [left, right] = bench::look(renderer, world, {2.2, 0.3, 0.65}, gaze);
+  const cv::Mat& depth = left.truth;
   Pair pair;
-  cv::Mat depth;
-  const auto& items = world.items({2.2, 0.3, 0.65});
-  for (cv::Mat* image : {&pair.left, &pair.right}) {
-    const bool is_left = image == &pair.left;
-    if (auto drawn = renderer.draw(items, camera, is_left ? T_world_left : T_world_right,
-                                   world.light(), *image, is_left ? &depth : nullptr);
-        !drawn) {
-      std::fprintf(stderr, "vision: %s\n", drawn.error().text().c_str());
-      std::exit(1);
-    }
-    hc::room::Sensor(static_cast<std::uint64_t>(2 * number + (is_left ? 0 : 1)))
-        .apply(*image, 0, 2, 1);
-  }
+  pair.left = left.image;
+  pair.right = right.image;
   pair.truth.create(depth.size(), CV_32F);
   pair.walls.create(depth.size(), CV_8U);
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) {
       const double z = depth.at<float>(y, x);
       pair.truth.at<float>(y, x) = z > 0 ? static_cast<float>(kFocal * kBaseline / z) : 0;
-      const Eigen::Vector3d p = T_world_left * Eigen::Vector3d((x - camera.cx) * z / camera.fx,
-                                                               (y - camera.cy) * z / camera.fy, z);
+      const Eigen::Vector3d p =
+          left.T_world_eye *
+          Eigen::Vector3d((x - kCamera.cx) * z / kCamera.fx, (y - kCamera.cy) * z / kCamera.fy, z);
       using namespace hc::room;
       const double away = std::min({std::abs(p.x() - kRoomFront), std::abs(p.x() - kRoomBack),
                                     std::abs(std::abs(p.y()) - kRoomSide)});
@@ -136,19 +118,6 @@ std::vector<Contestant> contestants(int disparities) {
           {"OpenCV SGBM", sgbm(cv::StereoSGBM::MODE_SGBM)},
           {"OpenCV HH4", sgbm(cv::StereoSGBM::MODE_HH4)},
           {"OpenCV BM", theirs(bm)}};
-}
-
-double milliseconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
 }
 
 cv::Mat right_of(const cv::Mat& image, int column) {
@@ -304,14 +273,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "vision: no aloeL.jpg, aloeR.jpg, aloeGT.png in HC_DATA\n");
     return 1;
   }
-  auto renderer = hc::graphics::Renderer::make();
-  if (!renderer) {
-    std::fprintf(stderr, "vision: %s\n", renderer.error().text().c_str());
-    return 1;
-  }
+  const auto renderer = bench::make_renderer();
   std::vector<Pair> rooms;
   rooms.reserve(kRooms);
-  for (int number = 0; number < kRooms; ++number) rooms.push_back(draw_room(**renderer, number));
+  for (int number = 0; number < kRooms; ++number) rooms.push_back(draw_room(*renderer, number));
   compare_quality("Aloe", {aloe}, 128);
   compare_quality("Ten rooms", rooms, 64);
   print_errors_by_distance(rooms, 64);

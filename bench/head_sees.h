@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the benchmarks of sight share: what the eyes of the simulated head see, and times.
+
+#include <cerrno>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <graphics/camera.h>
+#include <graphics/renderer.h>
+#include <room/sensor.h>
+#include <room/world.h>
+#include <opencv2/core.hpp>
+
+namespace bench {
+
+inline constexpr double kBaseline = 0.1;            // of the simulated head [m]
+inline const hc::graphics::PinholeCamera kCamera;  // either eye's
+
+inline void end_if_failed(const hc::Status& status) {
+  if (status) return;
+  std::fprintf(stderr, "%s: %s\n", program_invocation_short_name, status.error().text().c_str());
+  std::exit(1);
+}
+
+inline std::unique_ptr<hc::graphics::Renderer> make_renderer() {
+  auto renderer = hc::graphics::Renderer::make();
+  if (!renderer) end_if_failed(renderer.error());
+  return std::move(*renderer);
+}
+
+/// What an eye sees, and how it is.
+struct Eye {
+  Eigen::Isometry3d T_world_eye = Eigen::Isometry3d::Identity();  ///< optical
+  cv::Mat image;                                                  ///< (H, W, 3) u8
+  cv::Mat truth;                                                  ///< depth (H, W) f32 [m]
+};
+
+/// Where the head looks [rad], and the seeds of its cameras' noise.
+struct Gaze {
+  double pan = 0, tilt = 0;
+  std::array<std::uint64_t, 2> seeds = {0, 1};  ///< of the left and the right camera
+  std::uint64_t image = 1;                      ///< its number, for the noise
+};
+
+/// T_world_eye, optical.
+inline Eigen::Isometry3d eye_of(const Gaze& gaze, bool is_right) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translate(Eigen::Vector3d(0, 0, hc::room::kHeadHeight));
+  T.rotate(Eigen::AngleAxisd(gaze.pan, Eigen::Vector3d::UnitZ()) *
+           Eigen::AngleAxisd(gaze.tilt, Eigen::Vector3d::UnitY()));
+  T.translate(Eigen::Vector3d(0.06, is_right ? -kBaseline / 2 : kBaseline / 2, 0.05));
+  Eigen::Matrix3d optical;
+  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  T.rotate(optical);
+  return T;
+}
+
+/// Both eyes' images of a room, with a camera's noise of 2 of 255; the left one first.
+inline std::array<Eye, 2> look(hc::graphics::Renderer& renderer, hc::room::World& world,
+                               const Eigen::Vector3d& ball, const Gaze& gaze) {
+  std::array<Eye, 2> eyes;
+  const auto& items = world.items(ball);
+  for (const std::size_t i : {0U, 1U}) {
+    Eye& eye = eyes.at(i);
+    eye.T_world_eye = eye_of(gaze, i == 1);
+    end_if_failed(
+        renderer.draw(items, kCamera, eye.T_world_eye, world.light(), eye.image, &eye.truth));
+    hc::room::Sensor(gaze.seeds.at(i)).apply(eye.image, 0, 2, gaze.image);
+  }
+  return eyes;
+}
+
+inline double milliseconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace bench
