@@ -23,12 +23,18 @@ constexpr double kStraight = 0.045, kBulging = 0.06;
 constexpr double kUpper = 0.355, kMiddle = 0.375;
 // How far the upper right corner is cut off: of a Z 0.05 at most, of a 2 from 0.14.
 constexpr double kCorner = 0.08, kRoundCorner = 0.11;
-constexpr double kEven = 0.14;   // what differs less from its mirror image is an I, not a 1
-constexpr double kOpen = -0.2;   // what is open there is a 3
-constexpr double kBar = 0.28;    // width by height of an I without serifs at most; 1 from 0.33
-constexpr double kSure = 96;     // [%] what is surer was not read twice
-constexpr double kGap = 1.6;     // by the median of those in words; a space is wider
-constexpr double kSpace = 0.75;  // by the narrowest space that was read; a gap so wide is one
+constexpr double kEven = 0.14;        // what differs less from its mirror image is an I, not a 1
+constexpr double kOpen = -0.2;        // what is open there is a 3
+constexpr double kBar = 0.28;         // width by height of an I without serifs at most; 1 from 0.33
+constexpr double kGap = 1.6;          // by the median of those in words; a space is wider
+constexpr double kSpace = 0.75;       // by the narrowest space that was read; a gap so wide is one
+constexpr double kLeastSpace = 0.25;  // by the height of capital letters; no space is narrower
+// What it costs that no letter was read of a glyph, and that a letter shares one, by the height.
+constexpr double kUnread = 1, kShared = 1;
+// How wide letters that touch are together at least, by the sum of their widths; how wide slim ones
+// are by the usual width, and this by the height, where it cannot be measured.
+constexpr double kTouching = 0.75, kSlimWidth = 0.4, kWidth = 0.7;
+constexpr std::string_view kSlim = "I1!|.,-'ijlftr";
 
 constexpr std::string_view kAlike[] = {"0OQ9", "1I!", "2Z", "35S9", "368BES", "4A", "VY"};
 
@@ -119,22 +125,6 @@ bool is_bar(const cv::Mat& glyph) {
   return most < 128;
 }
 
-/// Drops letters that were read twice until there are as many as glyphs, if possible.
-void drop_twice(std::vector<Letter>& letters, std::size_t glyphs) {
-  while (letters.size() > glyphs) {
-    auto worst = letters.end();
-    for (auto next = letters.begin(); next != letters.end() && next + 1 != letters.end(); ++next) {
-      if (!are_alike(next->letter, next[1].letter) || next[1].begins_word) continue;
-      const auto less = next[1].confidence < next->confidence ? next + 1 : next;
-      if (less->confidence >= kSure) continue;
-      if (worst == letters.end() || less->confidence < worst->confidence) worst = less;
-    }
-    if (worst == letters.end()) return;
-    if (worst->begins_word) worst[1].begins_word = true;
-    letters.erase(worst);
-  }
-}
-
 std::string text_of(const std::vector<Letter>& letters) {
   std::string text;
   for (const auto& each : letters) {
@@ -144,10 +134,143 @@ std::string text_of(const std::vector<Letter>& letters) {
   return text;
 }
 
+/// About that of capital letters [px].
+int height_of(const std::vector<cv::Rect>& boxes) {
+  int height = 1;
+  for (const auto& box : boxes) height = std::max(height, box.height);
+  return height;
+}
+
+/// Which glyph each letter is of. Both stand in the same order, and a letter is where its glyph is,
+/// about: found by dynamic programming is the least sum of the distances, by the height, and of
+/// what glyphs cost that no letter was read of, and letters that share one.
+std::vector<std::size_t> glyphs_of(const std::vector<Letter>& letters,
+                                   const std::vector<cv::Rect>& boxes) {
+  const int height = height_of(boxes);
+  const auto distance = [&](std::size_t letter, std::size_t glyph) {
+    const int x = letters[letter].x, left = boxes[glyph].x, right = boxes[glyph].br().x;
+    return static_cast<double>(std::max({left - x, x - right, 0})) / height;
+  };
+  // costs[i][k]: least of the first i + 1 letters, the last being of glyph k; from: the one's
+  // before.
+  const std::size_t count = boxes.size();
+  std::vector<std::vector<double>> costs(letters.size(), std::vector<double>(count));
+  std::vector<std::vector<std::size_t>> from(letters.size(), std::vector<std::size_t>(count));
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    for (std::size_t k = 0; k < count; ++k) {
+      double least = i == 0 ? kUnread * static_cast<double>(k) : costs[i - 1][k] + kShared;
+      from[i][k] = k;
+      for (std::size_t before = 0; i > 0 && before < k; ++before) {
+        const double cost = costs[i - 1][before] + kUnread * static_cast<double>(k - before - 1);
+        if (cost < least) least = cost, from[i][k] = before;
+      }
+      costs[i][k] = least + distance(i, k);
+    }
+  std::vector<std::size_t> glyphs(letters.size());
+  if (letters.empty()) return glyphs;
+  auto& ends = costs.back();
+  for (std::size_t k = 0; k < count; ++k) ends[k] += kUnread * static_cast<double>(count - 1 - k);
+  glyphs.back() =
+      static_cast<std::size_t>(std::min_element(ends.begin(), ends.end()) - ends.begin());
+  for (std::size_t i = letters.size() - 1; i > 0; --i) glyphs[i - 1] = from[i][glyphs[i]];
+  return glyphs;
+}
+
+/// The letters of a line and its glyphs, brought together.
+struct Match {
+  std::vector<cv::Rect> boxes;
+  std::vector<Letter> letters;
+  std::vector<std::size_t> glyphs;  // each letter's, in boxes
+  int odd = 0;                      // letters more than there is room for, and glyphs without any
+  int touching = 0;                 // letters that share a glyph with the one before
+
+  [[nodiscard]] std::size_t sharing(std::size_t glyph) const {
+    return static_cast<std::size_t>(std::count(glyphs.begin(), glyphs.end(), glyph));
+  }
+  /// Fewer letters that are odd, and then fewer that touch.
+  [[nodiscard]] bool is_better_than(const Match& other) const {
+    return odd != other.odd ? odd < other.odd : touching < other.touching;
+  }
+};
+
+/// The usual width of a letter: the median of those alone in their glyph, of bars none; where there
+/// are none, by the height.
+double usual_width(const Match& match) {
+  std::vector<int> widths;
+  for (std::size_t k = 0; k < match.boxes.size(); ++k)
+    if (match.sharing(k) == 1 && match.boxes[k].width > kBar * match.boxes[k].height)
+      widths.push_back(match.boxes[k].width);
+  if (widths.empty()) return kWidth * height_of(match.boxes);
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  return *middle;
+}
+
+/// Whether letters from `first` to before `end` can be one glyph, because they touch in it.
+bool may_touch(const std::vector<Letter>& letters, std::size_t first, std::size_t end,
+               const cv::Rect& box, double usual_width) {
+  double wide = 0;
+  for (std::size_t i = first; i < end; ++i)
+    wide += kSlim.find(letters[i].letter) == kSlim.npos ? 1 : kSlimWidth;
+  return box.width > kTouching * wide * usual_width;
+}
+
+/// The one of several letters of a glyph that is to go: the less sure one of two that look alike,
+/// or else the least sure one.
+std::size_t worst_of(const std::vector<Letter>& letters, std::size_t first, std::size_t end) {
+  std::size_t worst = first;
+  bool is_alike = false;
+  for (std::size_t i = first; i < end; ++i) {
+    const bool has_alike = (i > first && are_alike(letters[i - 1].letter, letters[i].letter)) ||
+                           (i + 1 < end && are_alike(letters[i].letter, letters[i + 1].letter));
+    if (has_alike == is_alike ? letters[i].confidence < letters[worst].confidence : has_alike)
+      worst = i;
+    is_alike |= has_alike;
+  }
+  return worst;
+}
+
+/// Brings letters and glyphs together, what is darker being ink, and drops letters that were read
+/// of the same glyph as others.
+Match match(const cv::Mat& line, const std::vector<Letter>& letters, int darker) {
+  Match match{find_letters(line, darker), letters, {}};
+  auto& [boxes, left, glyphs, odd, touching] = match;
+  if (boxes.empty()) {
+    odd = static_cast<int>(letters.size());
+    return match;
+  }
+  glyphs = glyphs_of(left, boxes);
+  const double usual = usual_width(match);
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    std::size_t end = first + match.sharing(k);
+    if (end == first) ++odd;
+    while (end > first + 1 && !may_touch(left, first, end, boxes[k], usual)) {
+      const std::size_t worst = worst_of(left, first, end);
+      const auto at = static_cast<std::ptrdiff_t>(worst);
+      if (left[worst].begins_word && worst + 1 < end) left[worst + 1].begins_word = true;
+      left.erase(left.begin() + at);
+      glyphs.erase(glyphs.begin() + at);
+      --end;
+      ++odd;
+    }
+    touching += std::max(0, static_cast<int>(end - first) - 1);
+    first = end;
+  }
+  return match;
+}
+
 /// Sets spaces by the gaps: none where it is no wider than those within words, and one where it is
 /// as wide as the others between words.
-void set_spaces(std::vector<Letter>& letters, const std::vector<cv::Rect>& boxes) {
-  const auto gap = [&](std::size_t i) { return std::max(1, boxes[i].x - boxes[i - 1].br().x); };
+void set_spaces(Match& match) {
+  auto& letters = match.letters;
+  const auto& boxes = match.boxes;
+  const auto& glyphs = match.glyphs;
+  const auto gap = [&](std::size_t i) {
+    return glyphs[i] == glyphs[i - 1]
+               ? 1
+               : std::max(1, boxes[glyphs[i]].x - boxes[glyphs[i - 1]].br().x);
+  };
   std::vector<int> within;
   double space = 1e9;
   for (std::size_t i = 1; i < letters.size(); ++i)
@@ -155,20 +278,13 @@ void set_spaces(std::vector<Letter>& letters, const std::vector<cv::Rect>& boxes
   if (within.size() < 3) return;
   const auto middle = within.begin() + static_cast<std::ptrdiff_t>(within.size() / 2);
   std::nth_element(within.begin(), middle, within.end());
+  const double least = std::max(kGap * *middle, kLeastSpace * height_of(boxes));
   for (std::size_t i = 1; i < letters.size(); ++i) {
-    if (gap(i) < kGap * *middle) letters[i].begins_word = false;
+    if (gap(i) < least) letters[i].begins_word = false;
     if (letters[i].begins_word) space = std::min<double>(space, gap(i));
   }
   for (std::size_t i = 1; i < letters.size(); ++i)
     if (gap(i) > kSpace * space) letters[i].begins_word = true;
-}
-
-/// Whether boxes are of the letters, one by one, and not as many by chance.
-bool are_of(const std::vector<cv::Rect>& boxes, const std::vector<Letter>& letters) {
-  if (boxes.size() != letters.size()) return false;
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (letters[i].x < boxes[i].x || letters[i].x > boxes[i].br().x) return false;
-  return true;
 }
 
 }  // namespace
@@ -243,30 +359,30 @@ char by_shape(const cv::Mat& glyph, char letter) {
   }
 }
 
-std::string by_shape(const cv::Mat& line, const Reading& reading, bool upper_case) {
-  auto letters = reading.letters;
+Correction by_shape(const cv::Mat& line, const Reading& reading, bool upper_case) {
+  if (reading.letters.empty()) return {reading.text, 0};
   // What is darker is ink; less of it where letters touch.
-  std::vector<cv::Rect> boxes;
-  for (const int darker : {128, 96, 64, 32}) {
-    boxes = find_letters(line, darker);
-    if (boxes.size() >= letters.size()) break;
+  auto best = match(line, reading.letters, 128);
+  for (const int darker : {96, 64, 32}) {
+    if (best.odd == 0 && best.touching == 0) break;
+    if (auto other = match(line, reading.letters, darker); other.is_better_than(best))
+      best = std::move(other);
   }
-  if (boxes.size() < letters.size()) {
-    boxes = find_letters(line);
-    drop_twice(letters, boxes.size());
-  }
-  if (letters.size() != boxes.size()) return reading.text;
-  if (are_of(boxes, letters)) set_spaces(letters, boxes);
+  if (best.glyphs.empty()) return {reading.text, best.odd};
+  if (best.odd == 0) set_spaces(best);
+  auto& letters = best.letters;
   for (std::size_t i = 0; i < letters.size(); ++i) {
     const bool is_alone =
         letters[i].begins_word && (i + 1 == letters.size() || letters[i + 1].begins_word);
     // A word of nothing but an upright stroke is no l.
-    if (upper_case ? !letters[i].is_known : is_alone && letters[i].letter == '1')
-      letters[i].letter = by_shape(line(boxes[i]), letters[i].letter);
-    else if (is_alone && letters[i].letter == 'l')
+    if (upper_case ? !letters[i].is_known : is_alone && letters[i].letter == '1') {
+      if (best.sharing(best.glyphs[i]) == 1)
+        letters[i].letter = by_shape(line(best.boxes[best.glyphs[i]]), letters[i].letter);
+    } else if (is_alone && letters[i].letter == 'l') {
       letters[i].letter = 'I';
+    }
   }
-  return text_of(letters);
+  return {text_of(letters), best.odd};
 }
 
 }  // namespace hc::vision

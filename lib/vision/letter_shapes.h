@@ -36,10 +36,16 @@ std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 /// @param glyph  cut out, (H, W) u8, black on white.
 char by_shape(const cv::Mat& glyph, char letter);
 
-/// A reading's text, set right: of a letter that was read twice, as two that look alike, the less
-/// sure one is dropped; spaces are where gaps are wide; and in upper case, each letter of a word
-/// that is in no dictionary is by its shape. As it was read where letters cannot be counted.
+/// A reading, set right.
+struct Correction {
+  std::string text;
+  int odd = 0;  ///< letters without a glyph of their own, and glyphs of which no letter was read
+};
+
+/// Sets a reading right: of two letters that look alike and were read of one glyph, the less sure
+/// one is dropped; spaces are where gaps are wide; and in upper case, each letter of a word that is
+/// in no dictionary is by its shape.
 /// @param line  what was read, (H, W) u8, black on white.
-std::string by_shape(const cv::Mat& line, const Reading& reading, bool upper_case = true);
+Correction by_shape(const cv::Mat& line, const Reading& reading, bool upper_case = true);
 
 }  // namespace hc::vision

@@ -108,8 +108,24 @@ bool are_neighbours(const Piece& a, const Piece& b) {
          std::abs(a.ink - b.ink) < 0.5 * contrast;
 }
 
+/// Whether something dark stands across what is between two columns, as the frame of a board.
+bool is_parted(const cv::Mat& dark, double left, double right, double top, double bottom) {
+  const cv::Rect gap =
+      cv::Rect(cv::Point(cvRound(left), cvRound(top)), cv::Point(cvRound(right), cvRound(bottom))) &
+      cv::Rect({}, dark.size());
+  if (left >= right || top >= bottom || gap.empty()) return false;
+  cv::Mat rows;
+  cv::reduce(dark(gap), rows, 1, cv::REDUCE_MAX);
+  return cv::countNonZero(rows) == gap.height;
+}
+
+bool is_parted(const cv::Mat& dark, const Piece& a, const Piece& b) {
+  return is_parted(dark, std::min(a.right(), b.right()), std::max(a.left(), b.left()),
+                   std::max(a.top(), b.top()), std::min(a.bottom(), b.bottom()));
+}
+
 /// Letters by their line.
-std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces) {
+std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces, const cv::Mat& dark) {
   std::vector<Piece> letters;
   for (const auto& piece : pieces)
     if (piece.is_letter) letters.push_back(piece);
@@ -124,7 +140,8 @@ std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces) {
   for (std::size_t i = 0; i < letters.size(); ++i)
     for (std::size_t k = i + 1; k < letters.size(); ++k) {
       if (letters[k].left() > letters[i].right() + 2.0F * kMostHeight) break;
-      if (are_neighbours(letters[i], letters[k])) group_of[root(k)] = root(i);
+      if (are_neighbours(letters[i], letters[k]) && !is_parted(dark, letters[i], letters[k]))
+        group_of[root(k)] = root(i);
     }
   std::vector<std::vector<Piece>> groups(letters.size());
   for (std::size_t i = 0; i < letters.size(); ++i) groups[root(i)].push_back(letters[i]);
@@ -157,8 +174,8 @@ double spread_of(const std::vector<cv::Point2d>& points, const Slant& line) {
 }
 
 /// Stops, commas and dashes that belong to a line reach beyond its letters.
-void reach_for_stops(const std::vector<Piece>& pieces, const Slant& top, const Slant& base,
-                     double height, double ground, double& left, double& right) {
+void reach_for_stops(const std::vector<Piece>& pieces, const cv::Mat& dark, const Slant& top,
+                     const Slant& base, double height, double ground, double& left, double& right) {
   bool any = true;
   while (any) {
     any = false;
@@ -168,9 +185,11 @@ void reach_for_stops(const std::vector<Piece>& pieces, const Slant& top, const S
         continue;
       if (std::abs(piece.ground - ground) > 0.25 * ground) continue;
       if (piece.box.area() < 0.008 * height * height) continue;
-      if (piece.left() < left && piece.right() > left - 0.9 * height)
+      if (piece.left() < left && piece.right() > left - 0.9 * height &&
+          !is_parted(dark, piece.right(), left, top.at(x), base.at(x)))
         left = piece.left(), any = true;
-      if (piece.right() > right && piece.left() < right + 0.9 * height)
+      if (piece.right() > right && piece.left() < right + 0.9 * height &&
+          !is_parted(dark, right, piece.left(), top.at(x), base.at(x)))
         right = piece.right(), any = true;
     }
   }
@@ -221,7 +240,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   for (const auto& letter : letters)
     unevenness.push_back(std::min(std::abs(letter.bottom() - base.at(letter.middle_x())),
                                   std::abs(letter.top() - top.at(letter.middle_x()))));
-  reach_for_stops(pieces, top, base, height, ground, left, right);
+  reach_for_stops(pieces, dark, top, base, height, ground, left, right);
 
   TextLine line;
   auto corner = [](double x, double y) {
@@ -310,7 +329,7 @@ std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score) {
       const cv::Mat seen = is_bright ? cv::Mat(255 - grey) : grey;
       cv::Mat dark;
       const auto pieces = find_pieces(seen, noise, dark);
-      for (const auto& letters : group(pieces))
+      for (const auto& letters : group(pieces, dark))
         if (auto line = line_of(letters, pieces, seen, dark, noise);
             line && line->score >= min_score) {
           line->is_bright = is_bright;

@@ -118,6 +118,19 @@ TEST(Letters, a_dash_and_a_stop_belong_to_the_line) {
   EXPECT_NEAR(lines[0].width(), text_box("-AB12.").width, 6);
 }
 
+TEST(Letters, a_line_ends_at_the_frame_of_its_board) {
+  cv::Mat image = scene("HELLO ROBOT");
+  const auto box = text_box("HELLO ROBOT");
+  // Behind the board, near its frame, hangs what could be a letter.
+  const int x = box.br().x + box.height + 6;
+  cv::rectangle(image, {x - 3, box.y - 10, 60, 45}, {240, 240, 235}, cv::FILLED);
+  cv::putText(image, "S", {x, box.br().y}, cv::FONT_HERSHEY_DUPLEX, 1, {20, 20, 25}, 2,
+              cv::LINE_AA);
+  const auto lines = find_text_lines(image);
+  ASSERT_GE(lines.size(), 1U);
+  EXPECT_NEAR(lines[0].width(), box.width, 6);
+}
+
 TEST(Letters, straightens_what_is_turned) {
   cv::Mat image = scene("HELLO ROBOT", {300, 300}), turned;
   const auto turn = cv::getRotationMatrix2D({400, 300}, 8, 1);

@@ -60,6 +60,26 @@ cv::Mat draw(const Text& lines, const std::string& font, const Look& look) {
   return sum;
 }
 
+/// A board of 262 by 63 pixels with OpenCV's letters of strokes, as in the simulated room.
+cv::Mat draw_strokes(const std::string& text, double noise) {
+  constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
+  cv::Mat board(240, 1000, CV_8UC3, cv::Scalar(245, 245, 240)), seen, sum;
+  int below = 0;
+  const auto large = cv::getTextSize(text, kFont, 10, 1, &below);
+  const double scale = std::min(9000.0 / large.width, 10 * 112.0 / (large.height + below));
+  const int stroke = static_cast<int>(2.6 * scale);
+  const auto size = cv::getTextSize(text, kFont, scale, stroke, &below);
+  cv::putText(board, text, {(1000 - size.width) / 2, (240 + size.height) / 2}, kFont, scale,
+              {20, 20, 25}, stroke, cv::LINE_AA);
+  cv::resize(board, seen, {262, 63}, 0, 0, cv::INTER_AREA);
+  cv::Mat image(600, 800, CV_8UC3, cv::Scalar(150, 155, 150));
+  seen.copyTo(image(cv::Rect(269, 269, 262, 63)));
+  cv::Mat grains(image.size(), CV_16SC3);
+  cv::RNG(7).fill(grains, cv::RNG::NORMAL, 0, noise);
+  cv::add(image, grains, sum, cv::noArray(), CV_8U);
+  return sum;
+}
+
 /// How many of some texts in all fonts are read without an error, [%].
 int read(const std::vector<Text>& texts, const Look& look, bool upper_case = true) {
   static std::map<bool, Recogniser> recognisers;
@@ -120,6 +140,21 @@ TEST(Block, may_be_of_small_letters_to_the_end_of_the_line) {
   EXPECT_GE(read(kLower, {.height = 12}, false), 90);
   EXPECT_GE(read(kLower, {.ink = 230, .ground = 30, .height = 16}, false), 90);
   EXPECT_GE(read({{"I am here"}, {"EXIT -> 12.50"}, {"Mind the gap!"}}, {}, false), 80);
+}
+
+// Texts that were read wrong in the simulated head: a letter read twice beside two that touch, one
+// missing, a space where there is none.
+TEST(Block, codes_are_read_letter_by_letter) {
+  auto recogniser = Recogniser::make("eng", true);
+  ASSERT_TRUE(recogniser) << recogniser.error().text();
+  for (const double noise : {2.0, 20.0})
+    for (const char* const code :
+         {"LAV56X", "F90WRA", "T5ZTLA4 PO3FAN0W", "EBQID5I 9AHG5QO8", "3WSH470 RI7E9URP", "5ASDRY1",
+          "VW9CXTIJ 2D03I", "IBZJ9JQF", "Y2H0NULX 6Q9KJ0", "XG6PDW9S 2DK", "OIYIWEWP"}) {
+      const auto image = draw_strokes(code, noise);
+      const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
+      EXPECT_EQ(read_block(*recogniser, image, block, true).text, code) << noise;
+    }
 }
 
 }  // namespace
