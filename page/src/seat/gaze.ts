@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the robot's head looked at a time, by the output that moves its frame.
+import { numbersOf } from "../mtp";
+import type { Server, Stream } from "../server";
+import { anglesOfPose, type Angles } from "./orientation";
+
+/** So many poses are kept: some seconds. */
+const most = 300;
+
+/** The output that moves the frame `head`, of the text of G31: `NAME COORD PARENT OUTPUT ADDRESS`. */
+export function headOutput(frames: string): string | undefined {
+  const words = frames.split(";").map((frame) => frame.trim().split(/ +/));
+  return words.find((frame) => frame.length === 5 && frame[0] === "head")?.[3];
+}
+
+export class GazeHistory {
+  private readonly stream: Stream;
+  private readonly poses: { time: bigint; angles: Angles }[] = [];
+
+  constructor(server: Server, port: string) {
+    this.stream = server.stream(port);
+    this.stream.on("message", ({ message }) => {
+      if (message.header.type !== "transformation") return;
+      const { time } = message.header;
+      this.poses.push({ time, angles: anglesOfPose(numbersOf(message)) });
+      if (this.poses.length > most) this.poses.shift();
+    });
+  }
+
+  /** The pose whose time is nearest. */
+  at(time: bigint): Angles | undefined {
+    const away = (pose: { time: bigint }): number => Math.abs(Number(pose.time - time));
+    return this.poses.length === 0
+      ? undefined
+      : this.poses.reduce((a, b) => (away(b) <= away(a) ? b : a)).angles;
+  }
+
+  close(): void {
+    this.stream.close();
+  }
+}

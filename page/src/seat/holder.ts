@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who drives: holds the driver's socket, and repeats what a person commands as long as they do.
+import { Coord, numbersMessage, textMessage } from "../mtp";
+import { Signal, type Drive, type Server } from "../server";
+import type { Angles } from "./orientation";
+import { Stick } from "./steering";
+
+export type SeatState =
+  | { readonly is: "free" }
+  | { readonly is: "waiting" }
+  | { readonly is: "held" }
+  /** `why`: in a sentence; `taken`: by another driver. */
+  | { readonly is: "lost"; readonly why: string; readonly taken: boolean };
+
+const period = 33; // of the stick [ms]
+const bidPeriod = 100; // [ms]
+
+/** A head that is turned by less than this is at rest [rad]. */
+const still = 0.01;
+
+/** The time of the wall clock, finer than a millisecond [ms since the Unix epoch]. */
+export function wallClock(): number {
+  return performance.timeOrigin + performance.now();
+}
+
+/**
+ * The supervisor's seat. It is left when the page is hidden: a person who does not see the robot
+ * does not drive it.
+ */
+export class Seat {
+  readonly stick = new Stick();
+  private readonly states = new Signal<SeatState>({ is: "free" });
+  private readonly tasks = new Signal<number>(0);
+  private drive?: Drive;
+  private steering = false;
+  /** Where the person's head was when it last was seen to move. */
+  private turned: Angles = { roll: 0, pitch: 0, yaw: 0 };
+  private readonly timers: number[];
+  private readonly hidden = (): void => {
+    if (document.hidden && this.drive) this.leave("You left the page, and with it the seat.");
+  };
+
+  /** @param commanded  is told of each message that moves the head [ms since the Unix epoch]. */
+  constructor(
+    private readonly server: Server,
+    private readonly commanded: (at: number) => void,
+  ) {
+    this.timers = [
+      window.setInterval(() => this.steer(), period),
+      window.setInterval(() => this.bid(), bidPeriod),
+    ];
+    document.addEventListener("visibilitychange", this.hidden);
+  }
+
+  close(): void {
+    this.leave();
+    this.timers.forEach((timer) => clearInterval(timer));
+    document.removeEventListener("visibilitychange", this.hidden);
+  }
+
+  get state(): SeatState {
+    return this.states.value ?? { is: "free" };
+  }
+
+  get isHeld(): boolean {
+    return this.state.is === "held";
+  }
+
+  onState(listener: (state: SeatState) => void): () => void {
+    return this.states.on(listener);
+  }
+
+  /** Number of the task that the person has chosen; 0: none. */
+  get task(): number {
+    return this.tasks.value ?? 0;
+  }
+
+  onTask(listener: (task: number) => void): () => void {
+    return this.tasks.on(listener);
+  }
+
+  /** @param fromOther  takes it from whoever has it. */
+  take(fromOther = false): void {
+    this.drive?.close();
+    const drive = this.server.drive({ take: fromOther });
+    this.drive = drive;
+    this.states.set({ is: "waiting" });
+    drive.onStatus((status) => {
+      if (this.drive !== drive) return;
+      if (status.status === "driving") return this.states.set({ is: "held" });
+      if (status.status === "connecting") return this.states.set({ is: "waiting" });
+      this.forget({ is: "lost", why: status.why, taken: status.taken });
+    });
+  }
+
+  /** Gives the seat back. @param why  where it was not the person's wish. */
+  leave(why = ""): void {
+    if (!this.drive) return;
+    this.stick.release();
+    if (this.steering) this.sendStick();
+    if (this.task) this.sendBid(this.task, 0);
+    this.drive.close();
+    this.forget(why ? { is: "lost", why, taken: false } : { is: "free" });
+  }
+
+  /** Bids for a task in the person's name, until it is released. */
+  choose(task: number): void {
+    if (this.task && this.task !== task) this.sendBid(this.task, 0);
+    this.tasks.set(task);
+    this.bid();
+  }
+
+  release(): void {
+    if (this.task) this.sendBid(this.task, 0);
+    this.tasks.set(0);
+  }
+
+  /** The person's head is turned so, since it was zeroed. */
+  turn({ roll, pitch, yaw }: Angles): void {
+    const time = wallClock();
+    const message = numbersMessage("rotation", [roll, pitch, yaw], {
+      coord: Coord.head,
+      time: nanoseconds(time),
+    });
+    if (!this.drive?.send("rotation", message)) return;
+    const { pitch: p, yaw: y } = this.turned;
+    if (Math.hypot(pitch - p, yaw - y) < still) return;
+    this.turned = { roll, pitch, yaw };
+    this.commanded(time);
+  }
+
+  /**
+   * Looks at a pixel of an eye's image, as it was taken.
+   *
+   * @param coord  7: of the left eye, 8: of the right one.
+   * @param time  of that image [ns].
+   */
+  lookAt(x: number, y: number, coord: number, time: bigint): void {
+    const message = numbersMessage("position", [x, y, 0], { coord, time });
+    if (this.drive?.send("target", message)) this.commanded(wallClock());
+  }
+
+  /** Says a text by the robot's mouth; returns whether it went out. */
+  speak(text: string): boolean {
+    return this.drive?.send("text", textMessage(text, { coord: Coord.text })) ?? false;
+  }
+
+  /** Sends the stick while it is pushed, and its middle once at the end. */
+  private steer(): void {
+    if (!this.isHeld) return;
+    const { left, down } = this.stick.push;
+    const pushed = left !== 0 || down !== 0;
+    if (pushed && !this.steering && this.task) this.sendBid(this.task, 0); // the hand goes first
+    if (pushed || this.steering) this.sendStick();
+    this.steering = pushed;
+  }
+
+  private sendStick(): void {
+    const { left, down } = this.isHeld ? this.stick.push : { left: 0, down: 0 };
+    const time = wallClock();
+    const message = numbersMessage("table", [left, down], { time: nanoseconds(time) });
+    if (this.drive?.send("stick", message) && !this.steering) this.commanded(time);
+  }
+
+  private bid(): void {
+    if (this.task && !this.steering) this.sendBid(this.task, 1);
+  }
+
+  private sendBid(mode: number, salience: number): void {
+    if (this.isHeld) this.drive?.send("bid", numbersMessage("table", [salience], { mode }));
+  }
+
+  private forget(state: SeatState): void {
+    this.drive = undefined;
+    this.steering = false;
+    this.stick.release();
+    this.tasks.set(0);
+    this.states.set(state);
+  }
+}
+
+function nanoseconds(ms: number): bigint {
+  return BigInt(Math.round(ms * 1e3)) * 1000n;
+}

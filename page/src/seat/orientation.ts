@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a person's head is turned, from what devices tell. Pure; angles in rad.
+
+/** Roll about x (forward), pitch about y (left), yaw about z (up): R = Rz(yaw) Ry(pitch) Rx(roll). */
+export interface Angles {
+  readonly roll: number;
+  readonly pitch: number;
+  readonly yaw: number;
+}
+
+/** Rows of a rotation matrix. */
+type Matrix = readonly (readonly [number, number, number])[];
+
+/** Axes of a body (x forward, y left, z up) in those of a screen (x right, y up, z to the person). */
+const screenFromBody: Matrix = [
+  [0, -1, 0],
+  [0, 0, 1],
+  [-1, 0, 0],
+];
+
+const degree = Math.PI / 180;
+
+function product(a: Matrix, b: Matrix): Matrix {
+  return a.map((row) => {
+    const at = (column: number): number =>
+      row[0] * b[0]![column]! + row[1] * b[1]![column]! + row[2] * b[2]![column]!;
+    return [at(0), at(1), at(2)];
+  });
+}
+
+function transpose(m: Matrix): Matrix {
+  return [0, 1, 2].map((i) => [m[0]![i]!, m[1]![i]!, m[2]![i]!]);
+}
+
+function aboutX(angle: number): Matrix {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [
+    [1, 0, 0],
+    [0, c, -s],
+    [0, s, c],
+  ];
+}
+
+function aboutY(angle: number): Matrix {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [
+    [c, 0, s],
+    [0, 1, 0],
+    [-s, 0, c],
+  ];
+}
+
+function aboutZ(angle: number): Matrix {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [
+    [c, -s, 0],
+    [s, c, 0],
+    [0, 0, 1],
+  ];
+}
+
+function anglesOf(m: Matrix): Angles {
+  return {
+    roll: Math.atan2(m[2]![1], m[2]![2]),
+    pitch: Math.asin(Math.max(-1, Math.min(1, -m[2]![0]))),
+    yaw: Math.atan2(m[1]![0], m[0]![0]),
+  };
+}
+
+/**
+ * Where the back of a phone looks.
+ *
+ * @param alpha, beta, gamma  of DeviceOrientationEvent [degree].
+ * @param screen  angle of screen.orientation [degree].
+ */
+export function anglesOfDevice(alpha: number, beta: number, gamma: number, screen: number): Angles {
+  const device = product(
+    product(aboutZ(alpha * degree), aboutX(beta * degree)),
+    aboutY(gamma * degree),
+  );
+  return anglesOf(product(product(device, aboutZ(-screen * degree)), screenFromBody));
+}
+
+/** Where a headset looks, from its orientation in a space whose y is up, a quaternion. */
+export function anglesOfHeadset(q: { x: number; y: number; z: number; w: number }): Angles {
+  const { x, y, z, w } = q;
+  const headset: Matrix = [
+    [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+    [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+    [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+  ];
+  return anglesOf(product(product(transpose(screenFromBody), headset), screenFromBody));
+}
+
+/** Angles of a transformation from a frame of a body to another, 4 × 4, row by row. */
+export function anglesOfPose(numbers: ArrayLike<number>): Angles {
+  const row = (i: number): [number, number, number] => [
+    numbers[4 * i]!,
+    numbers[4 * i + 1]!,
+    numbers[4 * i + 2]!,
+  ];
+  return anglesOf([row(0), row(1), row(2)]);
+}
+
+/** Angles since a zero; each from -π to π. */
+export function since(zero: Angles, now: Angles): Angles {
+  return {
+    roll: wrap(now.roll - zero.roll),
+    pitch: wrap(now.pitch - zero.pitch),
+    yaw: wrap(now.yaw - zero.yaw),
+  };
+}
+
+function wrap(angle: number): number {
+  return angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
+}

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+// The supervisor's seat: what the robot sees, and all by which a person moves it.
+import type { DriveOutput, GraphState, Session } from "../server";
+import { fill, h, type PanelHost, type PanelKind } from "../shell";
+import { Ears } from "./ears";
+import { earsOf } from "./eyes";
+import { GazeHistory, headOutput } from "./gaze";
+import { dragSteers, gamepadsSteer, keysSteer } from "./hands";
+import { Seat, type SeatState } from "./holder";
+import { Latency } from "./latency";
+import { PhoneTracker } from "./telepresence";
+import { SeatView } from "./view";
+import type { XrView } from "./xr";
+
+declare global {
+  interface Window {
+    /** For who measures: motion to photon. */
+    hypercolumn?: { latency: Latency };
+  }
+}
+
+/** The supervisor's seat: {kind: "seat"}. */
+export const seatPanel: PanelKind = (_args, host) => {
+  host.setTitle("Seat");
+  const panel = new SeatPanel(host);
+  return { element: panel.element, close: () => panel.close() };
+};
+
+class SeatPanel {
+  private readonly latency = new Latency();
+  private readonly seat: Seat;
+  private readonly view: SeatView;
+  private readonly phone: PhoneTracker;
+  private xr?: XrView;
+  private gaze?: GazeHistory;
+  private ears?: Ears;
+  private readonly ends: (() => void)[] = [];
+
+  private readonly who = h("p", { class: "seat-who", role: "status" });
+  private readonly takeButton = h("button", { class: "take", onclick: () => this.take() });
+  private readonly leaveButton = h(
+    "button",
+    { onclick: () => this.seat.leave() },
+    "Leave the seat",
+  );
+  private readonly tasks = h("div", { class: "tasks", role: "group", "aria-label": "Tasks" });
+  private readonly knob = h("div", { class: "knob" });
+  private readonly pad = h("div", { class: "pad", "aria-hidden": "true" }, this.knob);
+  private readonly phoneButton = h(
+    "button",
+    { "aria-pressed": "false", onclick: () => void this.togglePhone() },
+    "Turn with this phone",
+  );
+  private readonly xrButton = h(
+    "button",
+    { hidden: true, onclick: () => void this.toggleXr() },
+    "Enter the headset",
+  );
+  private readonly zeroButton = h(
+    "button",
+    {
+      onclick: () => {
+        this.phone.zero();
+        this.xr?.zero();
+      },
+    },
+    "This is straight ahead",
+  );
+  private readonly text = h("input", { type: "text", id: "seat-text", maxlength: 500 });
+  private readonly speakButton = h("button", { type: "submit" }, "Say it");
+  private readonly listenButton = h(
+    "button",
+    { "aria-pressed": "false", onclick: () => this.toggleEars() },
+    "Listen",
+  );
+  private readonly delay = h("p", { class: "seat-latency" });
+  readonly element: HTMLElement;
+
+  constructor(private readonly host: PanelHost) {
+    const { server } = host;
+    this.seat = new Seat(server, (at) => this.latency.command(at));
+    this.view = new SeatView(server, this.latency);
+    this.phone = new PhoneTracker((angles) => this.seat.turn(angles));
+    window.hypercolumn = { latency: this.latency };
+    host.tools.append(this.view.tools);
+
+    const speak = h(
+      "form",
+      {
+        class: "speak",
+        onsubmit: (event: SubmitEvent) => {
+          event.preventDefault();
+          const text = this.text.value.trim();
+          if (text && this.seat.speak(text)) this.text.value = "";
+        },
+      },
+      h("label", { for: "seat-text" }, "Say"),
+      this.text,
+      this.speakButton,
+    );
+    this.element = h(
+      "div",
+      {
+        class: "seat",
+        tabindex: 0,
+        role: "group",
+        "aria-label": "Seat: arrow keys or W A S D turn the head while you have the seat",
+      },
+      h("div", { class: "seat-bar" }, this.who, this.takeButton, this.leaveButton),
+      this.view.element,
+      h(
+        "div",
+        { class: "seat-controls" },
+        this.pad,
+        h(
+          "div",
+          { class: "seat-column" },
+          this.tasks,
+          h("div", { class: "telepresence" }, this.phoneButton, this.xrButton, this.zeroButton),
+          speak,
+          h("div", { class: "listen" }, this.listenButton),
+          this.delay,
+        ),
+      ),
+    );
+
+    this.bindHands();
+    this.ends.push(
+      this.seat.onState((state) => this.showSeat(state)),
+      this.seat.onTask(() => server.state && this.showTasks(server.state)),
+      server.onState((state) => this.showState(state)),
+      server.onSession((session) => this.showSession(session)),
+    );
+    void navigator.xr?.isSessionSupported("immersive-vr").then(
+      (supported) => (this.xrButton.hidden = !supported),
+      () => {},
+    );
+    const timer = window.setInterval(() => this.showLatency(), 500);
+    this.ends.push(() => clearInterval(timer));
+  }
+
+  close(): void {
+    for (const end of this.ends) end();
+    this.phone.stop();
+    this.xr?.leave();
+    this.ears?.close();
+    this.gaze?.close();
+    this.view.close();
+    this.seat.close();
+  }
+
+  private bindHands(): void {
+    const { stick } = this.seat;
+    const { canvas } = this.view;
+    const show = ({ left, down }: { left: number; down: number }): void => {
+      this.knob.style.transform = `translate(${-left * 40}px, ${down * 40}px)`;
+    };
+    dragSteers(this.pad, stick, "pad", () => this.pad.clientWidth / 2, show);
+    const reach = (): number => Math.min(canvas.clientWidth, canvas.clientHeight) / 3;
+    dragSteers(canvas, stick, "image", reach, show, (event) => this.lookAt(event));
+    keysSteer(this.element, stick);
+    this.ends.push(gamepadsSteer(stick));
+  }
+
+  private lookAt(event: PointerEvent): void {
+    if (!this.seat.isHeld) return this.host.say("Take the seat first, then point.");
+    if (!this.has("target")) return this.host.say("No output target of the page is linked.");
+    const pixel = this.view.pixelAt(event.clientX, event.clientY);
+    if (!pixel) return this.host.say("Point at the image of an eye, as its camera takes it.");
+    this.seat.lookAt(pixel.x, pixel.y, pixel.coord, pixel.time);
+    this.host.say(`The head looks at ${Math.round(pixel.x)}, ${Math.round(pixel.y)}.`);
+  }
+
+  private take(): void {
+    this.seat.take(this.host.server.session?.driver === "other");
+    this.element.focus();
+  }
+
+  private has(output: DriveOutput): boolean {
+    return this.host.server.session?.drives.includes(output) ?? false;
+  }
+
+  private async togglePhone(): Promise<void> {
+    if (this.phone.isOn) {
+      this.phone.stop();
+    } else {
+      try {
+        await this.phone.start();
+      } catch (error) {
+        this.host.say(error instanceof Error ? error.message : String(error));
+      }
+    }
+    this.phoneButton.setAttribute("aria-pressed", String(this.phone.isOn));
+  }
+
+  private async toggleXr(): Promise<void> {
+    if (this.xr) return this.xr.leave();
+    const { server } = this.host;
+    try {
+      const { XrView } = await import("./xr");
+      const pose = headOutput(server.session?.frames ?? "");
+      if (pose && !this.gaze) this.gaze = new GazeHistory(server, pose);
+      this.xr = await XrView.enter({
+        focal: this.view.focal,
+        turned: (angles) => this.seat.turn(angles),
+        gazeAt: (time) => this.gaze?.at(time),
+        ended: () => {
+          this.xr = undefined;
+          this.view.showIn(undefined);
+          this.xrButton.textContent = "Enter the headset";
+        },
+      });
+      this.view.showIn(this.xr);
+      this.xrButton.textContent = "Leave the headset";
+    } catch (error) {
+      this.host.say(error instanceof Error ? error.message : String(error));
+    }
+  }
+
+  private toggleEars(): void {
+    const { server } = this.host;
+    const port = server.state && earsOf(server.state);
+    if (this.ears) {
+      this.ears.close();
+      this.ears = undefined;
+    } else if (port) {
+      this.ears = new Ears(server, port);
+    }
+    this.listenButton.setAttribute("aria-pressed", String(this.ears !== undefined));
+  }
+
+  private showSeat(state: SeatState): void {
+    if (state.is !== "held") {
+      this.phone.stop();
+      this.phoneButton.setAttribute("aria-pressed", "false");
+      this.xr?.leave();
+    }
+    this.element.classList.toggle("held", state.is === "held");
+    this.showWho();
+    if (this.host.server.state) this.showTasks(this.host.server.state);
+  }
+
+  private showSession(_session: Session): void {
+    this.showWho();
+  }
+
+  private showState(state: GraphState): void {
+    this.view.update(state);
+    this.listenButton.disabled = earsOf(state) === undefined;
+    this.showTasks(state);
+    this.showWho();
+  }
+
+  /** Says who drives and which task has the focus, and offers what can be done about it. */
+  private showWho(): void {
+    const { session, state } = this.host.server;
+    const { seat } = this;
+    const driver = this.driverText(session);
+    const focus = state?.focus ? `Task in focus: ${state.focus.mode}.` : "No task has the focus.";
+    const text = `${driver} ${state && state.workspaces.length > 0 ? focus : ""}`.trim();
+    if (this.who.textContent !== text) this.who.textContent = text;
+    const mayDrive = session?.right === "drive";
+    this.takeButton.hidden = !mayDrive || seat.isHeld || seat.state.is === "waiting";
+    const take = session?.driver === "other" ? "Take the seat from them" : "Take the seat";
+    if (this.takeButton.textContent !== take) this.takeButton.textContent = take;
+    this.leaveButton.hidden = !seat.isHeld;
+    const free = !seat.isHeld;
+    this.phoneButton.disabled = free || !this.has("rotation");
+    this.xrButton.disabled = free || !this.has("rotation");
+    this.zeroButton.disabled = free;
+    this.speakButton.disabled = free || !this.has("text");
+    this.pad.classList.toggle("disabled", free || !this.has("stick"));
+  }
+
+  private driverText(session: Session | undefined): string {
+    if (!session) return "";
+    const { state } = this.seat;
+    if (state.is === "held")
+      return session.stopped ? "You drive, but the robot is stopped." : "You drive.";
+    if (state.is === "waiting") return "Waiting for the seat…";
+    const other = session.driver === "other" ? "Somebody else drives." : "Nobody drives.";
+    if (session.right === "view") return `${other} You may look; ask for a URL that may drive.`;
+    return state.is === "lost" ? `${state.why} ${state.taken ? "" : other}`.trim() : other;
+  }
+
+  private showTasks(state: GraphState): void {
+    const names = Object.entries(state.modes).sort((a, b) => a[1] - b[1]);
+    const can = this.seat.isHeld && this.has("bid");
+    const key = JSON.stringify([names, can, this.seat.task, state.focus?.number]);
+    if (this.tasks.dataset.key === key) return;
+    this.tasks.dataset.key = key;
+    const focused = this.tasks.contains(document.activeElement)
+      ? (document.activeElement as HTMLElement).dataset.task
+      : undefined;
+    fill(
+      this.tasks,
+      names.map(([name, number]) => {
+        const chosen = this.seat.task === number;
+        return h(
+          "button",
+          {
+            "data-task": name,
+            class: state.focus?.number === number ? "task-button in-focus" : "task-button",
+            "aria-pressed": String(chosen),
+            disabled: !can,
+            title: chosen ? `Release ${name}` : `Choose ${name}`,
+            onclick: () => (chosen ? this.seat.release() : this.seat.choose(number)),
+          },
+          name,
+        );
+      }),
+    );
+    if (focused) {
+      this.tasks.querySelector<HTMLElement>(`[data-task="${CSS.escape(focused)}"]`)?.focus();
+    }
+  }
+
+  private showLatency(): void {
+    const { median, p99, measurements } = this.latency;
+    const text =
+      median === undefined || p99 === undefined
+        ? "Motion to photon: not measured yet."
+        : `Motion to photon: ${Math.round(median)} ms, p99 ${Math.round(p99)} ms (${measurements.length}).`;
+    if (this.delay.textContent !== text) this.delay.textContent = text;
+  }
+}

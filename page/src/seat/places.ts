@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the images of two eyes are in a canvas, in one of several ways. Pure.
+import type { Side } from "./eyes";
+
+export const ways = ["left", "right", "side by side", "red/cyan"] as const;
+export type Way = (typeof ways)[number];
+
+/** A part of a canvas that shows an eye [px]. */
+export interface Place {
+  readonly side: Side;
+  readonly x: number;
+  readonly y: number;
+  readonly width: number;
+  readonly height: number;
+}
+
+/** The eyes that a way needs. */
+export function sidesOf(way: Way): readonly Side[] {
+  if (way === "left" || way === "right") return [way];
+  return ["left", "right"];
+}
+
+/** Where eyes are drawn in a canvas: as large as there is room, in the middle. */
+export function placesOf(
+  way: Way,
+  image: { width: number; height: number },
+  canvas: { width: number; height: number },
+): Place[] {
+  const across = way === "side by side" ? 2 : 1;
+  const scale = Math.min(canvas.width / (across * image.width), canvas.height / image.height);
+  const width = image.width * scale;
+  const height = image.height * scale;
+  const x = (canvas.width - across * width) / 2;
+  const y = (canvas.height - height) / 2;
+  const sides = way === "red/cyan" ? (["left"] as const) : sidesOf(way);
+  return sides.map((side, i) => ({ side, x: x + i * width, y, width, height }));
+}
+
+/** The pixel of an eye's sensor at a point of the canvas; undefined beside the images. */
+export function pixelAt(
+  places: readonly Place[],
+  point: { x: number; y: number },
+  sensor: { width: number; height: number },
+): { side: Side; x: number; y: number } | undefined {
+  const place = places.find(
+    ({ x, y, width, height }) =>
+      point.x >= x && point.x < x + width && point.y >= y && point.y < y + height,
+  );
+  if (!place) return undefined;
+  // Pixels count from the middle of the first one.
+  const x = ((point.x - place.x) / place.width) * sensor.width - 0.5;
+  const y = ((point.y - place.y) / place.height) * sensor.height - 0.5;
+  return { side: place.side, x, y };
+}

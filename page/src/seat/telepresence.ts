@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Telepresence by the orientation of a phone.
+import { anglesOfDevice, since, type Angles } from "./orientation";
+
+/** The last orientation is said again each so many ms, since a phone at rest says nothing. */
+const period = 40;
+
+type WithPermission = typeof DeviceOrientationEvent & {
+  requestPermission?(): Promise<"granted" | "denied">;
+};
+
+export class PhoneTracker {
+  private zeroed?: Angles;
+  private last?: Angles;
+  private timer = 0;
+
+  /** @param turned  how the phone is turned since it was zeroed. */
+  constructor(private readonly turned: (angles: Angles) => void) {}
+
+  get isOn(): boolean {
+    return this.timer !== 0;
+  }
+
+  /** Begins; where the phone looks first is straight ahead. Errors: a sentence. */
+  async start(): Promise<void> {
+    if (!("DeviceOrientationEvent" in window)) {
+      throw new Error("This browser does not tell how the device is turned.");
+    }
+    const permission = await (DeviceOrientationEvent as WithPermission).requestPermission?.();
+    if (permission === "denied") {
+      throw new Error("The browser was told not to say how the device is turned: allow it motion.");
+    }
+    this.zero();
+    addEventListener("deviceorientation", this.take);
+    this.timer = window.setInterval(() => this.say(), period);
+  }
+
+  stop(): void {
+    removeEventListener("deviceorientation", this.take);
+    clearInterval(this.timer);
+    this.timer = 0;
+    this.last = undefined;
+  }
+
+  /** Where it looks now is straight ahead. */
+  zero(): void {
+    this.zeroed = this.last;
+  }
+
+  private readonly take = (event: DeviceOrientationEvent): void => {
+    const { alpha, beta, gamma } = event;
+    if (alpha === null || beta === null || gamma === null) return; // no sensor
+    this.last = anglesOfDevice(alpha, beta, gamma, screen.orientation?.angle ?? 0);
+    this.zeroed ??= this.last;
+    this.say();
+  };
+
+  private say(): void {
+    if (this.last && this.zeroed) this.turned(since(this.zeroed, this.last));
+  }
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the robot's eyes see, in the seat: a canvas, and the streams that it needs.
+import type { GraphState, Server } from "../server";
+import { fill, h } from "../shell";
+import { Eye, eyePairs, type EyePair, type Picture, type Side } from "./eyes";
+import type { Latency } from "./latency";
+import { drawPictures, thumbnailOf, type Pictures } from "./picture";
+import { pixelAt, placesOf, sidesOf, ways, type Way } from "./places";
+import type { XrView } from "./xr";
+
+/** Images are asked for no wider than this [px]. */
+const widest = 1280;
+
+/** A pixel of an eye's sensor, in an image of a time [ns]. */
+export interface SeenPixel {
+  readonly x: number;
+  readonly y: number;
+  readonly coord: number;
+  readonly time: bigint;
+}
+
+export class SeatView {
+  readonly canvas = h("canvas", {
+    class: "seat-image",
+    role: "img",
+    "aria-label": "What the robot sees",
+  });
+  private readonly problem = h("p", { class: "seat-problem", role: "status" });
+  private readonly way: HTMLSelectElement;
+  private readonly source: HTMLSelectElement;
+  readonly tools: HTMLElement;
+  readonly element: HTMLElement;
+  private readonly eyes = new Map<Side, Eye>();
+  private pairs: readonly EyePair[] = [];
+  private readonly resizing: ResizeObserver;
+  private drawing = false;
+  private xr?: XrView;
+
+  constructor(
+    private readonly server: Server,
+    private readonly latency: Latency,
+  ) {
+    const name = (label: string) => ({ "aria-label": label, onchange: () => this.reopen() });
+    this.way = h(
+      "select",
+      name("How the eyes are shown"),
+      ways.map((way) => h("option", {}, way)),
+    );
+    this.source = h("select", name("Whose images"));
+    this.tools = h("div", { class: "seat-tools" }, this.source, this.way);
+    this.element = h("div", { class: "seat-view" }, this.canvas, this.problem);
+    this.resizing = new ResizeObserver(() => this.resize());
+    this.resizing.observe(this.canvas);
+  }
+
+  close(): void {
+    this.resizing.disconnect();
+    this.xr?.leave();
+    for (const eye of this.eyes.values()) eye.close();
+  }
+
+  /** Takes the pairs of eyes that the graph has now. */
+  update(state: GraphState): void {
+    const pairs = eyePairs(state);
+    if (JSON.stringify(pairs) === JSON.stringify(this.pairs)) return;
+    const chosen = this.source.value;
+    this.pairs = pairs;
+    const label = (pair: EyePair): string =>
+      pair.augmented ? `${pair.module} (augmented)` : pair.module;
+    fill(
+      this.source,
+      pairs.map((pair) => h("option", { value: pair.module }, label(pair))),
+    );
+    if (pairs.some((pair) => pair.module === chosen)) this.source.value = chosen;
+    this.reopen();
+  }
+
+  get pair(): EyePair | undefined {
+    return this.pairs.find(({ module }) => module === this.source.value) ?? this.pairs[0];
+  }
+
+  /** Focal length of the cameras [px of the sensor], of the parameters of the graph. */
+  get focal(): number {
+    const modules = this.server.state?.modules ?? [];
+    const own = modules.find((module) => module.name === this.pair?.module)?.parameters.focal;
+    return Number(own) || 600;
+  }
+
+  /** The pixel under a point of the window; undefined where it is none of a camera's image. */
+  pixelAt(clientX: number, clientY: number): SeenPixel | undefined {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const pictures = this.pictures();
+    const image = pictures.left ?? pictures.right;
+    if (!image || !this.pair?.raw) return undefined;
+    const { canvas } = this;
+    const point = {
+      x: ((clientX - left) * canvas.width) / width,
+      y: ((clientY - top) * canvas.height) / height,
+    };
+    const found = pixelAt(placesOf(this.shownWay, image.bitmap, canvas), point, image);
+    const picture = found && pictures[found.side];
+    if (!found || !picture || (picture.coord !== 7 && picture.coord !== 8)) return undefined;
+    return { x: found.x, y: found.y, coord: picture.coord, time: picture.time };
+  }
+
+  /** Shows the images in a headset too, until `undefined` is given. */
+  showIn(xr: XrView | undefined): void {
+    this.xr = xr;
+    this.reopen();
+  }
+
+  private get shownWay(): Way {
+    return ways.find((way) => way === this.way.value) ?? "left";
+  }
+
+  private pictures(): Pictures {
+    return { left: this.eyes.get("left")?.picture, right: this.eyes.get("right")?.picture };
+  }
+
+  /** Opens the streams that are needed, and closes others. */
+  private reopen(): void {
+    for (const eye of this.eyes.values()) eye.close();
+    this.eyes.clear();
+    this.problem.textContent = "";
+    const { pair } = this;
+    if (!pair) {
+      this.problem.textContent = "The graph has no module that sends images left or right.";
+      return;
+    }
+    this.way.disabled = pair.right === undefined;
+    const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
+    const first = wanted[0]!;
+    for (const side of wanted) {
+      const port = side === "left" ? pair.left : (pair.right ?? pair.left);
+      const shown = (picture: Picture): void => this.take(side, picture, side === first);
+      const problem = (text: string): void => {
+        this.problem.textContent = text;
+      };
+      this.eyes.set(side, new Eye(this.server, port, this.width(), shown, problem));
+    }
+  }
+
+  private take(side: Side, picture: Picture, measured: boolean): void {
+    this.xr?.show(side, picture);
+    const thumbnail = measured ? thumbnailOf(picture.bitmap) : undefined;
+    this.draw(() => {
+      if (!thumbnail) return;
+      this.latency.shown({
+        thumbnail,
+        sensed: Number(picture.time / 1000n) / 1000,
+        arrived: picture.arrived,
+        decoded: picture.decoded,
+        drawn: performance.timeOrigin + performance.now(),
+      });
+    });
+  }
+
+  /** Draws what there is at the next frame; `drawn` is called then. */
+  private draw(drawn: () => void = () => {}): void {
+    if (this.xr) return this.xr.nextFrame(drawn);
+    if (!this.drawing) {
+      this.drawing = true;
+      requestAnimationFrame(() => {
+        this.drawing = false;
+        drawPictures(this.canvas, this.shownWay, this.pictures());
+      });
+    }
+    requestAnimationFrame(drawn); // after the drawing, since it came later
+  }
+
+  /** Width to ask for, in steps, so that it is not asked anew for each pixel. */
+  private width(): number {
+    if (this.xr) return widest;
+    const across = this.shownWay === "side by side" ? 2 : 1;
+    return Math.min(widest, Math.max(160, Math.ceil(this.canvas.width / across / 160) * 160));
+  }
+
+  private resize(): void {
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const ratio = Math.min(2, devicePixelRatio);
+    const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (w === 0 || h === 0 || (w === this.canvas.width && h === this.canvas.height)) return;
+    this.canvas.width = w;
+    this.canvas.height = h;
+    for (const eye of this.eyes.values()) eye.setWidth(this.width());
+    this.draw();
+  }
+}

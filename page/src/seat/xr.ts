@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Telepresence in a headset: each eye sees what the robot's eye sees, where the robot looked then.
+import {
+  CanvasTexture,
+  Group,
+  LinearFilter,
+  Mesh,
+  MeshBasicMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Scene,
+  SRGBColorSpace,
+  WebGLRenderer,
+} from "three";
+import type { Picture, Side } from "./eyes";
+import { anglesOfHeadset, since, type Angles } from "./orientation";
+
+/** How far the images are [m]; their size is as the camera's focal length says. */
+const distance = 4;
+
+export interface XrOptions {
+  /** Focal length of the cameras [px of the sensor]. */
+  readonly focal: number;
+  /** How the headset is turned since it was zeroed, each frame. */
+  turned(angles: Angles): void;
+  /** Where the robot looked at a time [ns]; undefined: not known. */
+  gazeAt(time: bigint): Angles | undefined;
+  ended(): void;
+}
+
+/** An eye's image on a plane that this eye alone sees. */
+class Quad {
+  private readonly canvas = document.createElement("canvas");
+  private texture?: CanvasTexture;
+  private readonly material = new MeshBasicMaterial();
+  readonly mesh = new Mesh(new PlaneGeometry(1, 1), this.material);
+  picture?: Picture;
+
+  /** @param layer  1: the left eye's, 2: the right eye's, as three.js has them. */
+  constructor(layer: number) {
+    this.mesh.layers.set(layer);
+    this.mesh.visible = false;
+  }
+
+  show(picture: Picture, focal: number): void {
+    const { width, height } = picture.bitmap;
+    if (!this.texture || this.canvas.width !== width || this.canvas.height !== height) {
+      this.canvas.width = width;
+      this.canvas.height = height;
+      this.texture?.dispose();
+      this.texture = new CanvasTexture(this.canvas);
+      this.texture.colorSpace = SRGBColorSpace;
+      this.texture.minFilter = LinearFilter;
+      this.texture.generateMipmaps = false;
+      this.material.map = this.texture;
+      this.material.needsUpdate = true;
+    }
+    this.canvas.getContext("2d")?.drawImage(picture.bitmap, 0, 0);
+    this.texture.needsUpdate = true;
+    const scale = distance / focal;
+    this.mesh.scale.set(picture.width * scale, picture.height * scale, 1);
+    this.mesh.visible = true;
+    this.picture = picture;
+  }
+
+  dispose(): void {
+    this.texture?.dispose();
+    this.material.dispose();
+    this.mesh.geometry.dispose();
+  }
+}
+
+/** A session in a headset. */
+export class XrView {
+  private readonly renderer = new WebGLRenderer({ antialias: false });
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera();
+  private readonly quads: Record<Side, Quad> = { left: new Quad(1), right: new Quad(2) };
+  private readonly gaze = new Group();
+  private readonly waiting: (() => void)[] = [];
+  private zeroed?: Angles;
+
+  private constructor(
+    private readonly session: XRSession,
+    private readonly options: XrOptions,
+  ) {
+    this.gaze.rotation.order = "YXZ";
+    for (const { mesh } of Object.values(this.quads)) {
+      mesh.position.set(0, 0, -distance);
+      this.gaze.add(mesh);
+    }
+    this.scene.add(this.gaze);
+  }
+
+  /** Errors: what the browser says, where there is no headset or it may not be used. */
+  static async enter(options: XrOptions): Promise<XrView> {
+    const xr = navigator.xr;
+    if (!xr) throw new Error("This browser has no WebXR. A headset's own browser has.");
+    const session = await xr.requestSession("immersive-vr");
+    const view = new XrView(session, options);
+    const { renderer } = view;
+    renderer.xr.enabled = true;
+    renderer.xr.setReferenceSpaceType("local");
+    session.addEventListener("end", () => view.dispose());
+    await renderer.xr.setSession(session);
+    renderer.setAnimationLoop((_time, frame) => frame && view.frame(frame));
+    return view;
+  }
+
+  show(side: Side, picture: Picture): void {
+    this.quads[side].show(picture, this.options.focal);
+  }
+
+  /** Where the headset looks now is straight ahead. */
+  zero(): void {
+    this.zeroed = undefined;
+  }
+
+  /** Calls back when what is shown now has been drawn. */
+  nextFrame(drawn: () => void): void {
+    this.waiting.push(drawn);
+  }
+
+  leave(): void {
+    void this.session.end();
+  }
+
+  private frame(frame: XRFrame): void {
+    const space = this.renderer.xr.getReferenceSpace();
+    const pose = space && frame.getViewerPose(space);
+    if (pose && this.session.visibilityState === "visible") {
+      const { position, orientation } = pose.transform;
+      const now = anglesOfHeadset(orientation);
+      this.zeroed ??= now;
+      const turned = since(this.zeroed, now);
+      this.options.turned(turned);
+      const { picture } = this.quads.left.picture ? this.quads.left : this.quads.right;
+      const gaze = (picture && this.options.gazeAt(picture.time)) ?? turned;
+      this.gaze.position.set(position.x, position.y, position.z);
+      // Body axes to those of WebXR: left is -x, forward is -z; angles are about fixed axes.
+      const { roll, pitch, yaw } = this.zeroed;
+      this.gaze.rotation.set(-(pitch + gaze.pitch), yaw + gaze.yaw, -(roll + gaze.roll));
+    }
+    this.renderer.render(this.scene, this.camera);
+    for (const drawn of this.waiting.splice(0)) drawn();
+  }
+
+  private dispose(): void {
+    this.renderer.setAnimationLoop(null);
+    for (const quad of Object.values(this.quads)) quad.dispose();
+    this.renderer.dispose();
+    this.options.ended();
+  }
+}
