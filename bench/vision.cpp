@@ -60,7 +60,7 @@ const double kFocal = kCamera.fx;
 /// What the simulated head sees, looking somewhere in a room of its own.
 Pair draw_room(hc::graphics::Renderer& renderer, int number) {
   hc::room::World world(renderer, static_cast<std::uint64_t>(number), "HELLO");
-  const auto seed = static_cast<std::uint64_t>(2 * number);
+  const auto seed = 2 * static_cast<std::uint64_t>(number);
   const bench::Gaze gaze{
       .pan = 0.25 * (number - 5), .tilt = 0.12 * (number % 3), .seeds = {seed, seed + 1}};
   const auto [left, right] = bench::look(renderer, world, {2.2, 0.3, 0.65}, gaze);
