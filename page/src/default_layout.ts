@@ -2,14 +2,17 @@
 import type { GraphState, Session } from "./server";
 import type { Layout, PanelArgs } from "./shell";
 
-/** The two eyes: outputs left and right of a module that nothing feeds. */
+/** The two eyes: outputs left and right of a module, such that no other one like it feeds it. */
 function eyesOf(state: GraphState): string[] {
   const outputs = new Set(state.links.map((link) => link.from));
-  const fed = new Set(state.links.map((link) => link.to.split(".")[0]));
-  const eyes = state.modules.filter(
-    ({ name }) => outputs.has(`${name}.left`) && outputs.has(`${name}.right`),
-  );
-  const name = (eyes.find((module) => !fed.has(module.name)) ?? eyes[0])?.name;
+  const pairs = state.modules
+    .map(({ name }) => name)
+    .filter((name) => outputs.has(`${name}.left`) && outputs.has(`${name}.right`));
+  const isFed = (name: string) =>
+    state.links.some(
+      ({ from, to }) => to.startsWith(`${name}.`) && pairs.includes(from.split(".")[0]!),
+    );
+  const name = pairs.find((each) => !isFed(each));
   return name === undefined ? [] : [`${name}.left`, `${name}.right`];
 }
 

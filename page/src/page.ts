@@ -4,15 +4,17 @@ import { graphPanel, modulePanel } from "./graph";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
 import { panelKinds, Shell, standardPanels } from "./shell";
-import { streamPanel } from "./views";
+import { scenePanel, streamPanel } from "./views";
 
 Object.assign(panelKinds, {
   graph: graphPanel,
   module: modulePanel,
   seat: seatPanel,
+  scene: scenePanel,
   stream: streamPanel,
 });
 standardPanels.push(
+  { label: "Scene", detail: "frames, head and points in space", args: { kind: "scene" } },
   { label: "Graph", detail: "modules and links, live", args: { kind: "graph" } },
   { label: "Seat", detail: "steer, speak, choose a task", args: { kind: "seat" } },
 );

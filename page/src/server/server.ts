@@ -57,6 +57,12 @@ export class Server {
     return this.sessions.value;
   }
 
+  /** Settled when the state and the session are known. */
+  async ready(): Promise<void> {
+    await this.states.first();
+    await this.sessions.first();
+  }
+
   get connection(): Connection {
     return this.connections.value ?? { status: "connecting" };
   }

@@ -27,4 +27,14 @@ export class Signal<T> {
     if (this.current !== undefined) listener(this.current);
     return () => this.listeners.delete(listener);
   }
+
+  /** The value, as soon as there is one. */
+  first(): Promise<T> {
+    return new Promise((resolve) => {
+      const end = this.on((value) => {
+        resolve(value);
+        queueMicrotask(() => end());
+      });
+    });
+  }
 }

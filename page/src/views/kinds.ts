@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { Header } from "../mtp";
 import { consoleView } from "./console";
 import { imageView } from "./image";
 import { plotView } from "./plot";
-import { tableView } from "./table";
+import { cloudView, sceneView } from "./scene_kind";
+import { matrixView, tableView } from "./table";
 import { depthView, valuesView } from "./values";
 import type { ViewKind } from "./view";
 
-/** Ways to show a stream; the first one that fits is the usual one. */
-export const viewKinds: readonly ViewKind[] = [
+/** Ways to show streams; a name may stand twice, first for those whose usual way it is. */
+const viewKinds: readonly ViewKind[] = [
   depthView,
   imageView,
   consoleView,
+  cloudView,
+  matrixView,
   plotView,
+  sceneView,
   valuesView,
   tableView,
 ];
+
+/** The ways to show a stream, the usual one first. */
+export function kindsFor(sent: Header): ViewKind[] {
+  const fitting = viewKinds.filter((kind) => kind.fits(sent));
+  return fitting.filter(
+    ({ name }, index) => fitting.findIndex((each) => each.name === name) === index,
+  );
+}

@@ -17,6 +17,7 @@ export async function liveSurroundings(server: Server): Promise<Surroundings> {
     get session() {
       return server.session;
     },
+    ready: () => server.ready(),
     open: (port) => server.stream(port, { as, last: true }),
   };
 }

@@ -30,7 +30,7 @@ export class Past {
     while (this.bytes > this.mostBytes && this.entries.length > 1) {
       const half = this.entries.length / 2;
       const before = this.entries.length;
-      this.keep((_, index) => index >= half || index % 2 === 1);
+      this.keep((_, index) => index >= half || index % 2 === 0);
       if (this.entries.length === before) this.keep((_, index) => index > 0);
     }
   }

@@ -191,7 +191,7 @@ export class PlotView implements View {
       cursor: { y: false },
       scales: { x: { time: true } },
       axes: [
-        axis,
+        { ...axis, values: (_, ticks) => ticks.map(clock) },
         {
           ...axis,
           size: 60,
@@ -246,6 +246,11 @@ export class PlotView implements View {
       if (element.textContent !== text) element.textContent = text;
     });
   }
+}
+
+/** The time of day of a time [s since 1970]. */
+function clock(time: number): string {
+  return new Date(time * 1000).toTimeString().slice(0, 8);
 }
 
 const never = ["string", "rgb_image", "intensity_image", "vector_field", "map", "sound"];

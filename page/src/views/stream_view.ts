@@ -4,7 +4,7 @@ import { MtpError, parseHeader, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
 import { HeaderStrip } from "./header_strip";
-import { viewKinds } from "./kinds";
+import { kindsFor } from "./kinds";
 import { Past } from "./past";
 import { isVideo } from "./picture";
 import { Sight } from "./room";
@@ -124,7 +124,7 @@ export class StreamView {
   /** Makes the view that fits, if there is another one now. */
   private async choose(sent: Header): Promise<void> {
     await this.making;
-    const fitting = viewKinds.filter((kind) => kind.fits(sent));
+    const fitting = kindsFor(sent);
     const kind = fitting.find(({ name }) => name === this.wanted) ?? fitting[0];
     if (kind === this.kind || !kind) return;
     this.kind = kind;

@@ -97,3 +97,10 @@ export const tableView: ViewKind = {
   fits: (sent) => sent.type !== "string" && sent.encoding !== "jpeg",
   make: () => new TableView(),
 };
+
+/** Of tables with several elements and of transformations; the usual way to show them. */
+export const matrixView: ViewKind = {
+  ...tableView,
+  fits: ({ type, width, height }) =>
+    type === "transformation" || (type === "table" && width * height !== 1),
+};

@@ -18,6 +18,8 @@ export interface Source {
 export interface Surroundings {
   readonly state: GraphState | undefined;
   readonly session: Session | undefined;
+  /** Settled when state and session are known. */
+  ready(): Promise<void>;
   /** Opens another source of the same time: live, or of the same recording. */
   open(port: string): Source;
 }

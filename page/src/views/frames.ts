@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frames of a graph (spec/graph.md, section 6).
+
+export interface Frame {
+  readonly name: string;
+  /** Its number in headers; 0: none. */
+  readonly coord: number;
+  readonly parent: string;
+  /** Where it is fixed: origin in the parent [m], and rotation as a quaternion x, y, z, w. */
+  readonly fixed?: {
+    readonly translation: readonly [number, number, number];
+    readonly quaternion: readonly [number, number, number, number];
+  };
+  /** The output that moves it. */
+  readonly movedBy?: string;
+}
+
+/** The frames of the text of G31, parents before children. */
+export function framesOf(text: string): Frame[] {
+  const frames = text.split(";").flatMap((part): Frame[] => {
+    const [name, coord, parent, ...place] = part.trim().split(/ +/);
+    if (!name || !parent) return [];
+    const frame = { name, coord: Number(coord), parent };
+    if (place.length === 7) {
+      const [x, y, z, qx, qy, qz, qw] = place.map(Number) as [
+        number,
+        number,
+        number,
+        number,
+        number,
+        number,
+        number,
+      ];
+      return [{ ...frame, fixed: { translation: [x, y, z], quaternion: [qx, qy, qz, qw] } }];
+    }
+    return [{ ...frame, movedBy: place[0] }];
+  });
+  return inOrder(frames);
+}
+
+function inOrder(frames: readonly Frame[]): Frame[] {
+  const names = new Set(frames.map(({ name }) => name));
+  const ordered: Frame[] = [];
+  const done = new Set<string>();
+  let left = [...frames];
+  while (left.length > 0) {
+    const ready = left.filter(({ parent }) => !names.has(parent) || done.has(parent));
+    if (ready.length === 0) break; // a ring, which the graph would have refused
+    ready.forEach(({ name }) => done.add(name));
+    ordered.push(...ready);
+    left = left.filter(({ name }) => !done.has(name));
+  }
+  return ordered;
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { GraphState } from "../server";
+import { fill, h, type PanelKind } from "../shell";
+import { liveSurroundings } from "./panels";
+
+/** Ports that a new scene shows: the clouds of modules that find depth. */
+function usualPorts(state: GraphState | undefined): string[] {
+  const finders = state?.modules.filter(({ program }) => /(^|\/)depth$/.test(program)) ?? [];
+  return finders.map(({ name }) => `${name}.points`);
+}
+
+/** Several streams in one scene: {kind: "scene", ports?}, ports joined by spaces. */
+export const scenePanel: PanelKind = (args, host) => {
+  host.setTitle("Scene");
+  const element = h("div", { class: "stream-panel" });
+  let close = () => {};
+  let isClosed = false;
+  const open = async () => {
+    const surroundings = await liveSurroundings(host.server);
+    await surroundings.ready();
+    const { Scene, addStream, sceneTools } = await import("./scene");
+    if (isClosed) return;
+    const scene = new Scene(surroundings);
+    const shown = new Map<string, () => void>();
+    close = () => {
+      for (const end of shown.values()) end();
+      scene.close();
+    };
+    const list = h("div", { class: "scene-ports" });
+    const input = h("input", {
+      "aria-label": "Stream to show in the scene",
+      placeholder: "add MODULE.PORT",
+      size: 18,
+    });
+    const form = h("form", {}, input);
+    const update = () => {
+      const ports = [...shown.keys()];
+      host.setArgs({ ...args, ports: ports.join(" ") });
+      const buttons = ports.map((port) =>
+        h("button", { "aria-label": `Take ${port} out`, onclick: () => remove(port) }, `${port} ✕`),
+      );
+      fill(list, ...buttons, form);
+    };
+    const add = (port: string) => {
+      if (!/^[\w-]+\.[\w-]+$/.test(port) || shown.has(port)) return;
+      shown.set(
+        port,
+        addStream(scene, surroundings, port, (text) => host.say(text)),
+      );
+    };
+    const remove = (port: string) => {
+      shown.get(port)?.();
+      shown.delete(port);
+      update();
+    };
+    form.onsubmit = (event) => {
+      event.preventDefault();
+      add(input.value.trim());
+      input.value = "";
+      update();
+      input.focus();
+    };
+    const ports = args.ports === undefined ? usualPorts(surroundings.state) : args.ports.split(" ");
+    ports.forEach(add);
+    update();
+    host.tools.append(...sceneTools(scene));
+    element.append(list, scene.element);
+  };
+  open().catch((error: unknown) => {
+    element.append(
+      h("p", { class: "problem" }, "This browser does not draw in three dimensions (WebGL)."),
+    );
+    console.error(error);
+  });
+  return {
+    element,
+    close: () => {
+      isClosed = true;
+      close();
+    },
+  };
+};

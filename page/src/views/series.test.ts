@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Series } from "./series";
+
+test("a window holds the times in it, and one more at each side", () => {
+  const series = new Series(2);
+  for (let i = 0; i < 10; ++i) series.push(100 + i, [i, -i]);
+  assert.deepEqual(series.window(103, 105, [1], 100), [
+    [102, 103, 104, 105],
+    [-2, -3, -4, -5],
+  ]);
+});
+
+test("thinned, the extremes stay", () => {
+  const series = new Series(1);
+  for (let i = 0; i < 5000; ++i)
+    series.push(1000 + i / 100, [i === 1234 ? 9 : i === 4321 ? -7 : 0]);
+  const [times, values] = series.window(0, 2000, [0], 200);
+  assert.ok(times!.length <= 200);
+  assert.equal(Math.max(...values!), 9);
+  assert.equal(Math.min(...values!), -7);
+});
+
+test("memory is bounded, and the newest stay", () => {
+  const series = new Series(1, 4000);
+  for (let i = 0; i < 20_000; ++i) series.push(i / 100, [i]);
+  assert.ok(series.length <= 4096);
+  assert.equal(series.lastTime, 199.99);
+  assert.deepEqual(series.window(199.99, 300, [0], 10), [
+    [199.98, 199.99],
+    [19_998, 19_999],
+  ]);
+});
+
+test("what is older than ten minutes goes", () => {
+  const series = new Series(1);
+  for (let i = 0; i < 5000; ++i) series.push(i, [i]);
+  assert.ok(series.lastTime - series.firstTime < 1100);
+});
+
+test("a source that begins anew begins a new series", () => {
+  const series = new Series(1);
+  series.push(1000, [1]);
+  series.push(10, [2]);
+  assert.equal(series.length, 1);
+  assert.equal(series.lastTime, 10);
+});
