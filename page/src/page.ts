@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { defaultLayout } from "./default_layout";
 import { graphPanel, modulePanel } from "./graph";
+import { recordingsPanel, replayPanel } from "./recordings";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
 import { panelKinds, Shell, standardPanels } from "./shell";
@@ -10,10 +11,17 @@ Object.assign(panelKinds, {
   graph: graphPanel,
   module: modulePanel,
   seat: seatPanel,
+  recordings: recordingsPanel,
+  replay: replayPanel,
   scene: scenePanel,
   stream: streamPanel,
 });
 standardPanels.push(
+  {
+    label: "Recordings",
+    detail: "record, download, replay",
+    args: { kind: "recordings" },
+  },
   { label: "Scene", detail: "frames, head and points in space", args: { kind: "scene" } },
   { label: "Graph", detail: "modules and links, live", args: { kind: "graph" } },
   { label: "Seat", detail: "steer, speak, choose a task", args: { kind: "seat" } },

@@ -3,7 +3,7 @@
 import { rowsOf } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
-import type { View, ViewKind } from "./view";
+import type { View, ViewHost, ViewKind } from "./view";
 
 const mostLines = 5000;
 
@@ -17,9 +17,15 @@ export class ConsoleView implements View {
   });
   readonly element = this.lines;
   private isPaused = false;
+  private lastTime = 0n;
+
+  constructor(private readonly host: ViewHost) {}
 
   show(arrival: Arrival): void {
     const { time } = arrival.message.header;
+    // A recording that is wound back begins anew.
+    if (this.host.source.isReplay && time < this.lastTime) this.lines.replaceChildren();
+    this.lastTime = time;
     const at = new Date(time > 0n ? Number(time / 1_000_000n) : arrival.at);
     const clock = at.toLocaleTimeString([], { hour12: false });
     const isAtEnd = this.lines.scrollTop + this.lines.clientHeight >= this.lines.scrollHeight - 20;
@@ -40,5 +46,5 @@ export class ConsoleView implements View {
 export const consoleView: ViewKind = {
   name: "console",
   fits: (sent) => sent.type === "string",
-  make: () => new ConsoleView(),
+  make: (host) => new ConsoleView(host),
 };

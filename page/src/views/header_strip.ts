@@ -52,14 +52,15 @@ export class HeaderStrip {
   }
 
   /** Counts a message. */
-  count(arrival: Arrival, sent: Header): void {
+  count(arrival: Arrival, sent: Header, isReplay = false): void {
     const { seq, time } = arrival.message.header;
     this.sent = sent;
     this.times.push(arrival.at);
     while (this.times[0]! < arrival.at - period * 1000) this.times.shift();
-    if (this.lastSeq !== undefined && seq > this.lastSeq + 1n) this.lost += seq - this.lastSeq - 1n;
+    if (!isReplay && this.lastSeq !== undefined && seq > this.lastSeq + 1n)
+      this.lost += seq - this.lastSeq - 1n;
     this.lastSeq = seq;
-    if (time > 0n) this.latency = arrival.at / 1000 - Number(time) / 1e9;
+    if (time > 0n && !isReplay) this.latency = arrival.at / 1000 - Number(time) / 1e9;
     if (performance.now() - this.drawn > 250) this.draw();
   }
 

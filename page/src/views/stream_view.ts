@@ -63,7 +63,8 @@ export class StreamView {
       this.strip.element,
     );
     this.sight = new Sight(this.element);
-    host.tools.append(this.viewTools, this.choice, this.pause);
+    host.tools.append(this.viewTools, this.choice);
+    if (!source.isReplay) host.tools.append(this.pause);
     this.pause.onclick = () => this.setPaused(!this.isPaused);
     this.choice.onchange = () => {
       this.wanted = this.choice.value;
@@ -99,7 +100,7 @@ export class StreamView {
   private async receive(arrival: Arrival): Promise<void> {
     const sent = this.sent ?? arrival.message.header;
     this.last = arrival;
-    this.strip.count(arrival, sent);
+    this.strip.count(arrival, sent, this.source.isReplay);
     await this.choose(sent);
     const { view } = this;
     if (!view) return;

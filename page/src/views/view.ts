@@ -6,6 +6,8 @@ import type { Arrival, GraphState, Session, Unsubscribe } from "../server";
 export interface Source {
   /** MODULE.PORT */
   readonly port: string;
+  /** Whether its messages are of another time than now. */
+  readonly isReplay?: boolean;
   on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
   on(event: "header", listener: (line: string) => void): Unsubscribe;
   on(event: "problem", listener: (problem: string) => void): Unsubscribe;

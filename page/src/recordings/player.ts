@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+import { headerLine, type Message } from "../mtp";
+import { Signal, type Arrival, type Unsubscribe } from "../server";
+import type { Source } from "../views";
+import type { Track } from "./track";
+
+const mostAtOnce = 500; // messages of one stream in one step
+const pastOfPlots = 30; // [s] that are read again after a jump
+const smallMessage = 4096; // [byte]
+
+/** A stream of a recording, at the time of its player. */
+export class ReplaySource implements Source {
+  readonly isReplay = true;
+  private readonly messages = new Set<(arrival: Arrival) => void | Promise<void>>();
+  private readonly headers = new Signal<string>();
+  private readonly problems = new Signal<string>();
+  private shown = -1;
+  private kind = "";
+  private busy = false;
+
+  constructor(
+    private readonly track: Track,
+    private readonly ended: (source: ReplaySource) => void,
+  ) {}
+
+  get port(): string {
+    return this.track.port;
+  }
+
+  on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
+  on(event: "header" | "problem", listener: (text: string) => void): Unsubscribe;
+  on(
+    event: "message" | "header" | "problem",
+    listener: ((arrival: Arrival) => void | Promise<void>) | ((text: string) => void),
+  ): Unsubscribe {
+    if (event === "header") return this.headers.on(listener as (text: string) => void);
+    if (event === "problem") return this.problems.on(listener as (text: string) => void);
+    const consumer = listener as (arrival: Arrival) => void | Promise<void>;
+    this.messages.add(consumer);
+    return () => this.messages.delete(consumer);
+  }
+
+  setWidth(): void {}
+
+  close(): void {
+    this.messages.clear();
+    this.ended(this);
+  }
+
+  /**
+   * Gives what there is up to a time: of large messages the last one, of small ones all since the
+   * time before, after a jump those of the last half minute.
+   */
+  async goTo(time: number): Promise<void> {
+    const last = this.track.indexAt(time);
+    if (this.busy || last < 0 || last === this.shown) return;
+    this.busy = true;
+    try {
+      const isSmall = this.track.usualBytes <= smallMessage;
+      let first = last;
+      if (isSmall) {
+        const isJump = this.shown < 0 || last < this.shown || last - this.shown > mostAtOnce;
+        const from = isJump ? this.track.indexAt(time - pastOfPlots) : this.shown;
+        first = Math.max(from + 1, last - mostAtOnce + 1);
+      }
+      this.shown = last;
+      for (let index = first; index <= last; ++index) await this.give(index);
+    } catch (error) {
+      this.problems.set(error instanceof Error ? error.message : String(error));
+    } finally {
+      this.busy = false;
+    }
+  }
+
+  private async give(index: number): Promise<void> {
+    const message = await expanded(await this.track.message(index));
+    const { header } = message;
+    const kind = `${header.info} ${header.coord} ${header.width} ${header.height}`;
+    if (kind !== this.kind || index === this.shown) this.headers.set(headerLine(header));
+    this.kind = kind;
+    const at = performance.timeOrigin + performance.now();
+    const arrival = { message, at, bytes: message.elements.byteLength };
+    await Promise.all([...this.messages].map((consumer) => consumer(arrival)));
+  }
+}
+
+/** Elements of the encoding zstd are expanded where the browser can. */
+async function expanded(message: Message): Promise<Message> {
+  if (message.header.encoding !== "zstd") return message;
+  throw new Error(
+    `The elements of this recording are compressed with zstd, which a browser does not open. ` +
+      `"hc cat --raw" or "hc play" expands them.`,
+  );
+}
+
+/** Plays tracks by one clock. */
+export class Player {
+  readonly begin: number; // [s since 1970]
+  readonly end: number;
+  private readonly sources = new Set<ReplaySource>();
+  private readonly times = new Signal<number>();
+  private readonly states = new Signal<boolean>(false);
+  private speed = 1;
+  private timer?: number;
+  private tick = 0;
+
+  constructor(readonly tracks: readonly Track[]) {
+    const full = tracks.filter((track) => track.length > 0);
+    this.begin = full.length === 0 ? 0 : Math.min(...full.map((track) => track.firstTime));
+    this.end = full.length === 0 ? 0 : Math.max(...full.map((track) => track.lastTime));
+    this.times.set(this.begin);
+  }
+
+  get time(): number {
+    return this.times.value!;
+  }
+
+  get isPlaying(): boolean {
+    return this.states.value === true;
+  }
+
+  onTime(listener: (time: number) => void): Unsubscribe {
+    return this.times.on(listener);
+  }
+
+  onPlaying(listener: (isPlaying: boolean) => void): Unsubscribe {
+    return this.states.on(listener);
+  }
+
+  /** The stream of a port; undefined: it was not recorded. */
+  open(port: string): ReplaySource | undefined {
+    const track = this.tracks.find((each) => each.port === port);
+    if (!track) return undefined;
+    const source = new ReplaySource(track, (each) => this.sources.delete(each));
+    this.sources.add(source);
+    queueMicrotask(() => void source.goTo(this.time));
+    return source;
+  }
+
+  setSpeed(speed: number): void {
+    this.speed = speed;
+  }
+
+  play(): void {
+    if (this.isPlaying) return;
+    if (this.time >= this.end) this.goTo(this.begin);
+    this.states.set(true);
+    this.tick = performance.now();
+    this.timer = window.setInterval(() => this.step(), 16);
+  }
+
+  pause(): void {
+    clearInterval(this.timer);
+    if (this.isPlaying) this.states.set(false);
+  }
+
+  goTo(time: number): void {
+    this.times.set(Math.min(this.end, Math.max(this.begin, time)));
+    for (const source of this.sources) void source.goTo(this.time);
+  }
+
+  close(): void {
+    this.pause();
+    for (const source of [...this.sources]) source.close();
+  }
+
+  private step(): void {
+    const now = performance.now();
+    const seconds = Math.min(0.25, (now - this.tick) / 1000);
+    this.tick = now;
+    this.goTo(this.time + seconds * this.speed);
+    if (this.time >= this.end) this.pause();
+  }
+}
