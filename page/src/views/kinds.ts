@@ -2,8 +2,10 @@
 import type { Header } from "../mtp";
 import { consoleView } from "./console";
 import { imageView } from "./image";
+import { networkView } from "./network";
 import { plotView } from "./plot";
 import { cloudView, sceneView } from "./scene_kind";
+import { soundView } from "./sound";
 import { matrixView, tableView } from "./table";
 import { depthView, valuesView } from "./values";
 import type { ViewKind } from "./view";
@@ -13,6 +15,8 @@ const viewKinds: readonly ViewKind[] = [
   depthView,
   imageView,
   consoleView,
+  soundView,
+  networkView,
   cloudView,
   matrixView,
   plotView,

@@ -27,7 +27,7 @@ import {
   type Object3D,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { numbersOf, parseHeader, type Header, type Message, type Numbers } from "../mtp";
+import { Coord, numbersOf, parseHeader, type Header, type Message, type Numbers } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
@@ -135,7 +135,10 @@ export class Scene {
 
   private frameOf(header: Header): Group {
     const coord = header.type === "transformation" ? Math.floor(header.coord / 1000) : header.coord;
-    return this.byCoord.get(coord) ?? this.root;
+    const frame = this.byCoord.get(coord);
+    if (frame) return frame;
+    // A rotation that is in no frame here, as of a person's head, is shown at the robot's.
+    return (header.type === "rotation" && this.byCoord.get(Coord.robot)) || this.root;
   }
 
   private addFrames(frames: readonly Frame[]): void {
@@ -434,7 +437,7 @@ export function sceneTools(scene: Scene): HTMLElement[] {
     names.setAttribute("aria-pressed", String(shown));
     scene.showNames(shown);
   };
-  return [names, h("button", { onclick: () => scene.look() }, "Look from the start")];
+  return [names, h("button", { onclick: () => scene.look() }, "Reset view")];
 }
 
 /** One stream in the scene. */

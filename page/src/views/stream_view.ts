@@ -110,7 +110,7 @@ export class StreamView {
     }
     if (this.isPaused) return;
     if (!isVideo(arrival.message, sent)) this.past.push(arrival);
-    await this.sight.seen();
+    if (!view.runsUnseen) await this.sight.seen();
     await view.show(arrival, sent);
     if (isVideo(arrival.message, sent)) await this.keepSnapshot(arrival.at);
   }

@@ -46,7 +46,9 @@ export interface View {
   show(arrival: Arrival, sent: Header): void | Promise<void>;
   /** Whether the view itself keeps what was before and scrolls back. */
   readonly keepsPast?: boolean;
-  /** Of such a view: stops or goes on with the present. */
+  /** Whether it takes messages while nobody sees it: sound is heard. */
+  readonly runsUnseen?: boolean;
+  /** Of a view that keeps its past: stops or goes on with the present. */
   setPaused?(paused: boolean): void;
   /** What is shown now, as a message that can be shown again by itself. */
   snapshot?(): Promise<Arrival | undefined>;
