@@ -21,7 +21,7 @@ function choicesOf(state: GraphState | undefined): Choice[] {
     ...outputs.map((port) => ({ label: port, detail: "stream", args: { kind: "stream", port } })),
     ...(state?.modules ?? []).map(({ name, program }) => ({
       label: name,
-      detail: `module, ${program}`,
+      detail: `module, ${program.split("/").at(-1)}`,
       args: { kind: "module", name },
     })),
   ];

@@ -9,7 +9,7 @@ const mostLines = 5000;
 
 export class ConsoleView implements View {
   readonly keepsPast = true;
-  private readonly lines = h("ol", {
+  private readonly lines = h("div", {
     class: "console mono",
     role: "log",
     tabindex: 0,
@@ -31,7 +31,7 @@ export class ConsoleView implements View {
     const isAtEnd = this.lines.scrollTop + this.lines.clientHeight >= this.lines.scrollHeight - 20;
     for (const row of rowsOf(arrival.message)) {
       this.lines.append(
-        h("li", {}, h("time", { class: "muted", datetime: at.toISOString() }, clock), " ", row),
+        h("div", {}, h("time", { class: "muted", datetime: at.toISOString() }, clock), " ", row),
       );
     }
     while (this.lines.childElementCount > mostLines) this.lines.firstElementChild?.remove();

@@ -60,7 +60,7 @@ export class TableView implements View {
         h(
           "tr",
           {},
-          h("th", { scope: "col" }, ""),
+          h("td", {}),
           Array.from({ length: columns }, (_, i) => h("th", { scope: "col" }, i)),
         ),
       ),
