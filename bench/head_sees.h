@@ -24,7 +24,7 @@
 
 namespace bench {
 
-inline constexpr double kBaseline = 0.1;            // of the simulated head [m]
+inline constexpr double kBaseline = 0.1;           // of the simulated head [m]
 inline const hc::graphics::PinholeCamera kCamera;  // either eye's
 
 inline void end_if_failed(const hc::Status& status) {

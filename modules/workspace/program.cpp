@@ -54,11 +54,15 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
                            "salience 0 … 1 of the message's mode; 0 withdraws");
   auto person = module.input("person", hc::table<double>(),
                              "the same from a person, above all others while it is valid");
+  auto stop = module.input("stop", hc::table<std::uint8_t>().of(1, 1),
+                           "1: no mode has the focus until a 0 comes");
   auto focus = module.output("focus", hc::table<std::int32_t>().of(1, 1),
                              "number of the mode in focus, 0 none; each period");
   auto standings = module.output(
       "standings", hc::table<double>(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
+  auto stopped = module.output("stopped", hc::table<std::uint8_t>().of(1, 1),
+                               "1 while it is stopped, else 0; ten times a second");
   auto rate = module.parameter(
       "rate", 20.0, "Hz",
       "how often the focus is decided and repeated; an exclusive input trusts it for 0.2 s",
@@ -88,6 +92,16 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   module.on(bids, [&](const auto& message) { take(message, &Workspace::bid); });
   module.on(person, [&](const auto& message) { take(message, &Workspace::bid_of_person); });
 
+  module.on(stop, [&](const auto& message) {
+    const bool is_stopped = message.numbers()[0] != 0;
+    if (is_stopped != workspace.is_stopped()) module.log(is_stopped ? "stopped" : "stop cleared");
+    workspace.stop(is_stopped);
+  });
+
+  module.every(std::chrono::milliseconds(100), [&] {
+    const std::uint8_t is_stopped = workspace.is_stopped() ? 1 : 0;
+    stopped.send(hc::table({is_stopped}).at(module.now()));
+  });
   module.every(rate, [&] {
     auto now = module.monotonic();
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});

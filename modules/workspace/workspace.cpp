@@ -63,6 +63,7 @@ void Workspace::drop_expired(hc::MonotonicTime now) {
 }
 
 std::int32_t Workspace::winner(hc::MonotonicTime now) const {
+  if (is_stopped_) return 0;
   if (person_) return person_->first;
   auto best = std::max_element(bids_.begin(), bids_.end(), [](const auto& a, const auto& b) {
     return a.second.salience < b.second.salience;  // gives the first of equal ones
@@ -91,7 +92,7 @@ std::string Workspace::last_change(const std::map<std::int32_t, std::string>& na
     auto bid = bids_.find(mode);
     return bid == bids_.end() ? words : words + " (" + two_digits(bid->second.salience) + ")";
   };
-  if (focus_ == 0) return "none; no bid is left";
+  if (focus_ == 0) return is_stopped_ ? "none; stopped" : "none; no bid is left";
   const bool is_contested = before_ != 0 && bids_.contains(before_);
   if (!is_contested) return text(focus_) + (before_ == 0 ? "" : "; no bid of " + text(before_));
   return text(focus_) + " over " + text(before_) +

@@ -13,6 +13,7 @@
 //   equal ones to that of the lowest mode; when there is none, to 0: none.
 // - A person's bid is above all others: it has the focus whatever the dwell time and margin say,
 //   until it expires or is withdrawn. The last one counts.
+// - While it is stopped no mode has the focus. Bids are taken meanwhile.
 
 #include <cstdint>
 #include <map>
@@ -65,6 +66,10 @@ class Workspace {
   /// A person's bid, in the same way; its salience matters only in that 0 withdraws it.
   hc::Status bid_of_person(std::int32_t mode, double salience, hc::MonotonicTime now);
 
+  /// Stops all tasks until it is called with false.
+  void stop(bool is_stopped) { is_stopped_ = is_stopped; }
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+
   /// Applies the rules; true when the focus has changed. To be called each period.
   bool decide(hc::MonotonicTime now);
 
@@ -95,5 +100,6 @@ class Workspace {
   std::optional<std::pair<std::int32_t, Bid>> person_;
   std::int32_t focus_ = 0, before_ = 0;
   hc::MonotonicTime since_{};  // of the focus
+  bool is_stopped_ = false;
   Refused refused_;
 };

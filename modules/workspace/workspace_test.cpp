@@ -46,6 +46,18 @@ TEST(Workspace, the_greatest_bid_has_the_focus_and_none_is_0) {
   EXPECT_EQ(table.after(milliseconds(1000)), 0);
 }
 
+TEST(Workspace, nobody_has_the_focus_while_it_is_stopped) {
+  Table table;
+  table.bid(1, 0.5);
+  EXPECT_EQ(table.after(kPeriod), 1);
+  table.workspace.stop(true);
+  table.person(2, 1);
+  EXPECT_EQ(table.after(milliseconds(0)), 0);
+  EXPECT_EQ(table.workspace.last_change({}), "none; stopped");
+  table.workspace.stop(false);
+  EXPECT_EQ(table.after(milliseconds(0)), 2);
+}
+
 TEST(Workspace, a_challenger_needs_the_margin_and_waits_for_the_dwell_time) {
   Table table;
   table.bid(1, 0.5);

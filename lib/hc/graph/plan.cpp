@@ -42,6 +42,7 @@ class ModulePlanner {
                              ".control?readers=0&keep=64";
     else
       check_needs_no_control(description);
+    planned_.description = to_json(description);
     add_parameters(description);
     add_encodings();
     planning_.index[module_.name] = planning_.plan.modules.size();

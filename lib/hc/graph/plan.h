@@ -37,6 +37,7 @@ struct PlannedModule {
   std::vector<std::string> options;               ///< what is said neither below nor by links
   std::map<std::string, std::string> parameters;  ///< as text
   std::map<std::string, ParameterState> known;    ///< all that it has, to check values with
+  std::string description;                        ///< of its program, one line of JSON
   std::vector<PlannedEnd> ends;                   ///< in the order of the file's links
   std::string manage_uri;                         ///< where the runner listens to it
   std::string control_uri;  ///< where it listens to the runner; empty: it does not

@@ -262,6 +262,8 @@ class Module {
   int run(int argc, char** argv);
 
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// Its name in the graph; its name where it runs alone.
+  [[nodiscard]] const std::string& instance() const { return instance_; }
   [[nodiscard]] const std::string& summary() const { return summary_; }
   [[nodiscard]] const auto& inputs() const { return inputs_; }
   [[nodiscard]] const auto& outputs() const { return outputs_; }

@@ -63,7 +63,7 @@ void Observation::log(const std::string& line) {
 }
 
 void Observation::take_commands(const Message& message) const {
-  constexpr std::string_view kReply = "reply ", kObserve = "observe ";
+  constexpr std::string_view kReply = "reply ", kObserve = "observe ", kDescribe = "describe ";
   auto commands = rows_of(message);
   std::string reply;
   if (!commands.empty() && commands.front().starts_with(kReply)) {
@@ -78,11 +78,15 @@ void Observation::take_commands(const Message& message) const {
     say(wrong.empty() ? std::vector<std::string>{"ok"} : wrong);
   };
   if (commands.empty()) return answer({"there is no command"});
-  if (commands.size() == 1 && commands.front().starts_with(kObserve)) {
-    auto uri = asked_.observe(commands.front().substr(kObserve.size()));
-    return say(uri ? std::vector<std::string>{"ok", *uri}
-                   : std::vector<std::string>{uri.error().detail});
-  }
+  auto say_found = [&](const Result<std::string>& found) {
+    say(found ? std::vector<std::string>{"ok", *found}
+              : std::vector<std::string>{found.error().detail});
+  };
+  const auto& first = commands.front();
+  if (commands.size() == 1 && first.starts_with(kObserve))
+    return say_found(asked_.observe(first.substr(kObserve.size())));
+  if (commands.size() == 1 && first.starts_with(kDescribe))
+    return say_found(asked_.describe(first.substr(kDescribe.size())));
   asked_.obey(commands, answer);
 }
 

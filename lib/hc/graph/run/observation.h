@@ -24,6 +24,8 @@ class Observation {
     std::function<void(const std::vector<std::string>& commands, Answer answer)> obey;
     /// Gives the URI of an observation of "MODULE.PORT". Errors: Invalid.
     std::function<Result<std::string>(const std::string& port)> observe;
+    /// Gives what a module's program says of itself, one line of JSON. Errors: Invalid.
+    std::function<Result<std::string>(const std::string& module)> describe;
   };
 
   /// @param name  of the graph. Errors: System (another graph of this process has the name).

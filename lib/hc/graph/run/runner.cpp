@@ -41,7 +41,8 @@ Status Runner::begin() {
         *loop_, options_.name,
         {[this] { return state(); },
          [this](const auto& lines, auto answer) { obey(lines, std::move(answer)); },
-         [this](const auto& port) { return observe(port); }});
+         [this](const auto& port) { return observe(port); },
+         [this](const auto& module) { return describe(module); }});
     if (!observation) return observation.error();
     observation_ = std::move(*observation);
   }

@@ -66,6 +66,7 @@ class Runner {
   void reload();
   void obey(const std::vector<std::string>& lines, Observation::Answer answer);
   Result<std::string> observe(const std::string& port);
+  [[nodiscard]] Result<std::string> describe(const std::string& module) const;
   void carry_out(const std::vector<Command>& commands);
   void begin_changes();
   void begin_planning(std::function<Result<LoadedGraph>(int stop)> plan);

@@ -100,6 +100,15 @@ Result<std::string> Runner::observe(const std::string& port) {
                          plan_.token + ".watch." + std::to_string(number));
 }
 
+Result<std::string> Runner::describe(const std::string& module) const {
+  std::vector<std::string> known;
+  for (const auto& each : plan_.modules) {
+    if (each.name == module) return each.description;
+    known.push_back(each.name);
+  }
+  return Error{Code::Invalid, "no module \"" + module + "\"" + suggestion(module, known)};
+}
+
 /// Does what commands say that change nothing in the plan.
 void Runner::carry_out(const Commands& commands) {
   for (const auto& command : commands) {

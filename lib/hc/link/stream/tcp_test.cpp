@@ -199,9 +199,9 @@ TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
     return bytes;
   };
   std::string_view rest;
-  auto send = [&](std::size_t bytes) {
+  auto send = [&, writing = peer.get()](std::size_t bytes) {
     for (; bytes > 0;) {
-      auto sent = ::send(peer.get(), rest.data(), bytes, 0);
+      auto sent = ::send(writing, rest.data(), bytes, 0);
       ASSERT_GT(sent, 0);
       bytes -= static_cast<std::size_t>(sent);
       rest.remove_prefix(static_cast<std::size_t>(sent));

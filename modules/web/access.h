@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Who may see the page and who may drive (spec/page.md, W1 … W3): hosts, origins, tokens and
+// sessions. For one thread.
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+enum class Right { View, Drive };
+
+/// Where the server is reached.
+struct Place {
+  std::string address = "127.0.0.1";  ///< that it listens on
+  std::uint16_t port = 0;
+  bool is_secure = false;          ///< by TLS
+  std::vector<std::string> hosts;  ///< further names by which it may be called
+};
+
+class Access {
+ public:
+  explicit Access(Place place) : place_(std::move(place)) {}
+
+  /// Whether a `Host` header means this server, and not a name that somebody has pointed at it.
+  /// On loopback these are loopback's names; elsewhere any address, since only names can be
+  /// pointed, and `hosts`.
+  [[nodiscard]] bool is_host(std::string_view host) const;
+
+  /// Whether an `Origin` header is that of the page that `host` was asked for.
+  [[nodiscard]] bool is_origin(std::string_view origin, std::string_view host) const;
+
+  /// A new token, which counts once. Of more than 64 the oldest is forgotten.
+  std::string make_token(Right right);
+  /// A URL with a new token.
+  std::string invite(Right right);
+
+  /// Begins a session; nothing for a wrong or used token. Of more than 1024 the oldest ends.
+  /// @returns  the value of the session's cookie, kCookie.
+  std::optional<std::string> redeem(std::string_view token);
+
+  /// What the session of a `Cookie` header may do; nothing where it has none.
+  [[nodiscard]] std::optional<Right> right_of(std::string_view cookies) const;
+
+  /// The name of the cookie; ports have their own, since cookies do not tell them apart.
+  [[nodiscard]] std::string cookie_name() const {
+    return "hypercolumn_" + std::to_string(place_.port);
+  }
+  [[nodiscard]] const Place& place() const { return place_; }
+
+ private:
+  using Secrets = std::deque<std::pair<std::string, Right>>;  // the newest last
+
+  Place place_;
+  Secrets tokens_, sessions_;
+};
+
+/// 128 bits that nobody guesses, in hexadecimal digits.
+std::string make_secret();

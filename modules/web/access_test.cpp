@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "access.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+Access local() {
+  return Access({.address = "127.0.0.1", .port = 8470, .is_secure = false, .hosts = {}});
+}
+
+std::string token_of(const std::string& url) {
+  return url.substr(url.find("token=") + 6);
+}
+
+TEST(Access, loopback_has_loopbacks_names_alone) {
+  const auto access = local();
+  for (const char* host : {"localhost:8470", "127.0.0.1:8470", "[::1]:8470", "localhost"})
+    EXPECT_TRUE(access.is_host(host)) << host;
+  for (const char* host : {"", "evil.example:8470", "192.168.1.7:8470", "localhost:80",
+                           "127.0.0.1.evil.example", "localhost.evil:8470", "127.0.0.1:8470:1"})
+    EXPECT_FALSE(access.is_host(host)) << host;
+}
+
+TEST(Access, elsewhere_any_address_and_the_given_names) {
+  const Access access({"0.0.0.0", 443, true, {"head.local"}});
+  for (const char* host : {"192.168.1.7:443", "[fe80::1]:443", "head.local", "head.local:443"})
+    EXPECT_TRUE(access.is_host(host)) << host;
+  for (const char* host : {"evil.example", "evil.example:443", "192.168.1.7:80", "192.168.1"})
+    EXPECT_FALSE(access.is_host(host)) << host;
+}
+
+TEST(Access, an_origin_is_exactly_that_of_the_page) {
+  const auto access = local();
+  EXPECT_TRUE(access.is_origin("http://localhost:8470", "localhost:8470"));
+  for (const char* origin : {"", "null", "https://localhost:8470", "http://localhost:8471",
+                             "http://localhost:8470/", "http://127.0.0.1:8470"})
+    EXPECT_FALSE(access.is_origin(origin, "localhost:8470")) << origin;
+  const Access secure({"0.0.0.0", 443, true, {}});
+  EXPECT_TRUE(secure.is_origin("https://10.0.0.1:443", "10.0.0.1:443"));
+}
+
+TEST(Access, a_token_counts_once_and_gives_its_right) {
+  auto access = local();
+  const std::string url = access.invite(Right::View);
+  EXPECT_TRUE(url.starts_with("http://127.0.0.1:8470/?token=")) << url;
+  const auto session = access.redeem(token_of(url));
+  ASSERT_TRUE(session);
+  EXPECT_FALSE(access.redeem(token_of(url)));
+  EXPECT_FALSE(access.redeem(""));
+  EXPECT_FALSE(access.redeem(*session));
+  const std::string cookie = access.cookie_name() + "=" + *session;
+  EXPECT_EQ(access.right_of(cookie), Right::View);
+  EXPECT_EQ(access.right_of("a=b; " + cookie + "; c"), Right::View);
+  for (const auto& wrong : {std::string(), cookie + "0", "x" + cookie, access.cookie_name() + "="})
+    EXPECT_FALSE(access.right_of(wrong)) << wrong;
+  const auto driver = access.redeem(access.make_token(Right::Drive));
+  EXPECT_EQ(access.right_of(access.cookie_name() + "=" + *driver), Right::Drive);
+}
+
+TEST(Access, secrets_differ_and_the_oldest_tokens_are_forgotten) {
+  auto access = local();
+  const auto first = access.make_token(Right::View), second = access.make_token(Right::View);
+  EXPECT_EQ(first.size(), 32U);
+  EXPECT_NE(first, second);
+  for (int i = 0; i < 63; ++i) access.make_token(Right::View);
+  EXPECT_FALSE(access.redeem(first));
+  EXPECT_TRUE(access.redeem(second));
+}
+
+}  // namespace

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The files of the page, which are part of the program; scripts/build_page writes the source file.
+
+#include <string_view>
+#include <vector>
+
+struct Asset {
+  std::string_view path;   ///< below `/`
+  std::string_view type;   ///< MIME
+  std::string_view bytes;  ///< compressed by gzip
+};
+
+const std::vector<Asset>& page_assets();

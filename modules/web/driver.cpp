@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "driver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <hc/module/kind.h>
+
+namespace {
+
+using hc::Coord;
+
+bool is_finite(const hc::Message& message) {
+  const auto numbers = message.view<double>();
+  return numbers &&
+         std::ranges::all_of(numbers->numbers(), [](double x) { return std::isfinite(x); });
+}
+
+bool is(const hc::Message& message, hc::MatrixType type, int components, int width = 1) {
+  const auto& header = message.header;
+  return header.info.type == type && header.info.components == components && message.plain() &&
+         header.info.scalar == hc::Scalar::F64 && header.width == width && header.height == 1 &&
+         is_finite(message);
+}
+
+std::span<const double> numbers_of(const hc::Message& message) {
+  return message.view<double>()->numbers();
+}
+
+constexpr std::size_t kMaxText = 4096;  // [byte]
+
+/// What is wrong with a message; empty: nothing.
+std::string problem(Control control, const hc::Message& message) {
+  const auto& header = message.header;
+  switch (control) {
+    case Control::Alive:
+      return {};
+    case Control::Stick:
+      if (!is(message, hc::MatrixType::Table, 1, 2)) return "a stick is a table 2 x 1 of 1 x f64";
+      if (std::ranges::any_of(numbers_of(message), [](double x) { return std::abs(x) > 1; }))
+        return "a stick is from -1 to 1";
+      return {};
+    case Control::Rotation:
+      if (!is(message, hc::MatrixType::Rotation, 3) || header.coord != Coord::kSupervisor)
+        return "a head's rotation is a rotation 1 x 1 of 3 x f64 in coordinate system 14";
+      return {};
+    case Control::Target:
+      if (!is(message, hc::MatrixType::Position, 3) ||
+          (header.coord != Coord::kLeftImage && header.coord != Coord::kRightImage))
+        return "a target is a position 1 x 1 of 3 x f64 in coordinate system 7 or 8";
+      return {};
+    case Control::Text:
+      if (header.info.type != hc::MatrixType::String || !message.plain() ||
+          message.elements.size() > kMaxText)
+        return "a text is a string of at most 4096 bytes";
+      return {};
+    case Control::Bid:
+      if (!is(message, hc::MatrixType::Table, 1) || header.mode <= 0)
+        return "a bid is a table 1 x 1 of 1 x f64 with the mode it is for";
+      if (numbers_of(message)[0] < 0 || numbers_of(message)[0] > 1) return "a bid is from 0 to 1";
+      return {};
+  }
+  return "no control has this src";
+}
+
+hc::Message withdrawn(const hc::Message& bid) {
+  auto message = static_cast<hc::Message>(hc::table({0.0}));
+  message.header.mode = bid.header.mode;
+  return message;
+}
+
+}  // namespace
+
+hc::Result<std::vector<Order>> Driver::take(hc::Message message, std::int64_t wall,
+                                            hc::MonotonicTime now) {
+  const auto src = message.header.src;
+  const auto control = static_cast<Control>(src);
+  const std::string wrong = src < kControls ? problem(control, message) : "no control has this src";
+  if (!wrong.empty())
+    return hc::Error{hc::Code::Malformed, "src " + std::to_string(src) + ": " + wrong};
+  heard_ = now;
+  if (control == Control::Alive) return std::vector<Order>{};
+  std::vector<Order> orders;
+  if (message.header.time == 0) message.header.time = wall;
+  if (control == Control::Stick)
+    is_pushed_ = std::ranges::any_of(numbers_of(message), [](double x) { return x != 0; });
+  if (control == Control::Bid) {
+    // A bid for another task takes the place of the one before.
+    if (bid_ && bid_->header.mode != message.header.mode)
+      orders.push_back({Control::Bid, withdrawn(*bid_)});
+    bid_ = numbers_of(message)[0] > 0 ? std::optional(message.keep()) : std::nullopt;
+    bid_sent_ = now;
+  }
+  orders.push_back({control, message.keep()});
+  return orders;
+}
+
+std::vector<Order> Driver::tick(std::int64_t wall, hc::MonotonicTime now) {
+  if (now - heard_ > kSilence) return leave(wall);
+  if (!bid_ || now - bid_sent_ < kBid) return {};
+  bid_sent_ = now;
+  bid_->header.time = wall;
+  return {{Control::Bid, *bid_}};
+}
+
+std::vector<Order> Driver::leave(std::int64_t wall) {
+  std::vector<Order> orders;
+  if (std::exchange(is_pushed_, false)) orders.push_back({Control::Stick, hc::table({0.0, 0.0})});
+  if (bid_) orders.push_back({Control::Bid, withdrawn(*std::exchange(bid_, std::nullopt))});
+  for (auto& order : orders) order.message.header.time = wall;
+  return orders;
+}

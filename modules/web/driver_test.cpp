@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "driver.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <hc/module/kind.h>
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::int64_t kWall = 1'000'000'000;
+
+hc::Message from(Control control, hc::Message message, std::int32_t coord = 0,
+                 std::int32_t mode = 0) {
+  message.header.src = static_cast<std::int32_t>(control);
+  if (coord != 0) message.header.coord = coord;
+  message.header.mode = mode;
+  return message;
+}
+
+hc::Message stick(double left, double down) {
+  return from(Control::Stick, hc::table({left, down}));
+}
+hc::Message bid(double salience, int mode) {
+  return from(Control::Bid, hc::table({salience}), 0, mode);
+}
+
+double number(const Order& order, std::size_t i = 0) {
+  return order.message.view<double>()->numbers()[i];
+}
+
+TEST(Driver, what_is_commanded_is_passed_on_with_a_time) {
+  Driver driver;
+  const auto orders = driver.take(stick(0.5, -1), kWall, {});
+  ASSERT_TRUE(orders);
+  ASSERT_EQ(orders->size(), 1U);
+  EXPECT_EQ(orders->front().control, Control::Stick);
+  EXPECT_EQ(orders->front().message.header.time, kWall);
+  EXPECT_EQ(number(orders->front(), 1), -1);
+  using hc::Coord;
+  EXPECT_TRUE(driver.take(from(Control::Rotation, hc::rotation(0.1, 0.2, 0.3), Coord::kSupervisor),
+                          kWall, {}));
+  EXPECT_TRUE(driver.take(from(Control::Target, hc::position(400., 300., 0.), Coord::kRightImage),
+                          kWall, {}));
+  EXPECT_TRUE(driver.take(from(Control::Text, hc::string("hello")), kWall, {}));
+}
+
+TEST(Driver, anything_else_is_refused) {
+  Driver driver;
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const hc::Message wrong[] = {
+      stick(1.1, 0),
+      stick(kNan, 0),
+      from(Control::Stick, hc::table({0.0})),
+      from(Control::Stick, hc::table({0.f, 0.f})),
+      from(Control::Rotation, hc::rotation(0., 0., 0.), 3),
+      from(Control::Target, hc::position(0., 0., 0.), hc::Coord::kWorld),
+      from(Control::Target, hc::position(kNan, 0., 0.), hc::Coord::kLeftImage),
+      from(Control::Text, hc::table({0.0})),
+      from(Control::Text, hc::string(std::string(4097, 'a'))),
+      bid(2, 1),
+      bid(0.5, 0),
+      from(static_cast<Control>(6), hc::table({0.0})),
+      from(static_cast<Control>(2147483647), hc::table({0.0}))};
+  for (const auto& message : wrong) {
+    const auto orders = driver.take(message, kWall, {});
+    ASSERT_FALSE(orders) << hc::text(message.header);
+    EXPECT_EQ(orders.error().code, hc::Code::Malformed);
+  }
+}
+
+TEST(Driver, who_is_silent_for_200_ms_commands_nothing) {
+  Driver driver;
+  const hc::MonotonicTime begin{};
+  ASSERT_TRUE(driver.take(stick(1, 0), kWall, begin));
+  ASSERT_TRUE(driver.take(bid(1, 5), kWall, begin));
+  EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(99)).empty());
+  const auto again = driver.tick(kWall + 1, begin + milliseconds(100));
+  ASSERT_EQ(again.size(), 1U);  // the bid is repeated
+  EXPECT_EQ(again[0].message.header.mode, 5);
+  EXPECT_EQ(number(again[0]), 1);
+  EXPECT_EQ(again[0].message.header.time, kWall + 1);
+  const auto ended = driver.tick(kWall, begin + milliseconds(201));
+  ASSERT_EQ(ended.size(), 2U);
+  EXPECT_EQ(ended[0].control, Control::Stick);
+  EXPECT_EQ(number(ended[0], 0), 0);
+  EXPECT_EQ(ended[0].message.header.width, 2);
+  EXPECT_EQ(ended[1].control, Control::Bid);
+  EXPECT_EQ(ended[1].message.header.mode, 5);
+  EXPECT_EQ(number(ended[1]), 0);
+  EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
+  // And is obeyed again.
+  EXPECT_EQ(driver.take(stick(1, 0), kWall, begin + milliseconds(400))->size(), 1U);
+}
+
+TEST(Driver, a_sign_of_life_keeps_what_is_commanded) {
+  Driver driver;
+  const hc::MonotonicTime begin{};
+  ASSERT_TRUE(driver.take(stick(1, 0), kWall, begin));
+  EXPECT_TRUE(driver.take(from(Control::Alive, hc::table({0.0})), kWall, begin + milliseconds(150))
+                  ->empty());
+  EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
+  EXPECT_EQ(driver.tick(kWall, begin + milliseconds(351)).size(), 1U);
+}
+
+TEST(Driver, another_task_takes_the_place_of_the_one_before) {
+  Driver driver;
+  ASSERT_TRUE(driver.take(bid(1, 4), kWall, {}));
+  const auto orders = driver.take(bid(1, 5), kWall, {});
+  ASSERT_EQ(orders->size(), 2U);
+  EXPECT_EQ((*orders)[0].message.header.mode, 4);
+  EXPECT_EQ(number((*orders)[0]), 0);
+  EXPECT_EQ((*orders)[1].message.header.mode, 5);
+  EXPECT_EQ(driver.take(bid(0, 5), kWall, {})->size(), 1U);
+  EXPECT_TRUE(driver.leave(kWall).empty());
+}
+
+}  // namespace

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph_client.h"
+
+#include <utility>
+
+GraphClient::GraphClient(hc::RunningGraph graph, Post post, Hears hears)
+    : graph_(std::move(graph)),
+      post_(std::move(post)),
+      hears_(std::move(hears)),
+      listener_([this] { listen(); }),
+      asker_([this] { ask(); }) {}
+
+GraphClient::~GraphClient() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopped_ = true;
+  }
+  stop_.set();
+  asked_.notify_one();
+  listener_.join();
+  asker_.join();
+}
+
+void GraphClient::command(std::string command, Answered answered) {
+  constexpr std::size_t kMaxCommands = 256;
+  const std::lock_guard lock(mutex_);
+  if (commands_.size() >= kMaxCommands)
+    return post_([answered = std::move(answered)] {
+      answered({"256 commands are waiting already; try again later"});
+    });
+  commands_.push_back({std::move(command), std::move(answered)});
+  asked_.notify_one();
+}
+
+void GraphClient::listen() {
+  hc::LinkOptions options;
+  options.limits.element_bytes = hc::kMaxStateBytes;
+  options.stop = stop_.descriptor();
+  auto source = hc::open_source(hc::parse_uri(graph_.state_uri()).value(), options);
+  hc::Message message;
+  while (source) {
+    const auto got = (*source)->take(message);
+    if (!got || *got == hc::Got::End) break;
+    if (*got == hc::Got::Message)
+      post_([this, kept = message.keep()] { hears_.message(kept); });
+    else if (!(*source)->wait(stop_.descriptor()))
+      return;  // stopped
+  }
+  post_([this] { hears_.end(); });
+}
+
+void GraphClient::ask() {
+  while (true) {
+    std::unique_lock lock(mutex_);
+    asked_.wait(lock, [&] { return is_stopped_ || !commands_.empty(); });
+    if (is_stopped_) return;
+    auto [command, answered] = std::move(commands_.front());
+    commands_.pop_front();
+    lock.unlock();
+    const auto answer = hc::ask(graph_, {command}, stop_.descriptor());
+    std::vector<std::string> rows;
+    if (!answer)
+      rows = {answer.error().detail};
+    else
+      rows = answer->rows;
+    if (answer && answer->is_ok) rows.insert(rows.begin(), "ok");
+    post_([answered = std::move(answered), rows = std::move(rows)] { answered(rows); });
+  }
+}

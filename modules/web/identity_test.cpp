@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identity.h"
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Identity, is_made_once_and_kept_for_its_user_alone) {
+  const fs::path folder = fs::path(testing::TempDir()) / ("identity_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  const auto made = load_identity(folder / "deeper");
+  ASSERT_TRUE(made);
+  const auto print = fingerprint(made->certificate);
+  ASSERT_TRUE(print);
+  EXPECT_EQ(print->size(), 32U * 3 - 1);
+  const auto again = load_identity(folder / "deeper");
+  EXPECT_EQ(again->certificate, made->certificate);
+  EXPECT_EQ(again->key, made->key);
+  struct stat status {};
+  ASSERT_EQ(::stat((folder / "deeper/page_key.pem").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+  std::ofstream(folder / "deeper/page_certificate.pem") << "nonsense";
+  const auto broken = load_identity(folder / "deeper");
+  ASSERT_FALSE(broken);
+  EXPECT_EQ(broken.error().code, hc::Code::Malformed);
+  fs::remove_all(folder);
+}
+
+}  // namespace

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Serves a page in the browser: the graph live, its streams, and the driver's seat.
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <hc/module/module.h>
+
+#include "event.h"
+#include "identity.h"
+#include "page.h"
+#include "qr.h"
+
+namespace {
+
+/// What the server's thread hands to the module's.
+class Inbox {
+ public:
+  void put(std::function<void()> call) {
+    const std::lock_guard lock(mutex_);
+    calls_.push_back(std::move(call));
+    event_.set();
+  }
+  void work_off() {
+    event_.clear();
+    std::unique_lock lock(mutex_);
+    auto calls = std::exchange(calls_, {});
+    lock.unlock();
+    for (auto& call : calls) call();
+  }
+  [[nodiscard]] int descriptor() const { return event_.descriptor(); }
+
+ private:
+  Event event_;
+  std::mutex mutex_;
+  std::vector<std::function<void()>> calls_;
+};
+
+std::vector<std::string> words_of(std::string text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c != ',' && c != ' ')
+      words.back() += c;
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+/// Opens a URL in the browser of a desktop, if there is one.
+void open_in_browser(const std::string& url) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  const pid_t child = ::fork();
+  if (child != 0) return;
+  ::execlp("xdg-open", "xdg-open", url.c_str(), nullptr);
+  ::_exit(127);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat."};
+  auto stopped = module.input("stopped", hc::table<std::uint8_t>().of(1, 1),
+                              "from workspace: 1 while the robot is stopped");
+  auto stick = module.output("stick", hc::table<double>().of(2, 1),
+                             "left > 0, down > 0, each -1 to 1, from who drives");
+  auto rotation = module.output("rotation", hc::rotation<double>().in(hc::Coord::kSupervisor),
+                                "roll, pitch, yaw of their head [rad]");
+  auto target = module.output("target", hc::position<double>(),
+                              "where they point: x, y in the left (7) or right (8) image [px]");
+  auto text = module.output("text", hc::string(), "to be spoken");
+  auto bid = module.output("bid", hc::table<double>(), "for the task they have chosen");
+  auto stop = module.output("stop", hc::table<std::uint8_t>().of(1, 1),
+                            "1, repeated: the robot is to stop; 0: not any more");
+  auto listen = module.parameter(
+      "listen", "127.0.0.1", "",
+      "IP address; other machines can reach any but 127.0.0.1, with TLS alone", {.fixed = true});
+  auto port = module.parameter("port", 8470, "", "the next nine are tried too; 0: any",
+                               {.min = 0, .max = 65526, .fixed = true});
+  auto tls = module.parameter("tls", false, "", "use TLS on 127.0.0.1 too", {.fixed = true});
+  auto hosts = module.parameter("hosts", "", "", "names by which browsers may call this machine",
+                                {.fixed = true});
+  auto browser = module.parameter("browser", false, "", "open the page where there is a desktop",
+                                  {.fixed = true});
+  auto recordings =
+      module.parameter("recordings", "recordings", "", "folder for recordings", {.fixed = true});
+  auto frames =
+      module.parameter("frames", "", "", "coordinate systems, by `hc run`", {.fixed = true});
+  auto leave =
+      module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
+                       {.min = 0, .max = 1e6});
+
+  Inbox inbox;
+  Robot robot;
+  std::optional<Access> access;
+  std::unique_ptr<Server> server;
+  std::unique_ptr<Page> page;
+  std::thread thread;
+  std::optional<bool> wants_stop;  // what was last asked for; nothing: no page has
+  hc::MonotonicTime seen{};        // when a page was open
+
+  // From any thread.
+  const auto log = [&](hc::Severity, std::string_view line) {
+    inbox.put([&, kept = std::string(line)] { module.log(kept); });
+  };
+  auto send_stop = [&] {
+    if (wants_stop) stop.send(hc::table({static_cast<std::uint8_t>(*wants_stop ? 1 : 0)}));
+  };
+  auto obey = [&](const Order& order) {
+    const auto& message = order.message;
+    switch (order.control) {
+      case Control::Alive:
+        return;
+      case Control::Stick:
+        return stick.send({message});
+      case Control::Rotation:
+        return rotation.send({message});
+      case Control::Target:
+        return target.send({message});
+      case Control::Text:
+        return text.send({message});
+      case Control::Bid:
+        return bid.send({message});
+    }
+  };
+
+  module.on_start([&] {
+    const char* name = std::getenv("HC_GRAPH");
+    const auto graph = hc::parse_running(name == nullptr ? "" : name);
+    if (!graph)
+      throw hc::ModuleError(
+          "HC_GRAPH does not name a running graph, NAME.PID; run this module in "
+          "a graph, or with hc run GRAPH --page");
+    std::optional<Identity> identity;
+    const bool is_local = *listen == "127.0.0.1" || *listen == "::1" || *listen == "localhost";
+    if (*tls || !is_local) identity = hc::value_or_end(load_identity(settings_folder()));
+    constexpr int kPorts = 10;
+    server = hc::value_or_end(Server::listen(
+        *listen == "localhost" ? "127.0.0.1" : *listen, static_cast<std::uint16_t>(*port),
+        *port == 0 ? 1 : kPorts, identity ? &*identity : nullptr, log));
+    access.emplace(Place{*listen, server->port(), identity.has_value(), words_of(*hosts)});
+    page = std::make_unique<Page>(
+        Page::Options{*graph, module.instance(), *frames, *recordings}, *access, *server, robot,
+        Page::Hears{[&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
+                    [&](bool is_wanted) {
+                      inbox.put([&, is_wanted] {
+                        wants_stop = is_wanted;
+                        send_stop();
+                      });
+                    },
+                    [&] { page->close(); },
+                    [&](const std::string& line) { log(hc::Severity::Info, line); }});
+    const std::string url = access->invite(Right::Drive);
+    module.log("page: " + url);
+    if (identity)
+      module.log("page: certificate " + hc::value_or_end(fingerprint(identity->certificate)));
+    if (!is_local)
+      for (const auto& line : qr_lines(access->invite(Right::Drive))) module.log(line);
+    thread = std::thread([&] { server->run(*page); });
+    if (*browser) open_in_browser(url);
+    seen = module.monotonic();
+  });
+  module.keep_running();
+  module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });
+  module.on(stopped, [&](const auto& message) {
+    const bool is_stopped = message.numbers()[0] != 0;
+    robot.stopped = is_stopped ? 1 : 0;
+    // After a restart of this module, what was asked for before still counts.
+    if (is_stopped && !wants_stop) wants_stop = true;
+  });
+  module.every(std::chrono::milliseconds(100), [&] {
+    if (wants_stop == true) send_stop();
+    const bool linked[] = {false,           stick.linked(), rotation.linked(),
+                           target.linked(), text.linked(),  bid.linked()};
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < std::size(linked); ++i) bits |= linked[i] ? 1U << i : 0U;
+    robot.linked = bits;
+    const auto now = module.monotonic();
+    if (robot.sessions > 0) seen = now;
+    if (*leave > 0 && now - seen > hc::duration(*leave)) {
+      module.log("no page has been open for " + std::to_string(static_cast<int>(*leave)) + " s");
+      std::raise(SIGTERM);
+    }
+  });
+  const int status = module.run(argc, argv);
+  if (server) server->stop();
+  if (thread.joinable()) thread.join();
+  page.reset();
+  return status;
+}

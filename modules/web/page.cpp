@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "page.h"
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+#include <utility>
+
+#include <hc/base/format.h>
+#include <hc/base/json_string.h>
+#include <hc/mtp/codec.h>
+#include <hc/mtp/rows.h>
+#include <hc/mtp/stream_reader.h>
+
+#include "assets.h"
+
+namespace {
+
+using Rows = std::vector<std::string>;
+
+constexpr std::int32_t kSession = 3, kAnswer = 4;         // src of what a page is sent
+constexpr std::size_t kMaxLog = 200;                      // lines for a page that opens
+constexpr std::size_t kMaxStates = 8, kMaxWaiting = 512;  // messages that wait for a slow page
+constexpr int kGoing = 1001, kInvalid = 1007, kPolicy = 1008, kNoStream = 4404, kTaken = 4409;
+
+constexpr const char* kPolicyText =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
+    "media-src blob:; connect-src 'self'; worker-src 'self' blob:; font-src 'self'; "
+    "frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+Bytes text(std::string words) {
+  return std::make_shared<const std::string>(std::move(words));
+}
+
+Reply refusal(int status, std::string words) {
+  Reply reply;
+  reply.status = status;
+  reply.body = text(std::move(words) + "\n");
+  return reply;
+}
+
+Bytes rows_message(const Rows& rows, std::int32_t src, std::int64_t seq, std::int64_t time) {
+  hc::Message message = hc::make_rows(rows);
+  message.header.src = src;
+  message.header.seq = seq;
+  message.header.time = time;
+  return text(hc::encode(message));
+}
+
+std::string json_string(const std::string& words) {
+  std::string json;
+  hc::append_json_string(words, json);
+  return json;
+}
+
+std::string json_list(const Rows& words) {
+  std::string list;
+  for (const auto& word : words) list += (list.empty() ? "" : ",") + json_string(word);
+  return "[" + list + "]";
+}
+
+/// The one message in a frame. Errors: Malformed.
+hc::Result<hc::Message> read_frame(std::string_view bytes) {
+  hc::StreamReader reader;
+  hc::Message message;
+  std::optional<hc::Message> found;
+  while (true) {
+    auto got = reader.next(message);
+    if (!got) return got.error();
+    if (*got && found) return hc::Error{hc::Code::Malformed, "more than one message in a frame"};
+    if (*got) {
+      found = message.keep();
+      continue;
+    }
+    if (bytes.empty()) break;
+    const auto space = reader.space();
+    const auto size = std::min(space.size(), bytes.size());
+    std::memcpy(space.data(), bytes.data(), size);
+    reader.commit(size);
+    bytes.remove_prefix(size);
+  }
+  if (auto whole = reader.finish(); !whole) return whole.error();
+  if (!found) return hc::Error{hc::Code::Malformed, "no message in a frame"};
+  return *found;
+}
+
+Rows words_of(const std::string& line) {
+  std::istringstream stream(line);
+  Rows words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// The value of an option in a query; empty where there is none.
+std::string_view option(std::string_view query, std::string_view name) {
+  while (!query.empty()) {
+    const auto each = query.substr(0, query.find('&'));
+    query.remove_prefix(std::min(query.size(), each.size() + 1));
+    if (each.starts_with(name) && each.size() > name.size() && each[name.size()] == '=')
+      return each.substr(name.size() + 1);
+  }
+  return {};
+}
+
+}  // namespace
+
+Page::Page(Options options, Access& access, Server& server, Robot& robot, Hears hears)
+    : options_(std::move(options)),
+      access_(access),
+      server_(server),
+      robot_(robot),
+      hears_(std::move(hears)) {
+  server_.every(std::chrono::milliseconds(25), [this] { tick(); });
+  graph_ = std::make_unique<GraphClient>(
+      options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
+      GraphClient::Hears{[this](const hc::Message& message) { take_state(message); },
+                         [this] { hears_.end(); }});
+}
+
+Page::~Page() {
+  // What is posted from now on is not called any more.
+  graph_.reset();
+  watched_.clear();
+}
+
+// What is asked for by HTTP.
+
+Reply Page::reply(const Request& request) {
+  if (!access_.is_host(request.host))
+    return refusal(421, "this server is not \"" + request.host.substr(0, 64) +
+                            "\"; open it by the URL that it printed");
+  if (request.path == "/" && !option(request.query, "token").empty())
+    return reply_to_token(request);
+  const auto right = access_.right_of(request.cookies);
+  if (!right)
+    return refusal(401,
+                   "This page needs the URL that was printed when the graph started; each counts "
+                   "once, and the log has a new one.");
+  if (request.is_socket) {
+    if (!access_.is_origin(request.origin, request.host))
+      return refusal(403, "a page from elsewhere may not use this server");
+    if (request.path == "/drive" && *right != Right::Drive)
+      return refusal(403, "this session may view, and not drive");
+    const bool is_known =
+        request.path == "/graph" || request.path == "/drive" ||
+        (request.path.starts_with("/streams/") && is_port_name(request.path.substr(9)));
+    return is_known ? Reply{101, {}, {}, {}, {}} : refusal(404, "there is no such socket");
+  }
+  if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
+    return reply_with_recording(request);
+  return reply_with_file(request);
+}
+
+Reply Page::reply_to_token(const Request& request) {
+  const auto session = access_.redeem(option(request.query, "token"));
+  if (!session) {
+    // Whoever has a session already opened the link once more.
+    if (!access_.right_of(request.cookies))
+      return refusal(401, "this token is wrong, or was used before; the log has a new one");
+    return {303, "text/plain", {}, {}, {{"Location", "/"}}};
+  }
+  hears_.log("page: opened; for another browser: " + access_.invite(Right::Drive));
+  return {303,
+          "text/plain",
+          {},
+          {},
+          {{"Location", "/"},
+           {"Set-Cookie", access_.cookie_name() + "=" + *session + "; HttpOnly; SameSite=Strict; " +
+                              (access_.place().is_secure ? "Secure; " : "") + "Path=/"}}};
+}
+
+Reply Page::reply_with_file(const Request& request) const {
+  const std::string_view path =
+      request.path == "/" ? std::string_view("/index.html") : std::string_view(request.path);
+  const auto found = std::ranges::find_if(
+      page_assets(), [&](const Asset& asset) { return asset.path == path.substr(1); });
+  if (found == page_assets().end()) return refusal(404, "there is no such file");
+  Reply reply;
+  reply.type = found->type;
+  // Assets live as long as the program.
+  reply.body = text(std::string(found->bytes));
+  reply.fields = {{"Content-Encoding", "gzip"},
+                  {"Cache-Control", "no-cache"},
+                  {"Content-Security-Policy", kPolicyText}};
+  return reply;
+}
+
+Reply Page::reply_with_recording(const Request& request) const {
+  if (request.path == "/recordings") {
+    std::string list;
+    for (const auto& each : list_recordings(options_.recordings))
+      list += hc::format("{}{{\"name\":{},\"bytes\":{},\"streams\":{}}}", list.empty() ? "" : ",",
+                         json_string(each.name), each.bytes, json_list(each.streams));
+    return {200, "application/json", text("[" + list + "]"), {}, {{"Cache-Control", "no-store"}}};
+  }
+  std::string_view rest =
+      std::string_view(request.path).substr(std::string_view("/recordings/").size());
+  const auto slash = rest.find('/');
+  if (slash == std::string_view::npos && rest.ends_with(".tar")) {
+    rest.remove_suffix(4);
+    if (!is_recording_name(rest)) return refusal(404, "there is no such recording");
+    const auto archive = write_archive(options_.recordings, std::string(rest));
+    if (!archive) return refusal(404, archive.error().detail);
+    return {200,
+            "application/x-tar",
+            {},
+            *archive,
+            {{"Content-Disposition", "attachment; filename=\"" + std::string(rest) + ".tar\""}}};
+  }
+  if (slash == std::string_view::npos || !rest.ends_with(".mtp"))
+    return refusal(404, "there is no such recording");
+  const auto name = rest.substr(0, slash);
+  const auto port = rest.substr(slash + 1, rest.size() - slash - 1 - 4);
+  if (!is_recording_name(name) || !is_port_name(port))
+    return refusal(404, "there is no such recording");
+  return {200, "application/octet-stream", {}, options_.recordings + "/" + std::string(rest), {}};
+}
+
+// Sockets.
+
+void Page::open(std::shared_ptr<WebSocket> socket, const Request& request) {
+  const auto right = access_.right_of(request.cookies);
+  if (!right) return socket->close(kPolicy, "the session has ended");
+  if (request.path == "/graph") return open_graph(socket, *right);
+  if (request.path == "/drive") return open_drive(socket, request);
+  open_stream(socket, request);
+}
+
+void Page::open_graph(const std::shared_ptr<WebSocket>& socket, Right right) {
+  const auto number = next_++;
+  Session& session = sessions_[number] = {socket, right, {}};
+  robot_.sessions = static_cast<unsigned>(sessions_.size());
+  socket->on_close = [this, number] {
+    sessions_.erase(number);
+    robot_.sessions = static_cast<unsigned>(sessions_.size());
+  };
+  socket->on_text = [this, number](std::string_view command) {
+    take_command(number, std::string(command));
+  };
+  send_session(session);
+  if (state_) socket->send(state_);
+  for (const auto& line : log_) socket->send(line);
+}
+
+void Page::open_stream(const std::shared_ptr<WebSocket>& socket, const Request& request) {
+  const auto wanted = parse_wanted(request.query);
+  if (!wanted) return socket->close(kPolicy, wanted.error().detail);
+  const std::string port = request.path.substr(std::string_view("/streams/").size());
+  auto& stream = streams_[port];
+  if (!stream)
+    stream = std::make_unique<Stream>(options_.graph, port, [this](std::function<void()> call) {
+      server_.post(std::move(call));
+    });
+  const auto number = next_++;
+  Watched& watched = watched_[number];
+  watched.socket = socket;
+  watched.port = port;
+  Stream::Hears hears;
+  hears.header = [socket](std::string header) { socket->send_text(std::move(header)); };
+  hears.message = [socket](Bytes message) { socket->send(std::move(message)); };
+  hears.end = [this, socket, number](const std::string& why, bool is_error) {
+    socket->close(is_error ? kNoStream : 1000, why);
+    // Not while the viewer calls.
+    server_.post([this, number] { watched_.erase(number); });
+  };
+  watched.viewer = stream->view(*wanted, std::move(hears));
+  socket->on_close = [this, number] { watched_.erase(number); };
+  socket->on_text = [this, number, socket](std::string_view said) {
+    const auto found = watched_.find(number);
+    if (found == watched_.end()) return;
+    auto& viewer = *found->second.viewer;
+    if (said == "ok") return viewer.acknowledge();
+    const auto changed = parse_wanted(said, viewer.wanted());
+    if (changed) return viewer.want(*changed);
+    socket->close(kPolicy, changed.error().detail);
+    watched_.erase(number);
+  };
+}
+
+void Page::open_drive(const std::shared_ptr<WebSocket>& socket, const Request& request) {
+  if (driver_socket_ && option(request.query, "take") != "1")
+    return socket->close(kTaken, "another page drives");
+  if (driver_socket_) {
+    give(driver_.leave(clock_.wall()));
+    driver_socket_->close(kTaken, "another page has taken the seat");
+  }
+  driver_socket_ = socket;
+  driver_ = Driver();
+  auto leave = [this, raw = socket.get()] {
+    if (driver_socket_.get() != raw) return;
+    give(driver_.leave(clock_.wall()));
+    driver_socket_.reset();
+  };
+  socket->on_close = leave;
+  socket->on_binary = [this, leave, raw = socket.get()](std::string_view bytes) {
+    auto message = read_frame(bytes);
+    if (message) {
+      auto orders = driver_.take(std::move(*message), clock_.wall(), clock_.monotonic());
+      if (orders) return give(*orders);
+      message = orders.error();
+    }
+    const auto kept = driver_socket_;
+    leave();
+    if (kept.get() == raw) kept->close(kInvalid, message.error().detail);
+  };
+}
+
+// The graph.
+
+void Page::take_state(const hc::Message& message) {
+  const bool is_state = message.header.src == hc::kStateSource;
+  const Bytes bytes = text(hc::encode(message));
+  if (is_state) {
+    state_ = bytes;
+  } else {
+    log_.push_back(bytes);
+    if (log_.size() > kMaxLog) log_.pop_front();
+  }
+  // A page that does not read gets no more: of states the newest is worth sending, of lines few.
+  for (auto& [number, session] : sessions_)
+    if (session.socket->waiting() < (is_state ? kMaxStates : kMaxWaiting))
+      session.socket->send(bytes);
+}
+
+void Page::answer(std::uint64_t session, const Rows& rows) {
+  const auto found = sessions_.find(session);
+  if (found == sessions_.end() || found->second.socket->waiting() >= kMaxWaiting) return;
+  found->second.socket->send(rows_message(rows, kAnswer, answers_++, clock_.wall()));
+}
+
+void Page::take_command(std::uint64_t number, const std::string& command) {
+  const Session& session = sessions_.at(number);
+  const auto words = words_of(command);
+  if (words.empty()) return answer(number, {"there is no command"});
+  if (auto done = command_here(session, words)) return answer(number, *done);
+  if (words[0] == "observe" || words[0] == "reply")
+    return answer(number, {"no command \"" + words[0] + "\"; streams are at /streams"});
+  if (session.right != Right::Drive && words[0] != "describe")
+    return answer(number, {"this session may view, and not change anything"});
+  graph_->command(command, [this, number](const Rows& rows) { answer(number, rows); });
+}
+
+std::optional<Rows> Page::command_here(const Session& session, const Rows& words) {
+  const bool may_drive = session.right == Right::Drive;
+  const Rows no_right = {"this session may view, and not change anything"};
+  if (words[0] == "estop") {
+    const bool clears = words.size() == 2 && words[1] == "clear";
+    if (words.size() > 1 && !clears) return Rows{"estop is followed by nothing or by clear"};
+    if (robot_.stopped < 0)
+      return Rows{"this graph has no workspace that " + options_.module +
+                  ".stop is linked to; end the graph with stop"};
+    if (clears && !may_drive) return no_right;
+    hears_.stop(!clears);
+    return Rows{"ok"};
+  }
+  if (words[0] == "record") return may_drive ? record(words) : no_right;
+  if (words[0] == "invite") {
+    if (words.size() != 2 || (words[1] != "view" && words[1] != "drive"))
+      return Rows{"invite is followed by view or drive"};
+    if (!may_drive) return no_right;
+    return Rows{"ok", access_.invite(words[1] == "drive" ? Right::Drive : Right::View)};
+  }
+  return std::nullopt;
+}
+
+Rows Page::record(const Rows& words) {
+  if (words.size() == 2 && words[1] == "end") {
+    if (!recorder_) return {"nothing is being recorded"};
+    recorder_.reset();
+    return {"ok"};
+  }
+  if (recorder_) return {"there is a recording already: " + recorder_->name()};
+  if (words.size() < 3) return {"record is followed by a name and outputs, MODULE.PORT, or by end"};
+  auto begun = Recorder::begin(
+      options_.graph, options_.recordings, words[1], {words.begin() + 2, words.end()},
+      [log = hears_.log, &server = server_](hc::Severity, std::string_view line) {
+        server.post([log, kept = std::string(line)] { log(kept); });
+      });
+  if (!begun) return {begun.error().detail};
+  recorder_ = std::move(*begun);
+  return {"ok"};
+}
+
+void Page::give(const std::vector<Order>& orders) const {
+  for (const auto& order : orders) hears_.order(order);
+}
+
+void Page::tick() {
+  if (driver_socket_) give(driver_.tick(clock_.wall(), clock_.monotonic()));
+  for (auto& [number, session] : sessions_) send_session(session);
+  std::erase_if(streams_, [&](const auto& each) { return !each.second->is_viewed(); });
+}
+
+std::string Page::session_text(const Session& session) const {
+  constexpr const char* kNames[] = {"", "stick", "rotation", "target", "text", "bid"};
+  Rows drives;
+  for (std::size_t i = 1; i < std::size(kNames); ++i)
+    if ((robot_.linked & (1U << i)) != 0) drives.emplace_back(kNames[i]);
+  std::string recording = "null";
+  if (recorder_)
+    recording = hc::format("{{\"name\":{},\"bytes\":{},\"seconds\":{},\"streams\":{}}}",
+                           json_string(recorder_->name()), recorder_->bytes(),
+                           static_cast<int>(recorder_->seconds()), json_list(recorder_->ports()));
+  const char* driver = driver_socket_ ? "\"other\"" : "null";
+  const int stopped = robot_.stopped;
+  return hc::format(
+      "{{\"right\":\"{}\",\"driver\":{},\"stopped\":{},\"recording\":{},\"drives\":{},"
+      "\"frames\":{},\"web\":{}}}",
+      session.right == Right::Drive ? "drive" : "view", driver,
+      stopped < 0   ? "null"
+      : stopped > 0 ? "true"
+                    : "false",
+      recording, json_list(drives), json_string(options_.frames), json_string(options_.module));
+}
+
+void Page::send_session(Session& session) const {
+  auto now = session_text(session);
+  if (now == session.sent || session.socket->waiting() >= kMaxStates) return;
+  session.sent = std::move(now);
+  session.socket->send(rows_message({session.sent}, kSession, 0, clock_.wall()));
+}
+
+void Page::close() {
+  for (auto& [number, session] : sessions_) session.socket->close(kGoing, "the graph has ended");
+  sessions_.clear();
+}

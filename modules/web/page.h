@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the server serves: the page, the graph, its streams, the driver's seat and recordings
+// (spec/page.md). For the server's thread, but for what is said otherwise.
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include <hc/base/clock.h>
+#include <hc/observe/running.h>
+
+#include "access.h"
+#include "driver.h"
+#include "graph_client.h"
+#include "recorder.h"
+#include "server.h"
+#include "stream.h"
+
+/// What the module and its page share. From any thread.
+struct Robot {
+  std::atomic<unsigned> linked{0};    ///< a bit for each Control whose output is linked
+  std::atomic<int> stopped{-1};       ///< 1, 0; -1: the graph has nothing that stops it
+  std::atomic<unsigned> sessions{0};  ///< pages that are open
+};
+
+class Page final : public Site {
+ public:
+  struct Options {
+    hc::RunningGraph graph;
+    std::string module;      ///< name of the module that serves the page
+    std::string frames;      ///< of the graph, as text
+    std::string recordings;  ///< folder
+  };
+  /// Called on the server's thread.
+  struct Hears {
+    std::function<void(Order)> order;  ///< something is commanded
+    std::function<void(bool)> stop;    ///< the robot is to be stopped, or not any more
+    std::function<void()> end;         ///< the graph has ended
+    std::function<void(const std::string& line)> log;
+  };
+
+  Page(Options options, Access& access, Server& server, Robot& robot, Hears hears);
+  ~Page() override;
+
+  Reply reply(const Request& request) override;
+  void open(std::shared_ptr<WebSocket> socket, const Request& request) override;
+
+  /// Has all pages closed: the graph ends.
+  void close();
+
+ private:
+  struct Session {
+    std::shared_ptr<WebSocket> socket;
+    Right right = Right::View;
+    std::string sent;  // of what it is, the last
+  };
+  struct Watched {
+    std::shared_ptr<WebSocket> socket;
+    std::string port;
+    std::unique_ptr<Stream::Viewer> viewer;
+  };
+  using Sessions = std::map<std::uint64_t, Session>;
+
+  Reply reply_to_token(const Request& request);
+  Reply reply_with_file(const Request& request) const;
+  Reply reply_with_recording(const Request& request) const;
+  void open_graph(const std::shared_ptr<WebSocket>& socket, Right right);
+  void open_stream(const std::shared_ptr<WebSocket>& socket, const Request& request);
+  void open_drive(const std::shared_ptr<WebSocket>& socket, const Request& request);
+
+  void take_state(const hc::Message& message);
+  void take_command(std::uint64_t session, const std::string& command);
+  /// Does a command that is none of the graph; gives its answer, nothing where it is one of it.
+  std::optional<std::vector<std::string>> command_here(const Session& session,
+                                                       const std::vector<std::string>& words);
+  std::vector<std::string> record(const std::vector<std::string>& words);
+  void answer(std::uint64_t session, const std::vector<std::string>& rows);
+  void tick();
+  void give(const std::vector<Order>& orders) const;
+  [[nodiscard]] std::string session_text(const Session& session) const;
+  void send_session(Session& session) const;
+
+  const Options options_;
+  Access& access_;
+  Server& server_;
+  Robot& robot_;
+  const Hears hears_;
+  const hc::SystemClock clock_;
+  std::uint64_t next_ = 1;  // number of a session or stream
+  Sessions sessions_;
+  std::map<std::string, std::unique_ptr<Stream>> streams_;  // by port
+  std::map<std::uint64_t, Watched> watched_;
+  std::shared_ptr<WebSocket> driver_socket_;
+  Driver driver_;
+  std::unique_ptr<Recorder> recorder_;
+  Bytes state_;            // the last
+  std::deque<Bytes> log_;  // the last lines
+  std::int64_t answers_ = 0;
+  std::unique_ptr<GraphClient> graph_;  // last: its threads call the above
+};

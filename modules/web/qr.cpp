@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "qr.h"
+
+#include <qrencode.h>
+
+#include <memory>
+
+std::vector<std::string> qr_lines(const std::string& text) {
+  const std::unique_ptr<QRcode, void (*)(QRcode*)> code(
+      QRcode_encodeString(text.c_str(), 0, QR_ECLEVEL_L, QR_MODE_8, 1), QRcode_free);
+  if (!code) return {};
+  constexpr int kQuiet = 2;  // modules of margin; four are asked for, two are enough in the dark
+  const int size = code->width;
+  const auto is_dark = [&](int x, int y) {
+    const bool is_inside = x >= 0 && y >= 0 && x < size && y < size;
+    return is_inside && (code->data[y * size + x] & 1) != 0;
+  };
+  std::vector<std::string> lines;
+  for (int y = -kQuiet; y < size + kQuiet; y += 2) {
+    std::string line = "\x1b[30;107m";
+    for (int x = -kQuiet; x < size + kQuiet; ++x)
+      line += is_dark(x, y) ? (is_dark(x, y + 1) ? "█" : "▀") : is_dark(x, y + 1) ? "▄" : " ";
+    lines.push_back(line + "\x1b[0m");
+  }
+  return lines;
+}

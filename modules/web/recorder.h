@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Recordings that a page makes: a folder for each, a file MODULE.PORT.mtp for each output
+// (spec/page.md, section 6).
+
+#include <atomic>
+#include <chrono>
+#include <list>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include <hc/observe/running.h>
+
+#include "event.h"
+
+/// Whether a recording may be called so: 1 to 40 letters, digits, `-` and `_`.
+bool is_recording_name(std::string_view name);
+/// Whether a text is MODULE.PORT.
+bool is_port_name(std::string_view text);
+
+struct Recorded {
+  std::string name;
+  std::uintmax_t bytes = 0;
+  std::vector<std::string> streams;  ///< MODULE.PORT
+};
+
+/// The recordings in a folder, by name.
+std::vector<Recorded> list_recordings(const std::string& folder);
+
+/// Writes all files of a recording as one archive (POSIX ustar) beside it, anew each time.
+/// @returns  its path. Errors: NotFound, System.
+hc::Result<std::string> write_archive(const std::string& folder, const std::string& name);
+
+/// A recording that is being made.
+class Recorder {
+ public:
+  /// Errors: Invalid (a name or port that is none; the recording exists), System.
+  static hc::Result<std::unique_ptr<Recorder>> begin(const hc::RunningGraph& graph,
+                                                     const std::string& folder,
+                                                     const std::string& name,
+                                                     const std::vector<std::string>& ports,
+                                                     hc::LogSink log);
+  /// Ends it; what has been received is written.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::vector<std::string>& ports() const { return ports_; }
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  [[nodiscard]] double seconds() const;
+
+ private:
+  Recorder(hc::RunningGraph graph, std::string path, std::string name,
+           std::vector<std::string> ports, hc::LogSink log);
+  void record(const std::string& port);
+  void write(const std::string& port, hc::Observation observation);
+
+  const hc::RunningGraph graph_;
+  const std::string path_, name_;
+  const std::vector<std::string> ports_;
+  const hc::LogSink log_;
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+  Event stop_;
+  std::atomic<std::uint64_t> bytes_{0};
+  std::vector<std::thread> threads_;
+};

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// HTTP and WebSocket, with TLS or without; what is asked for and who may ask is its Site's affair.
+// Everything here is called on the thread that runs it, but for post(). The one file that knows
+// Beast is server.cpp.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hc/base/log.h>
+#include <hc/base/result.h>
+
+#include "stream.h"
+
+struct Request {
+  std::string path;   ///< "/streams/eyes.left", decoded
+  std::string query;  ///< behind `?`, as it came
+  std::string host, origin, cookies;
+  bool is_socket = false;  ///< asks for a WebSocket
+};
+
+struct Reply {
+  int status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  Bytes body;                                               ///< null: none, or `file`
+  std::string file;                                         ///< path of a file to send instead
+  std::vector<std::pair<std::string, std::string>> fields;  ///< of the head, beside the usual ones
+};
+
+/// One end of a WebSocket. Closes when it is destroyed.
+class WebSocket {
+ public:
+  virtual ~WebSocket() = default;
+  virtual void send_text(std::string text) = 0;
+  virtual void send(Bytes message) = 0;
+  /// @param code  of RFC 6455, section 7.4, or from 4000 on. Nothing is called afterwards.
+  virtual void close(int code, std::string reason) = 0;
+  /// Messages that have not been written yet.
+  [[nodiscard]] virtual std::size_t waiting() const = 0;
+
+  std::function<void(std::string_view)> on_text, on_binary;
+  /// The other end has gone, or is of no use any more.
+  std::function<void()> on_close;
+};
+
+/// What a server serves.
+class Site {
+ public:
+  virtual ~Site() = default;
+  /// What is answered to a GET; of a request for a WebSocket, why it is refused, or status 101.
+  virtual Reply reply(const Request& request) = 0;
+  /// A WebSocket for which reply() gave 101.
+  virtual void open(std::shared_ptr<WebSocket> socket, const Request& request) = 0;
+};
+
+/// A certificate and its key, PEM.
+struct Identity {
+  std::string certificate, key;
+};
+
+class Server {
+ public:
+  virtual ~Server() = default;
+
+  /// Listens; serves once run() is called.
+  ///
+  /// @param port  the first that is tried of `ports`; 0: any that is free.
+  /// @param identity  null: no TLS.
+  /// Errors: Invalid (the address is none), System (no port is free; the identity is of no use).
+  static hc::Result<std::unique_ptr<Server>> listen(const std::string& address, std::uint16_t port,
+                                                    int ports, const Identity* identity,
+                                                    hc::LogSink log);
+
+  [[nodiscard]] virtual std::uint16_t port() const = 0;
+  /// Serves a site until stop().
+  virtual void run(Site& site) = 0;
+  /// From any thread.
+  virtual void stop() = 0;
+  /// Has a function called on the thread of run(). From any thread.
+  virtual void post(std::function<void()> call) = 0;
+  /// Calls a function periodically, until it ends. To be called before run().
+  virtual void every(std::chrono::milliseconds period, std::function<void()> call) = 0;
+};

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stream.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include <hc/compress/compress.h>
+#include <hc/mtp/codec.h>
+
+namespace {
+
+constexpr std::chrono::seconds kRenewal{1};             // of the observation
+constexpr std::chrono::milliseconds kHeader{500};       // between header lines
+constexpr std::chrono::milliseconds kBetweenKeys{500};  // of VP8, for a page that missed frames
+constexpr int kQuality = 80;                            // of JPEG
+
+template <typename Number>
+bool read_number(std::string_view text, Number max, Number& number) {
+  Number read{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
+  if (error != std::errc() || end != text.data() + text.size() || !(read >= 0) || read > max)
+    return false;
+  number = read;
+  return true;
+}
+
+/// A message in binary encoding, which it may be in already.
+Bytes bytes_of(hc::Message message) {
+  if (message.header.info.encoding == hc::Encoding::Text)
+    message.header.info.encoding = hc::Encoding::Binary;
+  return std::make_shared<const std::string>(hc::encode(message));
+}
+
+}  // namespace
+
+hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted) {
+  constexpr int kMaxWidth = 65500;
+  constexpr double kMaxRate = 1000;
+  while (!options.empty()) {
+    const auto option = options.substr(0, options.find('&'));
+    options.remove_prefix(std::min(options.size(), option.size() + 1));
+    const auto equals = std::min(option.find('='), option.size());
+    const auto key = option.substr(0, equals);
+    const auto value = option.substr(std::min(option.size(), equals + 1));
+    bool is_known = true;
+    if (key == "as" && value == "raw")
+      wanted.form = Form::Raw;
+    else if (key == "as" && value == "jpeg")
+      wanted.form = Form::Jpeg;
+    else if (key == "as" && value == "vp8")
+      wanted.form = Form::Vp8;
+    else if (key == "width")
+      is_known = read_number(value, kMaxWidth, wanted.width);
+    else if (key == "rate")
+      is_known = read_number(value, kMaxRate, wanted.rate);
+    else
+      is_known = false;
+    if (!is_known)
+      return hc::Error{hc::Code::Invalid,
+                       "\"" + std::string(option) +
+                           "\" is none of as=raw, as=jpeg, as=vp8, width=0 … 65500, rate=0 … 1000"};
+  }
+  return wanted;
+}
+
+Stream::Stream(hc::RunningGraph graph, std::string port, Post post)
+    : graph_(std::move(graph)),
+      port_(std::move(port)),
+      post_(std::move(post)),
+      thread_([this] { run(); }) {}
+
+Stream::~Stream() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopped_ = true;
+  }
+  wake_.set();
+  thread_.join();
+}
+
+void Stream::call(const std::shared_ptr<Seat>& seat, std::function<void(const Hears&)> what) const {
+  post_([weak = std::weak_ptr(seat), what = std::move(what)] {
+    if (const auto still = weak.lock()) what(still->hears);
+  });
+}
+
+std::unique_ptr<Stream::Viewer> Stream::view(const Wanted& wanted, Hears hears) {
+  auto seat = std::make_shared<Seat>();
+  seat->wanted = wanted;
+  seat->hears = std::move(hears);
+  const std::lock_guard lock(mutex_);
+  seats_.push_back(seat);
+  if (!ended_.empty())
+    call(seat,
+         [why = ended_, is_error = is_error_](const Hears& page) { page.end(why, is_error); });
+  if (is_open_) wake_.set();
+  return std::make_unique<Viewer>(*this, std::move(seat));
+}
+
+bool Stream::is_viewed() {
+  const std::lock_guard lock(mutex_);
+  return !seats_.empty();
+}
+
+void Stream::end(const std::string& why, bool is_error) {
+  const std::lock_guard lock(mutex_);
+  ended_ = why;
+  is_error_ = is_error;
+  is_open_ = false;
+  for (const auto& seat : seats_)
+    call(seat, [why, is_error](const Hears& page) { page.end(why, is_error); });
+}
+
+void Stream::run() {
+  auto observation = hc::Observation::make(graph_, port_, wake_.descriptor());
+  if (!observation) return end(observation.error().detail, true);
+  hc::LinkOptions options;
+  options.stop = wake_.descriptor();
+  auto source = hc::open_source(hc::parse_uri(observation->uri()).value(), options);
+  if (!source) return end(source.error().detail, true);
+  {
+    const std::lock_guard lock(mutex_);
+    is_open_ = true;
+  }
+  hc::Message message, newest;
+  std::uint64_t number = 0;
+  auto renewed = Clock::now();
+  while (true) {
+    const auto got = (*source)->take(message);
+    if (!got) return end(got.error().detail, true);
+    if (*got == hc::Got::End) return end("the stream has ended", false);
+    if (*got == hc::Got::Message) {
+      newest = message.keep();
+      ++number;
+      continue;  // a newer one may be there
+    }
+    message = {};
+    auto next = renewed + kRenewal;
+    if (number > 0) next = std::min(next, serve(newest, number));
+    const auto now = Clock::now();
+    if (now >= renewed + kRenewal) {
+      if (!observation->renew()) return end("the graph has ended", false);
+      renewed = now;
+      continue;
+    }
+    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - now);
+    const auto waited =
+        (*source)->wait(wake_.descriptor(), std::max(wait, std::chrono::milliseconds(0)));
+    if (waited) continue;
+    if (waited.error().code != hc::Code::Stopped) return end(waited.error().detail, true);
+    wake_.clear();
+    const std::lock_guard lock(mutex_);
+    if (is_stopped_) return;
+  }
+}
+
+Stream::Clock::time_point Stream::serve(const hc::Message& newest, std::uint64_t number) {
+  const auto now = Clock::now();
+  auto next = Clock::time_point::max();
+  struct Alike {
+    Wanted wanted;
+    Seats seats;
+  };
+  std::map<std::pair<Form, int>, Alike> all;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& seat : seats_) {
+      if (std::exchange(seat->has_changed, false)) seat->needs_key = true;
+      if (seat->seen == number || seat->under_way >= kMaxUnderWay) continue;
+      if (now < seat->due) {
+        next = std::min(next, seat->due);
+        continue;
+      }
+      if (seat->wanted.rate > 0)
+        seat->due = std::max(seat->due + std::chrono::duration_cast<Clock::duration>(
+                                             std::chrono::duration<double>(1 / seat->wanted.rate)),
+                             now);
+      auto& [wanted, seats] = all[{seat->wanted.form, seat->wanted.width}];
+      wanted = seat->wanted;
+      seats.push_back(seat);
+      ++seat->under_way;
+    }
+  }
+  for (const auto& [what, alike] : all) {
+    for (const auto& seat : alike.seats) {
+      if (seat->seen + 1 != number) seat->needs_key = true;  // it missed some
+      seat->seen = number;
+    }
+    serve_alike(alike.wanted, alike.seats, newest);
+  }
+  return next;
+}
+
+void Stream::serve_alike(const Wanted& wanted, const Seats& seats, const hc::Message& newest) {
+  const auto now = Clock::now();
+  auto made = hc::expand(newest);
+  if (made) made = scaled(*made, wanted.width);
+  const bool is_image = made && is_picture(made->header);
+  const bool is_video = is_image && wanted.form == Form::Vp8;
+  if (is_image && wanted.form == Form::Jpeg && made->header.info.components != 4)
+    made = hc::compress(*made, hc::Encoding::Jpeg, {.jpeg_quality = kQuality});
+  bool is_key = true;
+  if (is_video) {
+    Video& video = videos_[wanted.width];
+    const bool needs_key =
+        std::ranges::any_of(seats, [](const auto& seat) { return seat->needs_key; });
+    made = video.encoder.encode(*made, needs_key && now >= video.key_due);
+    is_key = made && is_key_frame(*made);
+    if (is_key) video.key_due = now + kBetweenKeys;
+  }
+  if (!made) {
+    for (const auto& seat : seats)
+      call(seat, [why = made.error().detail](const Hears& page) { page.end(why, true); });
+    return;
+  }
+  const Bytes bytes = bytes_of(*made);
+  const std::string header = hc::text(newest.header);
+  for (const auto& seat : seats) {
+    if (is_video && seat->needs_key && !is_key) {  // it could not show this one
+      const std::lock_guard lock(mutex_);
+      --seat->under_way;
+      continue;
+    }
+    seat->needs_key = false;
+    const bool has_header = now >= seat->header_due;
+    if (has_header) seat->header_due = now + kHeader;
+    call(seat, [bytes, text = has_header ? header : std::string()](const Hears& page) {
+      if (!text.empty()) page.header(text);
+      page.message(bytes);
+    });
+  }
+}
+
+Stream::Viewer::~Viewer() {
+  const std::lock_guard lock(stream_.mutex_);
+  std::erase(stream_.seats_, seat_);
+}
+
+void Stream::Viewer::acknowledge() {
+  const std::lock_guard lock(stream_.mutex_);
+  if (seat_->under_way > 0) --seat_->under_way;
+  if (stream_.is_open_) stream_.wake_.set();
+}
+
+Wanted Stream::Viewer::wanted() const {
+  const std::lock_guard lock(stream_.mutex_);
+  return seat_->wanted;
+}
+
+void Stream::Viewer::want(const Wanted& wanted) {
+  const std::lock_guard lock(stream_.mutex_);
+  if (wanted.form != seat_->wanted.form || wanted.width != seat_->wanted.width)
+    seat_->has_changed = true;
+  seat_->wanted = wanted;
+  if (stream_.is_open_) stream_.wake_.set();
+}
