@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bundles the page: node build.mjs OUT. OUT gets index.html, page.js, page.css and the chunks that
 // page.js loads later, and keeps nothing else. Fails where the first load is above the limit.
-import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import {
+  appendFileSync,
+  copyFileSync,
+  mkdirSync,
+  readFileSync,
+  readdirSync,
+  rmSync,
+} from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
@@ -33,7 +40,22 @@ const result = await build({
   logLevel: "warning",
   metafile: true,
 });
+appendFileSync(join(out, "page.js"), licences());
 copyFileSync(join(here, "index.html"), join(out, "index.html"));
+
+/** The licences of the packages that are in the bundles, as a comment. */
+function licences() {
+  const packages = new Set(
+    Object.keys(result.metafile.inputs)
+      .map((path) => /node_modules\/((?:@[^/]+\/)?[^/]+)\//.exec(path)?.[1])
+      .filter(Boolean),
+  );
+  const texts = [...packages].sort().map((name) => {
+    const text = readFileSync(join(here, "node_modules", name, "LICENSE"), "utf8");
+    return `${name}\n\n${text.trim()}`;
+  });
+  return `/*\nThis page contains the following packages.\n\n${texts.join("\n\n")}\n*/\n`;
+}
 
 /** The files that are loaded at once: the page, and all that page.js imports statically. */
 function firstLoad() {
