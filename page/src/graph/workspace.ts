@@ -25,7 +25,7 @@ export class WorkspaceView {
       this.why,
       this.charts,
     );
-    this.stream = server.stream(`${name}.standings`, { rate: 10, last: true });
+    this.stream = server.stream(`${name}.standings`, { rate: 10 });
     this.stream.on("message", ({ message, at }) => {
       this.bids = bidsOf(message);
       this.history.add(at / 1000, this.bids);

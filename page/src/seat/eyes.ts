@@ -102,7 +102,7 @@ export class Eye {
     private readonly shown: (picture: Picture) => void,
     problem: (text: string) => void,
   ) {
-    this.stream = server.stream(port, { as: "jpeg", width, last: true });
+    this.stream = server.stream(port, { as: "jpeg", width });
     this.stream.on("message", (arrival) => this.take(arrival));
     this.stream.on("problem", problem);
   }

@@ -10,8 +10,6 @@ export interface StreamOptions {
   width?: number;
   /** At most so many messages a second. */
   rate?: number;
-  /** Begin with the last message there was. */
-  last?: boolean;
 }
 
 /** A message, and when it came [ms, performance.timeOrigin + performance.now()]. */
@@ -39,7 +37,7 @@ export class Stream {
     readonly port: string,
     private options: StreamOptions = {},
   ) {
-    const query = Object.entries({ ...options, last: options.last ? 1 : undefined })
+    const query = Object.entries(options)
       .filter(([, value]) => value !== undefined)
       .map(([key, value]) => `${key}=${value}`)
       .join("&");

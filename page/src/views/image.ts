@@ -12,6 +12,9 @@ export class ImageView implements View {
   readonly element: HTMLElement;
   private readonly canvas = h("canvas", { class: "picture", role: "img" });
   private readonly context = this.canvas.getContext("2d", { alpha: false })!;
+  private readonly pixel = h("canvas", { width: 1, height: 1 }).getContext("2d", {
+    willReadFrequently: true,
+  })!;
   private readonly decoder = new PictureDecoder();
   private readonly probe: Probe;
   private readonly endRoom: () => void;
@@ -24,12 +27,7 @@ export class ImageView implements View {
       const { sent } = this.shown ?? {};
       if (!sent) return "";
       const { x, y } = pixelAt({ across, down }, sent.width, sent.height);
-      const [r, g, b] = this.context.getImageData(
-        Math.floor(across * this.canvas.width),
-        Math.floor(down * this.canvas.height),
-        1,
-        1,
-      ).data;
+      const [r, g, b] = this.colourAt(across * this.canvas.width, down * this.canvas.height);
       return `${x.toFixed(0)}, ${y.toFixed(0)} px  ${sent.components === 1 ? r : `${r} ${g} ${b}`}`;
     });
     this.element = h("div", { class: "image-view" }, this.canvas, this.probe.output);
@@ -53,6 +51,13 @@ export class ImageView implements View {
       this.probe.update();
     }
     picture.close();
+  }
+
+  /** Red, green, blue [0, 255] of a pixel of the canvas. */
+  private colourAt(x: number, y: number): Uint8ClampedArray {
+    // By way of a canvas of one pixel, so that the large one may stay in the memory of the GPU.
+    this.pixel.drawImage(this.canvas, Math.floor(x), Math.floor(y), 1, 1, 0, 0, 1, 1);
+    return this.pixel.getImageData(0, 0, 1, 1).data;
   }
 
   async snapshot(): Promise<Arrival | undefined> {

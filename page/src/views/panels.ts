@@ -18,7 +18,7 @@ export async function liveSurroundings(server: Server): Promise<Surroundings> {
       return server.session;
     },
     ready: () => server.ready(),
-    open: (port) => server.stream(port, { as, last: true }),
+    open: (port) => server.stream(port, { as }),
   };
 }
 
