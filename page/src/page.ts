@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { defaultLayout } from "./default_layout";
 import { graphPanel, modulePanel } from "./graph";
+import { outputsOf } from "./outputs";
 import { recordingsPanel, replayPanel } from "./recordings";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
@@ -27,6 +28,6 @@ standardPanels.push(
   { label: "Seat", detail: "steer, speak, choose a task", args: { kind: "seat" } },
 );
 
-const shell = new Shell(new Server(), defaultLayout);
+const shell = new Shell(new Server(), defaultLayout, outputsOf);
 addStop(shell);
 document.body.append(shell.element);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Records streams, lists recordings, opens them: {kind: "recordings"}.
 import { CommandError, type GraphState, type Recording, type Session } from "../server";
+import { outputsOf, type Output } from "../outputs";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { giveFiles } from "./local";
 
@@ -19,12 +20,6 @@ export function nameOfNow(now: Date): string {
   const two = (value: number) => String(value).padStart(2, "0");
   const day = `${now.getFullYear()}${two(now.getMonth() + 1)}${two(now.getDate())}`;
   return `${day}-${two(now.getHours())}${two(now.getMinutes())}${two(now.getSeconds())}`;
-}
-
-/** The outputs that are linked within the graph. */
-function outputsOf(state: GraphState | undefined): string[] {
-  const ports = new Set(state?.links.map((link) => link.from));
-  return [...ports].filter((port) => /^[\w-]+\.[\w-]+$/.test(port)).sort();
 }
 
 export const recordingsPanel: PanelKind = (_args, host) => {
@@ -49,7 +44,7 @@ class RecordingsPanel {
   private readonly start = h("button", { class: "primary" }, "Start recording");
   private readonly ends: (() => void)[];
   private readonly chosen = new Set<string>();
-  private ports = "";
+  private modules = "";
   private wasRecording?: string;
 
   constructor(private readonly host: PanelHost) {
@@ -106,7 +101,7 @@ class RecordingsPanel {
       files,
     );
     this.ends = [
-      server.onState((state) => this.showPorts(state)),
+      server.onState((state) => this.updateStreams(state)),
       server.onSession((session) => this.showSession(session)),
     ];
     void this.refresh();
@@ -141,20 +136,25 @@ class RecordingsPanel {
     this.name.value = nameOfNow(new Date(Date.now() + 1000));
   }
 
-  private showPorts(state: GraphState): void {
-    const outputs = outputsOf(state);
-    if (outputs.join() === this.ports) return;
-    this.ports = outputs.join();
+  /** Asks for the outputs when modules have come or gone. */
+  private updateStreams(state: GraphState): void {
+    const modules = state.modules.map(({ name }) => name).join();
+    if (modules === this.modules) return;
+    this.modules = modules;
+    void outputsOf(this.host.server).then((outputs) => this.showStreams(outputs));
+  }
+
+  private showStreams(outputs: readonly Output[]): void {
     fill(
       this.streams,
-      outputs.map((port) => {
+      outputs.map(({ port, type, doc }) => {
         const box = h("input", {
           type: "checkbox",
           value: port,
           onchange: () => (box.checked ? this.chosen.add(port) : this.chosen.delete(port)),
         });
         box.checked = this.chosen.has(port);
-        return h("label", {}, box, port);
+        return h("label", { title: [type, doc].filter(Boolean).join(": ") }, box, port);
       }),
     );
   }

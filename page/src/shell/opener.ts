@@ -3,7 +3,7 @@ import type { GraphState, Server } from "../server";
 import { fill, h } from "./h";
 import type { PanelArgs } from "./panel";
 
-interface Choice {
+export interface Choice {
   readonly label: string;
   readonly detail: string;
   readonly args: PanelArgs;
@@ -12,23 +12,26 @@ interface Choice {
 /** Panels that are there for any graph; src/page.ts fills it. */
 export const standardPanels: Choice[] = [];
 
-function choicesOf(state: GraphState | undefined): Choice[] {
-  const outputs = [...new Set(state?.links.map((link) => link.from))]
-    .filter((port) => /^[\w-]+\.[\w-]+$/.test(port))
-    .sort();
-  return [
-    ...standardPanels,
-    ...outputs.map((port) => ({ label: port, detail: "stream", args: { kind: "stream", port } })),
-    ...(state?.modules ?? []).map(({ name, program }) => ({
-      label: name,
-      detail: `module, ${program.split("/").at(-1)}`,
-      args: { kind: "module", name },
-    })),
-  ];
+/** Names the outputs that there are, as MODULE.PORT, with what each sends. */
+export type Outputs = (
+  server: Server,
+) => Promise<readonly { readonly port: string; readonly type: string }[]>;
+
+function modulesOf(state: GraphState | undefined): Choice[] {
+  return (state?.modules ?? []).map(({ name, program }) => ({
+    label: name,
+    detail: `module, ${program.split("/").at(-1)}`,
+    args: { kind: "module", name },
+  }));
 }
 
 /** The dialog that opens panels. */
-export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDialogElement {
+export function opener(
+  server: Server,
+  open: (args: PanelArgs) => void,
+  outputs: Outputs,
+): HTMLDialogElement {
+  let streams: Choice[] = [];
   const list = h("ul", { class: "choices" });
   const choose = (args: PanelArgs) => {
     dialog.close();
@@ -48,8 +51,9 @@ export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDia
   const show = () => {
     const typed = search.value.trim();
     const words = typed.toLowerCase().split(/\s+/);
-    const found = choicesOf(server.state).filter(({ label, detail }) =>
-      words.every((word) => `${label} ${detail}`.toLowerCase().includes(word)),
+    const found = [...standardPanels, ...streams, ...modulesOf(server.state)].filter(
+      ({ label, detail }) =>
+        words.every((word) => `${label} ${detail}`.toLowerCase().includes(word)),
     );
     const isPort = /^[\w-]+\.[\w-]+$/.test(typed) && !found.some(({ label }) => label === typed);
     if (isPort) {
@@ -88,7 +92,16 @@ export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDia
     h("div", { class: "opener-body" }, search, list),
   );
   dialog.addEventListener("toggle", () => {
-    if (dialog.open) show();
+    if (!dialog.open) return;
+    show();
+    void outputs(server).then((all) => {
+      streams = all.map(({ port, type }) => ({
+        label: port,
+        detail: type || "stream",
+        args: { kind: "stream", port },
+      }));
+      if (dialog.open && !list.contains(document.activeElement)) show();
+    });
   });
   return dialog;
 }

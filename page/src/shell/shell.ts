@@ -3,7 +3,7 @@ import type { Connection, GraphState, Server, Session } from "../server";
 import { Board } from "./board";
 import { fill, h } from "./h";
 import { layoutOf, layoutText, type Layout } from "./layout";
-import { opener } from "./opener";
+import { opener, type Outputs } from "./opener";
 import { panelKinds, type PanelArgs } from "./panel";
 import { themeButton } from "./theme";
 
@@ -34,13 +34,14 @@ export class Shell {
   constructor(
     readonly server: Server,
     private readonly defaultLayout: DefaultLayout,
+    outputs: Outputs,
   ) {
     this.board = new Board({
       server,
       say: (sentence) => this.say(sentence),
       changed: () => this.store(),
     });
-    const dialog = opener(server, (args) => this.openPanel(args));
+    const dialog = opener(server, (args) => this.openPanel(args), outputs);
     this.element = h(
       "div",
       { class: "shell" },

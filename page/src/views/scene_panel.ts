@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { outputsOf, type Output } from "../outputs";
 import type { GraphState } from "../server";
 import { fill, h, type PanelKind } from "../shell";
 import { liveSurroundings } from "./panels";
@@ -7,6 +8,13 @@ import { liveSurroundings } from "./panels";
 function usualPorts(state: GraphState | undefined): string[] {
   const finders = state?.modules.filter(({ program }) => /(^|\/)depth$/.test(program)) ?? [];
   return finders.map(({ name }) => `${name}.points`);
+}
+
+let lists = 0;
+
+/** Whether a scene may have something to show of it. */
+function isSpatial({ type }: Output): boolean {
+  return type === "" || /position|rotation|transformation|vector_field/.test(type);
 }
 
 /** Several streams in one scene: {kind: "scene", ports?}, ports joined by spaces. */
@@ -32,7 +40,15 @@ export const scenePanel: PanelKind = (args, host) => {
       placeholder: "add MODULE.PORT",
       size: 18,
     });
-    const form = h("form", {}, input);
+    const names = h("datalist", { id: `outputs-${++lists}` });
+    input.setAttribute("list", names.id);
+    const form = h("form", {}, input, names);
+    void outputsOf(host.server).then((outputs) =>
+      fill(
+        names,
+        outputs.filter(isSpatial).map(({ port }) => h("option", { value: port })),
+      ),
+    );
     const update = () => {
       const ports = [...shown.keys()];
       host.setArgs({ ...args, ports: ports.join(" ") });
