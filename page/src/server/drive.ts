@@ -36,7 +36,7 @@ export class Drive {
 
   /** @param take  take the seat from whoever has it. */
   constructor(take: boolean) {
-    this.socket = new Socket(take ? "/drive?take=1" : "/drive", {
+    this.socket = new Socket(() => (take ? "/drive?take=1" : "/drive"), {
       open: () => this.statuses.set({ status: "driving" }),
       lost: (code, reason, retry) => {
         if (retry !== null) return this.statuses.set({ status: "connecting" });

@@ -32,7 +32,7 @@ export class Server {
   private readonly socket: Socket;
 
   constructor() {
-    this.socket = new Socket("/graph", {
+    this.socket = new Socket(() => "/graph", {
       open: () => {
         this.logged.length = 0; // the server sends the last lines again
         this.connections.set({ status: "open" });

@@ -22,8 +22,9 @@ export class Socket {
   private timer?: number;
   private closed = false;
 
+  /** @param path  asked for at each connection. */
   constructor(
-    readonly path: string,
+    private readonly path: () => string,
     private readonly events: SocketEvents,
   ) {
     this.connect();
@@ -52,6 +53,15 @@ export class Socket {
     this.connect();
   }
 
+  /** Connects anew. */
+  reopen(): void {
+    if (this.closed) return;
+    clearTimeout(this.timer);
+    const former = this.socket;
+    this.connect();
+    former?.close();
+  }
+
   close(): void {
     this.closed = true;
     clearTimeout(this.timer);
@@ -59,18 +69,19 @@ export class Socket {
   }
 
   private connect(): void {
-    const url = new URL(this.path, location.href);
+    const url = new URL(this.path(), location.href);
     url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
     url.hash = "";
     const socket = new WebSocket(url);
     this.socket = socket;
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
+      if (this.socket !== socket) return;
       this.delay = 0.25;
       this.events.open?.();
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
-      if (this.closed) return;
+      if (this.closed || this.socket !== socket) return;
       if (typeof event.data === "string") this.events.text?.(event.data);
       else this.events.binary?.(new Uint8Array(event.data));
     };

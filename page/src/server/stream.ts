@@ -32,17 +32,14 @@ export class Stream {
   private readonly problems = new Signal<string>();
   private readonly consumers = new Set<(arrival: Arrival) => void | Promise<void>>();
   private readonly socket: Socket;
+  private asked: StreamOptions = {}; // with the path
 
   constructor(
     readonly port: string,
     private options: StreamOptions = {},
   ) {
-    const query = Object.entries(options)
-      .filter(([, value]) => value !== undefined)
-      .map(([key, value]) => `${key}=${value}`)
-      .join("&");
-    this.socket = new Socket(`/streams/${port}${query && "?" + query}`, {
-      open: () => this.problems.set(""),
+    this.socket = new Socket(() => this.path(), {
+      open: () => this.opened(),
       text: (text) => this.headers.set(text.trimEnd()),
       binary: (bytes) => void this.receive(bytes),
       lost: (code, reason, retry) => this.problems.set(problemOf(port, code, reason, retry)),
@@ -87,9 +84,30 @@ export class Stream {
     this.socket.send(`rate=${rate}`);
   }
 
+  /** Begins anew: with the last message, and of video with a key frame. */
+  restart(): void {
+    this.socket.reopen();
+  }
+
   close(): void {
     this.socket.close();
     this.consumers.clear();
+  }
+
+  private path(): string {
+    this.asked = this.options;
+    const query = Object.entries(this.options)
+      .filter(([, value]) => value !== undefined)
+      .map(([key, value]) => `${key}=${value}`)
+      .join("&");
+    return `/streams/${this.port}${query && "?" + query}`;
+  }
+
+  private opened(): void {
+    this.problems.set("");
+    const { width, rate } = this.options;
+    if (width !== this.asked.width) this.socket.send(`width=${width}`);
+    if (rate !== this.asked.rate) this.socket.send(`rate=${rate}`);
   }
 
   private async receive(bytes: Uint8Array<ArrayBuffer>): Promise<void> {

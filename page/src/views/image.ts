@@ -15,13 +15,14 @@ export class ImageView implements View {
   private readonly pixel = h("canvas", { width: 1, height: 1 }).getContext("2d", {
     willReadFrequently: true,
   })!;
-  private readonly decoder = new PictureDecoder();
+  private readonly decoder: PictureDecoder;
   private readonly probe: Probe;
   private readonly endRoom: () => void;
   private shown?: { arrival: Arrival; sent: Header };
   private latest = 0;
 
   constructor(host: ViewHost) {
+    this.decoder = new PictureDecoder(() => host.source.restart?.());
     this.canvas.setAttribute("aria-label", `Image of ${host.source.port}`);
     this.probe = new Probe(this.canvas, ({ across, down }) => {
       const { sent } = this.shown ?? {};

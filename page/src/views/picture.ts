@@ -33,6 +33,10 @@ export class PictureDecoder {
   private waiting: { resolve(frame: VideoFrame | undefined): void }[] = [];
   private needsKey = true;
   private count = 0;
+  private restarted = -Infinity; // [ms]
+
+  /** @param restart  asks for a stream that begins with a key frame. */
+  constructor(private readonly restart: () => void = () => {}) {}
 
   /** The picture of a message; undefined: none can be made of it. */
   async decode(message: Message, sent: Header): Promise<Picture | undefined> {
@@ -69,7 +73,15 @@ export class PictureDecoder {
       });
       this.decoder.configure(vp8);
     }
-    if (bytes.length === 0 || (this.needsKey && !isKey)) return Promise.resolve(undefined);
+    if (bytes.length === 0) return Promise.resolve(undefined);
+    if (this.needsKey && !isKey) {
+      const now = performance.now();
+      if (now > this.restarted + 1000) {
+        this.restarted = now;
+        this.restart();
+      }
+      return Promise.resolve(undefined);
+    }
     this.needsKey = false;
     const chunk = new EncodedVideoChunk({
       type: isKey ? "key" : "delta",

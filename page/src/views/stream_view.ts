@@ -45,6 +45,7 @@ export class StreamView {
   private making?: Promise<void>;
   private sent?: Header;
   private isPaused = false;
+  private held: (() => void)[] = [];
   private lastSnapshot = 0;
   private last?: Arrival;
 
@@ -84,6 +85,7 @@ export class StreamView {
   close(): void {
     clearInterval(this.timer);
     this.sight.close();
+    this.release();
     this.source.close();
     this.view?.close?.();
   }
@@ -108,10 +110,11 @@ export class StreamView {
       await view.show(arrival, sent);
       return;
     }
-    if (this.isPaused) return;
+    // The server sends no more until this one is done with; then the newest, of video a key frame.
+    if (this.isPaused) await new Promise<void>((resolve) => this.held.push(resolve));
     if (!isVideo(arrival.message, sent)) this.past.push(arrival);
     if (!view.runsUnseen) await this.sight.seen();
-    await view.show(arrival, sent);
+    await this.view?.show(arrival, sent); // which may be another one by now
     if (isVideo(arrival.message, sent)) await this.keepSnapshot(arrival.at);
   }
 
@@ -150,6 +153,10 @@ export class StreamView {
     view.setPaused?.(this.isPaused);
   }
 
+  private release(): void {
+    for (const resolve of this.held.splice(0)) resolve();
+  }
+
   private async showAgain(): Promise<void> {
     if (this.last && this.sent) await this.view?.show(this.last, this.sent);
   }
@@ -158,6 +165,7 @@ export class StreamView {
     this.isPaused = paused;
     this.pause.setAttribute("aria-pressed", String(paused));
     this.pause.textContent = paused ? "Go on" : "Pause";
+    if (!paused) this.release();
     this.view?.setPaused?.(paused);
     this.scroll.hidden = !paused || this.view?.keepsPast === true || this.past.length < 2;
     this.slider.max = String(this.past.length - 1);

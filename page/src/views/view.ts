@@ -13,6 +13,8 @@ export interface Source {
   on(event: "problem", listener: (problem: string) => void): Unsubscribe;
   /** Asks for no more elements in a row. */
   setWidth(width: number): void;
+  /** Begins anew, of video with a key frame. */
+  restart?(): void;
   close(): void;
 }
 
