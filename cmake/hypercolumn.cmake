@@ -203,7 +203,8 @@ function(hc_fuzz name)
   endif()
   add_test(NAME fuzz.${name}
            COMMAND fuzz_${name} -runs=0 ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name})
-  set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT ${HC_TEST_SECONDS})
+  set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
+                       ENVIRONMENT "${HC_TEST_ENVIRONMENT}")
 endfunction()
 
 # hc_bench(header LIBS hc::mtp): bench/header.cpp with Google Benchmark.

@@ -156,11 +156,11 @@ int main(int argc, char** argv) {
                     [&] { page->close(); },
                     [&](const std::string& line) { log(hc::Severity::Info, line); }});
     const std::string url = access->invite(Right::Drive);
-    module.log("page: " + url);
+    module.log("notice: page: " + url);
     if (identity)
       module.log("page: certificate " + hc::value_or_end(fingerprint(identity->certificate)));
     if (!is_local)
-      for (const auto& line : qr_lines(access->invite(Right::Drive))) module.log(line);
+      for (const auto& line : qr_lines(access->invite(Right::Drive))) module.log("notice: " + line);
     thread = std::thread([&] { server->run(*page); });
     if (*browser) open_in_browser(url);
     seen = module.monotonic();

@@ -159,7 +159,7 @@ Reply Page::reply_to_token(const Request& request) {
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
     return {303, "text/plain", {}, {}, {{"Location", "/"}}};
   }
-  hears_.log("page: opened; for another browser: " + access_.invite(Right::Drive));
+  hears_.log("notice: page opened; for another browser: " + access_.invite(Right::Drive));
   return {303,
           "text/plain",
           {},

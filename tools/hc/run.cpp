@@ -166,6 +166,11 @@ void add_run(CLI::App& app) {
   verb->add_option("--as", options->name, "name of the running graph (default: the file's)");
   verb->add_option("--record", options->graph.record,
                    "record every linked output into this folder, as MODULE.PORT.mtp");
+  auto* page = verb->add_flag("--page", options->graph.page,
+                              "serve a page, print its URL, open it where there is a desktop");
+  verb->add_option("--listen", options->graph.listen,
+                   "address for the page that other machines can reach, with TLS; 0.0.0.0: all")
+      ->needs(page);
   verb->add_flag("--quiet", options->quiet, "log errors only");
   verb->add_flag("--links", options->links, "at the end, print what went over each link");
   verb->callback([options] { run(*options); });

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include <system_error>
 
 #include <hc/base/suggestion.h>
+#include <hc/graph/commands.h>
 #include <hc/graph/programs.h>
 #include <hc/os/socket.h>
 
@@ -69,6 +71,35 @@ void find_programs(Graph& graph, Problems& problems) {
   }
 }
 
+/// Has a graph serve a page: by its module `web`, or by one that is added, which can stop the robot
+/// and choose its task where the graph has a workspace.
+void add_page(Graph& graph, const std::string& listen, Problems& problems) {
+  auto obey = [&](const std::string& line) {
+    apply_command(graph, parse_command(line).value(), problems);
+  };
+  auto runs = [](const GraphModule& module, std::string_view program) {
+    return fs::path(module.program.value).filename() == program;
+  };
+  std::string page = "web";
+  const auto known = std::ranges::find_if(
+      graph.modules, [&](const GraphModule& module) { return runs(module, "web"); });
+  if (known != graph.modules.end()) {
+    page = known->name;
+  } else {
+    while (graph.find(page) != nullptr) page += "_page";
+    obey("add " + page + " web");
+    const std::string arbiter = graph.workspaces.empty() ? "" : graph.workspaces.front().value;
+    if (const auto* workspace = graph.find(arbiter);
+        workspace != nullptr && runs(*workspace, "workspace")) {
+      obey("link " + page + ".stop " + arbiter + ".stop");
+      obey("link " + page + ".bid " + arbiter + ".person");
+      obey("link " + arbiter + ".stopped " + page + ".stopped rate=20");
+    }
+  }
+  obey("set " + page + ".browser=true");
+  if (!listen.empty()) obey("set " + page + ".listen=" + listen);
+}
+
 class FileLoader : public GraphLoader {
  public:
   explicit FileLoader(LoadOptions options) : options_(std::move(options)) {}
@@ -80,6 +111,7 @@ class FileLoader : public GraphLoader {
     Problems problems(options_.file);
     auto environment = [](const char* name) -> const char* { return std::getenv(name); };
     Graph graph = parse_graph(*text, environment, problems, read_file);
+    if (options_.page) add_page(graph, options_.listen, problems);
     for (const auto& setting : options_.settings) set_parameter(graph, setting, problems);
     return planned(std::move(graph), problems, running, stop);
   }

@@ -16,6 +16,8 @@ namespace hc {
 struct LoadOptions {
   std::string file;
   std::vector<std::string> settings;  ///< MODULE.PARAMETER=VALUE
+  bool page = false;                  ///< has a module `web`, which opens a browser
+  std::string listen;                 ///< address that it listens on; empty: its own
   std::string record;                 ///< folder to record all outputs in; empty: none
   std::string token;                  ///< for make_plan()
   bool holds_ports = false;           ///< that links over TCP need, where the plan is to run

@@ -16,6 +16,9 @@ class Lines {
   static constexpr std::size_t kMaxLine = 4096;  ///< longer ones come in parts [byte]
   static constexpr std::size_t kLast = 20;       ///< so many are kept
 
+  /// In a line for the person at the terminal alone, such as a secret: it is not kept.
+  static constexpr std::string_view kNotice = ": notice: ";
+
   using Hear = std::function<void(const std::string& line)>;
 
   /// Takes what was read; `hear` gets each line that is whole now, and none that is empty.
@@ -29,9 +32,12 @@ class Lines {
   /// Takes what was begun as a line: there comes no more of it.
   void finish(const Hear& hear) {
     if (begun_.empty()) return;
-    if (last_.size() == kLast) last_.pop_front();
-    last_.push_back(std::exchange(begun_, {}));
-    hear(last_.back());
+    const std::string line = std::exchange(begun_, {});
+    if (line.find(kNotice) == std::string::npos) {
+      if (last_.size() == kLast) last_.pop_front();
+      last_.push_back(line);
+    }
+    hear(line);
   }
 
   /// The last lines, the newest at the end.

@@ -21,6 +21,13 @@ class LinesTest : public ::testing::Test {
   std::vector<std::string> heard_;
 };
 
+TEST_F(LinesTest, NoticesAreHeardAndNotKept) {
+  add("web: one\nweb: notice: a secret\n");
+  EXPECT_EQ(heard_.size(), 2U);
+  ASSERT_EQ(lines_.last().size(), 1U);
+  EXPECT_EQ(lines_.last().front(), "web: one");
+}
+
 TEST_F(LinesTest, ComeWholeAndNotEmpty) {
   add("one\n\ntw");
   add("o\nthree");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include <hc/graph/run/lines.h>
+
 namespace hc::internal {
 namespace {
 
@@ -167,6 +169,8 @@ void Runner::hear(std::string line) {
   if (is_stopping_ && (line.ends_with("reconnecting") || line.ends_with("connecting again")))
     return;
   line = with_link_names(std::move(line));
+  if (const auto found = line.find(Lines::kNotice); found != std::string::npos)
+    return tell(line.erase(found + 2, Lines::kNotice.size() - 2));
   if (auto found = line.find(kResult); found != std::string::npos) {
     line.erase(found, kResult.size() - 2);
     if (results_.size() < kMaxResults) results_.push_back(line);

@@ -1,0 +1,10 @@
+import { chromium } from "playwright-core";
+const url = process.argv[2], out = process.argv[3];
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox","--enable-unsafe-swiftshader"] });
+const page = await browser.newPage({ viewport: { width: 1600, height: 1000 } });
+page.on("console", (m) => console.log("console:", m.text()));
+page.on("pageerror", (e) => console.log("error:", e.message));
+await page.goto(url);
+await page.waitForTimeout(8000);
+await page.screenshot({ path: out });
+await browser.close();
