@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-import { defaultLayout } from "./default_layout";
 import { graphPanel, modulePanel } from "./graph";
 import { outputsOf } from "./outputs";
 import { recordingsPanel, replayPanel } from "./recordings";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
-import { panelKinds, Shell, standardPanels } from "./shell";
+import { defaultLayout, panelKinds, Shell, standardPanels } from "./shell";
 import { scenePanel, streamPanel } from "./views";
 
 Object.assign(panelKinds, {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { GraphState, Session } from "./server";
-import type { Layout, PanelArgs } from "./shell";
+import type { GraphState, Session } from "../server";
+import type { Layout } from "./layout";
+import type { PanelArgs } from "./panel";
 
 /** The two eyes: outputs left and right of a module, such that no other one like it feeds it. */
 function eyesOf(state: GraphState): string[] {
@@ -28,13 +29,13 @@ export function defaultLayout(state: GraphState, session: Session, width: number
   const seat: PanelArgs[] = session.drives.length > 0 ? [{ kind: "seat" }] : [];
   const column = (share: number, places: readonly PanelArgs[]) => ({
     share,
-    places: places.map((args) => ({ args, share: 1 })),
+    places: places.map((args) => ({ args, share: args.kind === "seat" ? 1.4 : 1 })),
   });
   const columns =
     width < 700
       ? [column(1, [...eyes.slice(0, 1), ...seat, ...eyes.slice(1), graph])]
       : width < 1500
-        ? [column(1, [...eyes, ...seat]), column(1.4, [graph])]
+        ? [column(1, eyes), column(1.4, [...seat, graph])]
         : [column(1, eyes), column(1.6, [graph]), column(1, seat)];
   return columns.filter(({ places }) => places.length > 0);
 }
