@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who drives: holds the driver's socket, and repeats what a person commands as long as they do.
-import { Coord, numbersMessage, textMessage } from "../mtp";
+import { Coord, headerOf, numbersMessage, textMessage, type Kind, type Message } from "../mtp";
 import { Signal, type Drive, type Server } from "../server";
 import type { Angles } from "./orientation";
 import { Stick } from "./steering";
@@ -119,7 +119,7 @@ export class Seat {
   turn({ roll, pitch, yaw }: Angles): void {
     const time = wallClock();
     const message = numbersMessage("rotation", [roll, pitch, yaw], {
-      coord: Coord.head,
+      coord: Coord.supervisor,
       time: nanoseconds(time),
     });
     if (!this.drive?.send("rotation", message)) return;
@@ -158,8 +158,8 @@ export class Seat {
   private sendStick(): void {
     const { left, down } = this.isHeld ? this.stick.push : { left: 0, down: 0 };
     const time = wallClock();
-    const message = numbersMessage("table", [left, down], { time: nanoseconds(time) });
-    if (this.drive?.send("stick", message) && !this.steering) this.commanded(time);
+    if (this.drive?.send("stick", stickMessage(left, down, nanoseconds(time))) && !this.steering)
+      this.commanded(time);
   }
 
   private bid(): void {
@@ -177,6 +177,13 @@ export class Seat {
     this.tasks.set(0);
     this.states.set(state);
   }
+}
+
+const stickKind: Kind = { type: "table", components: 1, scalar: "f64", encoding: "binary" };
+
+/** A table of two numbers, as the output `stick` has it. */
+function stickMessage(left: number, down: number, time: bigint): Message {
+  return { header: headerOf(stickKind, 2, 1, { time }), elements: Float64Array.of(left, down) };
 }
 
 function nanoseconds(ms: number): bigint {
