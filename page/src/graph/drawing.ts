@@ -62,7 +62,15 @@ export class Drawing {
       {},
       svg(
         "marker",
-        { id: "arrow", viewBox: "0 0 8 8", refX: 7, refY: 4, markerWidth: 7, markerHeight: 7 },
+        {
+          id: "arrow",
+          viewBox: "0 0 8 8",
+          refX: 7,
+          refY: 4,
+          markerWidth: 9,
+          markerHeight: 9,
+          markerUnits: "userSpaceOnUse",
+        },
         svg("path", { d: "M0 0L8 4L0 8z", class: "arrow" }),
       ),
     ),

@@ -33,6 +33,12 @@ function nodeWidth(name: string): number {
   return Math.max(112, 34 + name.length * 7.6);
 }
 
+/** What a line goes through between its modules, and where its label has room. */
+interface Route {
+  readonly through: readonly Point[];
+  readonly label: Point;
+}
+
 type Line = { readonly points: readonly Point[]; readonly label: Point };
 
 /** Members of a group that are drawn in one box. */
@@ -51,10 +57,10 @@ export function layoutOf(structure: Structure): Layout {
     return { x, y, width, height };
   };
   const nodes = new Map(structure.nodes.map(({ name }) => [name, box(name)]));
-  const routes = new Map<string, Point[]>();
+  const routes = new Map<string, Route>();
   for (const edge of structure.edges) {
-    const found = graph.edge(edge.from, edge.to) as { points: Point[] } | undefined;
-    routes.set(edge.key, found ? found.points.slice(1, -1) : []);
+    const found = graph.edge(edge.from, edge.to) as (Point & { points: Point[] }) | undefined;
+    if (found) routes.set(edge.key, { through: found.points.slice(1, -1), label: found });
   }
   const edges = attach(structure, nodes, routes);
   const { width = 0, height = 0 } = graph.graph() as { width?: number; height?: number };
@@ -120,15 +126,13 @@ function piecesOf(structure: Structure, graph: InstanceType<typeof Graph>): Piec
 /**
  * Lines that leave modules at their right sides and reach them at their left sides, spread along
  * these in the order of where they come from, so that few cross.
- *
- * @param routes  what each line goes through between its modules.
  */
 function attach(
   structure: Structure,
   nodes: ReadonlyMap<string, Box>,
-  routes: ReadonlyMap<string, readonly Point[]>,
+  routes: ReadonlyMap<string, Route>,
 ): Map<string, Line> {
-  const route = (edge: Edge): readonly Point[] => routes.get(edge.key) ?? [];
+  const route = (edge: Edge): readonly Point[] => routes.get(edge.key)?.through ?? [];
   const spread = (edges: readonly Edge[], edge: Edge, box: Box, toward: (edge: Edge) => number) => {
     const order = edges.filter((each) => !each.background).sort((a, b) => toward(a) - toward(b));
     const place = edge.background ? 0.5 : (order.indexOf(edge) + 1) / (order.length + 1);
@@ -149,8 +153,8 @@ function attach(
       y: spread(coming, edge, to, (each) => (route(each).at(-1) ?? nodes.get(each.from)!).y),
     };
     const points = [start, ...route(edge), end];
-    const middle = route(edge)[0] ?? { x: (start.x + end.x) / 2, y: (start.y + end.y) / 2 };
-    lines.set(edge.key, { points, label: middle });
+    const middle = { x: (start.x + end.x) / 2, y: (start.y + end.y) / 2 };
+    lines.set(edge.key, { points, label: routes.get(edge.key)?.label ?? middle });
   }
   return lines;
 }

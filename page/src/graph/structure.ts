@@ -36,9 +36,9 @@ export function linkKey(link: GraphLink): string {
   return `${link.from} ${link.to}`;
 }
 
-/** Links that `hc run` makes by itself to many modules: of the focus, and of poses of frames. */
+/** Links that tell many modules of the focus, of a stop, and of poses of frames. */
 function isBackground(link: GraphLink): boolean {
-  return ["focus", "frames"].includes(portOf(link.to));
+  return ["focus", "stopped", "frames"].includes(portOf(link.to));
 }
 
 export function structureOf(state: GraphState): Structure {

@@ -140,9 +140,13 @@ export class Seat {
     if (this.drive?.send("target", message)) this.commanded(wallClock());
   }
 
-  /** Says a text by the robot's mouth; returns whether it went out. */
-  speak(text: string): boolean {
-    return this.drive?.send("text", textMessage(text, { coord: Coord.text })) ?? false;
+  /**
+   * Says a text by the robot's mouth; returns whether it went out.
+   *
+   * @param mode  of the task in focus, which alone may speak.
+   */
+  speak(text: string, mode: number): boolean {
+    return this.drive?.send("text", textMessage(text, { coord: Coord.text, mode })) ?? false;
   }
 
   /** Sends the stick while it is pushed, and its middle once at the end. */

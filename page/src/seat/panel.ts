@@ -91,7 +91,8 @@ class SeatPanel {
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();
           const text = this.text.value.trim();
-          if (text && this.seat.speak(text)) this.text.value = "";
+          const mode = server.state?.focus?.number ?? 0;
+          if (text && this.seat.speak(text, mode)) this.text.value = "";
         },
       },
       h("label", { for: "seat-text" }, "Say"),
