@@ -3,18 +3,11 @@
 import type { GraphLink, GraphModule, GraphState } from "../server";
 import { h, svg } from "../shell";
 import { DropRates } from "./drops";
+import { Failures } from "./failures";
 import { layoutOf, pathThrough, type Box, type Layout, type Point } from "./layout";
 import { linkKey, portOf, structureOf, type Edge, type Structure } from "./structure";
 import { Viewport } from "./viewport";
-import {
-  bytesText,
-  dropTexts,
-  durationText,
-  latencyText,
-  moduleCondition,
-  percentText,
-  rateText,
-} from "./words";
+import { bytesText, dropTexts, durationText, latencyText, percentText, rateText } from "./words";
 
 export interface DrawingEvents {
   openModule(name: string): void;
@@ -81,6 +74,7 @@ export class Drawing {
   private readonly nodeElements = new Map<string, NodeElements>();
   private readonly edgeElements = new Map<string, EdgeElements>();
   private readonly drops = new DropRates();
+  private readonly failures = new Failures();
   private structure?: Structure;
   /** The module that the tab key reaches; arrows go on from it. */
   private current = "";
@@ -104,6 +98,7 @@ export class Drawing {
     if (structure.key !== this.structure?.key) this.build(structure);
     this.structure = structure;
     this.drops.take(state);
+    this.failures.take(state);
     for (const module of state.modules) this.updateNode(module, state);
     const links = new Map(state.links.map((link) => [linkKey(link), link]));
     for (const elements of this.edgeElements.values()) {
@@ -197,7 +192,7 @@ export class Drawing {
   private updateNode(module: GraphModule, state: GraphState): void {
     const elements = this.nodeElements.get(module.name);
     if (!elements) return;
-    const { is, why } = moduleCondition(module);
+    const { is, why } = this.failures.conditionOf(module);
     const load = `${percentText(module.cpu)} · ${bytesText(module.memory)}`;
     const isTask = module.mode !== "" && module.mode === state.focus?.mode;
     const classes = ["node", is];

@@ -5,6 +5,7 @@ import { headerOf } from "../mtp";
 import type { GraphLink, GraphModule, GraphState } from "../server";
 import { BidHistory, bidsOf, whyText, type Bid } from "./bids";
 import { DropRates } from "./drops";
+import { Failures } from "./failures";
 import { layoutOf } from "./layout";
 import { structureOf } from "./structure";
 import { bytesText, dropTexts, durationText, moduleCondition, rateText } from "./words";
@@ -144,6 +145,22 @@ test("a broken module says why", () => {
   assert.deepEqual(moduleCondition(stalled), { is: "broken", why: "stopped by a signal" });
   const blocked = moduleNamed("a", { detail: "blocked: no reader on output left" });
   assert.equal(moduleCondition(blocked).is, "slow");
+});
+
+test("a failure is shown for a while after the module was restarted", () => {
+  const failures = new Failures();
+  const at = (uptime: number, other: Partial<GraphModule>): string => {
+    const module = moduleNamed("a", other);
+    failures.take(stateOf([module], [], uptime));
+    const { is, why } = failures.conditionOf(module);
+    return `${is} ${why}`;
+  };
+  assert.equal(at(1, {}), "works ");
+  const killed = { restarts: 1, exit: 137 };
+  assert.equal(at(2, killed), "broken was killed by signal 9; was restarted");
+  assert.equal(at(4, killed), "broken was killed by signal 9; was restarted");
+  assert.equal(at(6, killed), "works ");
+  assert.equal(at(7, { restarts: 2, exit: 0 }), "works ");
 });
 
 test("drops are told with their reasons and counted per second", () => {

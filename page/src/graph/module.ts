@@ -2,9 +2,10 @@
 import type { GraphLink, GraphModule, GraphState } from "../server";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { describe, typeText, type Description, type PortDescription } from "./describe";
+import { Failures } from "./failures";
 import { ParameterView } from "./parameter";
 import { linksOf, moduleOf, portOf } from "./structure";
-import { bytesText, latencyText, moduleCondition, percentText, rateText } from "./words";
+import { bytesText, latencyText, percentText, rateText } from "./words";
 
 /** Lines of the log that are shown. */
 const logLines = 200;
@@ -33,6 +34,7 @@ class ModuleView {
   readonly element: HTMLElement;
   private description?: Description;
   private parameterViews?: Map<string, ParameterView>;
+  private readonly failures = new Failures();
   private portsKey = "";
   private readonly ends: (() => void)[] = [];
 
@@ -66,13 +68,20 @@ class ModuleView {
       }),
     );
     for (const line of server.log) this.addLine(line);
-    void describe(server, name).then((description) => {
-      this.description = description;
-      this.summary.textContent = description?.summary ?? "";
-      this.parameterViews = undefined;
-      this.portsKey = "";
-      if (server.state) this.update(server.state);
-    });
+    this.ends.push(
+      server.onConnection(({ status }) => status === "open" && void this.askDescription()),
+    );
+  }
+
+  private async askDescription(): Promise<void> {
+    const { server } = this.host;
+    const description = await describe(server, this.name);
+    if (!description || this.description) return;
+    this.description = description;
+    this.summary.textContent = description.summary ?? "";
+    this.parameterViews = undefined;
+    this.portsKey = "";
+    if (server.state) this.update(server.state);
   }
 
   close(): void {
@@ -86,7 +95,8 @@ class ModuleView {
       this.status.className = "module-status broken";
       return;
     }
-    const { is, why } = moduleCondition(module);
+    this.failures.take(state);
+    const { is, why } = this.failures.conditionOf(module);
     const text = why ? `${module.status}: ${why}` : module.status;
     if (this.status.textContent !== text) this.status.textContent = text;
     this.status.className = `module-status ${is}`;

@@ -86,7 +86,7 @@ export function moduleCondition(module: GraphModule): { is: Condition; why: stri
 }
 
 /** How the last process of a module ended; above 128 it was killed by a signal. */
-function exitText(module: GraphModule): string {
+export function exitText(module: GraphModule): string {
   if (module.exit === null) return "has ended";
   if (module.exit > 128) return `was killed by signal ${module.exit - 128}`;
   return `ended with status ${module.exit}`;

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page in a browser, on the running head.
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+import {
+  axeFile,
+  Graph,
+  headsetFile,
+  openBrowser,
+  until,
+  watchdog,
+  watchGaze,
+} from "./harness.mjs";
+
+let graph, browser, context, page, origin;
+
+/** Shows panels: what follows # in the URL. */
+async function show(panels) {
+  await page.goto(`${origin}/#${panels}`);
+  await page.reload();
+}
+
+const gaze = () => page.evaluate(() => window.gaze);
+
+/** Waits until the head has turned from where it is by more than 3 degrees in a direction. */
+async function turned(axis, sign, from) {
+  await page.waitForFunction(
+    ([axis, sign, from]) => sign * (window.gaze[axis] - from) > 0.05,
+    [axis, sign, from],
+    { timeout: watchdog },
+  );
+}
+
+async function inFocus(task) {
+  await page
+    .locator(".seat-who", { hasText: `Task in focus: ${task}` })
+    .waitFor({ timeout: watchdog });
+}
+
+async function takeSeat() {
+  await show("seat");
+  await page.getByRole("button", { name: "Take the seat" }).click();
+  await page.locator(".seat-who", { hasText: "You drive." }).waitFor();
+  await watchGaze(page);
+}
+
+describe("the page", { timeout: 10 * watchdog }, () => {
+  before(async () => {
+    graph = new Graph("head.toml");
+    browser = await openBrowser();
+    context = await browser.newContext({ viewport: { width: 1000, height: 720 } });
+    context.setDefaultTimeout(watchdog);
+    await context.addInitScript({ path: headsetFile });
+    await context.addInitScript(() => {
+      window.headset = new IWER.XRDevice(IWER.metaQuest3);
+      window.headset.installRuntime();
+    });
+    page = await context.newPage();
+    const url = await graph.url();
+    origin = new URL(url).origin;
+    await page.goto(url);
+    // Nobody steers before the head knows how its eyes are mounted.
+    await until("the head is calibrated", () => graph.log.includes("calibrate: cameras"));
+  });
+
+  after(async () => {
+    await browser?.close();
+    await graph?.end();
+  });
+
+  test("the graph appears, a box for each module", async () => {
+    await show("graph,show=drawing");
+    await page.locator(".node").first().waitFor();
+    const drawn = await page
+      .locator(".node")
+      .evaluateAll((nodes) => nodes.map((n) => n.dataset.module));
+    assert.deepEqual(
+      drawn,
+      graph.state().modules.map(({ name }) => name),
+    );
+    assert.equal(await page.locator(".group").first().textContent(), "head");
+    await page.locator(".why", { hasText: "has the focus" }).waitFor();
+  });
+
+  test("its rates are those of hc top", async () => {
+    await show("graph,show=tables");
+    await until("rates of both agree", async () => {
+      const cells = await page
+        .locator(".live-table")
+        .nth(1)
+        .locator("tbody tr")
+        .evaluateAll((rows) =>
+          rows.map((row) => [...row.children].map((cell) => cell.textContent)),
+        );
+      const shown = new Map(cells.map(([from, to, , rate]) => [`${from} ${to}`, rate]));
+      const { links } = graph.state();
+      assert.equal(shown.size, links.length);
+      const steady = links.filter(({ from }) => from.startsWith("head_eyes."));
+      assert.ok(steady.length >= 5);
+      return steady.every(({ from, to, per_second }) => {
+        const rate = parseFloat(shown.get(`${from} ${to}`));
+        return per_second > 1 && Math.abs(rate - per_second) < 0.25 * per_second + 1;
+      });
+    });
+  });
+
+  test("a module that is killed is red until it runs again", async () => {
+    await show("graph,show=drawing");
+    const node = page.locator('[data-module="left_ball"]');
+    await node.waitFor();
+    await node.evaluate((element) => {
+      window.seen = [];
+      new MutationObserver(() => {
+        window.seen.push({
+          broken: element.classList.contains("broken"),
+          text: element.getAttribute("aria-label"),
+        });
+      }).observe(element, { attributes: true });
+    });
+    const { restarts, pid } = graph.module("left_ball");
+    process.kill(pid, "SIGKILL");
+    const told = await page.waitForFunction(() => window.seen.find(({ broken }) => broken));
+    assert.match((await told.jsonValue()).text, /left_ball.*signal 9/);
+    await page.waitForFunction(() => window.seen.length > 0 && !window.seen.at(-1).broken);
+    assert.equal(graph.module("left_ball").restarts, restarts + 1);
+  });
+
+  test("a module opens with Enter, and a parameter that is changed there arrives", async () => {
+    await show("graph,show=drawing");
+    const node = page.locator('[data-module="head_eyes"]');
+    await node.focus();
+    await page.keyboard.press("Enter");
+    const rate = page.getByLabel("ball_hidden", { exact: true });
+    await rate.fill("4.5");
+    await rate.press("Enter");
+    await until(
+      "the parameter arrives",
+      () => graph.module("head_eyes").parameters.ball_hidden === "4.5",
+    );
+    await rate.fill("-1");
+    await rate.press("Enter");
+    await page.locator('[data-parameter="ball_hidden"] .problem', { hasText: /\S/ }).waitFor();
+    assert.equal(graph.module("head_eyes").parameters.ball_hidden, "4.5");
+  });
+
+  test("a pad that is dragged turns the head, and the page names the task", async () => {
+    await takeSeat();
+    const pad = await page.locator(".pad").boundingBox();
+    const [x, y] = [pad.x + pad.width / 2, pad.y + pad.height / 2];
+    const { pan } = await gaze();
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x - 60, y, { steps: 4 });
+    await turned("pan", 1, pan);
+    await inFocus("point");
+    await page.mouse.up();
+  });
+
+  test("arrow keys turn the head", async () => {
+    await takeSeat();
+    await page.locator(".seat").focus();
+    const { pan } = await gaze();
+    await page.keyboard.down("ArrowRight");
+    await turned("pan", -1, pan);
+    await page.keyboard.up("ArrowRight");
+  });
+
+  test("a gamepad turns the head", async () => {
+    await takeSeat();
+    const { tilt } = await gaze();
+    const push = (down) =>
+      page.evaluate((down) => {
+        const pad = { axes: [0.05, down, 0, 0], buttons: [], connected: true };
+        navigator.getGamepads = () => [null, pad];
+      }, down);
+    await push(tilt > 0 ? -0.8 : 0.8);
+    await turned("tilt", tilt > 0 ? -1 : 1, tilt);
+    await push(0);
+  });
+
+  test("the head looks at a pixel that is pointed at", async () => {
+    await takeSeat();
+    const image = await page.locator(".seat-image").boundingBox();
+    await page.waitForFunction(() => {
+      const canvas = document.querySelector(".seat-image");
+      const { width, height } = canvas;
+      return canvas.getContext("2d").getImageData(width / 2, height / 2, 1, 1).data[3] > 0;
+    });
+    const { pan } = await gaze();
+    const aside = Math.sign(pan || 1) * 0.3 * Math.min(image.width, (image.height * 4) / 3);
+    await page.mouse.click(image.x + image.width / 2 + aside, image.y + image.height / 2);
+    await turned("pan", -Math.sign(aside), pan);
+    await inFocus("point");
+  });
+
+  test("a phone that is turned turns the head", async () => {
+    await takeSeat();
+    const phone = await context.newCDPSession(page);
+    const turn = (alpha, beta) =>
+      phone.send("DeviceOrientation.setDeviceOrientationOverride", { alpha, beta, gamma: 0 });
+    await turn(0, 90);
+    await page.getByRole("button", { name: "Turn with this phone" }).click();
+    await inFocus("telepresence");
+    await page.waitForFunction(() => Math.abs(window.gaze.pan) < 0.05);
+    await turn(20, 80);
+    await page.waitForFunction(
+      () => Math.abs(window.gaze.pan - 0.349) < 0.05 && Math.abs(window.gaze.tilt - 0.175) < 0.05,
+    );
+    await phone.send("DeviceOrientation.clearDeviceOrientationOverride");
+    await phone.detach();
+  });
+
+  test("a headset that is turned turns the head", async () => {
+    await takeSeat();
+    await page.getByRole("button", { name: "Enter the headset" }).click();
+    await page.getByRole("button", { name: "Leave the headset" }).waitFor();
+    await inFocus("telepresence");
+    await page.evaluate(() => {
+      const angle = -0.3; // about the vertical: to the right
+      window.headset.quaternion.set(0, Math.sin(angle / 2), 0, Math.cos(angle / 2));
+    });
+    await page.waitForFunction(() => Math.abs(window.gaze.pan + 0.3) < 0.05);
+    await page.waitForFunction(() => window.hypercolumn.latency.measurements.length > 0);
+    await page.getByRole("button", { name: "Leave the headset" }).click();
+    await page.getByRole("button", { name: "Enter the headset" }).waitFor();
+  });
+
+  test("a task that is chosen has the focus until it is released", async () => {
+    await takeSeat();
+    const read = page.locator('[data-task="read"]');
+    await read.click();
+    await inFocus("read");
+    assert.equal(await read.getAttribute("aria-pressed"), "true");
+    await until("its bid is a person's", async () => {
+      const { stdout } = { stdout: graph.log };
+      return stdout.includes("read (a person's bid)");
+    });
+    await read.click();
+    assert.equal(await read.getAttribute("aria-pressed"), "false");
+  });
+
+  test("who leaves the page leaves the seat", async () => {
+    await takeSeat();
+    await page.evaluate(() => {
+      Object.defineProperty(document, "hidden", { configurable: true, get: () => true });
+      document.dispatchEvent(new Event("visibilitychange"));
+    });
+    await page.locator(".seat-who", { hasText: "You left the page" }).waitFor();
+  });
+
+  test("the stop stops, and is cleared by two other controls", async () => {
+    await show("seat");
+    await page.locator(".stop", { hasText: "Stop" }).waitFor();
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("Escape");
+    const bar = page.locator(".stopped-bar");
+    await bar.waitFor();
+    await inFocus2None();
+    assert.ok(await bar.getByRole("button", { name: "Let it move" }).isDisabled());
+    await bar.getByLabel("nobody is in its way").check();
+    await bar.getByRole("button", { name: "Let it move" }).click();
+    await bar.waitFor({ state: "hidden" });
+    await until("a task has the focus again", () => graph.state().focus);
+  });
+
+  for (const theme of ["light", "dark"]) {
+    test(`nobody is kept out, in ${theme}`, async () => {
+      await page.emulateMedia({ colorScheme: theme });
+      await show("graph,show=tables;module,name=head_eyes|seat");
+      await page.locator(".module .parameter").first().waitFor();
+      await page.locator(".live-table tbody tr").first().waitFor();
+      await assertAccessible();
+      await show("graph,show=drawing");
+      await page.locator(".node").first().waitFor();
+      await assertAccessible();
+    });
+  }
+
+  for (const [width, height] of [
+    [360, 740],
+    [3840, 2160],
+  ]) {
+    test(`nothing is wider than the page at ${width} px`, async () => {
+      await page.setViewportSize({ width, height });
+      for (const panels of ["graph", "seat", "module,name=head_eyes", "graph,show=drawing|seat"]) {
+        await show(panels);
+        await page.locator(".graph, .seat, .module").first().waitFor();
+        const excess = await page.evaluate(
+          () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+        );
+        assert.ok(excess <= 0, `${panels}: ${excess} px too wide`);
+      }
+      await page.setViewportSize({ width: 1000, height: 720 });
+    });
+  }
+});
+
+async function inFocus2None() {
+  await page.locator(".seat-who", { hasText: "No task has the focus" }).waitFor();
+}
+
+/** No finding of axe-core is serious or critical. */
+async function assertAccessible() {
+  const session = await context.newCDPSession(page);
+  const { readFileSync } = await import("node:fs");
+  // As from the developer's tools: the page's policy allows no scripts from elsewhere.
+  await session.send("Runtime.evaluate", { expression: readFileSync(axeFile, "utf8") });
+  const { violations } = await page.evaluate(() =>
+    axe.run(document, { resultTypes: ["violations"] }),
+  );
+  await session.detach();
+  const grave = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  const text = grave.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("\n  ")}`);
+  assert.equal(grave.length, 0, text.join("\n"));
+}
