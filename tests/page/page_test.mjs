@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page in a browser, on the running head.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
 import {
   axeFile,
@@ -53,7 +54,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await context.addInitScript({ path: headsetFile });
     await context.addInitScript(() => {
       window.headset = new IWER.XRDevice(IWER.metaQuest3);
-      window.headset.installRuntime();
+      window.headset.installRuntime({ forceInstall: true });
     });
     page = await context.newPage();
     const url = await graph.url();
@@ -113,7 +114,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
       new MutationObserver(() => {
         window.seen.push({
           broken: element.classList.contains("broken"),
-          text: element.getAttribute("aria-label"),
+          text: element.querySelector("title").textContent,
         });
       }).observe(element, { attributes: true });
     });
@@ -127,20 +128,18 @@ describe("the page", { timeout: 10 * watchdog }, () => {
 
   test("a module opens with Enter, and a parameter that is changed there arrives", async () => {
     await show("graph,show=drawing");
-    const node = page.locator('[data-module="head_eyes"]');
+    const node = page.locator('[data-module="workspace"]');
     await node.focus();
     await page.keyboard.press("Enter");
-    const rate = page.getByLabel("ball_hidden", { exact: true });
-    await rate.fill("4.5");
-    await rate.press("Enter");
-    await until(
-      "the parameter arrives",
-      () => graph.module("head_eyes").parameters.ball_hidden === "4.5",
-    );
-    await rate.fill("-1");
-    await rate.press("Enter");
-    await page.locator('[data-parameter="ball_hidden"] .problem', { hasText: /\S/ }).waitFor();
-    assert.equal(graph.module("head_eyes").parameters.ball_hidden, "4.5");
+    const margin = page.getByLabel("margin", { exact: true });
+    const value = () => graph.module("workspace").parameters.margin;
+    await margin.fill("0.15");
+    await margin.press("Enter");
+    await until("the parameter arrives", () => value() === "0.15");
+    await margin.fill("-1");
+    await margin.press("Enter");
+    await page.locator('[data-parameter="margin"] .problem', { hasText: /\S/ }).waitFor();
+    assert.equal(value(), "0.15");
   });
 
   test("a pad that is dragged turns the head, and the page names the task", async () => {
@@ -231,10 +230,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await read.click();
     await inFocus("read");
     assert.equal(await read.getAttribute("aria-pressed"), "true");
-    await until("its bid is a person's", async () => {
-      const { stdout } = { stdout: graph.log };
-      return stdout.includes("read (a person's bid)");
-    });
+    await until("its bid is a person's", () => graph.log.includes("read (a person's bid)"));
     await read.click();
     assert.equal(await read.getAttribute("aria-pressed"), "false");
   });
@@ -255,7 +251,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await page.keyboard.press("Escape");
     const bar = page.locator(".stopped-bar");
     await bar.waitFor();
-    await inFocus2None();
+    await noFocus();
     assert.ok(await bar.getByRole("button", { name: "Let it move" }).isDisabled());
     await bar.getByLabel("nobody is in its way").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
@@ -295,16 +291,17 @@ describe("the page", { timeout: 10 * watchdog }, () => {
   }
 });
 
-async function inFocus2None() {
+async function noFocus() {
   await page.locator(".seat-who", { hasText: "No task has the focus" }).waitFor();
 }
+
+const axe = readFileSync(axeFile, "utf8");
 
 /** No finding of axe-core is serious or critical. */
 async function assertAccessible() {
   const session = await context.newCDPSession(page);
-  const { readFileSync } = await import("node:fs");
   // As from the developer's tools: the page's policy allows no scripts from elsewhere.
-  await session.send("Runtime.evaluate", { expression: readFileSync(axeFile, "utf8") });
+  await session.send("Runtime.evaluate", { expression: axe });
   const { violations } = await page.evaluate(() =>
     axe.run(document, { resultTypes: ["violations"] }),
   );

@@ -209,8 +209,7 @@ export class Drawing {
     const mode = module.mode && `, task ${module.mode}${isTask ? " has the focus" : ""}`;
     const condition = why ? `: ${why}` : "";
     const text = `${module.name}${mode}${condition}; ${load}`;
-    setText(elements.title, text);
-    setAttribute(elements.group, "aria-label", text);
+    setText(elements.title, text); // which names it for screen readers too
   }
 
   private updateEdge(elements: EdgeElements, links: readonly GraphLink[]): void {
