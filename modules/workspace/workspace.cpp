@@ -49,10 +49,10 @@ hc::Status Workspace::bid(std::int32_t mode, double salience, hc::MonotonicTime 
 
 hc::Status Workspace::bid_of_person(std::int32_t mode, double salience, hc::MonotonicTime now) {
   if (auto checked = check(mode, salience); !checked) return checked;
-  if (salience == 0)
-    person_.reset();
-  else
+  if (salience != 0)
     person_ = {mode, Bid{salience, now}};
+  else if (person_ && person_->first == mode)
+    person_.reset();
   return {};
 }
 

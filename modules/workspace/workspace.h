@@ -63,7 +63,8 @@ class Workspace {
   /// Errors: Malformed; the bid is counted as refused and changes nothing.
   hc::Status bid(std::int32_t mode, double salience, hc::MonotonicTime now);
 
-  /// A person's bid, in the same way; its salience matters only in that 0 withdraws it.
+  /// A person's bid, in the same way; its salience matters only in that 0 withdraws it,
+  /// and no other mode's.
   hc::Status bid_of_person(std::int32_t mode, double salience, hc::MonotonicTime now);
 
   /// Stops all tasks until it is called with false.

@@ -18,6 +18,7 @@ class FocusRules {
     tasks_[mode] = {salience, now + options_.expiry};
   }
   void bid_of_person(std::int32_t mode, double salience, hc::MonotonicTime now) {
+    if (salience == 0 && mode != person_mode_) return;  // of another mode
     person_ = {salience, now + options_.person_expiry};
     person_mode_ = mode;
   }

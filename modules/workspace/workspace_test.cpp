@@ -92,6 +92,8 @@ TEST(Workspace, a_person_is_above_all_until_released_or_expired) {
   EXPECT_EQ(table.after(milliseconds(0)), 2);
   table.person(3, 0.01);
   EXPECT_EQ(table.after(milliseconds(0)), 3);
+  table.person(2, 0);  // of what another hand does not want
+  EXPECT_EQ(table.after(milliseconds(0)), 3);
   table.person(3, 0);
   EXPECT_EQ(table.after(milliseconds(0)), 1);
   table.person(2, 1);
