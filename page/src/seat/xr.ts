@@ -18,6 +18,11 @@ import { anglesOfHeadset, since, type Angles } from "./orientation";
 /** How far the images are [m]; their size is as the camera's focal length says. */
 const distance = 4;
 
+/** Between slow frames the last orientation is said again each so many ms … */
+const period = 40;
+/** … for so long [ms]: then something is wrong with the headset. */
+const patience = 1000;
+
 export interface XrOptions {
   /** Focal length of the cameras [px of the sensor]. */
   readonly focal: number;
@@ -79,6 +84,8 @@ export class XrView {
   private readonly gaze = new Group();
   private readonly waiting: (() => void)[] = [];
   private zeroed?: Angles;
+  private last?: { turned: Angles; at: number };
+  private readonly timer = window.setInterval(() => this.repeat(), period);
 
   private constructor(
     private readonly session: XRSession,
@@ -133,6 +140,7 @@ export class XrView {
       const now = anglesOfHeadset(orientation);
       this.zeroed ??= now;
       const turned = since(this.zeroed, now);
+      this.last = { turned, at: performance.now() };
       this.options.turned(turned);
       const { picture } = this.quads.left.picture ? this.quads.left : this.quads.right;
       const gaze = (picture && this.options.gazeAt(picture.time)) ?? turned;
@@ -145,7 +153,13 @@ export class XrView {
     for (const drawn of this.waiting.splice(0)) drawn();
   }
 
+  private repeat(): void {
+    const age = performance.now() - (this.last?.at ?? -Infinity);
+    if (this.last && age > period && age < patience) this.options.turned(this.last.turned);
+  }
+
   private dispose(): void {
+    clearInterval(this.timer);
     this.renderer.setAnimationLoop(null);
     for (const quad of Object.values(this.quads)) quad.dispose();
     this.renderer.dispose();
