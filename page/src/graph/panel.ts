@@ -86,6 +86,7 @@ export const graphPanel: PanelKind = (args, host) => {
     zoom("Show all", "⤢", () => drawing.viewport.fit()),
   ];
   host.tools.append(...drawingTools, switcher);
+  show(chosen ?? "drawing");
   const resizing = new ResizeObserver(() => show(shown()));
   resizing.observe(element);
 

@@ -37,7 +37,11 @@ class SeatPanel {
   private readonly ends: (() => void)[] = [];
 
   private readonly who = h("p", { class: "seat-who", role: "status" });
-  private readonly takeButton = h("button", { class: "take", onclick: () => this.take() });
+  private readonly takeButton = h(
+    "button",
+    { class: "take", onclick: () => this.take() },
+    "Take the seat",
+  );
   private readonly leaveButton = h(
     "button",
     { onclick: () => this.seat.leave() },
