@@ -48,14 +48,13 @@ hc::Result<hc::Message> scaled(const hc::Message& message, int width) {
                           header.info.type == MatrixType::VectorField ||
                           header.info.type == MatrixType::Map;
   if (!has_places || width <= 0 || header.width <= width || !message.plain()) return message;
-  const int step = (header.width + width - 1) / width;
-  if (!is_picture(header)) return sampled(message, step);
+  if (!is_picture(header)) return sampled(message, (header.width + width - 1) / width);
   auto whole = hc::as_mat(message);
   if (!whole) return whole.error();
   hc::Header small = header;
   small.info.encoding = hc::Encoding::Binary;
-  small.width = std::max(1, header.width / step);
-  small.height = std::max(1, header.height / step);
+  small.width = width;
+  small.height = std::max(1, static_cast<int>(std::int64_t{header.height} * width / header.width));
   auto draft = hc::Draft::make(small);
   cv::Mat to(small.height, small.width, whole->type(), draft.elements().data());
   cv::resize(*whole, to, to.size(), 0, 0, cv::INTER_AREA);

@@ -13,9 +13,8 @@ enum class Form { Raw, Jpeg, Vp8 };
 /// Whether a message is an image that JPEG and VP8 can hold: colour or grey, of u8.
 bool is_picture(const hc::Header& header);
 
-/// A message of an image, a vector field or a map with at most `width` elements in a row, by a
-/// whole factor; images of u8 by area, others by every n-th element. All other messages, and with
-/// width 0, as they are.
+/// A message of an image, a vector field or a map with at most `width` elements in a row: images of
+/// u8 by area, others by every n-th element. All other messages, and with width 0, as they are.
 ///
 /// Errors: Unsupported (OpenCV has no matrix of its scalar).
 hc::Result<hc::Message> scaled(const hc::Message& message, int width);

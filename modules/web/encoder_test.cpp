@@ -23,8 +23,9 @@ hc::Message ramp(int width, int height) {
   return message;
 }
 
-TEST(Scaled, images_shrink_by_a_whole_factor_by_area) {
-  const auto small = scaled(ramp(200, 100), 60);
+TEST(Scaled, images_shrink_by_area) {
+  EXPECT_EQ(scaled(ramp(200, 100), 60)->header.height, 30);
+  const auto small = scaled(ramp(200, 100), 50);
   ASSERT_TRUE(small);
   EXPECT_EQ(small->header.width, 50);
   EXPECT_EQ(small->header.height, 25);

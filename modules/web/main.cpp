@@ -188,6 +188,7 @@ int main(int argc, char** argv) {
     }
   });
   const int status = module.run(argc, argv);
+  if (page) server->post([&] { page->close(); });
   if (server) server->stop();
   if (thread.joinable()) thread.join();
   page.reset();

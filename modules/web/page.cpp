@@ -21,7 +21,8 @@ using Rows = std::vector<std::string>;
 constexpr std::int32_t kSession = 3, kAnswer = 4;         // src of what a page is sent
 constexpr std::size_t kMaxLog = 200;                      // lines for a page that opens
 constexpr std::size_t kMaxStates = 8, kMaxWaiting = 512;  // messages that wait for a slow page
-constexpr int kGoing = 1001, kInvalid = 1007, kPolicy = 1008, kNoStream = 4404, kTaken = 4409;
+constexpr int kEnd = 1000, kGoing = 1001, kInvalid = 1007, kPolicy = 1008, kNoStream = 4404,
+              kTaken = 4409;
 
 constexpr const char* kPolicyText =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
@@ -259,7 +260,7 @@ void Page::open_stream(const std::shared_ptr<WebSocket>& socket, const Request& 
   hears.header = [socket](std::string header) { socket->send_text(std::move(header)); };
   hears.message = [socket](Bytes message) { socket->send(std::move(message)); };
   hears.end = [this, socket, number](const std::string& why, bool is_error) {
-    socket->close(is_error ? kNoStream : 1000, why);
+    socket->close(is_error ? kNoStream : kEnd, why);
     // Not while the viewer calls.
     server_.post([this, number] { watched_.erase(number); });
   };
@@ -346,10 +347,10 @@ std::optional<Rows> Page::command_here(const Session& session, const Rows& words
   if (words[0] == "estop") {
     const bool clears = words.size() == 2 && words[1] == "clear";
     if (words.size() > 1 && !clears) return Rows{"estop is followed by nothing or by clear"};
+    if (clears && !may_drive) return no_right;
     if (robot_.stopped < 0)
       return Rows{"this graph has no workspace that " + options_.module +
                   ".stop is linked to; end the graph with stop"};
-    if (clears && !may_drive) return no_right;
     hears_.stop(!clears);
     return Rows{"ok"};
   }
@@ -422,5 +423,9 @@ void Page::send_session(Session& session) const {
 
 void Page::close() {
   for (auto& [number, session] : sessions_) session.socket->close(kGoing, "the graph has ended");
+  for (auto& [number, watched] : watched_) watched.socket->close(kEnd, "the graph has ended");
+  if (driver_socket_) driver_socket_->close(kEnd, "the graph has ended");
   sessions_.clear();
+  watched_.clear();
+  driver_socket_.reset();
 }

@@ -108,6 +108,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
     beast::get_lowest_layer(stream_).expires_never();
     stream_.set_option(websocket::stream_base::timeout{kHeadTime, kIdleTime, true});
     stream_.read_message_max(kMaxMessage);
+    stream_.auto_fragment(false);
     websocket::permessage_deflate off;
     off.server_enable = false;
     stream_.set_option(off);
@@ -353,7 +354,13 @@ class BeastServer final : public Server {
     accept();
     context_.run();
   }
-  void stop() override { context_.stop(); }
+  void stop() override {
+    asio::post(context_, [this] {
+      constexpr std::chrono::milliseconds kMoment{200};
+      auto timer = std::make_shared<asio::steady_timer>(context_, kMoment);
+      timer->async_wait([this, timer](beast::error_code) { context_.stop(); });
+    });
+  }
   void post(std::function<void()> call) override { asio::post(context_, std::move(call)); }
 
   void every(std::chrono::milliseconds period, std::function<void()> call) override {

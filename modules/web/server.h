@@ -80,7 +80,7 @@ class Server {
   [[nodiscard]] virtual std::uint16_t port() const = 0;
   /// Serves a site until stop().
   virtual void run(Site& site) = 0;
-  /// From any thread.
+  /// Ends run() in a moment, so that what was sent last arrives. From any thread.
   virtual void stop() = 0;
   /// Has a function called on the thread of run(). From any thread.
   virtual void post(std::function<void()> call) = 0;

@@ -77,7 +77,8 @@ Result<std::string> Runner::observe(const std::string& port) {
   for (const auto& [output, address] : plan_.sources) known.push_back(output);
   for (const auto& link : plan_.links) {
     if (at(link.to) != nullptr) known.push_back(link.to);
-    if (link.to == port) writers.push_back(link.from);
+    // An input may have an output's name: that output is meant.
+    if (link.to == port && !plan_.sources.contains(port)) writers.push_back(link.from);
   }
   if (writers.size() > 1) {
     std::string list;

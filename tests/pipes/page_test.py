@@ -1,0 +1,387 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The server of the page, as any client sees it: who may do what, streams, the seat, recordings."""
+
+import io
+import json
+import os
+import re
+import signal
+import ssl
+import struct
+import tarfile
+import unittest
+
+from graphs import GRAPH, Graphs
+from web_socket import BINARY, CLOSE, TEXT, Refused, WebSocket, connect, get
+
+TASKS = (
+    GRAPH
+    + """
+[modes]
+look = 1
+[workspace]
+module = "workspace"
+[modules.workspace]
+parameters.person_expiry = 1
+inputs.bids = "look.bid"
+inputs.person = "web.bid"
+inputs.stop = "web.stop"
+[modules.web]
+parameters.port = 0
+inputs.stopped = { from = "workspace.stopped", rate = 20 }
+[modules.look]
+program = "gaze"
+mode = "look"
+inputs.stick = "web.stick"
+[frames.robot]
+parent = "world"
+translation = [0.0, 0.0, 1.2]
+"""
+)
+ALIVE = b"1 0 0 0 8 0 120190 0 0 1 1\n"
+
+
+def number(src, value, mode=0):
+    """A message of one number."""
+    return b"1 %d 0 0 8 0 120190 %d 0 1 1\n%g\n" % (src, mode, value)
+
+
+def message(data):
+    """Header and elements of a message in binary."""
+    line, elements = data.split(b"\n", 1)
+    return [int(word) for word in line.split()], elements[:-1]
+
+
+class Page(Graphs):
+    def setUp(self):
+        super().setUp()
+        self.environment["XDG_CONFIG_HOME"] = self.path("settings")
+
+    def serve(self, graph=TASKS, options=""):
+        """Runs a graph; gives the process, and has the port and a token of its page."""
+        self.write_graph(graph)
+        process = self.start("exec hc run g.toml " + options)
+        line = self.await_lines(process, "web: page: ")[-1]
+        self.port, self.token = re.search(r":(\d+)/\?token=(\w+)", line).groups()
+        self.port = int(self.port)
+        return process
+
+    def session(self, token=None, context=None):
+        status, head, _ = get(self.port, "/?token=" + (token or self.token), context)
+        self.assertEqual(status, 303, head)
+        return re.search(r"Set-Cookie: ([^;]+);", head)[1]
+
+    def socket(self, path, cookie, context=None, **fields):
+        opened = WebSocket(self.port, path, cookie, context, **fields)
+        self.addCleanup(opened.close)
+        return opened
+
+    def hear(self, graph, src, condition=lambda text: True):
+        """The next string of a src that is as wanted."""
+        while True:
+            kind, data = graph.next()
+            self.assertEqual(kind, BINARY, data)
+            header, elements = message(data)
+            if header[1] == src and condition(elements.decode().rstrip()):
+                return elements.decode().rstrip()
+
+    def command(self, graph, text):
+        """The rows of an answer."""
+        graph.send(text)
+        while True:
+            header, elements = message(graph.next()[1])
+            if header[1] == 4:
+                width = header[9]
+                rows = [elements[i : i + width] for i in range(0, len(elements), width or 1)]
+                return [row.decode().rstrip() for row in rows]
+
+
+class Access(Page):
+    def test_who_may_not_is_refused(self):
+        self.serve()
+        host = "127.0.0.1:%d" % self.port
+        self.assertEqual(get(self.port, "/")[0], 401)
+        self.assertEqual(get(self.port, "/?token=" + "0" * 32)[0], 401)
+        # A name that somebody has pointed here, before anything else is looked at.
+        for foreign in ("evil.example", "evil.example:%d" % self.port, "127.0.0.1:1", ""):
+            self.assertEqual(get(self.port, "/?token=" + self.token, Host=foreign)[0], 421)
+        cookie = self.session()
+        status, head, _ = get(self.port, "/", Cookie=cookie)
+        self.assertEqual(status, 200)
+        self.assertIn("default-src 'none'", head)
+        # A token counts once.
+        self.assertEqual(get(self.port, "/?token=" + self.token)[0], 401)
+        self.assertEqual(get(self.port, "/", Cookie=cookie[:-1] + "x")[0], 401)
+        for path in (
+            "/../../etc/passwd",
+            "/%2e%2e/%2e%2e/etc/passwd",
+            "/recordings/../../etc/passwd.mtp",
+            "/recordings/a/..%2f..%2fx.y.mtp",
+            "/recordings/a/%00.b.mtp",
+            "/recordings/..tar",
+            "/nothing",
+        ):
+            self.assertIn(get(self.port, path, Cookie=cookie)[0], (400, 404), path)
+        for path, fields, status in (
+            ("/graph", {"Cookie": ""}, 401),
+            ("/graph", {"Origin": "http://evil.example"}, 403),
+            ("/graph", {"Origin": "null"}, 403),
+            ("/graph", {"Origin": "https://" + host}, 403),
+            ("/graph", {"Host": "evil.example"}, 421),
+            ("/nothing", {}, 404),
+            ("/streams/../graph", {}, 404),
+        ):
+            with self.assertRaises(Refused) as refused:
+                self.socket(path, **{"cookie": cookie, **fields}) if "Cookie" not in fields else (
+                    self.socket(path, "")
+                )
+            self.assertEqual(refused.exception.status, status, (path, fields))
+
+    def test_who_views_does_not_drive(self):
+        self.serve()
+        driver = self.socket("/graph", self.session())
+        answer = self.command(driver, "invite view")
+        self.assertEqual(answer[0], "ok")
+        viewer = self.session(answer[1].split("token=")[1])
+        with self.assertRaises(Refused) as refused:
+            self.socket("/drive", viewer)
+        self.assertEqual(refused.exception.status, 403)
+        graph = self.socket("/graph", viewer)
+        self.assertEqual(json.loads(self.hear(graph, 3))["right"], "view")
+        for text in ("set camera.rate=20", "restart camera", "stop", "invite drive", "estop clear",
+                     "record one camera.left"):
+            self.assertIn("may view", self.command(graph, text)[0], text)
+        self.assertIn("streams are at", self.command(graph, "observe camera.left")[0])
+        self.hear(graph, 3, lambda text: '"stopped":false' in text)
+        self.assertEqual(self.command(graph, "estop"), ["ok"])
+        # A secret is in no line that observers get.
+        log = self.socket("/graph", viewer)
+        self.command(log, "describe camera")
+        self.assertNotIn("token=", self.hear(log, 1))
+
+    def test_what_is_too_much_or_too_slow_is_closed(self):
+        self.serve()
+        cookie = self.session()
+        graph = self.socket("/graph", cookie)
+        graph.send_frame(TEXT, b"a" * (1 << 20))
+        self.assertEqual(graph.code()[0], 1009)
+        graph = self.socket("/graph", cookie)
+        try:
+            graph.send_frame(TEXT, b"a", is_last=False)
+            for _ in range(1 << 14):
+                graph.send_frame(0, b"a" * 16, is_last=False)
+        except OSError:
+            pass  # it has been closed already
+        else:
+            self.assertEqual(graph.code()[0], 1009)
+        self.assertEqual(get(self.port, "/", Cookie="a" * 9000)[0], 431)
+        with connect(self.port) as slow, slow.makefile("rb") as file:
+            slow.sendall(b"GET / HTTP/1.1\r\nHost: ")
+            self.assertEqual(file.read(), b"")  # closed after 5 s
+        with connect(self.port) as other, other.makefile("rb") as file:
+            other.sendall(b"1 7 0 0 8 0 10390 1 3 1 1\n0.1 0.2 0.3\n\n\n")
+            self.assertIn(b"400", file.read())
+        self.assertEqual(get(self.port, "/", Cookie=cookie)[0], 200)
+
+    def test_tls_is_1_3_and_its_cookie_secure(self):
+        process = self.serve(TASKS.replace("port = 0", "port = 0\nparameters.tls = true"))
+        modern = ssl.create_default_context()
+        modern.check_hostname, modern.verify_mode = False, ssl.CERT_NONE
+        status, head, _ = get(self.port, "/?token=" + self.token, modern)
+        self.assertEqual(status, 303)
+        self.assertIn("; Secure", head)
+        cookie = re.search(r"Set-Cookie: ([^;]+);", head)[1]
+        self.hear(self.socket("/graph", cookie, modern), 1)
+        old = ssl.create_default_context()
+        old.check_hostname, old.verify_mode = False, ssl.CERT_NONE
+        old.maximum_version = ssl.TLSVersion.TLSv1_2
+        with self.assertRaises((ssl.SSLError, ConnectionError)):
+            get(self.port, "/", old)
+        self.assertEqual(os.stat(self.path("settings/hypercolumn/page_key.pem")).st_mode & 0o777, 0o600)
+        self.stop(process)
+
+
+class Graph(Page):
+    def test_state_log_and_commands(self):
+        process = self.serve()
+        graph = self.socket("/graph", self.session())
+        session = json.loads(self.hear(graph, 3, lambda text: '"bid"' in text))
+        self.assertEqual(session["web"], "web")
+        self.assertEqual(set(session["drives"]), {"bid", "stick"})
+        self.assertIn("robot 2 world 0 0 1.2", session["frames"])
+        state = json.loads(self.hear(graph, 1))
+        self.assertIn("camera", [module["name"] for module in state["modules"]])
+        answer = self.command(graph, "describe camera")
+        self.assertEqual(json.loads(answer[1])["name"], "camera")
+        self.assertIn("did you mean", self.command(graph, "describe camra")[0])
+        self.assertEqual(self.command(graph, "set camera.rate=20"), ["ok"])
+        self.hear(
+            graph,
+            1,
+            lambda text: any(
+                module["name"] == "camera" and module["parameters"].get("rate") == "20"
+                for module in json.loads(text)["modules"]
+            ),
+        )
+        self.assertIn("no parameter", self.command(graph, "set camera.rat=20")[0])
+        self.assertEqual(self.command(graph, "restart brightness"), ["ok"])
+        self.hear(graph, 2, lambda text: text == "brightness: started")
+        graph.send("stop")
+        self.assertEqual(graph.code()[0], 1001)
+        process.communicate()
+
+    def test_a_stop_lasts_until_it_is_cleared(self):
+        process = self.serve()
+        cookie = self.session()
+        graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
+        self.hear(graph, 3, lambda text: '"stopped":false' in text)
+        stopped = lambda text: json.loads(text)["focus"] is None
+        drive.send_frame(BINARY, number(5, 1, 1))
+        in_focus = lambda text: not stopped(text)
+
+        def hold():
+            drive.send_frame(BINARY, ALIVE + b"0\n")
+            return True
+
+        def hear_held(condition):
+            while True:
+                hold()
+                header, elements = message(graph.next()[1])
+                if header[1] == 1 and condition(elements.decode()):
+                    return
+                drive.send_frame(BINARY, number(5, 1, 1))
+
+        hear_held(in_focus)
+        self.assertEqual(self.command(graph, "estop"), ["ok"])
+        hear_held(stopped)
+        state = json.loads(self.hear(graph, 1))
+        pids = {module["name"]: module["pid"] for module in state["modules"]}
+        # Both ends of it may crash.
+        os.kill(pids["workspace"], signal.SIGKILL)
+        self.hear(graph, 2, lambda text: text == "workspace: started")
+        self.hear(graph, 2, lambda text: "workspace: stopped" in text)
+        self.assertEqual(self.command(graph, "estop clear"), ["ok"])
+        self.hear(graph, 3, lambda text: '"stopped":false' in text)
+        hear_held(in_focus)
+        # Silence commands nothing.
+        self.hear(graph, 1, stopped)
+        self.stop(process)
+
+
+class Streams(Page):
+    def test_an_image_comes_as_it_is_wanted(self):
+        process = self.serve()
+        cookie = self.session()
+        raw = self.socket("/streams/brightness.image", cookie)
+        kind, header = raw.next()
+        self.assertEqual((kind, header.split()[9:]), (TEXT, [b"80", b"60"]))
+        header, elements = message(raw.next()[1])
+        self.assertEqual((header[9:], len(elements)), ([80, 60], 80 * 60 * 3))
+        jpeg = self.socket("/streams/camera.left?as=jpeg&width=40", cookie)
+        self.assertEqual(jpeg.next()[1].split()[9:], [b"80", b"60"])
+        header, elements = message(jpeg.next()[1])
+        self.assertEqual((header[6], header[9:]), (30303, [40, 30]))
+        self.assertEqual(elements.split(b"\n", 1)[1][:2], b"\xff\xd8")
+        vp8 = self.socket("/streams/camera.left?as=vp8", cookie)
+        vp8.next()
+        for is_key in (True, False):
+            kind, data = vp8.next()
+            header, frame = message(data)
+            self.assertEqual((header[6], header[10]), (120101, 1))
+            self.assertEqual(not frame[0] & 1, is_key)
+            vp8.send("ok")
+        table = self.socket("/streams/brightness.mean?as=jpeg&width=10", cookie)
+        table.next()
+        self.assertEqual(message(table.next()[1])[0][6], 120191)
+        self.assertIn("did you mean", self.socket("/streams/camera.lef", cookie).code()[1])
+        self.assertEqual(self.socket("/streams/camera.lef", cookie).code()[0], 4404)
+        self.assertEqual(self.socket("/streams/camera.left?as=png", cookie).code()[0], 1008)
+        self.stop(process)
+
+    def test_who_does_not_answer_gets_two_and_then_the_newest(self):
+        process = self.serve()
+        cookie = self.session()
+        stream = self.socket("/streams/brightness.mean", cookie)
+        other = self.socket("/streams/brightness.mean", cookie)
+
+        def sequence(socket):
+            kind, data = socket.next()
+            while kind == TEXT:
+                kind, data = socket.next()
+            self.assertEqual(kind, BINARY, data)
+            return message(data)[0][3]
+
+        first = [sequence(stream), sequence(stream)]
+        for _ in range(50):  # meanwhile another gets on
+            newest = sequence(other)
+            other.send("ok")
+        stream.send("ok")
+        self.assertGreater(sequence(stream), newest - 3)
+        self.assertLess(first[1], newest - 30)
+        stream.send("rate=nonsense")
+        self.assertEqual(stream.code()[0], 1008)
+        self.stop(process)
+
+
+class Seat(Page):
+    def test_one_drives_and_another_may_take_the_seat(self):
+        process = self.serve()
+        cookie = self.session()
+        first = self.socket("/drive", cookie)
+        self.assertEqual(self.socket("/drive", cookie).code(), (4409, "another page drives"))
+        graph = self.socket("/graph", cookie)
+        self.hear(graph, 3, lambda text: '"driver":"other"' in text)
+        second = self.socket("/drive?take=1", cookie)
+        self.assertEqual(first.code()[0], 4409)
+        for wrong in (b"no message", number(5, 2, 1), number(9, 0), ALIVE + b"0\n" + ALIVE + b"0\n"):
+            second.send_frame(BINARY, wrong)
+            self.assertEqual(second.code()[0], 1007, wrong)
+            second = self.socket("/drive", cookie)
+        second.close()
+        self.hear(graph, 3, lambda text: '"driver":null' in text)
+        self.stop(process)
+
+
+class Recordings(Page):
+    def test_what_is_recorded_is_listed_and_read_again(self):
+        process = self.serve()
+        cookie = self.session()
+        graph = self.socket("/graph", cookie)
+        self.assertEqual(self.command(graph, "record one camera.left brightness.mean"), ["ok"])
+        self.assertIn("already", self.command(graph, "record two camera.left")[0])
+        self.hear(graph, 3, lambda text: (json.loads(text)["recording"] or {}).get("bytes", 0) > 9999)
+        self.assertEqual(self.command(graph, "record end"), ["ok"])
+        self.assertIn("already", self.command(graph, "record one camera.left")[0])
+        self.assertIn("nothing", self.command(graph, "record end")[0])
+        recordings = json.loads(get(self.port, "/recordings", Cookie=cookie)[2])
+        self.assertEqual(recordings[0]["streams"], ["brightness.mean", "camera.left"])
+        status, _, data = get(self.port, "/recordings/one/camera.left.mtp", Cookie=cookie)
+        self.assertEqual((status, data.split()[6]), (200, b"30303"))
+        self.assertIn("rgb_image", self.shell("hc info recordings/one/camera.left.mtp"))
+        archive = get(self.port, "/recordings/one.tar", Cookie=cookie)[2]
+        with tarfile.open(fileobj=io.BytesIO(archive)) as files:
+            self.assertEqual(files.extractfile("one/camera.left.mtp").read(), data)
+        self.assertEqual(get(self.port, "/recordings/two.tar", Cookie=cookie)[0], 404)
+        self.stop(process)
+
+
+class Any(Page):
+    def test_any_graph_has_a_page(self):
+        process = self.serve(GRAPH, "--page --quiet --set web.port=0")
+        graph = self.socket("/graph", self.session())
+        self.assertEqual(json.loads(self.hear(graph, 3))["stopped"], None)
+        self.assertIn("no workspace", self.command(graph, "estop")[0])
+        self.stop(process)
+
+    def test_a_page_with_a_workspace_can_stop_it(self):
+        workspace = GRAPH + '[workspace]\nmodule = "w"\n[modules.w]\nprogram = "workspace"\n'
+        process = self.serve(workspace, "--page --set web.port=0")
+        graph = self.socket("/graph", self.session())
+        self.hear(graph, 3, lambda text: '"stopped":false' in text)
+        self.assertEqual(self.command(graph, "estop"), ["ok"])
+        self.hear(graph, 3, lambda text: '"stopped":true' in text)
+        self.stop(process)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
