@@ -148,8 +148,14 @@ class Access(Page):
         self.assertEqual(refused.exception.status, 403)
         graph = self.socket("/graph", viewer)
         self.assertEqual(json.loads(self.hear(graph, 3))["right"], "view")
-        for text in ("set camera.rate=20", "restart camera", "stop", "invite drive", "estop clear",
-                     "record one camera.left"):
+        for text in (
+            "set camera.rate=20",
+            "restart camera",
+            "stop",
+            "invite drive",
+            "estop clear",
+            "record one camera.left",
+        ):
             self.assertIn("may view", self.command(graph, text)[0], text)
         self.assertIn("streams are at", self.command(graph, "observe camera.left")[0])
         self.hear(graph, 3, lambda text: '"stopped":false' in text)
@@ -197,7 +203,9 @@ class Access(Page):
         old.maximum_version = ssl.TLSVersion.TLSv1_2
         with self.assertRaises((ssl.SSLError, ConnectionError)):
             get(self.port, "/", old)
-        self.assertEqual(os.stat(self.path("settings/hypercolumn/page_key.pem")).st_mode & 0o777, 0o600)
+        self.assertEqual(
+            os.stat(self.path("settings/hypercolumn/page_key.pem")).st_mode & 0o777, 0o600
+        )
         self.stop(process)
 
 
@@ -333,7 +341,12 @@ class Seat(Page):
         self.hear(graph, 3, lambda text: '"driver":"other"' in text)
         second = self.socket("/drive?take=1", cookie)
         self.assertEqual(first.code()[0], 4409)
-        for wrong in (b"no message", number(5, 2, 1), number(9, 0), ALIVE + b"0\n" + ALIVE + b"0\n"):
+        for wrong in (
+            b"no message",
+            number(5, 2, 1),
+            number(9, 0),
+            ALIVE + b"0\n" + ALIVE + b"0\n",
+        ):
             second.send_frame(BINARY, wrong)
             self.assertEqual(second.code()[0], 1007, wrong)
             second = self.socket("/drive", cookie)
@@ -349,7 +362,9 @@ class Recordings(Page):
         graph = self.socket("/graph", cookie)
         self.assertEqual(self.command(graph, "record one camera.left brightness.mean"), ["ok"])
         self.assertIn("already", self.command(graph, "record two camera.left")[0])
-        self.hear(graph, 3, lambda text: (json.loads(text)["recording"] or {}).get("bytes", 0) > 9999)
+        self.hear(
+            graph, 3, lambda text: (json.loads(text)["recording"] or {}).get("bytes", 0) > 9999
+        )
         self.assertEqual(self.command(graph, "record end"), ["ok"])
         self.assertIn("already", self.command(graph, "record one camera.left")[0])
         self.assertIn("nothing", self.command(graph, "record end")[0])
