@@ -110,22 +110,21 @@ void Conversation::hear_at_begin(MonotonicTime now, const Reply& reply) {
   const auto value = number(reply.text);
   const bool is_number = reply.kind == Reply::Kind::Result && value;
   if (asked_ == 0) {
-    if (!is_number || *value <= 0 || (is_known_ && *value != settings_[kPR])) return;
+    if (!is_number || *value <= 0 || (is_known_ && *value != settings_[PR])) return;
     if (is_known_) return become_ready(now);
-  } else if (!is_number || (asked_ >= kSettings && *value != settings_[asked_ % kSettings])) {
+  } else if (!is_number || (asked_ >= Settings && *value != settings_[asked_ % Settings])) {
     return fail(now, garbage(reply.text));
   }
-  settings_[asked_++ % kSettings] = *value;
+  settings_[asked_++ % Settings] = *value;
   if (asked_ == 2 * kQuestions.size()) return become_ready(now);
   overdue_ = now + kTimeOut;
-  bytes_ += pan_tilt::command(kQuestions[asked_ % kSettings]);
+  bytes_ += pan_tilt::command(kQuestions[asked_ % Settings]);
 }
 
 void Conversation::become_ready(MonotonicTime now) {
   const auto& s = settings_;
-  const bool is_sound = s[kPR] > 0 && s[kTR] > 0 && s[kPN] < s[kPX] && s[kTN] < s[kTX] &&
-                        s[kPL] >= 0 && s[kTL] >= 0 && s[kPU] > 0 && s[kTU] > 0 &&
-                        s[kPL] <= s[kPU] && s[kTL] <= s[kTU] &&
+  const bool is_sound = s[PR] > 0 && s[TR] > 0 && s[PN] < s[PX] && s[TN] < s[TX] && s[PL] >= 0 &&
+                        s[TL] >= 0 && s[PU] > 0 && s[TU] > 0 && s[PL] <= s[PU] && s[TL] <= s[TU] &&
                         std::all_of(s.begin(), s.end(), [](double v) { return std::abs(v) < 1e6; });
   if (!is_sound) return fail(now, {Code::Malformed, "garbage: limits that make no sense"});
   phase_ = Phase::Ready;
@@ -133,10 +132,10 @@ void Conversation::become_ready(MonotonicTime now) {
   may_move_ = false;
   if (std::exchange(halt_follows_, false)) say(now, "", {Awaits::Halted});
   Pace reported;
-  for (std::size_t i = 0; i < reported.size(); ++i) reported[i] = bounded(s[kPS + i], -1e6, 1e6);
+  for (std::size_t i = 0; i < reported.size(); ++i) reported[i] = bounded(s[PS + i], -1e6, 1e6);
   // Who moved it by its speed alone has left one with a sign, or none.
   if (!own_pace_)
-    own_pace_ = {reachable_speed(0, std::abs(s[kPS])), reachable_speed(1, std::abs(s[kTS])),
+    own_pace_ = {reachable_speed(0, std::abs(s[PS])), reachable_speed(1, std::abs(s[TS])),
                  std::max(reported[2], 1), std::max(reported[3], 1)};
   // A unit that was switched off and on meanwhile has forgotten its pace.
   pace_.reset();
@@ -185,7 +184,7 @@ bool Conversation::command(MonotonicTime now, double pan, double tilt,
   const auto& s = settings_;
   commanded_ = now;
   wanted_until_ = now + life;
-  wanted_ = {bounded(pan / step(0), s[kPN], s[kPX]), bounded(-tilt / step(1), s[kTN], s[kTX])};
+  wanted_ = {bounded(pan / step(0), s[PN], s[PX]), bounded(-tilt / step(1), s[TN], s[TX])};
   send_wanted(now);
   return true;
 }
@@ -210,7 +209,7 @@ void Conversation::set_pace(double speed, double acceleration) {
 
 /// The nearest speed that an axis can turn with [position/s].
 int Conversation::reachable_speed(std::size_t axis, double wanted) const {
-  return bounded(wanted, std::max(settings_[kPL + axis], 1.0), settings_[kPU + axis]);
+  return bounded(wanted, std::max(settings_[PL + axis], 1.0), settings_[PU + axis]);
 }
 
 void Conversation::send_pace(MonotonicTime now) {
@@ -225,12 +224,12 @@ void Conversation::send_pace(MonotonicTime now) {
   if (pace_ == pace) return;
   for (std::size_t axis : {0U, 1U})
     if (const double least = pace[axis] * step(static_cast<int>(axis));
-        speed_ > 0 && pace[axis] <= s[kPL + axis] && speed_ < least)
+        speed_ > 0 && pace[axis] <= s[PL + axis] && speed_ < least)
       remark_ = "turns no slower than " + std::to_string(least) + " rad/s";
   pace_ = pace;
   std::string bytes;
   for (std::size_t i = 0; i < pace.size(); ++i)
-    bytes += pan_tilt::command(kQuestions[kPS + i], pace[i]);
+    bytes += pan_tilt::command(kQuestions[PS + i], pace[i]);
   say(now, bytes, {Awaits::PaceSet, Awaits::PaceSet, Awaits::PaceSet, Awaits::PaceSet});
 }
 
@@ -266,7 +265,7 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   if (!value) return fail(now, value.error());
   const auto i = static_cast<std::size_t>(axis);
   const double seconds = std::chrono::duration<double>(now - place_time_).count();
-  const double most = settings_[kPU + i] * seconds + kSlack;
+  const double most = settings_[PU + i] * seconds + kSlack;
   if (std::abs(*value) > 1e6 || std::trunc(*value) != *value ||
       (place_ && std::abs(*value - (*place_)[i]) > most))
     return fail(now, {Code::Malformed, "garbage: it cannot be at " + text});
@@ -334,7 +333,7 @@ std::string Conversation::character() const {
   std::array<char, 128> text = {};
   std::snprintf(text.data(), text.size(),
                 "pan from %.1f to %.1f, tilt from %.1f (up) to %.1f (down) degrees",
-                degrees(0, s[kPN]), degrees(0, s[kPX]), -degrees(1, s[kTX]), -degrees(1, s[kTN]));
+                degrees(0, s[PN]), degrees(0, s[PX]), -degrees(1, s[TX]), -degrees(1, s[TN]));
   return text.data();
 }
 

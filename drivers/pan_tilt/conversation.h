@@ -83,7 +83,7 @@ class Conversation {
 
  private:
   // In the order in which they are asked.
-  enum Setting { kPR, kTR, kPN, kPX, kTN, kTX, kPU, kTU, kPL, kTL, kPS, kTS, kPA, kTA, kSettings };
+  enum Setting { PR, TR, PN, PX, TN, TX, PU, TU, PL, TL, PS, TS, PA, TA, Settings };
   enum class Awaits { Pan, Tilt, PanSet, TiltSet, PaceSet, Halted };
   using Places = std::array<int, 2>;  // pan, tilt [position]
   using Pace = std::array<int, 4>;    // PS TS PA TA
@@ -119,7 +119,7 @@ class Conversation {
   int tries_ = 0;
   std::size_t asked_ = 0;  // while it begins: the setting that is being asked
   bool is_known_ = false;  // settings have been read on this line
-  std::array<double, kSettings> settings_ = {};
+  std::array<double, Settings> settings_ = {};
   std::optional<Pace> own_pace_, pace_;  // as it was met; as it is, none: refused
   MonotonicTime pace_at_{0};             // no pace is sent before
   double speed_ = 0, acceleration_ = 0;

@@ -161,8 +161,9 @@ SurfaceId Renderer::add(const Mesh& mesh, const cv::Mat& texture) {
   GLuint number = 0;
   for (auto [size, offset] : attributes) {
     glEnableVertexAttribArray(number);
-    glVertexAttribPointer(number++, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(offset));
+    // OpenGL takes an offset for a pointer. NOLINTNEXTLINE(performance-no-int-to-ptr)
+    const auto* place = reinterpret_cast<const void*>(offset);
+    glVertexAttribPointer(number++, size, GL_FLOAT, GL_FALSE, sizeof(Vertex), place);
   }
   glGenTextures(1, &surface.texture);
   state_->surfaces.push_back(surface);
@@ -222,10 +223,11 @@ Status Renderer::render(std::span<const Item> items, const PinholeCamera& camera
   glUniform1f(state_->ambient, light.ambient * light.exposure);
   glUniform1f(state_->diffuse, light.diffuse * light.exposure);
   // The last first: what is small and before the walls hides them, and they are not shaded there.
-  for (auto item = items.rbegin(); item != items.rend(); ++item) {
-    const Surface& surface = state_->surfaces.at(item->surface);
+  for (std::size_t i = items.size(); i-- > 0;) {
+    const Item& item = items[i];
+    const Surface& surface = state_->surfaces.at(item.surface);
     const Eigen::Matrix4f T_camera_object =
-        (T_camera_world * item->T_world_object * Eigen::Scaling(item->scale)).matrix();
+        (T_camera_world * item.T_world_object * Eigen::Scaling(item.scale)).matrix();
     glUniformMatrix4fv(state_->T_camera_object, 1, GL_FALSE, T_camera_object.data());
     glBindTexture(GL_TEXTURE_2D, surface.texture);
     glBindVertexArray(surface.vertices);

@@ -211,6 +211,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
                                   [](const auto& letter) { return letter.is_bar; });
   if (4 * static_cast<std::size_t>(bars) > 3 * letters.size()) return {};
   std::vector<double> heights;
+  heights.reserve(letters.size());
   for (const auto& letter : letters) heights.push_back(letter.height());
   const double usual = median(heights);
   std::vector<cv::Point2d> tops, bottoms;
@@ -237,6 +238,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   if (height < kLeastHeight - 1) return {};
   const double ink = median(inks), ground = median(grounds);
   std::vector<double> unevenness;  // letters stand on the base line, or hang from the top one
+  unevenness.reserve(letters.size());
   for (const auto& letter : letters)
     unevenness.push_back(std::min(std::abs(letter.bottom() - base.at(letter.middle_x())),
                                   std::abs(letter.top() - top.at(letter.middle_x()))));

@@ -40,7 +40,7 @@ class Inbox {
   std::vector<std::function<void()>> calls_;
 };
 
-std::vector<std::string> words_of(std::string text) {
+std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words(1);
   for (const char c : text) {
     if (c != ',' && c != ' ')

@@ -190,7 +190,7 @@ Reply Page::reply_with_recording(const Request& request) const {
   if (request.path == "/recordings") {
     std::string list;
     for (const auto& each : list_recordings(options_.recordings))
-      list += hc::format("{}{{\"name\":{},\"bytes\":{},\"streams\":{}}}", list.empty() ? "" : ",",
+      list += hc::format(R"({}{{"name":{},"bytes":{},"streams":{}}})", list.empty() ? "" : ",",
                          json_string(each.name), each.bytes, json_list(each.streams));
     return {200, "application/json", text("[" + list + "]"), {}, {{"Cache-Control", "no-store"}}};
   }
@@ -399,14 +399,13 @@ std::string Page::session_text(const Session& session) const {
     if ((robot_.linked & (1U << i)) != 0) drives.emplace_back(kNames[i]);
   std::string recording = "null";
   if (recorder_)
-    recording = hc::format("{{\"name\":{},\"bytes\":{},\"seconds\":{},\"streams\":{}}}",
+    recording = hc::format(R"({{"name":{},"bytes":{},"seconds":{},"streams":{}}})",
                            json_string(recorder_->name()), recorder_->bytes(),
                            static_cast<int>(recorder_->seconds()), json_list(recorder_->ports()));
   const char* driver = driver_socket_ ? "\"other\"" : "null";
   const int stopped = robot_.stopped;
   return hc::format(
-      "{{\"right\":\"{}\",\"driver\":{},\"stopped\":{},\"recording\":{},\"drives\":{},"
-      "\"frames\":{},\"web\":{}}}",
+      R"({{"right":"{}","driver":{},"stopped":{},"recording":{},"drives":{},"frames":{},"web":{}}})",
       session.right == Right::Drive ? "drive" : "view", driver,
       stopped < 0   ? "null"
       : stopped > 0 ? "true"

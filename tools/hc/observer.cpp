@@ -53,6 +53,7 @@ RunningGraph choose_running(const std::string& wanted) {
   const std::string name = !wanted.empty() || variable == nullptr ? wanted : variable;
   auto graphs = find_running();
   std::vector<std::string> names;
+  names.reserve(graphs.size());
   for (const auto& graph : graphs) names.push_back(graph.name);
   std::erase_if(graphs, [&](const auto& graph) {
     return !name.empty() && graph.name != name && graph.text() != name;

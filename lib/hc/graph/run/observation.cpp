@@ -12,7 +12,7 @@ namespace {
 constexpr std::chrono::milliseconds kSoon{20};
 constexpr std::uint64_t kMostCommands = std::uint64_t{1} << 20;  // in one message [byte]
 
-enum Sender : std::int32_t { kState = 1, kLog };
+enum Sender : std::int32_t { State = 1, Log };
 
 Message stamped(Message message, Sender src, std::int64_t& seq) {
   message.header.src = src;
@@ -43,7 +43,7 @@ Result<std::unique_ptr<Observation>> Observation::make(Loop& loop, const std::st
 }
 
 Message Observation::state_message() {
-  return stamped(make_rows(std::array{to_json(asked_.state())}), kState, states_);
+  return stamped(make_rows(std::array{to_json(asked_.state())}), State, states_);
 }
 
 void Observation::tell_state() {
@@ -59,7 +59,7 @@ void Observation::changed() {
 
 void Observation::log(const std::string& line) {
   if (is_heard() && !line.empty())
-    announcer_->say(stamped(make_rows(std::array{line}), kLog, lines_));
+    announcer_->say(stamped(make_rows(std::array{line}), Log, lines_));
 }
 
 void Observation::take_commands(const Message& message) const {
