@@ -78,7 +78,9 @@ try {
   await page.reload();
   await page.getByRole("button", { name: "Take the seat" }).click();
   await page.locator('[data-task="point"]').click();
-  await page.locator(".seat-who", { hasText: "Task in focus: point" }).waitFor({ timeout: watchdog });
+  await page
+    .locator(".seat-who", { hasText: "Task in focus: point" })
+    .waitFor({ timeout: watchdog });
   await wait(2000);
   await page.locator(".seat").focus();
   for (let i = 0; i < pushes; ++i) {
@@ -107,7 +109,9 @@ try {
   print(`${pages} pages, ${stopped} of them stopped`, await measure(graph, "head_eyes.left"));
 
   console.log(`\nDrawn in the page: ${(drawn / seconds).toFixed(1)} images/s of both eyes.\n`);
-  console.log(`| from a push to the first image that shows it, ${all.length} pushes | median [ms] | p99 [ms] |`);
+  console.log(
+    `| from a push to the first image that shows it, ${all.length} pushes | median [ms] | p99 [ms] |`,
+  );
   console.log("|---|---:|---:|");
   for (const [key, name] of [
     ["sensed", "until the image is taken"],
