@@ -2,6 +2,8 @@
 #include "access.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <sys/random.h>
 
 #include <algorithm>
@@ -52,6 +54,23 @@ std::string add(Secrets& secrets, Right right, std::size_t limit) {
 
 }  // namespace
 
+std::string own_address() {
+  std::string found = "127.0.0.1";
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0) return found;
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    const bool is_up = (each->ifa_flags & IFF_UP) != 0 && (each->ifa_flags & IFF_LOOPBACK) == 0;
+    if (!is_up || each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) == nullptr) continue;
+    found = text.data();
+    break;
+  }
+  ::freeifaddrs(all);
+  return found;
+}
+
 std::string make_secret() {
   std::array<unsigned char, 16> bytes;
   HC_CHECK(::getrandom(bytes.data(), bytes.size(), 0) == std::ssize(bytes));
@@ -81,7 +100,9 @@ std::string Access::make_token(Right right) {
 
 std::string Access::invite(Right right) {
   const bool is_any = place_.address == "0.0.0.0" || place_.address == "::";
-  std::string host = is_any && !place_.hosts.empty() ? place_.hosts.front() : place_.address;
+  std::string host = !is_any                ? place_.address
+                     : place_.hosts.empty() ? own_address()
+                                            : place_.hosts.front();
   if (host.find(':') != std::string::npos) host = "[" + host + "]";
   return std::string(place_.is_secure ? "https://" : "http://") + host + ":" +
          std::to_string(place_.port) + "/?token=" + make_token(right);

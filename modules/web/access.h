@@ -59,5 +59,8 @@ class Access {
   Secrets tokens_, sessions_;
 };
 
+/// The first address by which other machines reach this one, IPv4; 127.0.0.1 where there is none.
+std::string own_address();
+
 /// 128 bits that nobody guesses, in hexadecimal digits.
 std::string make_secret();

@@ -30,6 +30,15 @@ TEST(Access, elsewhere_any_address_and_the_given_names) {
     EXPECT_FALSE(access.is_host(host)) << host;
 }
 
+TEST(Access, who_listens_everywhere_invites_by_an_address_or_a_name) {
+  const Place everywhere{"0.0.0.0", 443, true, {}};
+  EXPECT_TRUE(Access(everywhere).invite(Right::View).starts_with("https://" + own_address() + ":"));
+  EXPECT_NE(own_address(), "0.0.0.0");
+  Place named = everywhere;
+  named.hosts = {"head.local"};
+  EXPECT_TRUE(Access(named).invite(Right::View).starts_with("https://head.local:443/"));
+}
+
 TEST(Access, an_origin_is_exactly_that_of_the_page) {
   const auto access = local();
   EXPECT_TRUE(access.is_origin("http://localhost:8470", "localhost:8470"));

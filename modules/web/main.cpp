@@ -160,7 +160,8 @@ int main(int argc, char** argv) {
     const std::string url = access->invite(Right::Drive);
     module.log("notice: page: " + url);
     if (identity)
-      module.log("page: certificate " + hc::value_or_end(fingerprint(identity->certificate)));
+      module.log("notice: page: certificate " +
+                 hc::value_or_end(fingerprint(identity->certificate)));
     if (!is_local)
       for (const auto& line : qr_lines(access->invite(Right::Drive))) module.log("notice: " + line);
     thread = std::thread([&] { server->run(*page); });
