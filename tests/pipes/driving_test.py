@@ -57,10 +57,10 @@ class Driving(Pipes):
             "exec hc gaze --mode 1 --timeout 1 --acceleration 0 --in %s=unix-listen:link"
             " --out command=file:commands --out bid=file:bids" % port
         )
-        wait_until(lambda: os.path.exists(self.path("link")))
         link = socket.socket(socket.AF_UNIX)
         self.addCleanup(link.close)
-        link.connect(self.path("link"))
+        # The file is there a moment before somebody listens.
+        wait_until(lambda: link.connect_ex(self.path("link")) == 0)
         return link
 
     def rows(self, name):
