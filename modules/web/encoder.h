@@ -28,7 +28,7 @@ class Vp8Encoder {
   Vp8Encoder& operator=(const Vp8Encoder&) = delete;
 
   /// @param message  where is_picture(). An odd last column or row is cut off.
-  /// @param is_key  begin anew; also done by itself when the size changes.
+  /// @param is_key  encode a key frame; the first one, and one of another size, always is.
   /// @returns  a table of u8, 1 × N, the frame's bytes, with the header's src, seq, time, mode,
   /// coord. Errors: Unsupported (less than 2 × 2), System.
   hc::Result<hc::Message> encode(const hc::Message& message, bool is_key);

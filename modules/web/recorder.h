@@ -30,7 +30,7 @@ struct Recorded {
 /// The recordings in a folder, by name.
 std::vector<Recorded> list_recordings(const std::string& folder);
 
-/// Writes all files of a recording as one archive (POSIX ustar) beside it, anew each time.
+/// Writes all files of a recording as one archive (POSIX ustar) beside it; replaces an earlier one.
 /// @returns  its path. Errors: NotFound, System.
 hc::Result<std::string> write_archive(const std::string& folder, const std::string& name);
 

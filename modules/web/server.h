@@ -45,7 +45,7 @@ class WebSocket {
   [[nodiscard]] virtual std::size_t waiting() const = 0;
 
   std::function<void(std::string_view)> on_text, on_binary;
-  /// The other end has gone, or is of no use any more.
+  /// The connection is closed or has failed.
   std::function<void()> on_close;
 };
 

@@ -71,8 +71,8 @@ void find_programs(Graph& graph, Problems& problems) {
   }
 }
 
-/// Has a graph serve a page: by its module `web`, or by one that is added, which can stop the robot
-/// and choose its task where the graph has a workspace.
+/// Has a graph serve a page: by its module `web`, or by a new one, which can stop the robot and
+/// choose its task where the graph has a workspace.
 void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   auto obey = [&](const std::string& line) {
     apply_command(graph, parse_command(line).value(), problems);

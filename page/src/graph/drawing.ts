@@ -33,7 +33,7 @@ interface EdgeElements {
   readonly edge: Edge;
 }
 
-/** Sets an attribute or a text if it is another one, so that nothing is drawn anew for nothing. */
+/** Sets an attribute or a text where it has changed, so that nothing is redrawn needlessly. */
 function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -163,7 +163,7 @@ test("a failure is shown for a while after the module was restarted", () => {
   assert.equal(at(7, { restarts: 2, exit: 0 }), "works ");
 });
 
-test("drops are told with their reasons and counted per second", () => {
+test("drops are reported with their reasons and counted per second", () => {
   const link = linkOf("a.out", "b.in", { dropped_newer: 2, ignored: 1200 });
   assert.deepEqual(dropTexts(link), [
     "2 dropped, because a newer message came first",

@@ -17,7 +17,7 @@ export class ParameterView {
   /** As the module said it last. */
   private value = "";
 
-  /** @param is  what is known of it; of one that was not described its name alone. */
+  /** @param is  its description; only its name where the module does not describe it. */
   constructor(
     private readonly server: Server,
     private readonly module: string,

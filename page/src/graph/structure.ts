@@ -11,7 +11,7 @@ export interface Edge {
   readonly to: string;
   /** Names as in links: `MODULE.PORT MODULE.PORT`. */
   readonly links: readonly string[];
-  /** All its links only tell which task has the focus, or where frames are. */
+  /** All its links carry only the focus, or the poses of frames. */
   readonly background: boolean;
 }
 

@@ -36,8 +36,8 @@ export class Track {
    * Reads a file through once, and keeps where its messages are and when.
    *
    * @param progress  called with the part that has been read, 0 … 1.
-   * Errors: MtpError where it holds a message that is wrong. One that is cut off at the end is left
-   * out: a recording may have been broken off.
+   * Errors: MtpError where a message is malformed. A truncated last message is ignored: the
+   * recording may have been interrupted.
    */
   static async open(
     port: string,

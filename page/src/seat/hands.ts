@@ -9,7 +9,7 @@ const clickRadius = 6;
  * Steers by dragging on an element: the farther from where it was pressed, the faster.
  *
  * @param reach  how far a full push is [px], of the element's size now.
- * @param shown  is told of the push, to draw it.
+ * @param shown  called with each push, to draw it.
  * @param clicked  a press that did not move.
  */
 export function dragSteers(

@@ -40,7 +40,7 @@ export class Seat {
     if (document.hidden && this.drive) this.leave("You left the page, and with it the seat.");
   };
 
-  /** @param commanded  is told of each message that moves the head [ms since the Unix epoch]. */
+  /** @param commanded  called with the time of each message that moves the head [ms since the Unix epoch]. */
   constructor(
     private readonly server: Server,
     private readonly commanded: (at: number) => void,

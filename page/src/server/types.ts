@@ -81,7 +81,7 @@ export interface RecordingState {
 
 export interface Session {
   readonly right: "view" | "drive";
-  readonly driver: "you" | "other" | null;
+  readonly driver: "other" | null;
   readonly stopped: boolean | null;
   readonly recording: RecordingState | null;
   readonly drives: readonly DriveOutput[];
