@@ -16,9 +16,6 @@ pkg_check_modules(qrencode REQUIRED IMPORTED_TARGET libqrencode)
 find_package(OpenSSL REQUIRED)
 find_path(HC_BOOST boost/beast.hpp REQUIRED) # header files alone
 find_program(HC_NPM npm REQUIRED)
-add_library(web_libraries INTERFACE)
-target_include_directories(web_libraries SYSTEM INTERFACE ${HC_BOOST})
-target_link_libraries(web_libraries INTERFACE PkgConfig::vpx PkgConfig::qrencode OpenSSL::SSL Threads::Threads)
 find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
 
 # Debian's single OpenCV packages have no CMake package, which is libopencv-dev's with everything.

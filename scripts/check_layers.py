@@ -7,7 +7,7 @@ import re
 import sys
 
 # Library packages: over other libraries, without messages but in their messages.h and module_frames.h.
-PACKAGES = {"frames", "vision", "graphics", "room", "sound", "gaze"}
+PACKAGES = {"frames", "vision", "graphics", "room", "sound", "gaze", "web"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
     "base": set(),
@@ -26,6 +26,7 @@ ALLOWED = {
     "graphics": {"base"},
     "room": {"base", "graphics"},
     "sound": {"base"},
+    "web": {"base", "os", "mtp", "link", "observe"},
     "drivers": {"base"},
     "modules": {"base", "os", "mtp", "contract", "compress", "module", "observe", "drivers"}
     | PACKAGES,
@@ -54,7 +55,7 @@ def layer_of(path):
 def layer_of_include(name):
     inner = name[1:-1]
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|room|sound|gaze|drivers)/", inner
+        r"(frames|vision|graphics|room|sound|gaze|web|drivers)/", inner
     )
     return match[1] if match else None
 

@@ -10,10 +10,10 @@
 
 #include <hc/module/module.h>
 
-#include "event.h"
-#include "identity.h"
+#include <web/event.h>
+#include <web/identity.h>
+#include <web/qr.h>
 #include "page.h"
-#include "qr.h"
 
 namespace {
 
@@ -35,7 +35,7 @@ class Inbox {
   [[nodiscard]] int descriptor() const { return event_.descriptor(); }
 
  private:
-  Event event_;
+  web::Event event_;
   std::mutex mutex_;
   std::vector<std::function<void()>> calls_;
 };
@@ -99,8 +99,8 @@ int main(int argc, char** argv) {
 
   Inbox inbox;
   Robot robot;
-  std::optional<Access> access;
-  std::unique_ptr<Server> server;
+  std::optional<web::Access> access;
+  std::unique_ptr<web::Server> server;
   std::unique_ptr<Page> page;
   std::thread thread;
   std::optional<bool> wants_stop;  // what was last asked for; nothing: no page has
@@ -138,14 +138,14 @@ int main(int argc, char** argv) {
       throw hc::ModuleError(
           "HC_GRAPH does not name a running graph, NAME.PID; run this module in "
           "a graph, or with hc run GRAPH --page");
-    std::optional<Identity> identity;
+    std::optional<web::Identity> identity;
     const bool is_local = *listen == "127.0.0.1" || *listen == "::1" || *listen == "localhost";
-    if (*tls || !is_local) identity = hc::value_or_end(load_identity(settings_folder()));
+    if (*tls || !is_local) identity = hc::value_or_end(web::load_identity(web::settings_folder()));
     constexpr int kPorts = 10;
-    server = hc::value_or_end(Server::listen(
+    server = hc::value_or_end(web::Server::listen(
         *listen == "localhost" ? "127.0.0.1" : *listen, static_cast<std::uint16_t>(*port),
         *port == 0 ? 1 : kPorts, identity ? &*identity : nullptr, log));
-    access.emplace(Place{*listen, server->port(), identity.has_value(), words_of(*hosts)});
+    access.emplace(web::Place{*listen, server->port(), identity.has_value(), words_of(*hosts)});
     page = std::make_unique<Page>(
         Page::Options{*graph, module.instance(), *frames, *recordings}, *access, *server, robot,
         Page::Hears{[&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
@@ -157,13 +157,14 @@ int main(int argc, char** argv) {
                     },
                     [&] { page->close(); },
                     [&](const std::string& line) { log(hc::Severity::Info, line); }});
-    const std::string url = access->invite(Right::Drive);
+    const std::string url = access->invite(web::Right::Drive);
     module.log("notice: page: " + url);
     if (identity)
       module.log("notice: page: certificate " +
-                 hc::value_or_end(fingerprint(identity->certificate)));
+                 hc::value_or_end(web::fingerprint(identity->certificate)));
     if (!is_local)
-      for (const auto& line : qr_lines(access->invite(Right::Drive))) module.log("notice: " + line);
+      for (const auto& line : web::qr_lines(access->invite(web::Right::Drive)))
+        module.log("notice: " + line);
     thread = std::thread([&] { server->run(*page); });
     if (*browser) open_in_browser(url);
     seen = module.monotonic();

@@ -29,18 +29,18 @@ constexpr const char* kPolicyText =
     "media-src blob:; connect-src 'self'; worker-src 'self' blob:; font-src 'self'; "
     "frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
-Bytes text(std::string words) {
+web::Bytes text(std::string words) {
   return std::make_shared<const std::string>(std::move(words));
 }
 
-Reply refusal(int status, std::string words) {
-  Reply reply;
+web::Reply refusal(int status, std::string words) {
+  web::Reply reply;
   reply.status = status;
   reply.body = text(std::move(words) + "\n");
   return reply;
 }
 
-Bytes rows_message(const Rows& rows, std::int32_t src, std::int64_t seq, std::int64_t time) {
+web::Bytes rows_message(const Rows& rows, std::int32_t src, std::int64_t seq, std::int64_t time) {
   hc::Message message = hc::make_rows(rows);
   message.header.src = src;
   message.header.seq = seq;
@@ -105,17 +105,17 @@ std::string_view option(std::string_view query, std::string_view name) {
 
 }  // namespace
 
-Page::Page(Options options, Access& access, Server& server, Robot& robot, Hears hears)
+Page::Page(Options options, web::Access& access, web::Server& server, Robot& robot, Hears hears)
     : options_(std::move(options)),
       access_(access),
       server_(server),
       robot_(robot),
       hears_(std::move(hears)) {
   server_.every(std::chrono::milliseconds(25), [this] { tick(); });
-  graph_ = std::make_unique<GraphClient>(
+  graph_ = std::make_unique<web::GraphClient>(
       options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
-      GraphClient::Hears{[this](const hc::Message& message) { take_state(message); },
-                         [this] { hears_.end(); }});
+      web::GraphClient::Hears{[this](const hc::Message& message) { take_state(message); },
+                              [this] { hears_.end(); }});
 }
 
 Page::~Page() {
@@ -126,7 +126,7 @@ Page::~Page() {
 
 // What is asked for by HTTP.
 
-Reply Page::reply(const Request& request) {
+web::Reply Page::reply(const web::Request& request) {
   if (!access_.is_host(request.host))
     return refusal(421, "this server is not \"" + request.host.substr(0, 64) +
                             "\"; open it by the URL that it printed");
@@ -140,19 +140,19 @@ Reply Page::reply(const Request& request) {
   if (request.is_socket) {
     if (!access_.is_origin(request.origin, request.host))
       return refusal(403, "a page from elsewhere may not use this server");
-    if (request.path == "/drive" && *right != Right::Drive)
+    if (request.path == "/drive" && *right != web::Right::Drive)
       return refusal(403, "this session may view, and not drive");
     const bool is_known =
         request.path == "/graph" || request.path == "/drive" ||
         (request.path.starts_with("/streams/") && is_port_name(request.path.substr(9)));
-    return is_known ? Reply{101, {}, {}, {}, {}} : refusal(404, "there is no such socket");
+    return is_known ? web::Reply{101, {}, {}, {}, {}} : refusal(404, "there is no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
     return reply_with_recording(request);
   return reply_with_file(request);
 }
 
-Reply Page::reply_to_token(const Request& request) {
+web::Reply Page::reply_to_token(const web::Request& request) {
   const auto session = access_.redeem(option(request.query, "token"));
   if (!session) {
     // Whoever has a session already opened the link once more.
@@ -160,7 +160,7 @@ Reply Page::reply_to_token(const Request& request) {
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
     return {303, "text/plain", {}, {}, {{"Location", "/"}}};
   }
-  hears_.log("notice: page opened; for another browser: " + access_.invite(Right::Drive));
+  hears_.log("notice: page opened; for another browser: " + access_.invite(web::Right::Drive));
   return {303,
           "text/plain",
           {},
@@ -170,13 +170,13 @@ Reply Page::reply_to_token(const Request& request) {
                               (access_.place().is_secure ? "Secure; " : "") + "Path=/"}}};
 }
 
-Reply Page::reply_with_file(const Request& request) const {
+web::Reply Page::reply_with_file(const web::Request& request) const {
   const std::string_view path =
       request.path == "/" ? std::string_view("/index.html") : std::string_view(request.path);
   const auto found = std::ranges::find_if(
       page_assets(), [&](const Asset& asset) { return asset.path == path.substr(1); });
   if (found == page_assets().end()) return refusal(404, "there is no such file");
-  Reply reply;
+  web::Reply reply;
   reply.type = found->type;
   // Assets live as long as the program.
   reply.body = text(std::string(found->bytes));
@@ -186,7 +186,7 @@ Reply Page::reply_with_file(const Request& request) const {
   return reply;
 }
 
-Reply Page::reply_with_recording(const Request& request) const {
+web::Reply Page::reply_with_recording(const web::Request& request) const {
   if (request.path == "/recordings") {
     std::string list;
     for (const auto& each : list_recordings(options_.recordings))
@@ -219,7 +219,7 @@ Reply Page::reply_with_recording(const Request& request) const {
 
 // Sockets.
 
-void Page::open(std::shared_ptr<WebSocket> socket, const Request& request) {
+void Page::open(std::shared_ptr<web::WebSocket> socket, const web::Request& request) {
   const auto right = access_.right_of(request.cookies);
   if (!right) return socket->close(kPolicy, "the session has ended");
   if (request.path == "/graph") return open_graph(socket, *right);
@@ -227,7 +227,7 @@ void Page::open(std::shared_ptr<WebSocket> socket, const Request& request) {
   open_stream(socket, request);
 }
 
-void Page::open_graph(const std::shared_ptr<WebSocket>& socket, Right right) {
+void Page::open_graph(const std::shared_ptr<web::WebSocket>& socket, web::Right right) {
   const auto number = next_++;
   Session& session = sessions_[number] = {socket, right, {}};
   robot_.sessions = static_cast<unsigned>(sessions_.size());
@@ -243,7 +243,7 @@ void Page::open_graph(const std::shared_ptr<WebSocket>& socket, Right right) {
   for (const auto& line : log_) socket->send(line);
 }
 
-void Page::open_stream(const std::shared_ptr<WebSocket>& socket, const Request& request) {
+void Page::open_stream(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request) {
   const auto wanted = parse_wanted(request.query);
   if (!wanted) return socket->close(kPolicy, wanted.error().detail);
   const std::string port = request.path.substr(std::string_view("/streams/").size());
@@ -258,7 +258,7 @@ void Page::open_stream(const std::shared_ptr<WebSocket>& socket, const Request& 
   watched.port = port;
   Stream::Hears hears;
   hears.header = [socket](std::string header) { socket->send_text(std::move(header)); };
-  hears.message = [socket](Bytes message) { socket->send(std::move(message)); };
+  hears.message = [socket](web::Bytes message) { socket->send(std::move(message)); };
   hears.end = [this, socket, number](const std::string& why, bool is_error) {
     socket->close(is_error ? kNoStream : kEnd, why);
     // Not while the viewer calls.
@@ -278,7 +278,7 @@ void Page::open_stream(const std::shared_ptr<WebSocket>& socket, const Request& 
   };
 }
 
-void Page::open_drive(const std::shared_ptr<WebSocket>& socket, const Request& request) {
+void Page::open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request) {
   if (driver_socket_ && option(request.query, "take") != "1")
     return socket->close(kTaken, "another page drives");
   if (driver_socket_) {
@@ -310,7 +310,7 @@ void Page::open_drive(const std::shared_ptr<WebSocket>& socket, const Request& r
 
 void Page::take_state(const hc::Message& message) {
   const bool is_state = message.header.src == hc::kStateSource;
-  const Bytes bytes = text(hc::encode(message));
+  const web::Bytes bytes = text(hc::encode(message));
   if (is_state) {
     state_ = bytes;
   } else {
@@ -336,13 +336,13 @@ void Page::take_command(std::uint64_t number, const std::string& command) {
   if (auto done = command_here(session, words)) return answer(number, *done);
   if (words[0] == "observe" || words[0] == "reply")
     return answer(number, {"no command \"" + words[0] + "\"; streams are at /streams"});
-  if (session.right != Right::Drive && words[0] != "describe")
+  if (session.right != web::Right::Drive && words[0] != "describe")
     return answer(number, {"this session may view, and not change anything"});
   graph_->command(command, [this, number](const Rows& rows) { answer(number, rows); });
 }
 
 std::optional<Rows> Page::command_here(const Session& session, const Rows& words) {
-  const bool may_drive = session.right == Right::Drive;
+  const bool may_drive = session.right == web::Right::Drive;
   const Rows no_right = {"this session may view, and not change anything"};
   if (words[0] == "estop") {
     const bool clears = words.size() == 2 && words[1] == "clear";
@@ -359,7 +359,7 @@ std::optional<Rows> Page::command_here(const Session& session, const Rows& words
     if (words.size() != 2 || (words[1] != "view" && words[1] != "drive"))
       return Rows{"invite is followed by view or drive"};
     if (!may_drive) return no_right;
-    return Rows{"ok", access_.invite(words[1] == "drive" ? Right::Drive : Right::View)};
+    return Rows{"ok", access_.invite(words[1] == "drive" ? web::Right::Drive : web::Right::View)};
   }
   return std::nullopt;
 }
@@ -406,7 +406,7 @@ std::string Page::session_text(const Session& session) const {
   const int stopped = robot_.stopped;
   return hc::format(
       R"({{"right":"{}","driver":{},"stopped":{},"recording":{},"drives":{},"frames":{},"web":{}}})",
-      session.right == Right::Drive ? "drive" : "view", driver,
+      session.right == web::Right::Drive ? "drive" : "view", driver,
       stopped < 0   ? "null"
       : stopped > 0 ? "true"
                     : "false",

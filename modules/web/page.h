@@ -13,12 +13,14 @@
 #include <hc/base/clock.h>
 #include <hc/observe/running.h>
 
-#include "access.h"
+#include <web/access.h>
+#include <web/graph_client.h>
+#include <web/server.h>
 #include "driver.h"
-#include "graph_client.h"
 #include "recorder.h"
-#include "server.h"
 #include "stream.h"
+
+namespace web = hc::web;
 
 /// What the module and its page share. From any thread.
 struct Robot {
@@ -27,7 +29,7 @@ struct Robot {
   std::atomic<unsigned> sessions{0};  ///< pages that are open
 };
 
-class Page final : public Site {
+class Page final : public web::Site {
  public:
   struct Options {
     hc::RunningGraph graph;
@@ -43,34 +45,34 @@ class Page final : public Site {
     std::function<void(const std::string& line)> log;
   };
 
-  Page(Options options, Access& access, Server& server, Robot& robot, Hears hears);
+  Page(Options options, web::Access& access, web::Server& server, Robot& robot, Hears hears);
   ~Page() override;
 
-  Reply reply(const Request& request) override;
-  void open(std::shared_ptr<WebSocket> socket, const Request& request) override;
+  web::Reply reply(const web::Request& request) override;
+  void open(std::shared_ptr<web::WebSocket> socket, const web::Request& request) override;
 
   /// Has all pages closed: the graph ends.
   void close();
 
  private:
   struct Session {
-    std::shared_ptr<WebSocket> socket;
-    Right right = Right::View;
+    std::shared_ptr<web::WebSocket> socket;
+    web::Right right = web::Right::View;
     std::string sent;  // of what it is, the last
   };
   struct Watched {
-    std::shared_ptr<WebSocket> socket;
+    std::shared_ptr<web::WebSocket> socket;
     std::string port;
     std::unique_ptr<Stream::Viewer> viewer;
   };
   using Sessions = std::map<std::uint64_t, Session>;
 
-  Reply reply_to_token(const Request& request);
-  Reply reply_with_file(const Request& request) const;
-  Reply reply_with_recording(const Request& request) const;
-  void open_graph(const std::shared_ptr<WebSocket>& socket, Right right);
-  void open_stream(const std::shared_ptr<WebSocket>& socket, const Request& request);
-  void open_drive(const std::shared_ptr<WebSocket>& socket, const Request& request);
+  web::Reply reply_to_token(const web::Request& request);
+  web::Reply reply_with_file(const web::Request& request) const;
+  web::Reply reply_with_recording(const web::Request& request) const;
+  void open_graph(const std::shared_ptr<web::WebSocket>& socket, web::Right right);
+  void open_stream(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
+  void open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
 
   void take_state(const hc::Message& message);
   void take_command(std::uint64_t session, const std::string& command);
@@ -85,8 +87,8 @@ class Page final : public Site {
   void send_session(Session& session) const;
 
   const Options options_;
-  Access& access_;
-  Server& server_;
+  web::Access& access_;
+  web::Server& server_;
   Robot& robot_;
   const Hears hears_;
   const hc::SystemClock clock_;
@@ -94,11 +96,11 @@ class Page final : public Site {
   Sessions sessions_;
   std::map<std::string, std::unique_ptr<Stream>> streams_;  // by port
   std::map<std::uint64_t, Watched> watched_;
-  std::shared_ptr<WebSocket> driver_socket_;
+  std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
   std::unique_ptr<Recorder> recorder_;
-  Bytes state_;            // the last
-  std::deque<Bytes> log_;  // the last lines
+  web::Bytes state_;            // the last
+  std::deque<web::Bytes> log_;  // the last lines
   std::int64_t answers_ = 0;
-  std::unique_ptr<GraphClient> graph_;  // last: its threads call the above
+  std::unique_ptr<web::GraphClient> graph_;  // last: its threads call the above
 };

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -135,68 +136,68 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
   return std::unique_ptr<Recorder>(new Recorder(graph, path, name, ports, std::move(log)));
 }
 
-Recorder::Recorder(hc::RunningGraph graph, std::string path, std::string name,
-                   std::vector<std::string> ports, hc::LogSink log)
-    : graph_(std::move(graph)),
-      path_(std::move(path)),
-      name_(std::move(name)),
-      ports_(std::move(ports)),
-      log_(std::move(log)) {
-  for (const auto& port : ports_) threads_.emplace_back([this, &port] { record(port); });
+/// An output and its file. What has been received is written when it is destroyed.
+class Recorder::Track {
+ public:
+  Track(const hc::RunningGraph& graph, std::string port, std::string path,
+        std::atomic<std::uint64_t>& bytes, hc::LogSink log)
+      : port_(std::move(port)), path_(std::move(path)), bytes_(bytes), log_(std::move(log)) {
+    observer_.emplace(
+        graph, port_,
+        web::Observer::Hears{.open = [this] { open(); },
+                             .message = [this](const hc::Message& message) { write(message); },
+                             .end =
+                                 [this](const std::string& why, bool is_error) {
+                                   if (is_error) fail(why);
+                                 }});
+  }
+  ~Track() {
+    observer_.reset();
+    if (!sink_) return;
+    if (auto closed = sink_->close(); !closed) fail(closed.error().detail);
+  }
+  Track(const Track&) = delete;
+  Track& operator=(const Track&) = delete;
+
+ private:
+  // On the observer's thread.
+  void open() {
+    auto sink = hc::open_sink({"file", path_, {}});
+    if (!sink) return fail(sink.error().detail);
+    sink_ = std::move(*sink);
+  }
+  void write(const hc::Message& message) {
+    if (!sink_) return;
+    // Images of u8 would fill the disk; all else is kept as it is.
+    auto kept = hc::expand(message);
+    if (kept && is_picture(kept->header) && kept->header.info.components != 4)
+      kept = hc::compress(*kept, hc::Encoding::Jpeg);
+    if (!kept) return fail(kept.error().detail);
+    if (auto sent = sink_->send(*kept); !sent) return fail(sent.error().detail);
+    bytes_ += kept->elements.size();
+  }
+  void fail(const std::string& why) {
+    log_(hc::Severity::Error, "recording of " + port_ + " ended: " + why);
+    sink_.reset();
+  }
+
+  const std::string port_, path_;
+  std::atomic<std::uint64_t>& bytes_;
+  const hc::LogSink log_;
+  std::unique_ptr<hc::Sink> sink_;  // null: before it is open, and once it has failed
+  std::optional<web::Observer> observer_;
+};
+
+Recorder::Recorder(const hc::RunningGraph& graph, std::string path, std::string name,
+                   std::vector<std::string> ports, const hc::LogSink& log)
+    : path_(std::move(path)), name_(std::move(name)), ports_(std::move(ports)) {
+  for (const auto& port : ports_)
+    tracks_.push_back(std::make_unique<Track>(
+        graph, port, path_ + "/" + port + std::string(kEnding), bytes_, log));
 }
 
-Recorder::~Recorder() {
-  stop_.set();
-  for (auto& thread : threads_) thread.join();
-}
+Recorder::~Recorder() = default;
 
 double Recorder::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
-}
-
-void Recorder::record(const std::string& port) {
-  auto observation = hc::Observation::make(graph_, port, stop_.descriptor());
-  if (!observation) {
-    if (observation.error().code != hc::Code::Stopped)
-      log_(hc::Severity::Error, "not recorded: " + port + ": " + observation.error().detail);
-    return;
-  }
-  write(port, std::move(*observation));
-}
-
-void Recorder::write(const std::string& port, hc::Observation observation) {
-  constexpr std::chrono::seconds kRenewal{1};
-  hc::LinkOptions options;
-  options.stop = stop_.descriptor();
-  auto uri = hc::parse_uri(observation.uri());
-  auto source = hc::open_source(*uri, options);
-  auto sink = hc::open_sink({"file", path_ + "/" + port + std::string(kEnding), {}});
-  auto fail = [&](const hc::Error& error) {
-    if (error.code != hc::Code::Stopped)
-      log_(hc::Severity::Error, "recording of " + port + " ended: " + error.detail);
-  };
-  if (!source) return fail(source.error());
-  if (!sink) return fail(sink.error());
-  auto renewed = std::chrono::steady_clock::now();
-  hc::Message message;
-  while (true) {
-    const auto got = (*source)->take(message);
-    if (!got) return fail(got.error());
-    if (*got == hc::Got::End) return;
-    if (*got == hc::Got::Message) {
-      // Images of u8 would fill the disk; all else is kept as it is.
-      auto kept = hc::expand(message);
-      if (kept && is_picture(kept->header) && kept->header.info.components != 4)
-        kept = hc::compress(*kept, hc::Encoding::Jpeg);
-      if (!kept) return fail(kept.error());
-      if (auto sent = (*sink)->send(*kept); !sent) return fail(sent.error());
-      bytes_ += kept->elements.size();
-    } else if (auto waited = (*source)->wait(stop_.descriptor(), kRenewal); !waited) {
-      break;
-    }
-    if (std::chrono::steady_clock::now() - renewed < kRenewal) continue;
-    renewed = std::chrono::steady_clock::now();
-    if (!observation.renew()) break;
-  }
-  if (auto closed = (*sink)->close(); !closed) fail(closed.error());
 }

@@ -9,12 +9,12 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
-#include <hc/observe/running.h>
+#include <hc/base/log.h>
+#include <web/observer.h>
 
-#include "event.h"
+namespace web = hc::web;
 
 /// Whether a recording may be called so: 1 to 40 letters, digits, `-` and `_`.
 bool is_recording_name(std::string_view name);
@@ -34,7 +34,7 @@ std::vector<Recorded> list_recordings(const std::string& folder);
 /// @returns  its path. Errors: NotFound, System.
 hc::Result<std::string> write_archive(const std::string& folder, const std::string& name);
 
-/// A recording that is being made.
+/// A recording that is being made, until it is destroyed.
 class Recorder {
  public:
   /// Errors: Invalid (a name or port that is none; the recording exists), System.
@@ -43,7 +43,6 @@ class Recorder {
                                                      const std::string& name,
                                                      const std::vector<std::string>& ports,
                                                      hc::LogSink log);
-  /// Ends it; what has been received is written.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -54,17 +53,14 @@ class Recorder {
   [[nodiscard]] double seconds() const;
 
  private:
-  Recorder(hc::RunningGraph graph, std::string path, std::string name,
-           std::vector<std::string> ports, hc::LogSink log);
-  void record(const std::string& port);
-  void write(const std::string& port, hc::Observation observation);
+  class Track;
 
-  const hc::RunningGraph graph_;
+  Recorder(const hc::RunningGraph& graph, std::string path, std::string name,
+           std::vector<std::string> ports, const hc::LogSink& log);
+
   const std::string path_, name_;
   const std::vector<std::string> ports_;
-  const hc::LogSink log_;
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
-  Event stop_;
   std::atomic<std::uint64_t> bytes_{0};
-  std::vector<std::thread> threads_;
+  std::vector<std::unique_ptr<Track>> tracks_;
 };

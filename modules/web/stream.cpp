@@ -10,7 +10,6 @@
 
 namespace {
 
-constexpr std::chrono::seconds kRenewal{1};             // of the observation
 constexpr std::chrono::milliseconds kHeader{500};       // between header lines
 constexpr std::chrono::milliseconds kBetweenKeys{500};  // of VP8, for a page that missed frames
 constexpr int kQuality = 80;                            // of JPEG
@@ -26,7 +25,7 @@ bool read_number(std::string_view text, Number max, Number& number) {
 }
 
 /// A message in binary encoding, which it may be in already.
-Bytes bytes_of(hc::Message message) {
+web::Bytes bytes_of(hc::Message message) {
   if (message.header.info.encoding == hc::Encoding::Text)
     message.header.info.encoding = hc::Encoding::Binary;
   return std::make_shared<const std::string>(hc::encode(message));
@@ -64,20 +63,16 @@ hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted) {
   return wanted;
 }
 
-Stream::Stream(hc::RunningGraph graph, std::string port, Post post)
-    : graph_(std::move(graph)),
-      port_(std::move(port)),
-      post_(std::move(post)),
-      thread_([this] { run(); }) {}
-
-Stream::~Stream() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_stopped_ = true;
-  }
-  wake_.set();
-  thread_.join();
-}
+Stream::Stream(hc::RunningGraph graph, std::string port, web::Post post)
+    : post_(std::move(post)),
+      observer_(std::move(graph), std::move(port),
+                {.message =
+                     [this](const hc::Message& message) {
+                       newest_ = message.keep();
+                       ++number_;
+                     },
+                 .idle = [this] { return serve(); },
+                 .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
 
 void Stream::call(const std::shared_ptr<Seat>& seat, std::function<void(const Hears&)> what) const {
   post_([weak = std::weak_ptr(seat), what = std::move(what)] {
@@ -94,7 +89,7 @@ std::unique_ptr<Stream::Viewer> Stream::view(const Wanted& wanted, Hears hears) 
   if (!ended_.empty())
     call(seat,
          [why = ended_, is_error = is_error_](const Hears& page) { page.end(why, is_error); });
-  if (is_open_) wake_.set();
+  observer_.wake();
   return std::make_unique<Viewer>(*this, std::move(seat));
 }
 
@@ -107,57 +102,14 @@ void Stream::end(const std::string& why, bool is_error) {
   const std::lock_guard lock(mutex_);
   ended_ = why;
   is_error_ = is_error;
-  is_open_ = false;
   for (const auto& seat : seats_)
     call(seat, [why, is_error](const Hears& page) { page.end(why, is_error); });
 }
 
-void Stream::run() {
-  auto observation = hc::Observation::make(graph_, port_, wake_.descriptor());
-  if (!observation) return end(observation.error().detail, true);
-  hc::LinkOptions options;
-  options.stop = wake_.descriptor();
-  auto source = hc::open_source(hc::parse_uri(observation->uri()).value(), options);
-  if (!source) return end(source.error().detail, true);
-  {
-    const std::lock_guard lock(mutex_);
-    is_open_ = true;
-  }
-  hc::Message message, newest;
-  std::uint64_t number = 0;
-  auto renewed = Clock::now();
-  while (true) {
-    const auto got = (*source)->take(message);
-    if (!got) return end(got.error().detail, true);
-    if (*got == hc::Got::End) return end("the stream has ended", false);
-    if (*got == hc::Got::Message) {
-      newest = message.keep();
-      ++number;
-      continue;  // a newer one may be there
-    }
-    message = {};
-    auto next = renewed + kRenewal;
-    if (number > 0) next = std::min(next, serve(newest, number));
-    const auto now = Clock::now();
-    if (now >= renewed + kRenewal) {
-      if (!observation->renew()) return end("the graph has ended", false);
-      renewed = now;
-      continue;
-    }
-    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - now);
-    const auto waited =
-        (*source)->wait(wake_.descriptor(), std::max(wait, std::chrono::milliseconds(0)));
-    if (waited) continue;
-    if (waited.error().code != hc::Code::Stopped) return end(waited.error().detail, true);
-    wake_.clear();
-    const std::lock_guard lock(mutex_);
-    if (is_stopped_) return;
-  }
-}
-
-Stream::Clock::time_point Stream::serve(const hc::Message& newest, std::uint64_t number) {
+Stream::Clock::time_point Stream::serve() {
   const auto now = Clock::now();
   auto next = Clock::time_point::max();
+  if (number_ == 0) return next;
   struct Alike {
     Wanted wanted;
     Seats seats;
@@ -167,7 +119,7 @@ Stream::Clock::time_point Stream::serve(const hc::Message& newest, std::uint64_t
     const std::lock_guard lock(mutex_);
     for (const auto& seat : seats_) {
       if (std::exchange(seat->has_changed, false)) seat->needs_key = true;
-      if (seat->seen == number || seat->under_way >= kMaxUnderWay) continue;
+      if (seat->seen == number_ || seat->under_way >= kMaxUnderWay) continue;
       if (now < seat->due) {
         next = std::min(next, seat->due);
         continue;
@@ -184,17 +136,17 @@ Stream::Clock::time_point Stream::serve(const hc::Message& newest, std::uint64_t
   }
   for (const auto& [what, alike] : all) {
     for (const auto& seat : alike.seats) {
-      if (seat->seen + 1 != number) seat->needs_key = true;  // it missed some
-      seat->seen = number;
+      if (seat->seen + 1 != number_) seat->needs_key = true;  // it missed some
+      seat->seen = number_;
     }
-    serve_alike(alike.wanted, alike.seats, newest);
+    serve_alike(alike.wanted, alike.seats);
   }
   return next;
 }
 
-void Stream::serve_alike(const Wanted& wanted, const Seats& seats, const hc::Message& newest) {
+void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
   const auto now = Clock::now();
-  auto made = hc::expand(newest);
+  auto made = hc::expand(newest_);
   if (made) made = scaled(*made, wanted.width);
   const bool is_image = made && is_picture(made->header);
   const bool is_video = is_image && wanted.form == Form::Vp8;
@@ -214,8 +166,8 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats, const hc::Mes
       call(seat, [why = made.error().detail](const Hears& page) { page.end(why, true); });
     return;
   }
-  const Bytes bytes = bytes_of(*made);
-  const std::string header = hc::text(newest.header);
+  const web::Bytes bytes = bytes_of(*made);
+  const std::string header = hc::text(newest_.header);
   for (const auto& seat : seats) {
     if (is_video && seat->needs_key && !is_key) {  // it could not show this one
       const std::lock_guard lock(mutex_);
@@ -240,7 +192,7 @@ Stream::Viewer::~Viewer() {
 void Stream::Viewer::acknowledge() {
   const std::lock_guard lock(stream_.mutex_);
   if (seat_->under_way > 0) --seat_->under_way;
-  if (stream_.is_open_) stream_.wake_.set();
+  stream_.observer_.wake();
 }
 
 Wanted Stream::Viewer::wanted() const {
@@ -253,5 +205,5 @@ void Stream::Viewer::want(const Wanted& wanted) {
   if (wanted.form != seat_->wanted.form || wanted.width != seat_->wanted.width)
     seat_->has_changed = true;
   seat_->wanted = wanted;
-  if (stream_.is_open_) stream_.wake_.set();
+  stream_.observer_.wake();
 }

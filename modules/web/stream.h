@@ -10,17 +10,15 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include <hc/observe/running.h>
+#include <web/observer.h>
+#include <web/server.h>
 
 #include "encoder.h"
-#include "event.h"
 
-/// Bytes that several pages are sent.
-using Bytes = std::shared_ptr<const std::string>;
+namespace web = hc::web;
 
 /// What a page wants of a stream.
 struct Wanted {
@@ -37,23 +35,20 @@ class Stream {
   /// Called on the server's thread.
   struct Hears {
     std::function<void(std::string header)> header;  ///< as it was sent
-    std::function<void(Bytes)> message;
+    std::function<void(web::Bytes)> message;
     /// The stream is at its end. @param is_error  there is no such output, or it failed.
     std::function<void(const std::string& why, bool is_error)> end;
   };
   /// A page that sees a stream; unsees it when it is destroyed.
   class Viewer;
 
-  Stream(hc::RunningGraph graph, std::string port, Post post);
-  ~Stream();
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
+  Stream(hc::RunningGraph graph, std::string port, web::Post post);
 
   [[nodiscard]] std::unique_ptr<Viewer> view(const Wanted& wanted, Hears hears);
   [[nodiscard]] bool is_viewed();
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = web::Observer::Clock;
   static constexpr int kMaxUnderWay = 2;  // messages that a page is not done with
 
   /// A page, as the stream sees it.
@@ -75,24 +70,24 @@ class Stream {
     Clock::time_point key_due{};  // before, no other key frame is made
   };
 
-  void run();
+  // On the observer's thread.
   /// Gives the newest message to those who are ready for it. @returns  when the next one is.
-  Clock::time_point serve(const hc::Message& newest, std::uint64_t number);
-  void serve_alike(const Wanted& wanted, const Seats& seats, const hc::Message& newest);
+  Clock::time_point serve();
+  void serve_alike(const Wanted& wanted, const Seats& seats);
   /// Calls a page on the server's thread, if it is still there then.
   void call(const std::shared_ptr<Seat>& seat, std::function<void(const Hears&)> what) const;
   void end(const std::string& why, bool is_error);
 
-  const hc::RunningGraph graph_;
-  const std::string port_;
-  const Post post_;
-  Event wake_;
+  const web::Post post_;
   std::mutex mutex_;
   Seats seats_;
   std::string ended_;  // why; empty: it has not
-  bool is_error_ = false, is_stopped_ = false, is_open_ = false;
+  bool is_error_ = false;
+  // Of the observer's thread.
+  hc::Message newest_;
+  std::uint64_t number_ = 0;     // of the newest message; 0: there is none
   std::map<int, Video> videos_;  // by width
-  std::thread thread_;
+  web::Observer observer_;       // last: its thread calls the above
 };
 
 class Stream::Viewer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identity.h"
+#include <web/identity.h>
 
 #include <fcntl.h>
 #include <openssl/evp.h>
@@ -17,6 +17,8 @@
 
 #include <hc/os/program.h>
 
+namespace hc::web {
+
 namespace {
 
 template <auto kFree>
@@ -30,8 +32,8 @@ using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
 using Certificate = std::unique_ptr<X509, Free<X509_free>>;
 using Bio = std::unique_ptr<BIO, Free<BIO_free_all>>;
 
-hc::Error failed(const std::string& what) {
-  return {hc::Code::System, "certificate: cannot " + what};
+Error failed(const std::string& what) {
+  return {Code::System, "certificate: cannot " + what};
 }
 
 std::string text_of(BIO* bio) {
@@ -47,10 +49,10 @@ std::string read_file(const std::string& path) {
   return text.str();
 }
 
-hc::Status write_secret(const std::string& path, const std::string& text) {
+Status write_secret(const std::string& path, const std::string& text) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (file < 0) return failed("write " + path);
-  auto written = hc::write_all(file, text);
+  auto written = write_all(file, text);
   ::close(file);
   return written;
 }
@@ -60,7 +62,7 @@ Certificate read_certificate(const std::string& text) {
   return Certificate(PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr));
 }
 
-hc::Result<Identity> make_identity() {
+Result<Identity> make_identity() {
   const Key key(EVP_EC_gen("P-256"));
   const Certificate certificate(X509_new());
   if (!key || !certificate) return failed("make a key");
@@ -87,14 +89,14 @@ hc::Result<Identity> make_identity() {
 
 }  // namespace
 
-hc::Result<Identity> load_identity(const std::string& folder) {
+Result<Identity> load_identity(const std::string& folder) {
   const std::string certificate = folder + "/page_certificate.pem", key = folder + "/page_key.pem";
   Identity identity{read_file(certificate), read_file(key)};
   if (!identity.certificate.empty() && !identity.key.empty()) {
     if (!read_certificate(identity.certificate))
-      return hc::Error{hc::Code::Malformed, certificate +
-                                                " is no certificate; delete it to have "
-                                                "a new one made"};
+      return Error{Code::Malformed, certificate +
+                                        " is no certificate; delete it to have "
+                                        "a new one made"};
     return identity;
   }
   auto made = make_identity();
@@ -107,7 +109,7 @@ hc::Result<Identity> load_identity(const std::string& folder) {
   return made;
 }
 
-hc::Result<std::string> fingerprint(const std::string& certificate) {
+Result<std::string> fingerprint(const std::string& certificate) {
   const auto parsed = read_certificate(certificate);
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
   unsigned size = 0;
@@ -128,3 +130,5 @@ std::string settings_folder() {
   const char* home = std::getenv("HOME");
   return std::string(home != nullptr ? home : ".") + "/.config/hypercolumn";
 }
+
+}  // namespace hc::web

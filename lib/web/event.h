@@ -10,6 +10,8 @@
 
 #include <hc/base/check.h>
 
+namespace hc::web {
+
 /// Has a function called on the server's thread, soon. From any thread.
 using Post = std::function<void(std::function<void()>)>;
 
@@ -36,3 +38,5 @@ class Event {
  private:
   int descriptor_;
 };
+
+}  // namespace hc::web

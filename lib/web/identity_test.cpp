@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identity.h"
+#include <web/identity.h>
 
 #include <sys/stat.h>
 
@@ -7,6 +7,8 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+
+namespace hc::web {
 
 namespace {
 
@@ -29,8 +31,10 @@ TEST(Identity, is_made_once_and_kept_for_its_user_alone) {
   std::ofstream(folder / "deeper/page_certificate.pem") << "nonsense";
   const auto broken = load_identity(folder / "deeper");
   ASSERT_FALSE(broken);
-  EXPECT_EQ(broken.error().code, hc::Code::Malformed);
+  EXPECT_EQ(broken.error().code, Code::Malformed);
   fs::remove_all(folder);
 }
 
 }  // namespace
+
+}  // namespace hc::web

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+namespace hc::web {
+
 enum class Right { View, Drive };
 
 /// Where the server is reached.
@@ -64,3 +66,5 @@ std::string own_address();
 
 /// 128 bits that nobody guesses, in hexadecimal digits.
 std::string make_secret();
+
+}  // namespace hc::web

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server.h"
+#include <web/server.h>
 
 #include <deque>
 #include <optional>
@@ -17,6 +17,8 @@
 #include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
+
+namespace hc::web {
 
 namespace {
 
@@ -311,12 +313,12 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
 class BeastServer final : public Server {
  public:
-  explicit BeastServer(hc::LogSink log) : log_(std::move(log)) {}
+  explicit BeastServer(LogSink log) : log_(std::move(log)) {}
 
-  hc::Status open(const std::string& address, std::uint16_t first, int ports) {
+  Status open(const std::string& address, std::uint16_t first, int ports) {
     beast::error_code error;
     const auto parsed = asio::ip::make_address(address, error);
-    if (error) return hc::Error{hc::Code::Invalid, "listen: \"" + address + "\" is no IP address"};
+    if (error) return Error{Code::Invalid, "listen: \"" + address + "\" is no IP address"};
     for (int i = 0; i < ports; ++i) {
       const tcp::endpoint place(parsed, static_cast<std::uint16_t>(first == 0 ? 0 : first + i));
       acceptor_ = tcp::acceptor(context_);
@@ -328,12 +330,12 @@ class BeastServer final : public Server {
       if (!error || error != asio::error::address_in_use) break;
     }
     if (error)
-      return hc::Error{hc::Code::System, "listen on " + address + ", port " +
-                                             std::to_string(first) + ": " + error.message()};
+      return Error{Code::System, "listen on " + address + ", port " + std::to_string(first) + ": " +
+                                     error.message()};
     return {};
   }
 
-  hc::Status use(const Identity& identity) {
+  Status use(const Identity& identity) {
     // TLS 1.3 alone.
     using Tls = asio::ssl::context;
     secure_.emplace(Tls::tls_server);
@@ -343,7 +345,7 @@ class BeastServer final : public Server {
                          error);
     if (!error) secure_->use_certificate_chain(asio::buffer(identity.certificate), error);
     if (!error) secure_->use_private_key(asio::buffer(identity.key), Tls::pem, error);
-    if (error) return hc::Error{hc::Code::System, "certificate: " + error.message()};
+    if (error) return Error{Code::System, "certificate: " + error.message()};
     return {};
   }
 
@@ -382,7 +384,7 @@ class BeastServer final : public Server {
     acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error) {
         // No descriptors are left, as a rule: the next attempt is not to be at once.
-        log_(hc::Severity::Warning, "page: accept: " + error.message());
+        log_(Severity::Warning, "page: accept: " + error.message());
         auto timer = std::make_shared<asio::steady_timer>(context_, std::chrono::seconds(1));
         return timer->async_wait([this, timer](beast::error_code) { accept(); });
       }
@@ -400,7 +402,7 @@ class BeastServer final : public Server {
       std::make_shared<Connection<Plain>>(Plain(std::move(socket)), counted)->begin();
   }
 
-  hc::LogSink log_;
+  LogSink log_;
   std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
   std::optional<asio::ssl::context> secure_;
   asio::io_context context_{1};
@@ -409,12 +411,13 @@ class BeastServer final : public Server {
 
 }  // namespace
 
-hc::Result<std::unique_ptr<Server>> Server::listen(const std::string& address, std::uint16_t port,
-                                                   int ports, const Identity* identity,
-                                                   hc::LogSink log) {
+Result<std::unique_ptr<Server>> Server::listen(const std::string& address, std::uint16_t port,
+                                               int ports, const Identity* identity, LogSink log) {
   auto server = std::make_unique<BeastServer>(std::move(log));
   if (auto opened = server->open(address, port, ports); !opened) return opened.error();
   if (identity != nullptr)
     if (auto used = server->use(*identity); !used) return used.error();
   return std::unique_ptr<Server>(std::move(server));
 }
+
+}  // namespace hc::web

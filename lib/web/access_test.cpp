@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "access.h"
+#include <web/access.h>
 
 #include <gtest/gtest.h>
+
+namespace hc::web {
 
 namespace {
 
@@ -78,3 +80,5 @@ TEST(Access, secrets_differ_and_the_oldest_tokens_are_forgotten) {
 }
 
 }  // namespace
+
+}  // namespace hc::web

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "qr.h"
+#include <web/qr.h>
 
 #include <qrencode.h>
 
 #include <memory>
+
+namespace hc::web {
 
 std::vector<std::string> qr_lines(const std::string& text) {
   const std::unique_ptr<QRcode, void (*)(QRcode*)> code(
@@ -24,3 +26,5 @@ std::vector<std::string> qr_lines(const std::string& text) {
   }
   return lines;
 }
+
+}  // namespace hc::web

@@ -16,7 +16,10 @@
 #include <hc/base/log.h>
 #include <hc/base/result.h>
 
-#include "stream.h"
+namespace hc::web {
+
+/// Bytes that several are sent.
+using Bytes = std::shared_ptr<const std::string>;
 
 struct Request {
   std::string path;   ///< "/streams/eyes.left", decoded
@@ -73,9 +76,8 @@ class Server {
   /// @param port  the first that is tried of `ports`; 0: any that is free.
   /// @param identity  null: no TLS.
   /// Errors: Invalid (the address is none), System (no port is free; the identity is of no use).
-  static hc::Result<std::unique_ptr<Server>> listen(const std::string& address, std::uint16_t port,
-                                                    int ports, const Identity* identity,
-                                                    hc::LogSink log);
+  static Result<std::unique_ptr<Server>> listen(const std::string& address, std::uint16_t port,
+                                                int ports, const Identity* identity, LogSink log);
 
   [[nodiscard]] virtual std::uint16_t port() const = 0;
   /// Serves a site until stop().
@@ -87,3 +89,5 @@ class Server {
   /// Calls a function periodically, until it ends. To be called before run().
   virtual void every(std::chrono::milliseconds period, std::function<void()> call) = 0;
 };
+
+}  // namespace hc::web

@@ -13,18 +13,20 @@
 #include <hc/mtp/message.h>
 #include <hc/observe/running.h>
 
-#include "event.h"
+#include <web/event.h>
+
+namespace hc::web {
 
 class GraphClient {
  public:
   /// Called on the server's thread.
   struct Hears {
-    std::function<void(const hc::Message&)> message;  ///< a state or a line of the log, by its src
-    std::function<void()> end;                        ///< the graph has ended
+    std::function<void(const Message&)> message;  ///< a state or a line of the log, by its src
+    std::function<void()> end;                    ///< the graph has ended
   };
   using Answered = std::function<void(const std::vector<std::string>& rows)>;
 
-  GraphClient(hc::RunningGraph graph, Post post, Hears hears);
+  GraphClient(RunningGraph graph, Post post, Hears hears);
   ~GraphClient();
   GraphClient(const GraphClient&) = delete;
   GraphClient& operator=(const GraphClient&) = delete;
@@ -39,9 +41,9 @@ class GraphClient {
     Answered answered;
   };
   void listen();
-  void ask();
+  void work();
 
-  const hc::RunningGraph graph_;
+  const RunningGraph graph_;
   const Post post_;
   const Hears hears_;
   Event stop_;
@@ -51,3 +53,5 @@ class GraphClient {
   bool is_stopped_ = false;
   std::thread listener_, asker_;
 };
+
+}  // namespace hc::web

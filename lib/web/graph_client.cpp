@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph_client.h"
+#include <web/graph_client.h>
 
 #include <utility>
 
-GraphClient::GraphClient(hc::RunningGraph graph, Post post, Hears hears)
+namespace hc::web {
+
+GraphClient::GraphClient(RunningGraph graph, Post post, Hears hears)
     : graph_(std::move(graph)),
       post_(std::move(post)),
       hears_(std::move(hears)),
       listener_([this] { listen(); }),
-      asker_([this] { ask(); }) {}
+      asker_([this] { work(); }) {}
 
 GraphClient::~GraphClient() {
   {
@@ -33,15 +35,15 @@ void GraphClient::command(std::string command, Answered answered) {
 }
 
 void GraphClient::listen() {
-  hc::LinkOptions options;
-  options.limits.element_bytes = hc::kMaxStateBytes;
+  LinkOptions options;
+  options.limits.element_bytes = kMaxStateBytes;
   options.stop = stop_.descriptor();
-  auto source = hc::open_source(hc::parse_uri(graph_.state_uri()).value(), options);
-  hc::Message message;
+  auto source = open_source(parse_uri(graph_.state_uri()).value(), options);
+  Message message;
   while (source) {
     const auto got = (*source)->take(message);
-    if (!got || *got == hc::Got::End) break;
-    if (*got == hc::Got::Message)
+    if (!got || *got == Got::End) break;
+    if (*got == Got::Message)
       post_([this, kept = message.keep()] { hears_.message(kept); });
     else if (!(*source)->wait(stop_.descriptor()))
       return;  // stopped
@@ -49,7 +51,7 @@ void GraphClient::listen() {
   post_([this] { hears_.end(); });
 }
 
-void GraphClient::ask() {
+void GraphClient::work() {
   while (true) {
     std::unique_lock lock(mutex_);
     asked_.wait(lock, [&] { return is_stopped_ || !commands_.empty(); });
@@ -67,3 +69,5 @@ void GraphClient::ask() {
     post_([answered = std::move(answered), rows = std::move(rows)] { answered(rows); });
   }
 }
+
+}  // namespace hc::web

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "access.h"
+#include <web/access.h>
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -10,6 +10,8 @@
 #include <array>
 
 #include <hc/base/check.h>
+
+namespace hc::web {
 
 namespace {
 
@@ -130,3 +132,5 @@ std::optional<Right> Access::right_of(std::string_view cookies) const {
   }
   return std::nullopt;
 }
+
+}  // namespace hc::web

@@ -7,16 +7,20 @@
 
 #include <hc/base/result.h>
 
-#include "server.h"
+#include <web/server.h>
+
+namespace hc::web {
 
 /// Reads the certificate and key in a folder, page_certificate.pem and page_key.pem, or makes them:
 /// P-256, self-signed, for 20 years. The key can be read by its user alone.
 ///
 /// Errors: System (the folder cannot be written), Malformed (a file holds something else).
-hc::Result<Identity> load_identity(const std::string& folder);
+Result<Identity> load_identity(const std::string& folder);
 
 /// The SHA-256 fingerprint of a certificate, as browsers show it: "AB:CD:…".
-hc::Result<std::string> fingerprint(const std::string& certificate);
+Result<std::string> fingerprint(const std::string& certificate);
 
 /// Where a user's settings are: $XDG_CONFIG_HOME/hypercolumn or ~/.config/hypercolumn.
 std::string settings_folder();
+
+}  // namespace hc::web
