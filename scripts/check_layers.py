@@ -27,8 +27,9 @@ ALLOWED = {
     "room": {"base", "graphics"},
     "sound": {"base"},
     "web": {"base", "os", "mtp", "link", "observe"},
+    "ros": {"base", "mtp", "contract"},
     "drivers": {"base"},
-    "modules": {"base", "os", "mtp", "contract", "compress", "module", "observe", "drivers"}
+    "modules": {"base", "os", "mtp", "contract", "compress", "module", "observe", "ros", "drivers"}
     | PACKAGES,
     "tools": {"base", "os", "mtp", "contract", "compress", "link", "observe", "graph", "frames"},
 }
@@ -55,7 +56,7 @@ def layer_of(path):
 def layer_of_include(name):
     inner = name[1:-1]
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|room|sound|gaze|web|drivers)/", inner
+        r"(frames|vision|graphics|room|sound|gaze|web|ros|drivers)/", inner
     )
     return match[1] if match else None
 
