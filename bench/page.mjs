@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page on the simulated head: node page.mjs. Rates and ages of both eyes' images, motion to photon
 // and its parts, the server's load; then what 20 pages, five of them stopped, cost the head. Minutes.
-import { readFileSync } from "node:fs";
 import { Graph, openBrowser, watchdog } from "../tests/page/harness.mjs";
+import { countDrawn, memory, quantile, row, ticks, wait } from "./page_measure.mjs";
 
 const pushes = 20;
 const pages = 20;
 const stopped = 5;
 const seconds = 10;
-
-const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-const quantile = (values, part) =>
-  [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(part * values.length))];
-const row = (...cells) => console.log(`| ${cells.join(" | ")} |`);
-
-/** Ticks of the processor that a process has had; 100 a second. */
-function ticks(pid) {
-  const words = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
-  return Number(words[11]) + Number(words[12]);
-}
-const memory = (pid) => Number(readFileSync(`/proc/${pid}/statm`, "utf8").split(" ")[1]) * 4096;
 
 /** Messages a second of an output over some seconds, and the share of a processor of `web`. */
 async function measure(graph, link) {
@@ -35,7 +23,7 @@ async function measure(graph, link) {
   return {
     rate: (later - messages) / (end - uptime),
     load: (ticks(pid) - begin) / (end - uptime),
-    memory: memory(pid) / 1e6,
+    memory: memory(pid),
   };
 }
 
@@ -59,14 +47,7 @@ try {
   // Both eyes at full size, as any client sees them: decoded in the page.
   await page.goto(`${origin}/#stream,port=head_eyes.left|stream,port=head_eyes.right`);
   await page.reload();
-  await page.evaluate(() => {
-    const draw = CanvasRenderingContext2D.prototype.drawImage;
-    window.drawn = 0;
-    CanvasRenderingContext2D.prototype.drawImage = function (...all) {
-      window.drawn += 1;
-      return draw.apply(this, all);
-    };
-  });
+  await countDrawn(page);
   await wait(2000);
   const drawnBefore = await page.evaluate(() => window.drawn);
   const eyes = await measure(graph, "head_eyes.left");
