@@ -1,10 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/observer.h>
 
+#include <sched.h>
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <utility>
 
 namespace hc::web {
+namespace {
+
+/// Has this thread yield the processor to the robot's modules, which are not to wait for those who
+/// look on. What is refused changes nothing but the speed.
+void yield_to_robot() {
+  constexpr int kNice = 10;
+  static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNice));
+  const sched_param none{};
+  static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
+}
+
+}  // namespace
 
 Observer::Observer(RunningGraph graph, std::string port, Hears hears)
     : graph_(std::move(graph)),
@@ -23,6 +38,7 @@ void Observer::wake() {
 }
 
 void Observer::run() {
+  yield_to_robot();
   constexpr std::chrono::seconds kRenewal{1};
   auto end = [&](const std::string& why, bool is_error) {
     if (!is_stopped_) hears_.end(why, is_error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An output of a running graph, read on a thread of its own without disturbing the graph.
+// An output of a running graph, read on a thread of its own without disturbing the graph: it yields
+// the processor to the graph's modules.
 
 #include <atomic>
 #include <chrono>

@@ -95,8 +95,6 @@ int main(int argc, char** argv) {
       module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
                        {.min = 0, .max = 1e6});
 
-  module.background();  // pages never slow the robot
-
   Inbox inbox;
   Robot robot;
   std::optional<web::Access> access;

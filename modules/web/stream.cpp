@@ -117,8 +117,13 @@ Stream::Clock::time_point Stream::serve() {
   std::map<std::pair<Form, int>, Alike> all;
   {
     const std::lock_guard lock(mutex_);
+    std::erase_if(videos_, [&](const auto& video) {
+      return std::ranges::none_of(seats_, [&](const auto& seat) {
+        return seat->wanted.form == Form::Vp8 && seat->wanted.width == video.first;
+      });
+    });
     for (const auto& seat : seats_) {
-      if (std::exchange(seat->has_changed, false)) seat->needs_key = true;
+      if (std::exchange(seat->has_changed, false)) seat->frame = 0;
       if (seat->seen == number_ || seat->under_way >= kMaxUnderWay) continue;
       if (now < seat->due) {
         next = std::min(next, seat->due);
@@ -135,10 +140,7 @@ Stream::Clock::time_point Stream::serve() {
     }
   }
   for (const auto& [what, alike] : all) {
-    for (const auto& seat : alike.seats) {
-      if (seat->seen + 1 != number_) seat->needs_key = true;  // it missed some
-      seat->seen = number_;
-    }
+    for (const auto& seat : alike.seats) seat->seen = number_;
     serve_alike(alike.wanted, alike.seats);
   }
   return next;
@@ -149,17 +151,18 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
   auto made = hc::expand(newest_);
   if (made) made = scaled(*made, wanted.width);
   const bool is_image = made && is_picture(made->header);
-  const bool is_video = is_image && wanted.form == Form::Vp8;
   if (is_image && wanted.form == Form::Jpeg && made->header.info.components != 4)
     made = hc::compress(*made, hc::Encoding::Jpeg, {.jpeg_quality = kQuality});
+  Video* video = nullptr;
   bool is_key = true;
-  if (is_video) {
-    Video& video = videos_[wanted.width];
+  if (is_image && wanted.form == Form::Vp8) {
+    video = &videos_[wanted.width];
     const bool needs_key =
-        std::ranges::any_of(seats, [](const auto& seat) { return seat->needs_key; });
-    made = video.encoder.encode(*made, needs_key && now >= video.key_due);
+        std::ranges::any_of(seats, [&](const auto& seat) { return seat->frame != video->frames; });
+    made = video->encoder.encode(*made, needs_key && now >= video->key_due);
+    ++video->frames;
     is_key = made && is_key_frame(*made);
-    if (is_key) video.key_due = now + kBetweenKeys;
+    if (is_key) video->key_due = now + kBetweenKeys;
   }
   if (!made) {
     for (const auto& seat : seats)
@@ -169,12 +172,14 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
   const web::Bytes bytes = bytes_of(*made);
   const std::string header = hc::text(newest_.header);
   for (const auto& seat : seats) {
-    if (is_video && seat->needs_key && !is_key) {  // it could not show this one
-      const std::lock_guard lock(mutex_);
-      --seat->under_way;
-      continue;
+    if (video != nullptr) {
+      if (!is_key && seat->frame + 1 != video->frames) {  // it could not show this one
+        const std::lock_guard lock(mutex_);
+        --seat->under_way;
+        continue;
+      }
+      seat->frame = video->frames;
     }
-    seat->needs_key = false;
     const bool has_header = now >= seat->header_due;
     if (has_header) seat->header_due = now + kHeader;
     call(seat, [bytes, text = has_header ? header : std::string()](const Hears& page) {

@@ -60,13 +60,14 @@ class Stream {
     // Of the stream's thread.
     std::uint64_t seen = 0;  // number of the newest message it was given
     Clock::time_point due{}, header_due{};
-    bool needs_key = true;  // of VP8
+    std::uint64_t frame = 0;  // number of the last frame of VP8 it was given, 0: none
     // Of the server's thread.
     Hears hears;
   };
   using Seats = std::vector<std::shared_ptr<Seat>>;
   struct Video {
     Vp8Encoder encoder;
+    std::uint64_t frames = 0;     // encoded
     Clock::time_point key_due{};  // before, no other key frame is made
   };
 

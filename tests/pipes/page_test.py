@@ -298,6 +298,20 @@ class Streams(Page):
             self.assertEqual((header[6], header[10]), (120101, 1))
             self.assertEqual(not frame[0] & 1, is_key)
             vp8.send("ok")
+        # Who missed images needs no key frame: the next one is coded after the last it was sent.
+        for _ in range(20):
+            self.assertIn(raw.next()[0], (TEXT, BINARY))
+            raw.send("ok")
+        sequences = []
+        for _ in range(3):
+            kind, data = vp8.next()
+            while kind == TEXT:
+                kind, data = vp8.next()
+            header, frame = message(data)
+            self.assertTrue(frame[0] & 1)
+            sequences.append(header[3])
+            vp8.send("ok")
+        self.assertGreater(max(b - a for a, b in zip(sequences, sequences[1:])), 2)
         table = self.socket("/streams/brightness.mean?as=jpeg&width=10", cookie)
         table.next()
         self.assertEqual(message(table.next()[1])[0][6], 120191)
