@@ -19,7 +19,8 @@ export class ImageView implements View {
   private readonly probe: Probe;
   private readonly endRoom: () => void;
   private shown?: { arrival: Arrival; sent: Header };
-  private latest = 0;
+  private turns = 0;
+  private shownTurn = 0;
 
   constructor(host: ViewHost) {
     this.decoder = new PictureDecoder(() => host.source.restart?.());
@@ -36,10 +37,11 @@ export class ImageView implements View {
   }
 
   async show(arrival: Arrival, sent: Header): Promise<void> {
-    const turn = ++this.latest;
+    const turn = ++this.turns;
     const picture = await this.decoder.decode(arrival.message, sent);
     if (!picture) return;
-    if (turn === this.latest) {
+    if (turn > this.shownTurn) {
+      this.shownTurn = turn;
       const [width, height] =
         "displayWidth" in picture
           ? [picture.displayWidth, picture.displayHeight]

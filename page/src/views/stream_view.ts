@@ -115,13 +115,15 @@ export class StreamView {
     if (!isVideo(arrival.message, sent)) this.past.push(arrival);
     if (!view.runsUnseen) await this.sight.seen();
     await this.view?.show(arrival, sent); // which may be another one by now
-    if (isVideo(arrival.message, sent)) await this.keepSnapshot(arrival.at);
+    if (isVideo(arrival.message, sent)) void this.keepSnapshot(arrival.at);
   }
 
+  /** Keeps what is shown now; the stream goes on meanwhile, since browsers encode when idle. */
   private async keepSnapshot(now: number): Promise<void> {
     if (now < this.lastSnapshot + snapshotPeriod) return;
-    this.lastSnapshot = now;
+    this.lastSnapshot = Infinity; // until this one is made
     const snapshot = await this.view?.snapshot?.();
+    this.lastSnapshot = now;
     if (snapshot) this.past.push(snapshot);
   }
 
