@@ -42,10 +42,15 @@ export class Graph {
   log = "";
 
   constructor(file, ...options) {
+    const programs = join(build, "tests/programs"); // those of tests
     this.process = spawn(
       hc,
       ["run", join(root, "graphs", file), "--as", this.name, "--set", "web.port=0", ...options],
-      { cwd: this.folder, stdio: ["ignore", "pipe", "pipe"] },
+      {
+        cwd: this.folder,
+        env: { ...process.env, PATH: `${programs}:${process.env.PATH}` },
+        stdio: ["ignore", "pipe", "pipe"],
+      },
     );
     const take = (data) => (this.log += data);
     this.process.stdout.on("data", take);

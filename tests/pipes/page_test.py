@@ -76,24 +76,36 @@ class Page(Graphs):
         self.addCleanup(opened.close)
         return opened
 
+    def next(self, graph):
+        """The next src and string; keeps the last session, which is sent only when it changes."""
+        kind, data = graph.next()
+        self.assertEqual(kind, BINARY, data)
+        header, elements = message(data)
+        width = header[9]
+        rows = [elements[i : i + width] for i in range(0, len(elements), width or 1)]
+        rows = [row.decode().rstrip() for row in rows]
+        if header[1] == 3:
+            graph.session = rows[0]
+        return header[1], rows
+
     def hear(self, graph, src, condition=lambda text: True):
-        """The next string of a src that is as wanted."""
+        """The next string of a src that is as wanted; of sessions the last one, if it is."""
+        last = getattr(graph, "session", None)
+        if src == 3 and last and condition(last):
+            return last
         while True:
-            kind, data = graph.next()
-            self.assertEqual(kind, BINARY, data)
-            header, elements = message(data)
-            if header[1] == src and condition(elements.decode().rstrip()):
-                return elements.decode().rstrip()
+            said, rows = self.next(graph)
+            text = "\n".join(rows)
+            if said == src and condition(text):
+                return text
 
     def command(self, graph, text):
         """The rows of an answer."""
         graph.send(text)
         while True:
-            header, elements = message(graph.next()[1])
-            if header[1] == 4:
-                width = header[9]
-                rows = [elements[i : i + width] for i in range(0, len(elements), width or 1)]
-                return [row.decode().rstrip() for row in rows]
+            src, rows = self.next(graph)
+            if src == 4:
+                return rows
 
 
 class Access(Page):

@@ -16,7 +16,17 @@ export async function bestEncoding(): Promise<"vp8" | "jpeg"> {
   }
 }
 
-const vp8: VideoDecoderConfig = { codec: "vp8", optimizeForLatency: true };
+const vp8: VideoDecoderConfig = {
+  codec: "vp8",
+  optimizeForLatency: true,
+  // VP8's own matrix (RFC 6386, 9.2); what browsers assume differs.
+  colorSpace: {
+    primaries: "bt709",
+    transfer: "iec61966-2-1",
+    matrix: "smpte170m",
+    fullRange: false,
+  },
+};
 
 export function isImage(header: Header): boolean {
   return header.type === "rgb_image" || header.type === "intensity_image";
