@@ -28,10 +28,33 @@ ALLOWED = {
     "sound": {"base"},
     "web": {"base", "os", "mtp", "link", "observe"},
     "ros": {"base", "mtp", "contract"},
+    "mcap": {"base", "os", "mtp", "link", "ros"},
     "drivers": {"base"},
-    "modules": {"base", "os", "mtp", "contract", "compress", "module", "observe", "ros", "drivers"}
+    "modules": {
+        "base",
+        "os",
+        "mtp",
+        "contract",
+        "compress",
+        "module",
+        "observe",
+        "ros",
+        "mcap",
+        "drivers",
+    }
     | PACKAGES,
-    "tools": {"base", "os", "mtp", "contract", "compress", "link", "observe", "graph", "frames"},
+    "tools": {
+        "base",
+        "os",
+        "mtp",
+        "contract",
+        "compress",
+        "link",
+        "observe",
+        "graph",
+        "frames",
+        "mcap",
+    },
 }
 CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "observe", "graph"}
 # The mtp layer is pure: no input or output, no threads, no clock.
@@ -56,7 +79,7 @@ def layer_of(path):
 def layer_of_include(name):
     inner = name[1:-1]
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|room|sound|gaze|web|ros|drivers)/", inner
+        r"(frames|vision|graphics|room|sound|gaze|web|ros|mcap|drivers)/", inner
     )
     return match[1] if match else None
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Recordings in MCAP as links, so that they go wherever a file of messages goes:
+// `kept.mcap`, and `kept.mcap?stream=head_eyes.left` for one of its streams.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hc/base/uri.h>
+#include <hc/link/link.h>
+#include <mcap/reader.h>
+
+namespace hc::mcap {
+
+/// The URI of a recording in MCAP: a file whose name ends in ".mcap". Nothing for all others.
+std::optional<Uri> recording_uri(std::string_view text);
+
+/// A stream of a recording.
+struct StreamInfo {
+  std::string name;         ///< "head_eyes.left"
+  std::string topic, type;  ///< of its messages of ROS 2; empty: it has none
+  std::uint64_t messages = 0;
+};
+/// The streams of a recording, by name; and how many other topics it has.
+std::vector<StreamInfo> streams(const Summary& summary);
+
+/// The messages of a recording, or of one of its streams, in the order in which they were recorded.
+/// resume() goes on behind what is damaged.
+///
+/// Errors: Invalid (an option that it does not have), NotFound (no such file or stream), Malformed,
+/// Unsupported (no messages of MTP in it), System.
+Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions& options = {});
+
+/// A recording that is made of what is sent; a stream for each src. Errors: Invalid, System.
+Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions& options = {});
+
+}  // namespace hc::mcap

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include <hc/mtp/codec.h>
+#include <mcap/link.h>
+#include <mcap/recorder.h>
+
+namespace hc::mcap {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes with the test.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "hc-test-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  [[nodiscard]] std::string operator/(const std::string& name) const {
+    return (path_ / name).string();
+  }
+
+ private:
+  fs::path path_;
+};
+
+Message message_of(const Info& info, std::int32_t width, std::int32_t height, std::int64_t seq,
+                   std::mt19937& random) {
+  auto draft = Draft::make(info, width, height);
+  draft.header.seq = seq;
+  draft.header.src = 7;
+  draft.header.time = 1'763'683'200'000'000'000 + seq;
+  for (auto& each : draft.elements()) each = static_cast<std::byte>(random());
+  if (info.encoding == Encoding::Text)  // a NaN has one spelling
+    for (auto& each : draft.elements()) each = static_cast<std::byte>(random() % 64);
+  return std::move(draft).finish();
+}
+
+Message image(std::int64_t seq, std::int32_t width = 40) {
+  std::mt19937 random(static_cast<unsigned>(seq));
+  return message_of({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, width, 30, seq,
+                    random);
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What a recording gives: its messages in bytes, and why it ended.
+struct Played {
+  std::vector<std::string> messages;
+  std::optional<Error> error;
+};
+
+Played play(const std::string& uri) {
+  Played played;
+  auto source = read_recording(*parse_uri(uri));
+  if (!source) {
+    played.error = source.error();
+    return played;
+  }
+  Message message;
+  while (true) {
+    auto got = (*source)->take(message);
+    if (!got) played.error = got.error();
+    if (!got || *got == Got::End) return played;
+    played.messages.push_back(encode(message));
+  }
+}
+
+std::unique_ptr<Recorder> recorder_of(const std::string& file, std::size_t chunk_bytes = 10000) {
+  RecorderOptions options;
+  options.file = file;
+  options.chunk_bytes = chunk_bytes;
+  return std::move(*Recorder::make(options));
+}
+
+/// Records images 0 … count - 1; the bytes of each.
+std::vector<std::string> record_images(const std::string& file, int count) {
+  auto recorder = recorder_of(file);
+  const auto stream = recorder->add_stream("eye.left");
+  std::vector<std::string> all;
+  for (int i = 0; i < count; ++i) {
+    const auto message = image(i);
+    EXPECT_TRUE(recorder->record(stream, message, message.header.time));
+    all.push_back(encode(message));
+  }
+  EXPECT_TRUE(recorder->close());
+  return all;
+}
+
+TEST(Mcap, EveryMessageComesOutAsItWentIn) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap");
+  std::mt19937 random(1);  // NOLINT(cert-msc51-cpp)
+  std::vector<std::string> all;
+  for (int type = 1; type <= 12; ++type)
+    for (int scalar = 0; scalar < 10; ++scalar)
+      for (int encoding = 0; encoding < 4; ++encoding)
+        for (int components : {1, 2, 3, 6}) {
+          const Info info{static_cast<MatrixType>(type), static_cast<std::uint8_t>(components),
+                          static_cast<Scalar>(scalar), static_cast<Encoding>(encoding)};
+          if (broken_rule(info) != 0) continue;
+          const auto stream = recorder->add_stream("m.p" + std::to_string(info.code()));
+          for (const auto& [width, height] : {std::pair(1, 1), {4, 4}, {1, 0}, {1, 3}, {5, 1}}) {
+            Header header;
+            header.info = info;
+            header.width = width;
+            header.height = height;
+            if (!check(header)) continue;
+            auto message = message_of(info, width, height, static_cast<int>(random() % 9), random);
+            message.header.coord = static_cast<std::int32_t>(random() % 15);
+            ASSERT_TRUE(recorder->record(stream, message, 1));
+            all.push_back(encode(message));
+          }
+        }
+  ASSERT_TRUE(recorder->close());
+  const auto played = play(folder / "x.mcap");
+  EXPECT_FALSE(played.error) << played.error->text();
+  ASSERT_GT(all.size(), 900U);
+  EXPECT_EQ(played.messages, all);
+}
+
+TEST(Mcap, NoImageIsStoredTwice) {
+  Folder folder;
+  const auto all = record_images(folder / "x.mcap", 20);  // of random pixels, so nothing gets less
+  EXPECT_LT(static_cast<double>(fs::file_size(folder / "x.mcap")),
+            1.1 * static_cast<double>(20 * all[0].size()) + 5000);
+}
+
+TEST(Mcap, AStreamIsReadAlone) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap");
+  const auto left = recorder->add_stream("eye.left"), right = recorder->add_stream("eye.right");
+  std::vector<std::string> all;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(recorder->record(left, image(i), i));
+    if (i < 10) continue;
+    ASSERT_TRUE(recorder->record(right, image(100 + i), i));
+    all.push_back(encode(image(100 + i)));
+  }
+  ASSERT_TRUE(recorder->close());
+  EXPECT_EQ(play(folder / "x.mcap?stream=eye.right").messages, all);
+  EXPECT_EQ(play(folder / "x.mcap").messages.size(), 30U);
+  const auto wrong = play(folder / "x.mcap?stream=eye.rigth");
+  ASSERT_TRUE(wrong.error);
+  EXPECT_EQ(wrong.error->code, Code::NotFound);
+  EXPECT_NE(wrong.error->detail.find("did you mean \"eye.right\"?"), std::string::npos);
+}
+
+TEST(Mcap, TheSummarySaysWhatIsThere) {
+  Folder folder;
+  record_images(folder / "x.mcap", 20);
+  auto reader = Reader::open(folder / "x.mcap");
+  ASSERT_TRUE(reader);
+  const auto summary = reader->summary();
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_TRUE(summary->is_whole);
+  EXPECT_EQ(summary->messages, 40U);
+  EXPECT_EQ(summary->end - summary->begin, 19U);
+  const auto found = streams(*summary);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].name, "eye.left");
+  EXPECT_EQ(found[0].topic, "/eye/left");
+  EXPECT_EQ(found[0].type, "sensor_msgs/msg/Image");
+  EXPECT_EQ(found[0].messages, 20U);
+}
+
+TEST(Mcap, AFileThatIsCutOffIsReadUpToItsLastWholeChunk) {
+  Folder folder;
+  const auto all = record_images(folder / "x.mcap", 12);
+  const std::string whole = bytes_of(folder / "x.mcap");
+  std::size_t most = 0;
+  for (std::size_t size = 0; size < whole.size(); size += size < 2000 ? 1 : 97) {
+    std::ofstream(folder / "cut.mcap", std::ios::binary) << whole.substr(0, size);
+    const auto played = play(folder / "cut.mcap");
+    ASSERT_LE(played.messages.size(), all.size());
+    ASSERT_GE(played.messages.size(), most);  // more bytes, no fewer messages
+    most = played.messages.size();
+    for (std::size_t i = 0; i < most; ++i) ASSERT_EQ(played.messages[i], all[i]);
+    if (!played.error) continue;  // all chunks and the record that ends them are there
+    ASSERT_EQ(played.error->code, size < 8 ? Code::Malformed : Code::Truncated) << size;
+  }
+  EXPECT_EQ(most, all.size());
+}
+
+TEST(Mcap, DamageIsFoundAndPassedOver) {
+  Folder folder;
+  const auto all = record_images(folder / "x.mcap", 12);
+  std::string damaged = bytes_of(folder / "x.mcap");
+  damaged[damaged.size() / 2] ^= 1;
+  std::ofstream(folder / "damaged.mcap", std::ios::binary) << damaged;
+  auto source = read_recording(*parse_uri(folder / "damaged.mcap"));
+  ASSERT_TRUE(source);
+  Message message;
+  int errors = 0, messages = 0;
+  while (true) {
+    auto got = (*source)->take(message);
+    if (got && *got == Got::End) break;
+    if (got) {
+      ++messages;
+      continue;
+    }
+    EXPECT_EQ(got.error().code, Code::Malformed);
+    ++errors;
+    ASSERT_TRUE((*source)->resume());
+  }
+  EXPECT_EQ(errors, 1);
+  EXPECT_GE(messages, 8);
+  EXPECT_LT(messages, 12);
+}
+
+TEST(Mcap, HostileFilesCostNoMemory) {
+  Folder folder;
+  record_images(folder / "x.mcap", 3);
+  const std::string whole = bytes_of(folder / "x.mcap");
+  std::mt19937 random(3);  // NOLINT(cert-msc51-cpp)
+  for (int round = 0; round < 3000; ++round) {
+    std::string hostile = whole;
+    for (int i = 0; i < 3; ++i) {
+      const bool near_end = random() % 2 == 0;
+      const std::size_t at = near_end ? hostile.size() - 1 - random() % 1500 : random() % 2000;
+      hostile[at] = static_cast<char>(random() % 3 == 0 ? 0xff : random());
+    }
+    std::ofstream(folder / "y.mcap", std::ios::binary) << hostile;
+    auto source = read_recording(*parse_uri(folder / "y.mcap"));
+    if (!source) continue;
+    Message message;
+    for (int errors = 0; errors < 100;) {
+      auto got = (*source)->take(message);
+      if (got && *got == Got::End) break;
+      if (!got && got.error().code == Code::Truncated) break;
+      errors += got ? 0 : 1;
+    }
+  }
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  EXPECT_LT(usage.ru_maxrss, 700 << 10);  // [KiB]
+}
+
+TEST(Mcap, AFullDiskEndsTheRecordingWithAValidFile) {
+  Folder folder;
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  ::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit = before;
+  limit.rlim_cur = 300'000;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  auto recorder = recorder_of(folder / "x.mcap");
+  const auto stream = recorder->add_stream("eye.left");
+  Status status;
+  std::vector<std::string> all;
+  for (int i = 0; i < 100000 && status; ++i) {
+    status = recorder->record(stream, image(i), i + 1);
+    all.push_back(encode(image(i)));
+  }
+  const auto closed = recorder->close();
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().detail.find("File too large"), std::string::npos);
+  EXPECT_EQ(closed.error().detail, status.error().detail);
+  const auto played = play(folder / "x.mcap");
+  EXPECT_FALSE(played.error) << played.error->text();
+  ASSERT_GT(played.messages.size(), 70U);
+  for (std::size_t i = 0; i < played.messages.size(); ++i) ASSERT_EQ(played.messages[i], all[i]);
+  auto reader = Reader::open(folder / "x.mcap");
+  EXPECT_TRUE(reader->summary()->is_whole);
+}
+
+TEST(Mcap, ARecordingIsSplitAndItsOldestFilesAreRemoved) {
+  Folder folder;
+  RecorderOptions options;
+  options.file = folder / "x.mcap";
+  options.chunk_bytes = 10000;
+  options.split = 50000;
+  options.keep = 200000;
+  auto recorder = std::move(*Recorder::make(options));
+  const auto stream = recorder->add_stream("eye.left");
+  ASSERT_TRUE(recorder->set_frames("head 3 robot 1 2 3 0 0 0 1", 1));
+  constexpr int kCount = 200;
+  for (int i = 0; i < kCount; ++i) ASSERT_TRUE(recorder->record(stream, image(i), i + 1));
+  ASSERT_TRUE(recorder->close());
+  EXPECT_FALSE(fs::exists(folder / "x_0001.mcap"));
+  std::vector<std::string> files;
+  std::uintmax_t size = 0;
+  for (const auto& file : fs::directory_iterator(folder / "")) {
+    files.push_back(file.path());
+    size += file.file_size();
+  }
+  EXPECT_LE(size, options.keep + 20000);
+  ASSERT_GE(files.size(), 3U);
+  std::ranges::sort(files);
+  std::vector<std::string> messages;
+  for (const auto& file : files) {
+    const auto played = play(file);
+    EXPECT_FALSE(played.error);
+    messages.insert(messages.end(), played.messages.begin(), played.messages.end());
+    auto reader = Reader::open(file);
+    bool has_frames = false;
+    auto summary = reader->summary();
+    ASSERT_TRUE(summary);
+    for (const auto& [id, channel] : summary->channels)
+      has_frames |= channel.topic == "/tf_static" && summary->counts[id] == 1;
+    EXPECT_TRUE(has_frames) << file;
+  }
+  for (std::size_t i = 0; i < messages.size(); ++i)
+    EXPECT_EQ(messages[messages.size() - 1 - i], encode(image(kCount - 1 - static_cast<int>(i))));
+}
+
+TEST(Mcap, WhatWasLastIsSaved) {
+  Folder folder;
+  RecorderOptions options;
+  options.file = folder / "x.mcap";
+  options.chunk_bytes = 10000;
+  options.last = std::chrono::seconds(10);
+  auto recorder = std::move(*Recorder::make(options));
+  const auto stream = recorder->add_stream("eye.left");
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  for (int i = 0; i < 60; ++i) ASSERT_TRUE(recorder->record(stream, image(i), i * kSecond));
+  auto saved = recorder->save();
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(*saved, folder / "x_0001.mcap");
+  for (int i = 60; i < 70; ++i) ASSERT_TRUE(recorder->record(stream, image(i), i * kSecond));
+  EXPECT_EQ(*recorder->save(), folder / "x_0002.mcap");
+  ASSERT_TRUE(recorder->close());
+  auto played = play(*saved);
+  EXPECT_FALSE(played.error);
+  EXPECT_GE(played.messages.size(), 10U);
+  EXPECT_LE(played.messages.size(), 15U);  // whole chunks
+  EXPECT_EQ(played.messages.back(), encode(image(59)));
+  EXPECT_EQ(play(folder / "x_0002.mcap").messages.back(), encode(image(69)));
+}
+
+TEST(Mcap, Crc32IsThatOfZlib) {
+  const std::string_view text = "123456789";
+  EXPECT_EQ(crc32(std::as_bytes(std::span(text))), 0xcbf43926U);
+  EXPECT_EQ(crc32(std::as_bytes(std::span(text).subspan(3)),
+                  crc32(std::as_bytes(std::span(text).first(3)))),
+            0xcbf43926U);
+}
+
+TEST(Mcap, OtherFilesAreRefused) {
+  Folder folder;
+  std::ofstream(folder / "x.mcap") << "1 7 0 0 8 0 10390 1 3 1 1\n0.1 0.2 0.3\n";
+  EXPECT_EQ(play(folder / "x.mcap").error->code, Code::Malformed);
+  EXPECT_EQ(play(folder / "none.mcap").error->code, Code::NotFound);
+  EXPECT_EQ(play(folder / "x.mcap?keep=all").error->code, Code::Invalid);
+  EXPECT_FALSE(recording_uri("x.mtp"));
+  EXPECT_FALSE(recording_uri("tcp:x.mcap:1"));
+  EXPECT_EQ(recording_uri("a/x.mcap?stream=b.c")->option("stream", ""), "b.c");
+}
+
+}  // namespace
+}  // namespace hc::mcap

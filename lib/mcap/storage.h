@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Where chunks go: into one file, into one after the other, or into memory until they are saved.
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <hc/base/log.h>
+#include <hc/base/result.h>
+#include <mcap/file.h>
+
+namespace hc::mcap {
+
+struct StorageOptions {
+  std::string file;         ///< "kept.mcap"; of several, "kept_0001.mcap" and so on
+  std::uint64_t split = 0;  ///< a new file begins when one has so many bytes; 0: one file
+  std::uint64_t keep = 0;   ///< of all files together, the oldest are removed; 0: all [byte]
+  /// Of the messages before now; more than 0: in memory, and each save() writes a file.
+  std::chrono::nanoseconds last{0};
+  std::uint64_t memory = std::uint64_t{1} << 30;  ///< of what is kept for `last` [byte]
+};
+
+/// Keeps chunks. Schemas, channels, metadata and what is marked as such are in each of its files.
+class Storage {
+ public:
+  /// Errors: System; Invalid (`keep` without `split`; `last` with either).
+  static Result<Storage> make(const StorageOptions& options);
+
+  // Errors of all: System. Nothing is written any more then; close() gives a file that is valid.
+
+  Status add(SchemaRecord schema);
+  Status add(ChannelRecord channel);
+  Status add(MetadataRecord metadata);
+  /// @param in_each  it is to be in each file, such as what is sent once.
+  Status add(PackedChunk chunk, bool in_each);
+
+  /// Writes what is in memory into a file; gives its name. For `last` alone.
+  Result<std::string> save();
+  Status close();
+
+  /// What goes wrong while a file is closed has taken so many messages out of it again.
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  /// Files, and bytes in them.
+  [[nodiscard]] std::uint64_t files() const { return number_; }
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_ + (file_ ? file_->size() : 0); }
+
+ private:
+  explicit Storage(StorageOptions options) : options_(std::move(options)) {}
+  [[nodiscard]] std::string next_name() const;
+  Status begin_file();
+  Status end_file();
+  void remove_old();
+
+  struct Done {
+    std::string path;
+    std::uint64_t size = 0;
+  };
+
+  StorageOptions options_;
+  std::vector<SchemaRecord> schemas_;
+  std::vector<ChannelRecord> channels_;
+  std::vector<MetadataRecord> metadata_;
+  std::vector<PackedChunk> each_;  // chunks that are in each file
+  std::optional<File> file_;
+  std::deque<Done> done_;
+  std::deque<PackedChunk> memory_;
+  std::uint64_t in_memory_ = 0, number_ = 0, lost_ = 0, bytes_ = 0;
+};
+
+}  // namespace hc::mcap
