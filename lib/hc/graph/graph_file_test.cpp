@@ -119,6 +119,9 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.a]\nparameters.p = \"${NO}\"",
        "g.toml:3: environment variable NO is not set; ${NO:-VALUE} gives a default"},
       {"[modules.a]\nparameters.p = \"${NO\"", "g.toml:3: \"${\" without \"}\""},
+      {"[modules.a]\nparameters.p = \"${NO:-${HOME}}\"",
+       "g.toml:3: variables do not nest: the default of ${NO} has a \"${\"; name one variable, or "
+       "write its value"},
       {"[modules.a]\naddresses.o = -1",
        "g.toml:3: \"o\" must be a whole number from 0 to 2147483647"},
       {"[modules.a]\nencodings.o = 1",

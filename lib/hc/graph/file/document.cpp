@@ -168,6 +168,9 @@ Result<std::string> value_of(std::string variable, const Environment& environmen
     variable.resize(split);
   }
   if (variable.empty()) return Error{Code::Invalid, "no name of a variable in ${}"};
+  if (default_value && default_value->find("${") != std::string::npos)
+    return Error{Code::Invalid, "variables do not nest: the default of ${" + variable +
+                                    "} has a \"${\"; name one variable, or write its value"};
   const char* value = environment ? environment(variable.c_str()) : nullptr;
   if (value == nullptr && !default_value)
     return Error{Code::Invalid, "environment variable " + variable + " is not set; ${" + variable +
