@@ -39,9 +39,10 @@ struct Addressee {
 
 /// A module of a graph.
 struct GraphModule {
-  std::string name;                                      ///< snake_case
-  Lined<std::string> program;                            ///< a module's name, or a path
-  std::string group;                                     ///< the [graphs.NAME] that it is of
+  std::string name;            ///< snake_case
+  Lined<std::string> program;  ///< a module's name, or a path
+  std::string group;           ///< the [graphs.NAME] that it is of
+  std::string prefix;          ///< what inclusion has put before its name, "head_"
   std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
   std::map<std::string, Lined<std::int64_t>> addresses;  ///< of ports
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports

@@ -142,6 +142,9 @@ TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
   EXPECT_EQ(warnings.lines.size(), 1U);
   EXPECT_TRUE(warnings.lines[0].starts_with(dial() + "?reconnect=60: no peer yet ("))
       << warnings.lines[0];
+  auto sink = sink_of(listen());
+  while (warnings.lines.size() < 2) wait();
+  EXPECT_EQ(warnings.lines[1], dial() + "?reconnect=60: connected");
 }
 
 TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {

@@ -28,6 +28,7 @@ Graph with_prefix(Graph graph, const std::string& name) {
   for (auto& module : graph.modules) {
     rename(module.name);
     module.group = name;
+    module.prefix = prefix + module.prefix;
     rename(module.workspace);
     for (auto& [port, to] : module.to)
       if (to.value.name != "all") rename(to.value.name);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include <hc/base/format.h>
 #include <hc/graph/plan/planning.h>
 
 namespace hc::internal {
@@ -31,11 +32,11 @@ class Frames {
       if (frame.moved_by) check_mover(*frame.moved_by);
     check_numbers_of_moved();
     if (!planning_.problems.empty() || graph_.frames.empty()) return;
-    planning_.plan.frames = text_for(0);
+    planning_.plan.frames = text_for(0, {});
     for (const auto& module : graph_.modules)
       if (takes_frames(planning_, module.name))
         planning_.planned(module.name)
-            ->parameters.try_emplace(kFrames, text_for(module.place.file));
+            ->parameters.try_emplace(kFrames, text_for(module.place.file, module.prefix));
   }
 
  private:
@@ -127,30 +128,36 @@ class Frames {
   }
 
   /// The names of frames as the modules of a file see them, by those that they have here. What that
-  /// file declares has no prefix; nor has a standard frame of another, if it is the only one.
-  [[nodiscard]] std::map<std::string, std::string> names_for(int file) const {
+  /// file declares has no prefix; nor has a standard frame of another, if it is the only one in
+  /// what the file includes, or, where none is there, in all files.
+  [[nodiscard]] std::map<std::string, std::string> names_for(int file,
+                                                             const std::string& prefix) const {
     auto local = [](const GraphFrame& frame) { return frame.name.substr(frame.prefix.size()); };
-    std::map<std::string, int> uses;  // of a name without prefix
-    for (const auto& frame : graph_.frames) ++uses[local(frame)];
+    auto is_inside = [&](const GraphFrame& frame) { return frame.prefix.starts_with(prefix); };
+    std::map<std::string, int> inside, all;  // uses of a name without prefix
+    for (const auto& frame : graph_.frames) {
+      ++all[local(frame)];
+      if (is_inside(frame)) ++inside[local(frame)];
+    }
     std::map<std::string, std::string> names;
     for (const auto& frame : graph_.frames) {
       const std::string name = local(frame);
-      const bool is_only = kStandard.contains(name) && uses[name] == 1;
-      const bool is_free = !by_name_.contains(name);
-      names[frame.name] = is_free && (frame.place.file == file || is_only) ? name : frame.name;
+      const bool is_only =
+          inside.contains(name) ? is_inside(frame) && inside.at(name) == 1 : all.at(name) == 1;
+      const bool is_seen = frame.place.file == file || (kStandard.contains(name) && is_only);
+      names[frame.name] = is_seen && !by_name_.contains(name) ? name : frame.name;
     }
     return names;
   }
 
   /// As G31 has it.
-  [[nodiscard]] std::string text_for(int file) const {
-    const auto names = names_for(file);
+  [[nodiscard]] std::string text_for(int file, const std::string& prefix) const {
+    const auto names = names_for(file, prefix);
     auto name_of = [&](const std::string& name) {
       auto seen = names.find(name);
       return seen == names.end() ? name : seen->second;
     };
     std::ostringstream text;
-    text.precision(17);
     for (const auto& frame : graph_.frames) {
       if (text.tellp() > 0) text << "; ";
       const std::string name = name_of(frame.name);
@@ -161,8 +168,8 @@ class Frames {
         text << " " << mover << " " << planning_.plan.sources.at(mover);
         continue;
       }
-      for (double length : frame.translation) text << " " << length;
-      for (double part : frame.rotation) text << " " << part;
+      for (double length : frame.translation) text << hc::format(" {}", length);
+      for (double part : frame.rotation) text << hc::format(" {}", part);
     }
     return text.str();
   }

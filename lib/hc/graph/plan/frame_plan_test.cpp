@@ -68,6 +68,19 @@ TEST(Frames, OfTwoHeadsAreToldApart) {
             "two_head 0 world 0 0 1 0 0 0 1; two_cup 0 two_head 0 0 0 0 0 0 1");
 }
 
+TEST(Frames, OfTwoGraphsThatIncludeAHeadEachHasItsOwn) {
+  auto planned = plan("[graphs.one]\nfile = \"task.toml\"\n[graphs.two]\nfile = \"task.toml\"\n",
+                      {{"head.toml", kHead},
+                       {"task.toml", "[modules.framed]\n[graphs.own]\nfile = \"head.toml\"\n"}});
+  ASSERT_TRUE(planned) << planned.error().detail;
+  for (const auto& module : planned->modules) {
+    const std::string other = module.name.starts_with("one_") ? "two_own_head" : "one_own_head";
+    const std::string& frames = module.parameters.at("frames");
+    EXPECT_NE((" " + frames).find(" head 3 world"), std::string::npos) << frames;
+    EXPECT_NE(frames.find(other + " 0 world"), std::string::npos) << frames;
+  }
+}
+
 constexpr const char* kMoved = R"([modules.neck]
 [modules.seeker]
 [frames.head]

@@ -61,9 +61,12 @@ void Connection::dial(TimePoint now) {
   stop_watching();  // before the dialer closes its descriptor
   auto made = dialer_->dial(now);
   if (!made) return fail(made.error());
-  if (auto remark = dialer_->take_remark(now)) remarks_.add(*remark);
+  if (auto remark = dialer_->take_remark(now)) {
+    remarks_.add(*remark);
+    news_ = "connected";
+  }
   if (*made) {
-    if (std::exchange(is_loss_told_, false)) remarks_.add("reconnected");
+    if (!news_.empty()) remarks_.add(std::exchange(news_, {}));
     return connect(std::move(*made), now);
   }
   watch_.move_to(dialer_->descriptor());
@@ -145,7 +148,7 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
   blocked_ = false;
   if (dialer_ == nullptr) return fail(why);
   remarks_.add(in_words(why) + "; reconnecting");
-  is_loss_told_ = true;
+  news_ = "reconnected";
   writer_.start(Descriptor());
   dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime, in_words(why));
 }

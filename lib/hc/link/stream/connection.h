@@ -142,10 +142,10 @@ class Connection {
   std::optional<Error> failed_;
   Traffic losses_;
   Remarks remarks_;
-  bool is_loss_told_ = false;  // and that it is over has not been
-  std::uint32_t wanted_ = 0;   // of watch_
-  bool waits_ = false;         // a thread, in wait()
-  Watch watch_;                // of the connection or the dialer's attempt, and of the next time
+  std::string news_;          // for the log when there is a connection: empty where it is no news
+  std::uint32_t wanted_ = 0;  // of watch_
+  bool waits_ = false;        // a thread, in wait()
+  Watch watch_;               // of the connection or the dialer's attempt, and of the next time
 };
 
 }  // namespace hc::internal

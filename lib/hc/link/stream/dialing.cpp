@@ -72,7 +72,10 @@ class DialingSource final : public Source {
     retry_.reset();
     auto connected = dialer_->dial(now);
     if (!connected) return connected.error();
-    if (auto remark = dialer_->take_remark(now)) log(*remark);
+    if (auto remark = dialer_->take_remark(now)) {
+      log(*remark);
+      news_ = "connected";
+    }
     if (now >= tell_at_) {
       log_loss("sender closed");
       tell_at_ = TimePoint::max();
@@ -88,7 +91,7 @@ class DialingSource final : public Source {
         watch(source_->descriptor(), EPOLLIN);
         connected_at_ = now;
         tell_at_ = TimePoint::max();
-        if (std::exchange(is_loss_told_, false)) log("reconnected");
+        if (!news_.empty()) log(std::exchange(news_, {}));
       }
     }
     if (source_ == nullptr) {
@@ -121,7 +124,7 @@ class DialingSource final : public Source {
 
   void log_loss(const std::string& why) {
     log(why + "; reconnecting");
-    is_loss_told_ = true;
+    news_ = "reconnected";
   }
 
   void log(std::string_view line) const {
@@ -137,8 +140,8 @@ class DialingSource final : public Source {
   std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;
   TimePoint tell_at_ = TimePoint::max();  // that the sender closed
-  bool is_loss_told_ = false;             // and its end has not been
-  bool finishing_ = false;                // the peer will not come back
+  std::string news_;        // for the log when there is a connection: empty where it is no news
+  bool finishing_ = false;  // the peer will not come back
   bool ended_ = false;
   Traffic past_;  // of connections that were lost
 };
