@@ -29,14 +29,17 @@ export function memory(...pids) {
   return sizes.reduce((sum, size) => sum + size, 0) / 1000;
 }
 
-/** Has a page count in `window.drawn` how often images are drawn into canvases from now on. */
+/** Has a page count in `window.drawn` the different images that it draws from now on. */
 export function countDrawn(page) {
   return page.evaluate(() => {
     const draw = CanvasRenderingContext2D.prototype.drawImage;
+    const seen = new WeakSet();
     window.drawn = 0;
-    CanvasRenderingContext2D.prototype.drawImage = function (...all) {
-      window.drawn += 1;
-      return draw.apply(this, all);
+    CanvasRenderingContext2D.prototype.drawImage = function (image, ...where) {
+      const isImage = image instanceof ImageBitmap || image instanceof VideoFrame;
+      if (isImage && !seen.has(image)) window.drawn += 1;
+      if (isImage) seen.add(image);
+      return draw.call(this, image, ...where);
     };
   });
 }
