@@ -92,6 +92,7 @@ export class ParameterView {
   private show(value: string): void {
     if (this.is.type === "bool") (this.control as HTMLInputElement).checked = value === "true";
     else this.control.value = this.is.type === "string" ? value : shortest(value);
+    if (this.is.type === "string") this.control.title = value; // which may have more than room
     if (this.slider) this.slider.value = value;
   }
 

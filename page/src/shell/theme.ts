@@ -9,9 +9,11 @@ function stored(): Theme {
   return themes.find((theme) => theme === localStorage.getItem("theme")) ?? "system";
 }
 
+const prefersDark = matchMedia("(prefers-color-scheme: dark)");
+
 function apply(theme: Theme): void {
-  if (theme === "system") delete document.documentElement.dataset.theme;
-  else document.documentElement.dataset.theme = theme;
+  const isDark = theme === "dark" || (theme === "system" && prefersDark.matches);
+  document.documentElement.dataset.theme = isDark ? "dark" : "light";
   document.dispatchEvent(new Event("themechange"));
 }
 
@@ -27,7 +29,7 @@ export function themeButton(): HTMLButtonElement {
     apply(theme);
   };
   show(stored());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => apply(stored()));
+  prefersDark.addEventListener("change", () => apply(stored()));
   return button;
 }
 

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What streams put into a scene: clouds, positions, poses.
+import {
+  AxesHelper,
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  Line,
+  LineBasicMaterial,
+  Matrix4,
+  Mesh,
+  MeshLambertMaterial,
+  Points,
+  PointsMaterial,
+  SphereGeometry,
+  type Object3D,
+} from "three";
+import { numbersOf, type Header, type Message, type Numbers } from "../mtp";
+import { colour } from "../shell/theme";
+
+const trailLength = 500; // positions
+
+/** What a stream puts into the scene. */
+export interface Layer {
+  readonly object: Object3D;
+  fits(header: Header): boolean;
+  show(message: Message): void;
+  remove(): void;
+}
+
+/** What shows messages of a header; undefined: nothing does. */
+export function layerOf({ type }: Header): Layer | undefined {
+  if (type === "vector_field") return new CloudLayer();
+  if (type === "position") return new PositionsLayer();
+  if (type === "rotation" || type === "transformation") return new PoseLayer(type);
+  return undefined;
+}
+
+/** Points with x, y, z [m] and, where there are six components, red, green, blue [0, 1]. */
+class CloudLayer implements Layer {
+  private readonly geometry = new BufferGeometry();
+  private readonly material = new PointsMaterial({ size: 0.012, vertexColors: true });
+  readonly object = new Points(this.geometry, this.material);
+
+  fits(header: Header): boolean {
+    return header.type === "vector_field";
+  }
+
+  show(message: Message): void {
+    const { components } = message.header;
+    const numbers = numbersOf(message);
+    const count = Math.floor(numbers.length / components);
+    let places = this.geometry.getAttribute("position") as BufferAttribute | undefined;
+    if (!places || places.count < count) {
+      places = new BufferAttribute(new Float32Array(3 * count), 3);
+      this.geometry.setAttribute("position", places);
+      this.geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * count), 3));
+    }
+    const colours = this.geometry.getAttribute("color") as BufferAttribute;
+    const used = fillCloud(numbers, components, places.array, colours.array);
+    places.needsUpdate = true;
+    colours.needsUpdate = true;
+    this.geometry.setDrawRange(0, used);
+    this.object.frustumCulled = false;
+  }
+
+  remove(): void {
+    this.object.removeFromParent();
+    this.geometry.dispose();
+    this.material.dispose();
+  }
+}
+
+type Array3 = BufferAttribute["array"];
+
+/** Copies the points that are known; returns how many. */
+function fillCloud(numbers: Numbers, components: number, places: Array3, colours: Array3): number {
+  let to = 0;
+  for (let from = 0; from + components <= numbers.length; from += components) {
+    const [x, y, z] = [numbers[from]!, numbers[from + 1]!, numbers[from + 2]!];
+    if (!(Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z))) continue;
+    for (let i = 0; i < 3; ++i) {
+      places[to + i] = numbers[from + i]!;
+      colours[to + i] = components >= 6 ? linear(numbers[from + 3 + i]!) : 0.5;
+    }
+    to += 3;
+  }
+  return to / 3;
+}
+
+/** Linear light of an sRGB component, about. */
+function linear(value: number): number {
+  return value * value;
+}
+
+/** Positions as balls, and the way of a single one as a line. */
+class PositionsLayer implements Layer {
+  readonly object = new Group();
+  private readonly ball = new SphereGeometry(0.03, 16, 12);
+  private readonly material = new MeshLambertMaterial({ color: colour("series-2") });
+  private readonly trail = new BufferGeometry();
+  private readonly trailMaterial = new LineBasicMaterial({ color: colour("series-2") });
+  private readonly way: number[] = [];
+  private readonly balls: Mesh[] = [];
+
+  constructor() {
+    const line = new Line(this.trail, this.trailMaterial);
+    line.frustumCulled = false;
+    this.object.add(line);
+  }
+
+  fits(header: Header): boolean {
+    return header.type === "position";
+  }
+
+  show(message: Message): void {
+    const { components } = message.header;
+    const numbers = numbersOf(message);
+    const count = Math.min(1000, numbers.length / components);
+    while (this.balls.length < count) {
+      const ball = new Mesh(this.ball, this.material);
+      this.balls.push(ball);
+      this.object.add(ball);
+    }
+    this.balls.forEach((ball, i) => {
+      ball.visible = i < count;
+      const at = i * components;
+      if (i < count) ball.position.set(numbers[at]!, numbers[at + 1]!, numbers[at + 2]!);
+    });
+    if (count !== 1) return;
+    this.way.push(numbers[0]!, numbers[1]!, numbers[2]!);
+    if (this.way.length > 3 * trailLength) this.way.splice(0, 3);
+    this.trail.setAttribute("position", new BufferAttribute(Float32Array.from(this.way), 3));
+  }
+
+  remove(): void {
+    this.object.removeFromParent();
+    for (const each of [this.ball, this.material, this.trail, this.trailMaterial]) each.dispose();
+  }
+}
+
+/** A rotation or a pose as three axes. */
+class PoseLayer implements Layer {
+  readonly object = new Group();
+  private readonly axes = new AxesHelper(0.3);
+
+  constructor(private readonly type: string) {
+    this.object.add(this.axes);
+  }
+
+  fits(header: Header): boolean {
+    return header.type === this.type;
+  }
+
+  show(message: Message): void {
+    const numbers = numbersOf(message);
+    if (numbers.length === 0) return;
+    if (this.type === "transformation") setMatrix(this.object, message);
+    else this.object.rotation.set(numbers[0]!, numbers[1]!, numbers[2]!, "ZYX");
+  }
+
+  remove(): void {
+    this.object.removeFromParent();
+    this.axes.dispose();
+  }
+}
+
+/** Places an object by a transformation 4 × 4, row by row. */
+export function setMatrix(object: Object3D, message: Message): void {
+  const { width, height } = message.header;
+  if (message.header.type !== "transformation" || width !== 4 || height !== 4) return;
+  object.matrixAutoUpdate = false;
+  object.matrix = new Matrix4().fromArray(Array.from(numbersOf(message))).transpose();
+  object.matrixWorldNeedsUpdate = true;
+}
