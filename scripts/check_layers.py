@@ -43,6 +43,18 @@ ALLOWED = {
         "drivers",
     }
     | PACKAGES,
+    "python": {
+        "base",
+        "os",
+        "mtp",
+        "contract",
+        "compress",
+        "link",
+        "observe",
+        "module",
+        "frames",
+        "mcap",
+    },
     "tools": {
         "base",
         "os",
@@ -89,7 +101,7 @@ def problems(root):
         if path.suffix not in (".h", ".cpp"):
             continue
         local = path.relative_to(root)
-        if local.parts[0] not in ("lib", "drivers", "modules", "tools"):
+        if local.parts[0] not in ("lib", "drivers", "modules", "python", "tools"):
             continue
         layer = layer_of(local)
         is_test = path.stem.endswith("_test") or layer == "testing"

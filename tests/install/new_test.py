@@ -38,7 +38,9 @@ class New(unittest.TestCase):
         prefix = pathlib.Path(cls.folder.name) / "prefix"
         command = ["cmake", "--install", BUILD, "--prefix", prefix]
         subprocess.run(command, stdout=-3, check=True, timeout=WATCHDOG)
-        cls.environment = dict(os.environ, PATH="%s/bin:%s" % (prefix, os.environ["PATH"]))
+        os.symlink("/usr/bin/python3", cls.folder.name + "/python3")  # which has NumPy
+        path = "%s/bin:%s:%s" % (prefix, cls.folder.name, os.environ["PATH"])
+        cls.environment = dict(os.environ, PATH=path)
         cls.environment.update(CXX=COMPILER, CMAKE_GENERATOR="Ninja")
 
     def shell(self, command, status=0, data=""):
@@ -64,9 +66,9 @@ class New(unittest.TestCase):
         self.begin("py_gauge --python")
         self.assertIn("100% tests passed", self.begin("cc_gauge --folder cc"))
         for program in ("./py_gauge/py_gauge", "cc/cc_gauge/build/cc_gauge"):
-            command = "%s --factor 10 | hc cat --json" % program
+            command = "hc %s --factor 10 | hc cat --json" % program
             self.assertIn('"elements":[[10,25]]', self.shell(command, data=IN))
-            self.assertIn("factor", self.shell(program + " --help"))
+            self.assertIn("factor", self.shell("hc %s --help" % program))
             self.assertIn('"product"', self.shell("hc describe ./" + program))
         found = "PATH=$PATH:py_gauge:cc/cc_gauge/build; "
         piped = self.shell(found + "hc py_gauge | hc cc_gauge | hc cat --json", data=IN)

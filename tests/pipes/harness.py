@@ -48,8 +48,12 @@ class Pipes(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
         self.environment = dict(os.environ, HC_DATA=DATA)
-        self.environment["PATH"] = "{0}/bin:{0}/tests/programs:{1}".format(
-            BUILD, os.environ["PATH"]
+        # A Python script that says no more than python3 is for the same.
+        links = tempfile.TemporaryDirectory()
+        self.addCleanup(links.cleanup)
+        os.symlink(PYTHON, links.name + "/python3")
+        self.environment["PATH"] = "{2}:{0}/bin:{0}/tests/programs:{1}".format(
+            BUILD, os.environ["PATH"], links.name
         )
         self.environment.pop("DISPLAY", None)
 

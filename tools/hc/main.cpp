@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 
@@ -73,6 +76,23 @@ std::string meant_option(const CLI::App& app) {
   return "";
 }
 
+/// Has the Python programs that this one starts find the package that came with it, where Python
+/// does not look by itself. What PYTHONPATH says comes first.
+void offer_python_package() {
+  namespace fs = std::filesystem;
+  const fs::path prefix = tool::module_folder().parent_path().parent_path();
+  std::error_code missing;
+  fs::path found = prefix / "python";  // of a build
+  if (prefix != "/usr" && prefix != "/usr/local")
+    for (const auto& entry : fs::directory_iterator(prefix / "lib", missing))
+      if (entry.path().filename().string().starts_with("python"))
+        found = entry.path() / "dist-packages";
+  if (!fs::is_directory(found / "hypercolumn", missing)) return;
+  const char* known = std::getenv("PYTHONPATH");
+  const std::string first = known == nullptr || *known == '\0' ? "" : std::string(known) + ":";
+  ::setenv("PYTHONPATH", (first + found.string()).c_str(), 1);
+}
+
 /// Becomes the module of that name; returns when there is none.
 void become_module(const std::string& name, char** argv) {
   std::string program = tool::find_program(name);
@@ -114,6 +134,7 @@ int main(int argc, char** argv) {
     tool::print(kOverview);
     return kUsage;
   }
+  offer_python_package();
   std::string first = argv[1];
   auto verbs = app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; });
   bool is_verb = !verbs.empty();

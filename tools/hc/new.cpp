@@ -97,7 +97,8 @@ void add_new(CLI::App& app) {
   auto* module = verb->add_subcommand("module", "Create a folder with a module and its test");
   module->add_option("name", options->name, "the module's name, in snake_case; also the folder's")
       ->required();
-  module->add_flag("--python", options->is_python, "in Python, without a library (default: C++)");
+  module->add_flag("--python", options->is_python,
+                   "in Python, with the package hypercolumn (default: C++)");
   module->add_option("--folder", options->folder, "parent folder (default: this one)");
   module->callback([options] { begin(*options); });
 }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstring>
 
+#include <hc/link/lent.h>
 #include <hc/link/shm/crash_point.h>
 #include <hc/mtp/framing.h>
 
@@ -26,6 +27,13 @@ constexpr std::size_t kNoHold = kMostHeld;
 constexpr unsigned kDrainEvery = 1024;  // waits; each leaves one byte in the pipe at most
 constexpr unsigned kLookSeldom = 8;     // vain waits, until a silent link's connection is looked at
 constexpr int kMostSkips = 64;  // until who is overtaken again and again looks after other things
+
+/// Lets go of what a message held.
+struct LetGo {
+  std::shared_ptr<Attachment> attachment;
+  std::size_t hold;
+  void operator()(const void*) const { attachment->let_go(hold); }
+};
 
 Error damaged(const std::string& what) {
   return {Code::Malformed, "the publisher's memory is damaged: " + what};
@@ -115,8 +123,7 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
   const std::byte* from = memory.data() + cell.slot;
   message.elements = {from, cell.bytes};
   if (hold < kCopyHold) {
-    message.owner = std::shared_ptr<const void>(
-        from, [attachment = attachment_, hold](const void*) { attachment->let_go(hold); });
+    message.owner = std::shared_ptr<const void>(from, LetGo{attachment_, hold});
     return {};
   }
   if (!told_ && options_.log)
@@ -246,3 +253,11 @@ bool ShmSource::prepare_wait() {
 }
 
 }  // namespace hc::internal
+
+namespace hc {
+
+bool is_lent(const Message& message) {
+  return std::get_deleter<internal::LetGo>(message.owner) != nullptr;
+}
+
+}  // namespace hc

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Graphs that run on this host: attached to, or started."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import threading
+import time
+from types import SimpleNamespace, TracebackType
+from typing import Any, Dict, Iterator, List, Optional, Type, Union
+
+from hypercolumn import _hypercolumn
+from hypercolumn._hypercolumn import Message, RunningGraph, Stream
+from hypercolumn.errors import Error
+
+_SILENCE = 5.0  # seconds after which a graph that says nothing may be stopped
+_REPORT = 2.0  # seconds within which a module tells a new value
+_STATE_LIMIT = 16 << 20  # bytes
+
+
+def _text_of(value: Union[bool, int, float, str]) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+class Parameters:
+    """The parameters of a running graph by MODULE.PARAMETER: what they are, and to be set."""
+
+    def __init__(self, graph: "Graph") -> None:
+        self._graph = graph
+
+    def as_dict(self) -> Dict[str, Any]:
+        """All of them now, numbers as numbers."""
+        found = {}
+        for module in self._graph.modules.values():
+            for name, text in module.parameters.items():
+                try:
+                    value = json.loads(text)
+                except ValueError:
+                    value = text
+                is_plain = isinstance(value, (bool, int, float))
+                found["%s.%s" % (module.name, name)] = value if is_plain else text
+        return found
+
+    def __getitem__(self, name: str) -> Any:
+        values = self.as_dict()
+        if name not in values:
+            raise KeyError(name)
+        return values[name]
+
+    def __setitem__(self, name: str, value: Union[bool, int, float, str]) -> None:
+        self._graph.command("set %s=%s" % (name, _text_of(value)))
+        end = time.monotonic() + _REPORT  # until its module has said so, if it runs
+        while self.as_dict().get(name) != value and time.monotonic() < end:
+            time.sleep(0.02)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.as_dict())
+
+    def __repr__(self) -> str:
+        return repr(self.as_dict())
+
+
+class Port:
+    """An output of a running graph, read without disturbing it: what graph["head_eyes.left"] gives.
+
+    Each loop over it reads from now on; a reader that is slow misses messages, and no module waits
+    for it.
+    """
+
+    def __init__(self, graph: RunningGraph, name: str) -> None:
+        self._graph, self.name = graph, name
+
+    def __iter__(self) -> Iterator[Message]:
+        observation = _hypercolumn.observe(self._graph, self.name)
+        ended = threading.Event()  # the graph has, or the loop
+        thread = threading.Thread(target=_renew, args=(observation, ended), daemon=True)
+        thread.start()
+        try:
+            with Stream(observation.uri) as stream:
+                while True:
+                    message = stream.take(0.25)
+                    if message is not None:
+                        yield message
+                    elif ended.is_set():
+                        return
+        except StopIteration:
+            return
+        finally:
+            ended.set()
+            thread.join()
+
+    def read(self) -> Message:
+        """The next message."""
+        for message in self:
+            return message
+        raise Error("Closed: the graph has ended", "Closed")
+
+    def __repr__(self) -> str:
+        return "<Port %s of %r>" % (self.name, self._graph)
+
+
+def _renew(observation: "_hypercolumn.Observation", ended: threading.Event) -> None:
+    """Keeps an output open for its observer, until either ends."""
+    while not ended.wait(1.0):
+        if not observation.renew():
+            ended.set()
+
+
+class Graph:
+    """A graph that runs here: one `hc run`."""
+
+    def __init__(self, running_graph: RunningGraph) -> None:
+        self._running = running_graph
+        self.name: str = running_graph.name
+        self.process: int = running_graph.process
+
+    def state(self) -> Dict[str, Any]:
+        """What the graph says of itself now, as spec/graph.md has it (G45)."""
+        with Stream(self._running.state_uri, _STATE_LIMIT) as stream:
+            end = time.monotonic() + _SILENCE
+            while time.monotonic() < end:
+                message = stream.take(_SILENCE)
+                if message is not None and message.src == 1:
+                    state: Dict[str, Any] = json.loads(message.text)
+                    return state
+        raise Error("Closed: %r does not answer; it may be stopped" % self._running, "Closed")
+
+    @property
+    def modules(self) -> Dict[str, SimpleNamespace]:
+        """Its modules by name: `status`, `restarts`, `parameters` and so on."""
+        return {each["name"]: SimpleNamespace(**each) for each in self.state()["modules"]}
+
+    @property
+    def links(self) -> List[SimpleNamespace]:
+        """Its links: `source`, `target`, `per_second`, `age` and so on."""
+        links = self.state()["links"]
+        return [SimpleNamespace(source=each["from"], target=each["to"], **each) for each in links]
+
+    @property
+    def parameters(self) -> Parameters:
+        """Its parameters: graph.parameters["blob.hue"] = 0.1."""
+        return Parameters(self)
+
+    def command(self, *rows: str) -> List[str]:
+        """Has it do what `hc graph` can, a row each: all of them or none (spec/graph.md, G47)."""
+        return _hypercolumn.ask(self._running, list(rows))
+
+    def __getitem__(self, port: str) -> Port:
+        """An output, MODULE.PORT, to be read."""
+        return Port(self._running, port)
+
+    def __repr__(self) -> str:
+        return "<Graph %r>" % self._running
+
+
+def running() -> List[Graph]:
+    """The graphs that run here."""
+    return [Graph(each) for each in _hypercolumn.find_running()]
+
+
+def attach(name: str = "") -> Graph:
+    """The graph of that name, or NAME.PROCESS, that runs here; without a name, the one of $HC_GRAPH,
+    or the only one."""
+    name = name or os.environ.get("HC_GRAPH", "")
+    graphs = running()
+    found = [each for each in graphs if name in ("", each.name, repr(each._running))]
+    if len(found) == 1:
+        return found[0]
+    names = ", ".join(repr(each._running) for each in graphs)
+    if found:
+        raise Error("Invalid: several graphs are running; say which: " + names, "Invalid")
+    wanted = 'no graph "%s" is running' % name if name else "no graph is running here"
+    raise Error("NotFound: " + wanted + (": there is " + names if names else ""), "NotFound")
+
+
+def _command() -> str:
+    """The command hc that came with this package, or else that of the PATH."""
+    parents = pathlib.Path(__file__).parents
+    for prefix in (parents[2], parents[4] if len(parents) > 4 else parents[2]):
+        if os.access(prefix / "bin" / "hc", os.X_OK):
+            return str(prefix / "bin" / "hc")
+    found = shutil.which("hc")
+    if found is None:
+        raise Error("NotFound: no command hc; add its folder to PATH", "NotFound")
+    return found
+
+
+class start:
+    """Runs a graph for as long as a `with`, such as in a test:
+
+        with hc.start("graphs/depth.toml", "--set", "depth.disparities=96") as graph:
+            assert graph["depth.depth"].read().height == 600
+
+    `options` are those of `hc run`. The graph is up when it is entered: each module runs, or has
+    ended. A graph that cannot run raises what `hc run` has said.
+    """
+
+    def __init__(
+        self, file: "Union[str, os.PathLike[str]]", *options: str, wait: float = 60
+    ) -> None:
+        self._words = [_command(), "run", os.fspath(file), *options]
+        self._wait = wait
+
+    def __enter__(self) -> Graph:
+        self._log = tempfile.TemporaryFile()
+        self._process = subprocess.Popen(
+            self._words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self._log
+        )
+        try:
+            return self._wait_for_graph()
+        except BaseException:
+            self._end()
+            raise
+
+    def __exit__(
+        self,
+        kind: Optional[Type[BaseException]],
+        error: Optional[BaseException],
+        trace: Optional[TracebackType],
+    ) -> None:
+        self._end()
+
+    def _wait_for_graph(self) -> Graph:
+        end = time.monotonic() + self._wait
+        while time.monotonic() < end:
+            if self._process.poll() is not None:
+                break
+            for graph in running():
+                if graph.process == self._process.pid and self._is_up(graph):
+                    return graph
+            time.sleep(0.02)
+        self._log.seek(0)
+        said = self._log.read().decode(errors="replace").strip()
+        if self._process.poll() is None:
+            said = "not up after %g s: %s" % (self._wait, said)
+        raise Error("Invalid: %s: %s" % (" ".join(self._words[1:3]), said), "Invalid")
+
+    @staticmethod
+    def _is_up(graph: Graph) -> bool:
+        try:
+            states = [each.status for each in graph.modules.values()]
+        except Error:  # it has ended
+            return False
+        return all(each in ("running", "ended") for each in states)
+
+    def _end(self) -> None:
+        if self._process.poll() is None:
+            self._process.terminate()
+        try:
+            self._process.wait(15)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._log.close()

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Kinds of messages: what a port takes or gives.
+
+    hc.rotation().of(1, 1).in_("gaze").finite()   # one rotation, in the coordinate system gaze
+
+`scalar` is what a number is: "u8" … "f64" as in the specification, or what numpy takes for a dtype.
+Shapes are numpy's: height first.
+"""
+
+from typing import Any, Dict
+
+from hypercolumn import _hypercolumn
+from hypercolumn._hypercolumn import Kind
+
+
+def position(components: int = 3, scalar: Any = "f64") -> Kind:
+    """Positions x y z; 6 or 9 components carry velocity and acceleration too."""
+    return _hypercolumn.kind("position", components, scalar)
+
+
+def rotation(components: int = 3, scalar: Any = "f64") -> Kind:
+    """Rotations roll, pitch, yaw [rad]; 6 or 9 components carry rates and accelerations too."""
+    return _hypercolumn.kind("rotation", components, scalar)
+
+
+def rgb_image(scalar: Any = "u8") -> Kind:
+    """A colour image, (height, width, 3): red, green, blue."""
+    return _hypercolumn.kind("rgb_image", 3, scalar)
+
+
+def image() -> Kind:
+    """A colour image of bytes, (height, width, 3): rgb_image("u8")."""
+    return rgb_image()
+
+
+def intensity_image(scalar: Any = "u8") -> Kind:
+    """A grey image or a depth map, (height, width)."""
+    return _hypercolumn.kind("intensity_image", 1, scalar)
+
+
+def vector_field(components: int, scalar: Any = "f32") -> Kind:
+    """A vector for every place of a grid, (height, width, components)."""
+    return _hypercolumn.kind("vector_field", components, scalar)
+
+
+def string() -> Kind:
+    """UTF-8 text."""
+    return _hypercolumn.kind("string", 1, "u8")
+
+
+def transformation(height: int = 4, width: int = 4, scalar: Any = "f64") -> Kind:
+    """A matrix on homogeneous coordinates: (4, 4) a pose."""
+    return _hypercolumn.kind("transformation", 1, scalar).of(height, width)
+
+
+def dense_graph(components: int = 1, scalar: Any = "f64") -> Kind:
+    """Weights of all edges of a graph, (nodes, nodes, components)."""
+    return _hypercolumn.kind("dense_graph", components, scalar)
+
+
+def sparse_graph(components: int = 3, scalar: Any = "f64") -> Kind:
+    """Edges of a graph, (edges, 1, components): from, to, then weights."""
+    return _hypercolumn.kind("sparse_graph", components, scalar)
+
+
+def sound(channels: int, scalar: Any = "i16") -> Kind:
+    """Sample frames, (1, frames, channels)."""
+    return _hypercolumn.kind("sound", channels, scalar)
+
+
+def map(components: int = 1, scalar: Any = "f64") -> Kind:
+    """A grid over a place, (height, width, components): occupancy, cost, place cells."""
+    return _hypercolumn.kind("map", components, scalar)
+
+
+def table(components: int = 1, scalar: Any = "f64") -> Kind:
+    """Numbers that are nothing else: counters, scores, bids."""
+    return _hypercolumn.kind("table", components, scalar)
+
+
+def any_of(*kinds: Kind) -> Kind:
+    """Several kinds that one input takes; message.type and message.scalar say which came."""
+    return _hypercolumn.any_of(*kinds)
+
+
+def anything() -> Kind:
+    """Every kind of message, for an input."""
+    return _hypercolumn.any_of()
+
+
+def coords() -> Dict[str, int]:
+    """The coordinate systems of the specification: their numbers by name."""
+    return _hypercolumn.coords()

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Modules: programs with inputs, outputs and parameters."""
+
+import sys
+from typing import Any, Callable, List, Optional, Sequence, TypeVar, Union
+
+from hypercolumn import _hypercolumn
+from hypercolumn._hypercolumn import (
+    Frames,
+    Input,
+    Kind,
+    Output,
+    Parameter,
+    ParameterOptions,
+    Timeout,
+)
+from hypercolumn.errors import Error
+
+Handler = TypeVar("Handler", bound=Callable[..., Any])
+Value = TypeVar("Value", bool, int, float, str)
+
+
+class Together:
+    """Inputs whose messages of equal times are taken together: what together() gives."""
+
+    def __init__(self, inputs: Sequence[Input]) -> None:
+        self.inputs: List[Input] = list(inputs)
+
+
+def together(*inputs: Input) -> Together:
+    """Two to eight inputs, for Module.on(): one message of each, all of one time."""
+    if len(inputs) < 2:
+        raise Error("Invalid: together() takes two inputs or more", "Invalid")
+    return Together(inputs)
+
+
+class Module(_hypercolumn.Module):
+    """A program with input ports, output ports and parameters, declared once.
+
+    Its handlers run one after the other on the thread that calls run(). All options of a module,
+    such as --help, --describe, --in and --out, are there as for one in C++ (doc/modules.md).
+    """
+
+    def __init__(self, name: str, summary: str) -> None:
+        """`name` is in snake_case, as in the graph; `summary` is one sentence."""
+        super().__init__(name, summary)
+        self._handled: List[str] = []
+
+    def input(self, name: str, kind: Kind, doc: str, *, actor: bool = False) -> Input:
+        """Declares an input. An `actor` moves something: several writers need an arbiter then."""
+        port = self._input(name, kind, doc)
+        if actor:
+            self._actor(port)
+        return port
+
+    def output(self, name: str, kind: Kind, doc: str) -> Output:
+        """Declares an output, of one kind."""
+        return self._output(name, kind, doc)
+
+    def parameter(
+        self,
+        name: str,
+        default: Value,
+        unit: str,
+        doc: str,
+        *,
+        min: Optional[float] = None,
+        max: Optional[float] = None,
+        step: int = 1,
+        choices: Sequence[str] = (),
+        positional: bool = False,
+        fixed: bool = False,
+    ) -> "Parameter[Value]":
+        """Declares a parameter, of the type of its default; its `value` is what it is now.
+
+        `unit` is "m", "rad", "px", "s", or "" for none. A number may have `min` and `max`, an
+        integer also a `step`, a string `choices`. A `positional` one may be given without its name.
+        A `fixed` one is read at the start alone: the module is restarted to change it.
+        """
+        options = ParameterOptions(min, max, step, list(choices), positional, fixed)
+        return self._parameter(name, default, unit, doc, options)
+
+    def on(self, inputs: Union[Input, Together]) -> Callable[[Handler], Handler]:
+        """Has a function called with each message of an input, or with those that belong together:
+
+        @module.on(image)
+        def look(message): ...
+
+        @module.on(hc.together(left, right))
+        def compare(left_message, right_message): ...
+        """
+        ports = inputs.inputs if isinstance(inputs, Together) else [inputs]
+        for port in ports:
+            if port.name in self._handled:
+                raise Error("Invalid: input %s has two handlers" % port.name, "Invalid")
+            self._handled.append(port.name)
+
+        def attach(handler: Handler) -> Handler:
+            if isinstance(inputs, Together):
+                self._on_together(ports, handler)
+            else:
+                self._on(inputs, handler)
+            return handler
+
+        return attach
+
+    def every(self, period: "Union[float, Parameter[float]]") -> Callable[[Handler], Handler]:
+        """Has a function called every `period` seconds, or at the rate of a parameter [Hz]; between
+        messages, first a period after the start. Periods that were missed are skipped."""
+
+        def attach(handler: Handler) -> Handler:
+            self._every(period, handler)
+            return handler
+
+        return attach
+
+    def after(self, seconds: float) -> Callable[[Callable[[], Any]], Timeout]:
+        """Has a function called once, so long after the start; again after its restart():
+
+        @module.after(3)
+        def silence():
+            module.log("no packets for 3 s")
+
+        silence.restart()
+        """
+        return lambda handler: self._after(seconds, handler)
+
+    def generate(self, handler: Handler) -> Handler:
+        """For a module that makes messages by itself: the function is called again and again while
+        no message waits, until it gives False. The module ends then."""
+        self._generate(handler)
+        return handler
+
+    def on_start(self, handler: Handler) -> Handler:
+        """Has a function called once, when parameters are set and links are open."""
+        self._on_start(handler)
+        return handler
+
+    def on_end(self, handler: Handler) -> Handler:
+        """Has a function called once, when all inputs have ended. Not after an error."""
+        self._on_end(handler)
+        return handler
+
+    def frames(self) -> Frames:
+        """The frames of the module's graph: where its eyes, its head and all else are (doc/frames.md).
+        Declares a parameter and an input `frames`."""
+        return Frames(self)
+
+    def run(self, arguments: Optional[Sequence[str]] = None) -> None:
+        """Runs the module as the command line says, or `arguments` without a program's name, until
+        its inputs end, nobody reads it any more, or it is asked to stop (Ctrl-C). What fails is
+        said in one line on standard error, and ends the program with its status, 1 or 2.
+
+        What handlers print goes to standard error: standard output belongs to the links.
+        """
+        words = sys.argv if arguments is None else [self.name, *arguments]
+        outside, sys.stdout = sys.stdout, sys.stderr
+        try:
+            status = self._run(words)
+        finally:
+            sys.stdout = outside
+        if status != 0:
+            sys.exit(status)

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of recordings and links, for scripts and notebooks."""
+
+import os
+from typing import Optional, Union
+
+from hypercolumn._hypercolumn import Stream
+
+
+def open(uri: str, *, limit: Optional[int] = None) -> Stream:
+    """The messages of a link, as `hc cat` takes it: "tcp:robot:7000", "shm:NAME", "-".
+
+        with hc.open("unix:/tmp/eye?wait=10") as messages:
+            for message in messages:
+                print(message.array.mean())
+
+    They come one after the other until the link ends; Ctrl-C ends a wait. What is compressed has
+    been expanded. `limit` is the largest size of a message's elements that is accepted [byte].
+    """
+    return Stream(uri, limit)
+
+
+def read(path: "Union[str, os.PathLike[str]]", *, limit: Optional[int] = None) -> Stream:
+    """The messages of a recording, a file of MTP/1, in their order."""
+    return Stream("file:" + os.fspath(path), limit)

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The extension _hypercolumn, of which the package's Python files make what people use.
+#include <hc/module/module.h>
+
+#include "python.h"
+
+PYBIND11_MODULE(_hypercolumn, extension) {
+  using namespace python;
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    if (!thrown) return;
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const hc::ModuleError& error) {
+      set_error_text(error.what());
+    }
+  });
+  add_messages(extension);
+  add_kinds(extension);
+  add_modules(extension);
+  add_outputs(extension);
+  add_streams(extension);
+}

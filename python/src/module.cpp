@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+// hypercolumn._hypercolumn.Module: what hypercolumn/module.py makes its own Module of.
+#include <pybind11/chrono.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include <frames/module_frames.h>
+
+#include "kind.h"
+#include "message.h"
+#include "output.h"
+#include "program.h"
+
+namespace python {
+namespace {
+
+using Input = hc::Input<hc::AnyKind>;
+constexpr std::size_t kMostTogether = 8;
+
+struct PyInput {
+  std::string name;
+  Input input;
+};
+
+/// A parameter of any type, as Python sees it.
+struct PyParameter {
+  std::shared_ptr<const hc::ParameterState> state;
+
+  [[nodiscard]] py::object value() const {
+    return std::visit([](const auto& each) -> py::object { return py::cast(each); }, state->value);
+  }
+};
+
+std::chrono::nanoseconds period_of(double seconds) {
+  if (!(seconds > 0)) raise({hc::Code::Invalid, "a period is above 0 s"});
+  return hc::duration(seconds);
+}
+
+/// What every handler of messages is made of: the Python function, and what it keeps of each input.
+struct Handler {
+  Program* program;
+  Function function;
+  std::vector<std::shared_ptr<Keeper>> keepers;
+
+  Handler(Program& program_, const py::object& function_, const std::vector<PyInput>& inputs)
+      : program(&program_), function(hold(function_)) {
+    for (const auto& input : inputs)
+      keepers.push_back(std::make_shared<Keeper>(Keeper{input.name, function_.ptr(), {}, false}));
+  }
+
+  /// Hands messages to the function, one of each input.
+  template <std::size_t... kIndex, typename... Messages>
+  void operator()(std::index_sequence<kIndex...>, Messages&&... messages) const {
+    const Program::Inside inside(*program);
+    const std::array<py::object, sizeof...(Messages)> objects{py::reinterpret_steal<py::object>(
+        wrap(std::forward<Messages>(messages), keepers[kIndex]))...};
+    for (const auto& each : objects)
+      if (!each) program->end_by_error();
+    program->call(function.get(), objects[kIndex].ptr()...);
+  }
+};
+
+void on(Program& program, const PyInput& input, const py::object& function) {
+  const Handler handler(program, function, {input});
+  program.module.on(input.input, [handler](hc::Message message) {
+    handler(std::make_index_sequence<1>(), std::move(message));
+  });
+}
+
+template <std::size_t... kIndex>
+void on_each(std::index_sequence<kIndex...> indices, Program& program,
+             const std::vector<PyInput>& inputs, const py::object& function) {
+  const Handler handler(program, function, inputs);
+  program.module.on(
+      hc::together(inputs[kIndex].input...),
+      [handler, indices](const auto&... messages) { handler(indices, hc::Message(messages)...); });
+}
+
+template <std::size_t kCount = 2>
+void on_together(Program& program, const std::vector<PyInput>& inputs, const py::object& function) {
+  if constexpr (kCount > kMostTogether) {
+    raise({hc::Code::Invalid, "inputs are taken together by two to eight"});
+  } else if (inputs.size() == kCount) {
+    on_each(std::make_index_sequence<kCount>(), program, inputs, function);
+  } else {
+    on_together<kCount + 1>(program, inputs, function);
+  }
+}
+
+/// A Python function without arguments, as the loop calls it.
+std::function<void()> action(Program& program, const py::object& function) {
+  return [&program, held = hold(function)] {
+    const Program::Inside inside(program);
+    program.call(held.get());
+  };
+}
+
+PyInput add_input(Program& program, const std::string& name, const Kind& kind,
+                  const std::string& doc) {
+  return {name, program.module.input(name, hc::AnyKind{kind.types}, doc)};
+}
+
+py::object add_output(const py::object& self, const std::string& name, const Kind& kind,
+                      const std::string& doc) {
+  auto& program = self.cast<Program&>();
+  program.module.output(name, hc::AnyKind{{kind.only("an output")}}, doc);
+  return make_output(program, program.module.outputs().back(), self);
+}
+
+PyParameter add_parameter(Program& program, const std::string& name, const py::object& initial,
+                          const std::string& unit, const std::string& doc,
+                          const hc::ParameterOptions& options) {
+  auto& module = program.module;
+  if (py::isinstance<py::bool_>(initial))
+    module.parameter(name, initial.cast<bool>(), unit, doc, options);
+  else if (py::isinstance<py::int_>(initial))
+    module.parameter(name, initial.cast<std::int64_t>(), unit, doc, options);
+  else if (py::isinstance<py::float_>(initial))
+    module.parameter(name, initial.cast<double>(), unit, doc, options);
+  else
+    module.parameter(name, initial.cast<std::string>(), unit, doc, options);
+  return {module.parameters().back()};
+}
+
+hc::ParameterOptions make_options(std::optional<double> min, std::optional<double> max,
+                                  std::int64_t step, std::vector<std::string> choices,
+                                  bool positional, bool fixed) {
+  hc::ParameterOptions options;
+  if (min) options.min = *min;
+  if (max) options.max = *max;
+  options.step = step;
+  options.choices = std::move(choices);
+  options.positional = positional;
+  options.fixed = fixed;
+  return options;
+}
+
+void every(Program& program, const py::object& period, const py::object& function) {
+  auto& module = program.module;
+  if (py::isinstance<PyParameter>(period)) {
+    const auto& state = period.cast<const PyParameter&>().state;
+    if (!std::holds_alternative<double>(state->value))
+      raise({hc::Code::Invalid, "a rate is a number: parameter " + state->name});
+    module.every(hc::Parameter<double>(state), action(program, function));
+  } else {
+    module.every(period_of(period.cast<double>()), action(program, function));
+  }
+}
+
+void generate(Program& program, const py::object& function) {
+  program.module.generate([&program, held = hold(function)] {
+    const Program::Inside inside(program);
+    return program.call(held.get()).ptr() != Py_False;
+  });
+}
+
+using Pose = py::array_t<double, py::array::c_style>;
+
+py::object array_of(const Eigen::Isometry3d& T) {
+  constexpr py::ssize_t kSide = 4;
+  Pose pose({kSide, kSide});
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column)
+      pose.mutable_at(row, column) = T.matrix()(row, column);
+  return pose;
+}
+
+/// A frame by its name or number, which lives as long as the call.
+hc::frames::Frame frame_of(const py::object& frame) {
+  if (py::isinstance<py::str>(frame)) return frame.cast<std::string_view>();
+  return frame.cast<std::int32_t>();
+}
+
+/// The frames of a module's graph, in Python.
+class Frames {
+ public:
+  Frames(Program& program) : program_(program), frames_(program.module) {}
+
+  py::object lookup(const py::object& target, const py::object& source, std::int64_t time) {
+    return array_of(value_or_raise(frames_.lookup(frame_of(target), frame_of(source), time)));
+  }
+  py::object nearest(const py::object& target, const py::object& source, std::int64_t time) {
+    return array_of(frames_.nearest(frame_of(target), frame_of(source), time));
+  }
+  void when_known(const py::object& target, const py::object& source, std::int64_t time,
+                  const py::object& function) {
+    auto handler = [this, held = hold(function)](const hc::Result<Eigen::Isometry3d>& T) {
+      const Program::Inside inside(program_);
+      const py::object pose = T ? array_of(*T) : py::none();
+      program_.call(held.get(), pose.ptr());
+    };
+    const auto to = frame_of(target), from = frame_of(source);
+    if (!program_.work([&] { frames_.when_known(to, from, time, handler); }))
+      throw py::error_already_set();
+  }
+
+ private:
+  Program& program_;
+  hc::ModuleFrames frames_;
+};
+
+void keep_rate(Program& program, double rate) {
+  if (!program.is_running())
+    raise({hc::Code::Invalid, "keep_rate() is for the handlers of a module that runs"});
+  if (!program.work([&] { program.module.keep_rate(rate); })) throw py::error_already_set();
+}
+
+void add_ports(py::module_& extension) {
+  py::class_<PyInput>(extension, "Input", "An input port.")
+      .def_readonly("name", &PyInput::name, "Its name.");
+  py::class_<PyParameter>(extension, "Parameter", "A parameter of the module.")
+      .def_property_readonly("value", &PyParameter::value, "What it is now.")
+      .def_property_readonly(
+          "name", [](const PyParameter& each) { return each.state->name; }, "Its name.");
+  py::class_<hc::Timeout>(extension, "Timeout",
+                          "A timer that fires once each time it is started: Module.after().")
+      .def(
+          "restart",
+          [](hc::Timeout& timeout, std::optional<double> seconds) {
+            if (seconds)
+              timeout.restart(hc::duration(*seconds));
+            else
+              timeout.restart();
+          },
+          py::arg("seconds") = py::none(),
+          "Has it fire when its time, or another one, has passed from now on.")
+      .def("stop", &hc::Timeout::stop, "Has it not fire.");
+  py::class_<hc::ParameterOptions>(extension, "ParameterOptions").def(py::init(&make_options));
+  py::class_<Frames>(extension, "Frames",
+                     "The frames of the module's graph: where its eyes, its head and all else are.")
+      .def(py::init<Program&>(), py::keep_alive<1, 2>())
+      .def("lookup", &Frames::lookup, py::arg("target"), py::arg("source"), py::arg("time"),
+           "The (4, 4) matrix that takes points of a frame to another at a time.")
+      .def("nearest", &Frames::nearest, py::arg("target"), py::arg("source"), py::arg("time"),
+           "The same for joints that do not move unless a pose says so.")
+      .def("when_known", &Frames::when_known, py::arg("target"), py::arg("source"), py::arg("time"),
+           py::arg("handler"),
+           "Calls a function with the matrix as soon as it is known; with None where it will not "
+           "be.");
+}
+
+}  // namespace
+
+void add_modules(py::module_& extension) {
+  add_ports(extension);
+  using Self = Program;
+  py::class_<Program>(extension, "Module", "What hypercolumn.Module is made of.")
+      .def(py::init<std::string, std::string>())
+      .def("_input", add_input)
+      .def("_output", add_output)
+      .def("_parameter", add_parameter)
+      .def("_actor", [](Self& self, const PyInput& input) { self.module.actor(input.input); })
+      .def("_on", on)
+      .def("_on_together", on_together<>)
+      .def("_every", every)
+      .def("_after",
+           [](Self& self, double seconds, const py::object& function) {
+             return self.module.after(hc::duration(seconds), action(self, function));
+           })
+      .def("_generate", generate)
+      .def("_on_start",
+           [](Self& self, const py::object& function) {
+             self.module.on_start(action(self, function));
+           })
+      .def("_on_end",
+           [](Self& self, const py::object& function) {
+             self.module.on_end(action(self, function));
+           })
+      .def("_run", &Program::run)
+      .def("keep_rate", keep_rate, py::arg("rate"),
+           "For generators: waits until the next period of a rate begins [Hz].")
+      .def(
+          "keep_running", [](Self& self) { self.module.keep_running(); },
+          "Has the module run until it is stopped, though its inputs have ended.")
+      .def(
+          "background", [](Self& self) { self.module.background(); },
+          "Has the process yield the processor to closed loops: for what is in no hurry.")
+      .def(
+          "log", [](const Self& self, const std::string& line) { self.module.log(line); },
+          py::arg("line"), "Writes a line to standard error, with the module's name before it.")
+      .def(
+          "log_once",
+          [](Self& self, const std::string& kind, const std::string& line) {
+            self.module.log_once(kind, line);
+          },
+          py::arg("kind"), py::arg("line"),
+          "Logs the first problem of a kind and counts the others; the counts are logged at the "
+          "end.")
+      .def(
+          "now", [](const Self& self) { return self.module.now(); },
+          "The time for messages that begin here [ns since the Unix epoch]: the machine's, or "
+          "with --clock messages that of the messages.")
+      .def(
+          "seconds_since",
+          [](const Self& self, std::int64_t time) { return self.module.seconds_since(time); },
+          py::arg("time"), "Seconds from a time of a message to now().")
+      .def_property_readonly(
+          "focus", [](const Self& self) { return self.module.focus(); },
+          "Number of the system mode in focus; 0: none.")
+      .def_property_readonly(
+          "has_focus", [](const Self& self) { return self.module.has_focus(); },
+          "Whether the module's mode has the focus.")
+      .def_property_readonly(
+          "name", [](const Self& self) { return self.module.name(); }, "Its name.")
+      .def_property_readonly(
+          "instance", [](const Self& self) { return self.module.instance(); },
+          "Its name in the graph.");
+}
+
+}  // namespace python

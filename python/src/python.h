@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the parts of the extension _hypercolumn share: errors in both directions, and the parts' own
+// entries. What is done for each message is written with Python's C API, all else with pybind11.
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <string_view>
+
+#include <hc/base/result.h>
+
+namespace python {
+
+namespace py = pybind11;
+
+/// Has Python raise hypercolumn.Error with this text; `code` is the name of an hc::Code, or empty.
+void set_error(const std::string& text, std::string_view code);
+inline void set_error(const hc::Error& error) {
+  set_error(error.text(), hc::name(error.code));
+}
+/// The same for the text of an hc::ModuleError, which may begin with a code.
+void set_error_text(const std::string& text);
+
+[[noreturn]] inline void raise(const hc::Error& error) {
+  set_error(error);
+  throw py::error_already_set();
+}
+
+/// The value of a result; a failed one is raised.
+template <typename T>
+T value_or_raise(hc::Result<T> result) {
+  if (!result) raise(result.error());
+  return std::move(*result);
+}
+inline void raise_if_failed(const hc::Status& status) {
+  if (!status) raise(status.error());
+}
+
+/// Has Python raise the exception that is being handled in C++. Those of a module that is to stop
+/// become hypercolumn.Stopped, and are kept by their module (see Program).
+void set_current_exception();
+
+/// hypercolumn.Error and hypercolumn.Stopped, from hypercolumn/errors.py.
+PyObject* error_type();
+PyObject* stopped_type();
+
+/// Whether the interpreter has a signal to handle, which then raised: Ctrl-C while waiting.
+inline void check_signals() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+void add_messages(py::module_& extension);
+void add_kinds(py::module_& extension);
+void add_modules(py::module_& extension);
+void add_outputs(py::module_& extension);
+void add_streams(py::module_& extension);
+
+}  // namespace python

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages without a module: links that a script reads, and running graphs.
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <optional>
+
+#include <hc/base/clock.h>
+#include <hc/compress/compress.h>
+#include <hc/link/link.h>
+#include <hc/observe/running.h>
+
+#include "message.h"
+#include "python.h"
+
+namespace python {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kSlice{50};  // after which a wait looks for Ctrl-C
+
+hc::LinkOptions link_options(const std::optional<std::uint64_t>& limit) {
+  hc::LinkOptions options;
+  if (limit) options.limits.element_bytes = *limit;
+  options.log = [](hc::Severity severity, std::string_view line) {
+    const char* level = severity == hc::Severity::Info ? "info" : "warning";
+    const py::gil_scoped_acquire inside;
+    try {
+      py::module_::import("logging").attr("getLogger")("hypercolumn").attr(level)("%s", line);
+    } catch (py::error_already_set& error) {
+      error.discard_as_unraisable("hypercolumn's log");
+    }
+  };
+  return options;
+}
+
+/// Where a script reads messages.
+class Stream {
+ public:
+  Stream(const std::string& text, const std::optional<std::uint64_t>& limit)
+      : keeper_(std::make_shared<Keeper>(Keeper{text})) {
+    const auto uri = value_or_raise(hc::parse_uri(text));
+    std::optional<hc::Result<std::unique_ptr<hc::Source>>> opened;
+    {
+      const py::gil_scoped_release outside;
+      opened.emplace(hc::open_source(uri, link_options(limit)));
+    }
+    if (!*opened) raise({opened->error().code, text + ": " + opened->error().detail});
+    source_ = std::move(**opened);
+  }
+
+  /// The next message; None after `seconds` without one. Raises StopIteration at the end.
+  py::object take(const std::optional<double>& seconds) {
+    const auto until = seconds ? Clock::now() + hc::duration(*seconds) : Clock::time_point::max();
+    while (true) {
+      hc::Message message;
+      const hc::Got got = try_take(message);
+      if (got == hc::Got::End) throw py::stop_iteration();
+      if (got == hc::Got::Message) {
+        auto wrapped = py::reinterpret_steal<py::object>(wrap(std::move(message), keeper_));
+        if (!wrapped) throw py::error_already_set();
+        return wrapped;
+      }
+      if (Clock::now() >= until) return py::none();
+      check_signals();
+    }
+  }
+
+  void close() {
+    if (is_busy_) raise({hc::Code::Invalid, "another thread reads " + keeper_->name});
+    source_.reset();
+  }
+
+ private:
+  /// Takes a message, or waits for a moment, without the GIL.
+  hc::Got try_take(hc::Message& message) {
+    if (source_ == nullptr) return hc::Got::End;
+    if (is_busy_) raise({hc::Code::Invalid, "another thread reads " + keeper_->name});
+    is_busy_ = true;
+    hc::Result<hc::Got> got = hc::Got::Nothing;
+    {
+      const py::gil_scoped_release outside;
+      got = source_->take(message);
+      if (got && *got == hc::Got::Nothing) {
+        if (auto ready = source_->wait(-1, kSlice); !ready)
+          got = ready.error();
+        else if (*ready)
+          got = source_->take(message);
+      }
+      if (got && *got == hc::Got::Message && !message.plain()) {
+        auto plain = hc::expand(message);
+        if (plain)
+          message = std::move(*plain);
+        else
+          got = plain.error();
+      }
+    }
+    is_busy_ = false;
+    if (!got) raise({got.error().code, keeper_->name + ": " + got.error().detail});
+    return *got;
+  }
+
+  std::unique_ptr<hc::Source> source_;
+  std::shared_ptr<Keeper> keeper_;
+  bool is_busy_ = false;  // a thread waits without the GIL
+};
+
+std::vector<std::string> ask(const hc::RunningGraph& graph,
+                             const std::vector<std::string>& commands) {
+  std::optional<hc::Result<hc::Answer>> answer;
+  {
+    const py::gil_scoped_release outside;
+    answer.emplace(hc::ask(graph, commands));
+  }
+  if (!*answer) raise(answer->error());
+  if ((*answer)->is_ok) return (*answer)->rows;
+  std::string text;
+  for (const auto& row : (*answer)->rows) text += (text.empty() ? "" : "\n") + row;
+  raise({hc::Code::Invalid, text});
+}
+
+hc::Observation observe(const hc::RunningGraph& graph, const std::string& port) {
+  std::optional<hc::Result<hc::Observation>> made;
+  {
+    const py::gil_scoped_release outside;
+    made.emplace(hc::Observation::make(graph, port));
+  }
+  return value_or_raise(std::move(*made));
+}
+
+}  // namespace
+
+void add_streams(py::module_& extension) {
+  py::class_<Stream>(extension, "Stream",
+                     "Messages of a recording or a link, one after the other; for a with, too.")
+      .def(py::init<const std::string&, const std::optional<std::uint64_t>&>(), py::arg("uri"),
+           py::arg("limit") = py::none())
+      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__next__", [](Stream& self) { return self.take(std::nullopt); })
+      .def("take", &Stream::take, py::arg("seconds") = py::none(),
+           "The next message; None after so many seconds without one. At the end StopIteration.")
+      .def("close", &Stream::close, "Ends the link.")
+      .def("__enter__", [](const py::object& self) { return self; })
+      .def("__exit__", [](Stream& self, const py::args&) { self.close(); });
+  py::class_<hc::RunningGraph>(extension, "RunningGraph")
+      .def_readonly("name", &hc::RunningGraph::name)
+      .def_readonly("process", &hc::RunningGraph::process)
+      .def_property_readonly("state_uri", &hc::RunningGraph::state_uri)
+      .def("__repr__", &hc::RunningGraph::text);
+  py::class_<hc::Observation>(extension, "Observation")
+      .def_property_readonly("uri", &hc::Observation::uri)
+      .def("renew", &hc::Observation::renew, py::call_guard<py::gil_scoped_release>());
+  extension.def("find_running", [] { return hc::find_running(); });
+  extension.def("ask", ask);
+  extension.def("observe", observe);
+}
+
+}  // namespace python

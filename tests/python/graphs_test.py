@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Modules in Python in graphs, beside modules in C++; and graphs seen from Python."""
+
+import os
+import signal
+import unittest
+
+import numpy
+
+from package import Package, hc, wait_until
+
+from harness import DATA
+
+FILTER = """
+import hypercolumn as hc
+module = hc.Module("darken", "Darkens images.")
+image = module.input("image", hc.image(), "an image")
+dark = module.output("dark", hc.image(), "the same, darker")
+shift = module.parameter("shift", 1, "", "how much", min=0, max=7)
+
+@module.on(image)
+def darken(message):
+    with dark.loan(message.height, message.width) as out:
+        out[:] = message.array >> shift.value
+
+module.run()
+"""
+GRAPH = (
+    """
+version = 1
+[modules.camera]
+parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+[modules.darken]
+program = "./darken"
+inputs.image = "camera.left"
+[modules.brightness]
+inputs.image = "darken.dark"
+"""
+    % DATA
+)
+
+
+class Graphs(Package):
+    def setUp(self):
+        super().setUp()
+        self.environment.pop("PYTHONPATH")  # hc has modules find the package
+        os.environ["PATH"], path = self.environment["PATH"], os.environ["PATH"]
+        self.addCleanup(os.environ.__setitem__, "PATH", path)
+        self.write_module("darken", FILTER)
+        self.write("g.toml", GRAPH)
+        self.graph = self.path("g.toml")
+
+    def test_check_knows_its_ports(self):
+        self.assertIn("no problems found", self.shell("hc check g.toml"))
+        self.write("wrong.toml", GRAPH.replace("darken.dark", "darken.drak"))
+        self.shell("hc check wrong.toml", 2)
+        self.assertIn('did you mean "dark"?', self.err)
+
+    def test_images_go_from_cpp_to_python_to_cpp(self):
+        with hc.start(self.graph) as graph:
+            self.assertEqual([each.status for each in graph.modules.values()], ["running"] * 3)
+            bright = graph["camera.left"].read().array.mean()
+            for message in graph["brightness.mean"]:
+                if message.numbers[0] > 0:
+                    break
+            self.assertLess(message.numbers[0], 0.6 * bright)
+            links = {(each.source, each.target): each for each in graph.links}
+            self.assertEqual(links[("darken.dark", "brightness.image")].transport, "shm")
+
+    def test_parameters_are_set_while_it_runs(self):
+        with hc.start(self.graph) as graph:
+            self.assertEqual(graph.parameters["darken.shift"], 1)
+            self.assertEqual(graph.parameters["camera.loop"], True)
+            self.assertIn("aloeL", graph.parameters["camera.source"])
+            graph.parameters["darken.shift"] = 7
+            self.assertTrue(any(m.numbers[0] < 2 for m in graph["brightness.mean"]))
+            wait_until(lambda: graph.parameters["darken.shift"] == 7)
+            with self.assertRaisesRegex(hc.Error, "darken.shift|8"):
+                graph.parameters["darken.shift"] = 8
+            with self.assertRaises(KeyError):
+                graph.parameters["darken.no"]
+
+    def test_a_port_is_read_without_disturbing(self):
+        with hc.start(self.graph) as graph:
+            seen = []
+            for message in graph["darken.dark"]:
+                seen.append(message.seq)
+                self.assertEqual(message.array.shape, (60, 80, 3))
+                if len(seen) == 5:
+                    break
+            self.assertEqual(seen, sorted(set(seen)))
+            with self.assertRaisesRegex(hc.Error, "no"):
+                graph["darken.no"].read()
+
+    def test_reading_ends_with_the_graph(self):
+        with hc.start(self.graph) as graph:
+            seen = 0
+            for message in graph["camera.left"]:
+                if seen == 0:
+                    graph.command("stop")
+                seen += 1
+            self.assertGreater(seen, 0)
+
+    def test_attach_finds_it_by_its_name(self):
+        os.environ.pop("HC_GRAPH", None)
+        with hc.start(self.graph, "--as", "garden") as graph:
+            self.assertEqual(hc.attach("garden").process, graph.process)
+            self.assertIn("garden", [each.name for each in hc.running()])
+            with self.assertRaisesRegex(hc.Error, 'no graph "gardn" is running'):
+                hc.attach("gardn")
+        wait_until(lambda: "garden" not in [each.name for each in hc.running()])
+
+    def test_a_graph_that_cannot_run_says_why(self):
+        self.write("wrong.toml", GRAPH.replace("./darken", "./no_such"))
+        with self.assertRaisesRegex(hc.Error, "no_such") as caught:
+            with hc.start(self.path("wrong.toml")):
+                pass
+        self.assertEqual(caught.exception.code, "Invalid")
+
+    def test_a_killed_module_is_restarted(self):
+        with hc.start(self.graph) as graph:
+            before = graph.modules["darken"]
+            os.kill(before.pid, signal.SIGKILL)
+            wait_until(lambda: graph.modules["darken"].restarts == 1)
+            self.assertEqual(graph["darken.dark"].read().array.dtype, numpy.uint8)
+
+    def test_an_exception_is_in_the_log_of_the_graph(self):
+        self.write_module("darken", FILTER.replace(">> shift.value", "/ 0 * no_such_name"))
+        self.write("g.toml", GRAPH.replace('"./darken"', '"./darken"\nrestart = "never"'))
+        self.shell("timeout 60 hc run g.toml", 1)
+        self.assertIn("darken: NameError: name 'no_such_name' is not defined", self.err)
+        self.assertIn("Traceback", self.err)
+
+
+if __name__ == "__main__":
+    unittest.main()
