@@ -145,6 +145,9 @@ class Documents(Pipes):
     def test_head(self):
         self.run_document("doc/head.md")
 
+    def test_trace(self):
+        self.run_document("doc/trace.md")
+
     def test_tasks(self):
         self.run_document("doc/tasks.md")
 

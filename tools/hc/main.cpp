@@ -121,11 +121,13 @@ int main(int argc, char** argv) {
   tool::add_graph(app);
   tool::add_ps(app);
   tool::add_top(app);
+  tool::add_trace(app);
   tool::add_cat(app);
   tool::add_info(app);
   tool::add_send(app);
   tool::add_record(app);
   tool::add_play(app);
+  tool::add_replay(app);
   tool::add_describe(app);
   tool::add_new(app);
   tool::add_manual(app);

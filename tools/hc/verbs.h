@@ -51,8 +51,10 @@ void add_new(CLI::App& app);
 void add_play(CLI::App& app);
 void add_ps(CLI::App& app);
 void add_record(CLI::App& app);
+void add_replay(CLI::App& app);
 void add_run(CLI::App& app);
 void add_send(CLI::App& app);
 void add_top(CLI::App& app);
+void add_trace(CLI::App& app);
 
 }  // namespace tool

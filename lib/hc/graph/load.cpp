@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include <hc/base/suggestion.h>
+#include <hc/contract/trace.h>
 #include <hc/graph/commands.h>
 #include <hc/graph/programs.h>
 #include <hc/os/socket.h>
@@ -100,6 +101,14 @@ void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   if (!listen.empty()) obey("set " + page + ".listen=" + listen);
 }
 
+/// Has each module that can tell of its messages do so, into FOLDER/MODULE.trace.mtp.
+void record_traces(Plan& plan, const std::string& folder) {
+  for (auto& module : plan.modules)
+    if (!module.control_uri.empty())
+      module.ends.push_back({false, kTracePort,
+                             "file:" + folder + "/" + module.name + "." + kTracePort + ".mtp", ""});
+}
+
 class FileLoader : public GraphLoader {
  public:
   explicit FileLoader(LoadOptions options) : options_(std::move(options)) {}
@@ -135,6 +144,7 @@ class FileLoader : public GraphLoader {
     };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? internal::hold_port : HoldPort());
+    if (!options_.record.empty()) record_traces(plan, options_.record);
     loaded.problems = problems.lines();
     if (problems.empty()) loaded.plan = std::move(plan);
     return loaded;

@@ -141,6 +141,8 @@ class Parser {
     if (!link) return link.error();
     if (link->is_focus)
       arguments_.focus_links.push_back(link->uri);
+    else if (link->is_trace)
+      arguments_.trace_links.push_back(link->uri);
     else
       (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(link->port, link->uri);
     return {};
@@ -285,13 +287,15 @@ std::vector<std::pair<std::string, std::string>> options_of(const Module& module
 }
 
 Result<PortLink> parse_port_link(const Module& module, bool is_input, const std::string& text) {
-  constexpr std::string_view kFocus = "focus=";
-  const bool has_own = position_of(module.inputs(), "focus") != module.inputs().end();
+  auto is_implied = [&](const auto& own, std::string_view port) {
+    return position_of(own, port) == own.end() && text.starts_with(std::string(port) + "=");
+  };
   PortLink link;
-  link.is_focus = is_input && !has_own && text.starts_with(kFocus);
+  link.is_focus = is_input && is_implied(module.inputs(), "focus");
+  link.is_trace = !is_input && is_implied(module.outputs(), kTracePort);
   std::string uri = text;
-  if (link.is_focus) {
-    uri.erase(0, kFocus.size());
+  if (link.is_focus || link.is_trace) {
+    uri.erase(0, text.find('=') + 1);
   } else {
     auto split = is_input ? split_port(module.inputs(), "input", text)
                           : split_port(module.outputs(), "output", text);

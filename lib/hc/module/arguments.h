@@ -22,6 +22,7 @@ struct Arguments {
   std::vector<std::pair<std::size_t, Uri>> inputs;    ///< port, link
   std::vector<std::pair<std::size_t, Uri>> outputs;   ///< port, link
   std::vector<Uri> focus_links;                       ///< --in focus=URI
+  std::vector<Uri> trace_links;                       ///< --out trace=URI
   std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
   Focus focus;                                        ///< --mode, --modes
   bool by_messages = false;                           ///< --clock messages
@@ -38,6 +39,7 @@ Result<Arguments> parse_arguments(const Module& module, const std::vector<std::s
 /// Where a link begins or ends at a module: the port, and its URI.
 struct PortLink {
   bool is_focus = false;  ///< the input that every module has
+  bool is_trace = false;  ///< the output that every module has
   std::size_t port = 0;
   Uri uri;
 };

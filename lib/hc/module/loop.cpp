@@ -21,6 +21,7 @@ constexpr const char* kSetsKept = "4";      // by links whose newest complete se
 /// A line about a link waits for so long: at the end of a graph it tells nothing.
 constexpr std::chrono::milliseconds kLineDelay{200};
 constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
+const std::string kNoPort;
 
 /// Ends the module: cleanly if it is to stop, else with the name of what failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
@@ -108,7 +109,8 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   options.awaits_reader = [this, sender = link.get()](bool awaits) {
     report_state(awaits ? sender : nullptr);
   };
-  if (const auto* commands = management_.commands())
+  // What only observes has no part in what the module does.
+  if (const auto* commands = management_.commands(); commands != nullptr && port != kTracePort)
     options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
   auto sink = open_sink(uri, options);
   if (!sink) fail(name_of(uri.text(), port), sink.error());
@@ -118,7 +120,14 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   return link;
 }
 
+void Module::Loop::open_trace(const Uri& uri) {
+  auto link = open_output(uri, kTracePort);
+  if (trace_ == nullptr) trace_ = std::make_unique<internal::Trace>(module_.clock_);
+  trace_->output.links.push_back(std::move(link));
+}
+
 void Module::Loop::open_outputs(const internal::Arguments& arguments) {
+  for (const auto& uri : arguments.trace_links) open_trace(uri);
   for (const auto& [port, uri] : arguments.outputs)
     module_.outputs_[port]->links.push_back(open_output(uri, module_.outputs_[port]->name));
   if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
@@ -203,7 +212,9 @@ void Module::Loop::run() {
     read_watched();
     if (any) continue;
     if (is_generators_turn()) {
+      note(TraceEvent::What::Began, kNoPort, {});
       if (!generate()) break;
+      note(TraceEvent::What::Ended, kNoPort, {});
     } else if (all_ended()) {
       break;
     } else {
@@ -231,7 +242,9 @@ void Module::Loop::fire_timers() {
   for (auto& timer : module_.timers_) {
     const auto due = timer.due();
     if (due > time()) continue;
+    note(TraceEvent::What::Began, kNoPort, {});
     timer.handler();
+    note(TraceEvent::What::Ended, kNoPort, {});
     now_ = module_.clock_.monotonic();
     timer.last = std::max(due, time() - timer.period());
   }
@@ -240,7 +253,9 @@ void Module::Loop::fire_timers() {
     const auto timeout = module_.timeouts_[i];
     if (!timeout->due || *timeout->due > time()) continue;
     timeout->due.reset();
+    note(TraceEvent::What::Began, kNoPort, {});
     timeout->handler();
+    note(TraceEvent::What::Ended, kNoPort, {});
   }
 }
 
@@ -275,7 +290,9 @@ bool Module::Loop::take_each() {
       const auto* together = link.inputs.front()->together;
       const int most = together != nullptr && together->is_latest ? kMostAtOnce : 1;
       for (int i = 0; i < most; ++i) {
-        if (link.source == nullptr || is_crowded(link) != crowded || !take_one(link)) break;
+        if (link.source == nullptr || is_crowded(link) != crowded) break;
+        if (any) now_ = module_.clock_.monotonic();  // the messages before have taken their time
+        if (!take_one(link)) break;
         any = true;
       }
     }
@@ -378,6 +395,7 @@ void Module::Loop::deliver(Inlet& link, Message& message) {
         std::any_of(input->types.begin(), input->types.end(),
                     [&](const PortType& type) { return fits(message.header, type); });
     if (!fits_any) continue;
+    note(TraceEvent::What::Took, input->name, message.header);
     if (!input->handler) return;
     if (!module_.focus_.admits(input->is_exclusive, message.header.mode)) {
       ++link.ignored;
@@ -411,7 +429,14 @@ void Module::Loop::call(const internal::InputState& input, Inlet& link, Message&
     return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
   }
   module_.handled_ = internal::Handled(message.header, &link.route.peer);
-  input.handler(message);
+  if (trace_ == nullptr || input.together != nullptr) [[likely]] {
+    input.handler(message);
+  } else {
+    const Header header = message.header;  // a handler may move the message away
+    note(TraceEvent::What::Began, input.name, header);
+    input.handler(message);
+    note(TraceEvent::What::Ended, input.name, header);
+  }
   module_.handled_ = {};
 }
 
@@ -461,6 +486,7 @@ void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
 
 void Module::Loop::close() {
   log_dropped();
+  if (trace_ != nullptr) trace_->flush();
   const LinkedSink* failed = nullptr;
   Status failure;  // the first; the other links are closed all the same
   for (auto& link : sinks_) {

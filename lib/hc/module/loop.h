@@ -13,6 +13,7 @@
 #include <hc/module/management.h>
 #include <hc/module/module.h>
 #include <hc/module/quantiles.h>
+#include <hc/module/trace.h>
 
 namespace hc {
 
@@ -64,6 +65,11 @@ struct Module::Loop {
   void close();
   /// @param blocked  the link whose reader the module waits for; null: none.
   void report_state(const internal::LinkedSink* blocked = nullptr);
+  /// Notes a moment in the way of a message, while the module is traced.
+  void note(TraceEvent::What what, const std::string& port, const Header& header) {
+    if (trace_ != nullptr) [[unlikely]]
+      trace_->note(what, port, header);
+  }
 
  private:
   [[nodiscard]] std::string name_of(const std::string& uri, const std::string& port) const;
@@ -75,6 +81,7 @@ struct Module::Loop {
   void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);
   void open_focus(const Uri& uri);
+  void open_trace(const Uri& uri);
   bool join_renewed();
   void choose_policies();
   void set_route(const std::string& link, const internal::Route& route);
@@ -127,6 +134,7 @@ struct Module::Loop {
   void report_counters();
   void report_links();
   void report_parameters();
+  void report_trace();
 
   Module& module_;
   LinkOptions options_;
@@ -134,6 +142,7 @@ struct Module::Loop {
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;     // in the order of the command line
   std::vector<std::shared_ptr<internal::LinkedSink>> unlinked_;  // one may still be in send()
   std::vector<internal::Inlet> focus_;
+  std::unique_ptr<internal::Trace> trace_;  // while it is traced
   internal::Management management_;
   WaitSet waits_, pauses_;  // for all there is; between two calls of the generator
   std::vector<Source*> waited_for_;

@@ -45,6 +45,7 @@ void Module::Loop::attend() {
 void Module::Loop::serve() {
   unlinked_.clear();
   log_lines(now_);
+  report_trace();
   const bool reports = management_.is_heard() && now_ - reported_ >= kReportPeriod;
   if (now_ - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
   attended_ = now_;
@@ -149,6 +150,8 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
     if (link->is_focus) {
       std::erase_if(focus_, [uri = link->uri.text()](const auto& each) { return each.uri == uri; });
       open_focus(link->uri);
+    } else if (link->is_trace) {
+      open_trace(link->uri);
     } else if (is_input) {
       open_input(link->uri, {module_.inputs_[link->port].get()});
     } else {
@@ -165,6 +168,12 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   auto link = internal::parse_port_link(module_, is_input, text);
   if (!link) return link.error();
   auto uri = link->uri.text();
+  if (link->is_trace) {
+    if (trace_ == nullptr) return unknown_link();
+    auto unlinked = unlink_output(trace_->output, uri);
+    if (trace_->output.links.empty()) trace_.reset();
+    return unlinked;
+  }
   if (!is_input) return unlink_output(*module_.outputs_[link->port], uri);
   report_counters();  // the last of this link
   if (link->is_focus) {
@@ -258,13 +267,21 @@ void Module::Loop::report_links() {
   std::vector<LinkEnd> ends;
   for (const auto& link : sources_)
     ends.push_back({true, link.inputs.size() == 1 ? link.inputs[0]->name : "-", link.uri});
-  for (const auto& sink : sinks_)
-    for (const auto& output : module_.outputs_)
-      if (std::find(output->links.begin(), output->links.end(), sink) != output->links.end()) {
-        ends.push_back({false, output->name, sink->uri});
-        break;  // standard output may be of several ports
-      }
+  for (const auto& sink : sinks_) {  // standard output may be of several ports
+    const auto output = std::ranges::find_if(module_.outputs_, [&](const auto& each) {
+      return std::ranges::find(each->links, sink) != each->links.end();
+    });
+    ends.push_back(
+        {false, output == module_.outputs_.end() ? kTracePort : (*output)->name, sink->uri});
+  }
   send(Report::Links, make_links(ends));
+}
+
+void Module::Loop::report_trace() {
+  const auto* trace = trace_.get();
+  if (trace != nullptr && !trace->events.empty() &&
+      (trace->events.size() >= internal::Trace::kMany || now_ - trace->sent >= kReportPeriod))
+    trace_->flush();
 }
 
 void Module::Loop::report_parameters() {

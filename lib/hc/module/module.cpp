@@ -91,6 +91,22 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
   }
 }
 
+void internal::Trace::flush() {
+  sent = clock.monotonic();
+  if (lost > 0) events.push_back({TraceEvent::What::Lost, "", 0, lost, 0, clock.wall()});
+  lost = 0;
+  if (events.empty()) return;
+  Message message = make_trace(events);
+  message.header.seq = output.seq++;
+  message.header.time = events.front().moment;
+  events.clear();
+  for (auto& link : output.links) {
+    if (link->sink == nullptr || link->sink->send(message)) continue;
+    link->traffic = link->sink->traffic();
+    link->sink.reset();
+  }
+}
+
 void Module::handle(internal::TogetherState& together) {
   if (together.set.empty()) return;
   const auto set = std::exchange(together.set, {});
@@ -102,7 +118,13 @@ void Module::handle(internal::TogetherState& together) {
         return each.header.coord != latest.coord || each.header.info.type != latest.info.type;
       }))
     handled_.coord = 0;
+  auto note_each = [&](TraceEvent::What what) {
+    for (std::size_t i = 0; i < set.size(); ++i)
+      loop_->note(what, together.inputs[i]->name, set[i].header);
+  };
+  note_each(TraceEvent::What::Began);
   together.handler(set);
+  note_each(TraceEvent::What::Ended);
   handled_ = {};
 }
 
@@ -214,6 +236,7 @@ void internal::send(OutputState& output, Message message) {
     header.info.encoding = wanted;  // the same in memory
   else
     message = value_or_end(compress(message, wanted));
+  if (module.loop_ != nullptr) module.loop_->note(TraceEvent::What::Sent, output.name, header);
   const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
     return !link.route.takes(header.dst) || send_to(link, output.name, message);
   });
@@ -224,6 +247,8 @@ std::size_t internal::forward(OutputState& output, const Message& message) {
   Module& module = *output.module;
   const std::string* from = module.handled_.peer;
   std::size_t taken = 0;
+  if (module.loop_ != nullptr)
+    module.loop_->note(TraceEvent::What::Sent, output.name, message.header);
   const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
     if (!link.route.takes(message.header.dst)) return true;
     if (from != nullptr && !from->empty() && *from == link.route.peer) return true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a running graph is changed: by its files, and by commands.
 #include <hc/base/suggestion.h>
+#include <hc/contract/trace.h>
 #include <hc/graph/commands.h>
 #include <hc/graph/run/runner.h>
 
@@ -86,7 +87,9 @@ Result<std::string> Runner::observe(const std::string& port) {
     return Error{Code::Invalid, port + " has several writers; observe one of them: " + list};
   }
   const std::string& output = writers.empty() ? port : writers.front();
-  Supervised* module = plan_.sources.contains(output) ? at(output) : nullptr;
+  const bool is_output =
+      plan_.sources.contains(output) || output.ends_with("." + std::string(kTracePort));
+  Supervised* module = is_output ? at(output) : nullptr;
   if (module == nullptr && !writers.empty())
     return Error{Code::Invalid,
                  port + " is fed by " + output + ", which no module of the graph is"};

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include <hc/mtp/rows.h>
+
+namespace tool {
+namespace {
+
+hc::Message number(std::int64_t time, double value, std::int32_t width = 1) {
+  auto draft =
+      hc::Draft::make({hc::MatrixType::Table, 1, hc::Scalar::F64, hc::Encoding::Text}, width, 1);
+  for (auto& each : draft.view<double>().numbers()) each = value;
+  draft.header.time = time;
+  return std::move(draft).finish();
+}
+
+NextMessage from(const std::vector<hc::Message>& messages) {
+  return [&messages, at = std::size_t{0}](hc::Message& message) mutable {
+    if (at == messages.size()) return false;
+    message = messages[at++];
+    return true;
+  };
+}
+
+Comparison compare_all(const std::vector<hc::Message>& recorded,
+                       const std::vector<hc::Message>& replayed, const Tolerance& tolerance = {}) {
+  return compare(from(recorded), from(replayed), tolerance);
+}
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+TEST(Comparison, NamesTheFirstField) {
+  auto one = number(1, 0.5), other = number(1, 0.5);
+  EXPECT_EQ(difference(one, other, {}), "");
+  other.header.src = 3, other.header.seq = 9;
+  EXPECT_EQ(difference(one, other, {}), "");
+  other.header.mode = 2;
+  EXPECT_EQ(difference(one, other, {}), "mode: 0 recorded, 2 replayed");
+  EXPECT_EQ(difference(one, number(1, 0.5, 2), {}), "width: 1 recorded, 2 replayed");
+  EXPECT_EQ(difference(one, number(1, 0.75), {}),
+            "row 0, column 0, component 0: 0.5 recorded, 0.75 replayed");
+  EXPECT_EQ(difference(one, number(1, 0.75), {.number = 0.25}), "");
+  const std::vector<std::string> hello = {"HELLO"}, hallo = {"HALLO"};
+  EXPECT_EQ(difference(hc::make_rows(hello), hc::make_rows(hallo), {}),
+            "text: \"HELLO\" recorded, \"HALLO\" replayed");
+}
+
+TEST(Comparison, CountsWhatDiffersIsMissingAndIsMore) {
+  const std::vector<hc::Message> recorded = {number(kSecond, 1), number(2 * kSecond, 2),
+                                             number(3 * kSecond, 3), number(9 * kSecond, 4)};
+  EXPECT_EQ(compare_all(recorded, recorded).text(), "4 messages, the same");
+  const auto result = compare_all(recorded, {number(kSecond, 1), number(2 * kSecond, 5),
+                                             number(9 * kSecond, 4), number(10 * kSecond, 6)});
+  EXPECT_EQ(result.same, 2U);
+  EXPECT_EQ(
+      result.text(),
+      "4 messages, 1 differ, 1 missing, 1 more; first: seq 0, 1.000 s after the first: row 0, "
+      "column 0, component 0: 2 recorded, 5 replayed");
+  EXPECT_FALSE(result.is_same({}));
+  EXPECT_TRUE(result.is_same({.share = 0.4}));
+  EXPECT_FALSE(result.is_same({.share = 0.41}));
+}
+
+TEST(Comparison, TimesMayGoBackWithinASecond) {
+  const std::vector<hc::Message> recorded = {number(2 * kSecond, 1), number(2 * kSecond - 5, 2),
+                                             number(2 * kSecond, 3)};
+  const std::vector<hc::Message> replayed = {number(2 * kSecond - 5, 2), number(2 * kSecond, 3),
+                                             number(2 * kSecond, 1)};
+  EXPECT_EQ(compare_all(recorded, replayed).text(), "3 messages, the same");
+  EXPECT_EQ(compare_all(replayed, recorded).text(), "3 messages, the same");
+}
+
+TEST(Comparison, EqualMessagesOfOneTimeAreCounted) {
+  const auto result = compare_all({number(1, 1), number(1, 1)}, {number(1, 1)});
+  EXPECT_EQ(result.same, 1U);
+  EXPECT_EQ(result.missing, 1U);
+}
+
+TEST(Comparison, ATimeMayDifferWhereThatIsAllowed) {
+  const std::vector<hc::Message> recorded = {number(kSecond, 1), number(2 * kSecond, 2)};
+  const std::vector<hc::Message> replayed = {number(kSecond + 100, 1),
+                                             number(2 * kSecond - 100, 2)};
+  EXPECT_EQ(compare_all(recorded, replayed).missing, 2U);
+  EXPECT_EQ(compare_all(recorded, replayed, {.time = 99}).missing, 2U);
+  EXPECT_EQ(compare_all(recorded, replayed, {.time = 100}).text(), "2 messages, the same");
+}
+
+TEST(Comparison, NothingIsTheSameAsNothing) {
+  EXPECT_TRUE(compare_all({}, {}).is_same({}));
+  EXPECT_FALSE(compare_all({}, {number(1, 1)}).is_same({}));
+  EXPECT_FALSE(compare_all({number(1, 1)}, {}).is_same({}));
+}
+
+}  // namespace
+}  // namespace tool

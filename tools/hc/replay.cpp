@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc replay: runs the modules of a recorded graph again, each alone on what it was fed with, by the
+// clock of the messages, and compares what they send with the recording.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <hc/base/clock.h>
+#include <hc/base/format.h>
+#include <hc/base/suggestion.h>
+#include <hc/compress/compress.h>
+#include <hc/contract/trace.h>
+#include <hc/graph/run/process.h>
+#include <hc/os/program.h>
+
+#include "common.h"
+#include "comparison.h"
+#include "graph.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
+using Taken = std::map<std::string, std::set<Key>>;                // by input
+
+struct ReplayOptions {
+  std::string recording, out;
+  hc::LoadOptions graph;
+  std::vector<std::string> except, numbers, times, shares;
+  bool check = false;
+  double timeout = 300;
+};
+
+/// A folder for what is sent, removed at the end unless a person has named it.
+class Folder {
+ public:
+  explicit Folder(const std::string& given) : is_kept_(!given.empty()) {
+    std::error_code failed;
+    if (is_kept_) {
+      path_ = given;
+      fs::create_directories(path_, failed);
+      if (failed) throw Failure({hc::Code::System, given + ": " + failed.message()});
+      return;
+    }
+    std::string name = fs::temp_directory_path(failed) / "hc-replay-XXXXXX";
+    if (failed || ::mkdtemp(name.data()) == nullptr)
+      throw Failure({hc::Code::System, name + ": no folder could be made"});
+    path_ = name;
+  }
+  ~Folder() {
+    std::error_code failed;
+    if (!is_kept_) fs::remove_all(path_, failed);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  bool is_kept_;
+  fs::path path_;
+};
+
+/// Settings "[MODULE[.PORT]=]VALUE": the most exact one counts.
+class Settings {
+ public:
+  Settings(const std::string& option, const std::vector<std::string>& words, double otherwise)
+      : otherwise_(otherwise) {
+    for (const auto& word : words) {
+      const auto equals = word.find('=');
+      const auto number = equals == std::string::npos ? word : word.substr(equals + 1);
+      double value = 0;
+      const char* end = number.data() + number.size();
+      const auto [stop, status] = std::from_chars(number.data(), end, value);
+      if (status != std::errc() || stop != end || !(value >= 0))
+        throw Failure({hc::Code::Invalid, option + " is [MODULE[.PORT]=]NUMBER, not " + word});
+      values_[equals == std::string::npos ? "" : word.substr(0, equals)] = value;
+    }
+  }
+
+  [[nodiscard]] double of(const std::string& output) const {
+    for (const auto& name : {output, output.substr(0, output.find('.')), std::string()})
+      if (const auto found = values_.find(name); found != values_.end()) return found->second;
+    return otherwise_;
+  }
+  void check(const std::set<std::string>& known) const {
+    for (const auto& [name, value] : values_)
+      if (!name.empty() && !known.contains(name))
+        throw Failure({hc::Code::Invalid, "no module or recorded output \"" + name + "\"" +
+                                              hc::suggestion(name, {known.begin(), known.end()})});
+  }
+
+ private:
+  double otherwise_;
+  std::map<std::string, double> values_;
+};
+
+/// What a module took, by what it told while it was recorded; nothing where that is not known.
+std::optional<Taken> read_taken(const fs::path& file) {
+  std::error_code missing;
+  if (!fs::exists(file, missing)) return std::nullopt;
+  Taken taken;
+  auto source = open_file_source(file, kDefaultLimit);
+  hc::Message message;
+  while (receive(*source, message, file))
+    for (const auto& event : hc::read_trace(message)) {
+      if (event.what == hc::TraceEvent::What::Lost) return std::nullopt;
+      if (event.what == hc::TraceEvent::What::Took)
+        taken[event.port].insert({event.src, event.seq, event.time});
+    }
+  return taken;
+}
+
+/// Writes the messages that were taken into a file.
+void write_taken(const fs::path& from, const std::set<Key>& taken, const fs::path& to) {
+  auto source = open_file_source(from, kDefaultLimit);
+  auto sink = open_file_sink(to);
+  hc::Message message;
+  while (receive(*source, message, from)) {
+    const auto& header = message.header;
+    if (taken.contains({header.src, header.seq, header.time}) && !send(*sink, message, to)) return;
+  }
+  if (auto closed = sink->close(); !closed) throw Failure(to, closed.error());
+}
+
+class Replay {
+ public:
+  explicit Replay(const ReplayOptions& options)
+      : options_(options),
+        plan_(load(options)),
+        folder_(options.out),
+        numbers_("--tolerance", options.numbers, 0),
+        times_("--time-tolerance", options.times, 0),
+        shares_("--share", options.shares, 1) {
+    std::set<std::string> known;
+    for (const auto& module : plan_.modules) {
+      known.insert(module.name);
+      for (const auto& output : recorded_outputs(module)) known.insert(module.name + "." + output);
+    }
+    for (const auto* settings : {&numbers_, &times_, &shares_}) settings->check(known);
+    Settings("--except", with_values(options.except), 0).check(known);
+  }
+
+  void run() {
+    std::size_t differing = 0, compared = 0;
+    for (const auto& module : plan_.modules) {
+      if (hc::stop_requested()) throw Failure(0);
+      const auto reason = why_not(module);
+      if (!reason.empty()) {
+        print(hc::format("{}: not run: {}\n", module.name, reason));
+        continue;
+      }
+      run_module(module);
+      if (!options_.check) continue;
+      for (const auto& output : recorded_outputs(module)) {
+        const std::string name = module.name + "." + output;
+        if (is_excepted(name)) continue;
+        ++compared;
+        if (!compare_output(name)) ++differing;
+      }
+    }
+    if (!options_.check) return;
+    if (compared == 0) throw Failure({hc::Code::NotFound, "nothing to compare"});
+    if (differing > 0)
+      throw Failure({hc::Code::Malformed, hc::format("{} of {} outputs differ from the recording",
+                                                     differing, compared)});
+  }
+
+ private:
+  static hc::Plan load(const ReplayOptions& options) {
+    std::error_code missing;
+    if (!fs::is_directory(options.recording, missing))
+      throw Failure(
+          {hc::Code::NotFound, options.recording + " is not a folder that hc run --record wrote"});
+    auto graph = options.graph;
+    graph.record = options.recording;
+    return load_plan("replay", graph);
+  }
+
+  static std::vector<std::string> with_values(const std::vector<std::string>& names) {
+    std::vector<std::string> words;
+    for (const auto& name : names) words.push_back(name + "=0");
+    return words;
+  }
+
+  [[nodiscard]] fs::path recorded(const std::string& output) const {
+    return fs::path(options_.recording) / (output + ".mtp");
+  }
+  [[nodiscard]] bool is_recorded(const std::string& output) const {
+    std::error_code missing;
+    return fs::exists(recorded(output), missing);
+  }
+  [[nodiscard]] bool is_of_recording(const hc::PlannedEnd& end) const {
+    return !end.is_input && end.port != hc::kTracePort &&
+           end.uri.starts_with("file:" + options_.recording + "/");
+  }
+
+  [[nodiscard]] std::vector<std::string> recorded_outputs(const hc::PlannedModule& module) const {
+    std::set<std::string> outputs;
+    for (const auto& end : module.ends)
+      if (is_of_recording(end) && is_recorded(module.name + "." + end.port))
+        outputs.insert(end.port);
+    return {outputs.begin(), outputs.end()};
+  }
+
+  [[nodiscard]] bool is_excepted(const std::string& name) const {
+    return std::ranges::find(options_.except, name) != options_.except.end();
+  }
+
+  /// Where an input's messages came from: "MODULE.PORT", or a URI.
+  [[nodiscard]] std::string writer_of(const hc::PlannedModule& module,
+                                      const hc::PlannedEnd& end) const {
+    for (const auto& link : plan_.links)
+      if (link.to == module.name + "." + end.port && link.reader_uri == end.uri) return link.from;
+    return end.uri;
+  }
+
+  /// Why a module is not run again; empty: it is.
+  [[nodiscard]] std::string why_not(const hc::PlannedModule& module) const {
+    if (is_excepted(module.name)) return "excepted";
+    bool has_inputs = false;
+    for (const auto& end : module.ends) {
+      if (!end.is_input) continue;
+      has_inputs = true;
+      const auto writer = writer_of(module, end);
+      if (writer.find(':') != std::string::npos) return writer + " was outside";
+      if (!is_recorded(writer)) return writer + " is not in the recording";
+    }
+    if (!has_inputs) return "a sensor: the recording stands for it";
+    if (recorded_outputs(module).empty()) return "none of its outputs was recorded";
+    if (module.control_uri.empty()) return "its program has no --clock";
+    return "";
+  }
+
+  /// The file that an input reads: of what was recorded, what the module took.
+  std::string input_file(const hc::PlannedModule& module, const hc::PlannedEnd& end,
+                         const std::optional<Taken>& taken) {
+    const auto writer = writer_of(module, end);
+    const auto port = taken ? taken->find(end.port) : Taken::const_iterator();
+    // The focus is no input that is told of.
+    if (!taken || end.port == "focus") return recorded(writer);
+    const fs::path file = folder_.path() / (module.name + "." + end.port + "." + writer + ".in");
+    write_taken(recorded(writer), port == taken->end() ? std::set<Key>() : port->second, file);
+    return file;
+  }
+
+  std::vector<std::string> command_of(const hc::PlannedModule& module) {
+    std::vector<std::string> words = {module.program};
+    words.insert(words.end(), module.options.begin(), module.options.end());
+    for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
+    words.insert(words.end(), {"--clock", "messages"});
+    const auto taken = read_taken(recorded(module.name + "." + hc::kTracePort));
+    for (const auto& end : module.ends) {
+      std::string link = end.port + "=file:";
+      if (end.is_input)
+        link += input_file(module, end, taken);
+      else if (is_of_recording(end))
+        link += folder_.path() / (module.name + "." + end.port + ".mtp");
+      else
+        continue;
+      words.insert(words.end(), {end.is_input ? "--in" : "--out", link});
+      if (!end.route.empty()) words.insert(words.end(), {"--route", link + " " + end.route});
+    }
+    return words;
+  }
+
+  void run_module(const hc::PlannedModule& module) {
+    using hc::internal::Process;
+    const auto command = command_of(module);
+    auto process = value_or_fail(Process::start(command, Process::Capture::Errors), module.name);
+    const auto end = std::chrono::steady_clock::now() + hc::duration(options_.timeout);
+    const std::array output = {process.output()}, has_ended = {process.ended()};
+    std::string said;
+    std::array<char, 4096> piece{};
+    while (true) {
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+      if (left.count() <= 0)
+        throw Failure({hc::Code::Closed,
+                       hc::format("{} has not ended after {} s; --timeout gives it more, --except "
+                                  "leaves it out",
+                                  module.name, options_.timeout)});
+      auto ready = hc::wait_readable(output, hc::stop_descriptor(), left);
+      if (!ready) throw Failure(module.name, ready.error());
+      if (*ready == 0) {
+        const auto size = ::read(output[0], piece.data(), piece.size());
+        if (size <= 0) break;
+        said.append(piece.data(), static_cast<std::size_t>(size));
+        if (said.size() > kMostSaid) said.erase(0, said.size() - kMostSaid);
+      }
+    }
+    std::optional<int> status;
+    while (!(status = process.poll_status()))
+      if (auto ended =
+              hc::wait_readable(has_ended, hc::stop_descriptor(), std::chrono::milliseconds(100));
+          !ended)
+        throw Failure(module.name, ended.error());
+    if (*status == 0) return;
+    said.erase(0, said.find_last_of('\n', said.size() < 2 ? 0 : said.size() - 2) + 1);
+    while (said.ends_with('\n')) said.pop_back();
+    throw Failure(
+        {hc::Code::Closed, hc::format("{} failed with status {}: {}", module.name, *status, said)});
+  }
+
+  bool compare_output(const std::string& output) {
+    auto reader = [](const fs::path& file) {
+      auto source = std::shared_ptr<hc::Source>(open_file_source(file, kDefaultLimit));
+      return [source, file](hc::Message& message) {
+        if (!receive(*source, message, file)) return false;
+        message = value_or_fail(hc::expand(message), file.string());
+        return true;
+      };
+    };
+    const Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)).count(),
+                              shares_.of(output)};
+    const auto result =
+        compare(reader(recorded(output)), reader(folder_.path() / (output + ".mtp")), tolerance);
+    const bool is_same = result.is_same(tolerance);
+    print(hc::format("{}{}: {}\n", is_same ? "" : "DIFFERS ", output, result.text()));
+    return is_same;
+  }
+
+  static constexpr std::size_t kMostSaid = 16 << 10;
+
+  const ReplayOptions& options_;
+  hc::Plan plan_;
+  Folder folder_;
+  Settings numbers_, times_, shares_;
+};
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+  auto options = std::make_shared<ReplayOptions>();
+  options->graph.token = hc::graph_token();
+  auto* verb = app.add_subcommand(
+      "replay", "Run the modules of a recorded graph again, and compare what they send");
+  auto many = [&](const char* name, std::vector<std::string>& words, const char* doc) {
+    verb->add_option(name, words, doc)->allow_extra_args(false);
+  };
+  verb->add_option("recording", options->recording, "folder that hc run --record wrote")
+      ->required();
+  verb->add_option("--graph", options->graph.file, "the graph file that was run")
+      ->required()
+      ->transform(find_graph);
+  many("--set", options->graph.settings, "MODULE.PARAMETER=VALUE, as given to hc run");
+  verb->add_flag("--check", options->check, "compare; status 1 where something differs");
+  verb->add_option("--out", options->out, "keep what the modules send in this folder");
+  many("--except", options->except,
+       "MODULE or MODULE.PORT: do not run, or not compare; repeatable");
+  many("--tolerance", options->numbers, "[MODULE[.PORT]=]NUMBER by which numbers may differ");
+  many("--time-tolerance", options->times, "[MODULE[.PORT]=]SECONDS by which times may differ");
+  many("--share", options->shares, "[MODULE[.PORT]=]SHARE of messages that must be the same");
+  verb->add_option("--timeout", options->timeout, "for each module [s]")
+      ->check(CLI::Range(0.1, 86400.0));
+  verb->callback([options] { Replay(*options).run(); });
+}
+
+}  // namespace tool

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc trace: what a message was derived from, and how long each step took.
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <hc/base/clock.h>
+#include <hc/base/format.h>
+#include <hc/base/suggestion.h>
+#include <hc/link/wait_set.h>
+#include <hc/os/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common.h"
+#include "graph.h"
+#include "observer.h"
+#include "trace_paths.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+namespace fs = std::filesystem;
+using MonotonicClock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostEvents = 5'000'000;
+constexpr std::size_t kShown = 6;  // paths
+constexpr std::string_view kSuffix = ".trace.mtp";
+
+struct TraceOptions {
+  std::string port, of, recording, perfetto;
+  hc::LoadOptions graph;
+  double duration = 5;
+  bool json = false;
+};
+
+struct Collected {
+  Traced traced;
+  std::size_t events = 0;
+  std::int64_t lost = 0;
+
+  void add(const std::string& module, const hc::Message& message) {
+    auto& known = traced.events[module];
+    for (auto& event : hc::read_trace(message)) {
+      if (event.what == hc::TraceEvent::What::Lost)
+        lost += event.seq;
+      else if (events == kMostEvents)
+        ++lost;
+      else
+        known.push_back(std::move(event)), ++events;
+    }
+  }
+};
+
+using Links = std::vector<std::pair<std::string, std::string>>;
+
+std::string module_of(const std::string& port) {
+  return port.substr(0, port.find('.'));
+}
+
+/// A module, and all from which its messages may be derived.
+std::set<std::string> upstream_of(const std::string& module, const Links& links) {
+  std::set<std::string> found = {module};
+  for (std::size_t before = 0; before != found.size();) {
+    before = found.size();
+    for (const auto& [from, to] : links)
+      if (found.contains(module_of(to))) found.insert(module_of(from));
+  }
+  return found;
+}
+
+/// Fails where a graph with these links has no such port.
+void check_port(const std::string& port, const Links& links) {
+  std::vector<std::string> known;
+  for (const auto& [from, to] : links)
+    for (const auto& each : {from, to})
+      if (each.find(':') == std::string::npos) known.push_back(each);
+  if (std::ranges::find(known, port) == known.end())
+    throw Failure(
+        {hc::Code::Invalid, "no linked port \"" + port + "\"" + hc::suggestion(port, known)});
+}
+
+Collected collect(const TraceOptions& options) {
+  using namespace std::chrono_literals;
+  // Modules tell twice a second.
+  constexpr auto kLast = 1s;
+  const auto graph = choose_running(options.of);
+  const auto state = Observer(graph).next();
+  if (!state) throw Failure({hc::Code::Closed, graph.text() + " has ended"});
+  Collected collected;
+  auto& links = collected.traced.links;
+  for (const auto& link : state->links) links.emplace_back(link.from, link.to);
+  if (!options.port.empty()) check_port(options.port, links);
+  const auto wanted = upstream_of(module_of(options.port), links);
+  struct Watched {
+    std::string module;
+    Observation observation;
+    std::unique_ptr<hc::Source> source;  // null once it has ended
+  };
+  std::vector<Watched> watched;
+  for (const auto& module : state->modules) {
+    if (options.perfetto.empty() && !wanted.contains(module.name)) continue;
+    if (module.status != hc::ModuleStatus::Running) continue;
+    auto made = Observation::make(graph, module.name + "." + hc::kTracePort, hc::stop_descriptor());
+    if (!made && made.error().code == hc::Code::Invalid) continue;  // it takes no commands
+    if (!made) throw Failure(made.error());
+    collected.traced.events[module.name];
+    auto source = open_source(made->uri(), kDefaultLimit);
+    watched.push_back({module.name, std::move(*made), std::move(source)});
+  }
+  hc::WaitSet waits(hc::stop_descriptor());
+  hc::Message message;
+  const auto begin = MonotonicClock::now();
+  const auto end = begin + hc::duration(options.duration) + kLast;
+  Progress progress("hc trace");
+  for (auto renewed = begin; MonotonicClock::now() < end && !hc::stop_requested();) {
+    std::vector<hc::Source*> open;
+    for (auto& each : watched) {
+      if (each.source == nullptr) continue;
+      auto got = each.source->take(message);
+      for (; got && *got == hc::Got::Message; got = each.source->take(message))
+        collected.add(each.module, message);
+      if (!got || *got == hc::Got::End)
+        each.source.reset();
+      else
+        open.push_back(each.source.get());
+    }
+    if (open.empty()) break;
+    if (MonotonicClock::now() - renewed >= 1s) {
+      renewed = MonotonicClock::now();
+      for (auto& each : watched)
+        if (!each.observation.renew()) each.source.reset();
+    }
+    progress.show((MonotonicClock::now() - begin) / std::chrono::duration<double>(end - begin),
+                  hc::format("{} events", collected.events));
+    static_cast<void>(waits.wait(open, {}, 100ms));
+  }
+  return collected;
+}
+
+Collected read_recording(const TraceOptions& options) {
+  Collected collected;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(options.recording, failed)) {
+    const std::string name = entry.path().filename();
+    if (!name.ends_with(kSuffix)) continue;
+    const auto module = name.substr(0, name.size() - kSuffix.size());
+    collected.traced.events[module];
+    auto source = open_file_source(entry.path(), kDefaultLimit);
+    hc::Message message;
+    while (receive(*source, message, entry.path())) collected.add(module, message);
+  }
+  if (failed) throw Failure({hc::Code::NotFound, options.recording + ": " + failed.message()});
+  if (collected.traced.events.empty())
+    throw Failure({hc::Code::NotFound, options.recording + " has no MODULE" + std::string(kSuffix) +
+                                           "; hc run --record FOLDER writes them"});
+  if (!options.graph.file.empty())
+    for (const auto& link : load_plan("trace", options.graph).links)
+      collected.traced.links.emplace_back(link.from, link.to);
+  if (!options.port.empty() && !options.graph.file.empty())
+    check_port(options.port, collected.traced.links);
+  return collected;
+}
+
+std::string milliseconds(std::int64_t nanoseconds) {
+  const double value = static_cast<double>(nanoseconds) * 1e-6;
+  return value >= 100 ? hc::format("{:.0f}", value) : hc::format("{:.3g}", value);
+}
+
+std::string cell(const Spread& spread, bool is_there = true) {
+  if (!is_there) return hc::format("{:>9}{:>9}", "–", "–");
+  return hc::format("{:>9}{:>9}", milliseconds(spread.median), milliseconds(spread.p99));
+}
+
+std::string table_of(const std::vector<PathSummary>& summaries, std::size_t messages) {
+  constexpr std::string_view kHead = "  median and p99 [ms]";
+  std::size_t widest = kHead.size();
+  auto name_of = [](const Step& step) {
+    return step.text() + (step.is_outside ? "  (outside)" : "");
+  };
+  // Columns of names: an arrow takes three bytes.
+  auto width_of = [](const std::string& text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+  };
+  for (const auto& summary : summaries)
+    for (const auto& step : summary.steps) widest = std::max(widest, width_of(name_of(step)) + 2);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(summaries.size(), kShown); ++i) {
+    const auto& summary = summaries[i];
+    const std::string title = hc::format(
+        "{} of {}, {} ms old (p99 {})",
+        summary.critical > 0 ? hc::format("critical path of {}", summary.critical)
+                             : hc::format("path of {}, never critical,", summary.messages),
+        messages, milliseconds(summary.age.median), milliseconds(summary.age.p99));
+    text += (text.empty() ? "" : "\n") + title + "\n";
+    text +=
+        hc::format("{:<{}}{:>18}{:>18}{:>18}\n", kHead, widest, "link", "waiting", "processing");
+    for (std::size_t k = 0; k < summary.steps.size(); ++k) {
+      const auto& step = summary.steps[k];
+      const auto& durations = summary.durations[k];
+      const auto name = "  " + name_of(step);
+      text += name + std::string(widest - width_of(name), ' ');
+      text += cell(durations.link, k > 0 && !step.is_outside) +
+              cell(durations.waiting, k > 0 && !step.is_outside) + cell(durations.processing) +
+              "\n";
+    }
+  }
+  if (summaries.size() > kShown)
+    text += hc::format("\nand {} more paths: --json\n", summaries.size() - kShown);
+  return text;
+}
+
+std::string json_of(const std::string& port, const std::vector<PathSummary>& summaries,
+                    std::size_t messages, std::int64_t lost) {
+  using nlohmann::json;
+  auto pair = [](const Spread& spread) {
+    return json{static_cast<double>(spread.median) * 1e-9, static_cast<double>(spread.p99) * 1e-9};
+  };
+  json paths = json::array();
+  for (const auto& summary : summaries) {
+    json steps = json::array();
+    for (std::size_t i = 0; i < summary.steps.size(); ++i) {
+      const auto& step = summary.steps[i];
+      const auto& durations = summary.durations[i];
+      steps.push_back({{"module", step.module},
+                       {"in", step.in},
+                       {"out", step.out},
+                       {"outside", step.is_outside},
+                       {"link", pair(durations.link)},
+                       {"waiting", pair(durations.waiting)},
+                       {"processing", pair(durations.processing)}});
+    }
+    paths.push_back({{"messages", summary.messages},
+                     {"critical", summary.critical},
+                     {"age", pair(summary.age)},
+                     {"steps", std::move(steps)}});
+  }
+  return json{{"port", port}, {"messages", messages}, {"lost", lost}, {"paths", paths}}.dump() +
+         "\n";
+}
+
+void write_file(const std::string& name, const std::string& text) {
+  std::ofstream file(name, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw Failure({hc::Code::System, name + ": cannot be written"});
+}
+
+void trace(const TraceOptions& options) {
+  if (options.port.empty() && options.perfetto.empty())
+    throw Failure({hc::Code::Invalid, "give MODULE.PORT, or --perfetto FILE for all modules"});
+  const auto collected = options.recording.empty() ? collect(options) : read_recording(options);
+  if (!options.perfetto.empty()) write_file(options.perfetto, to_chrome_trace(collected.traced));
+  if (collected.lost > 0)
+    say(hc::format("hc trace: {} events were lost, as there were too many", collected.lost));
+  if (options.port.empty()) return;
+  const auto module = module_of(options.port);
+  if (!collected.traced.events.contains(module))
+    throw Failure(
+        {hc::Code::NotFound,
+         module + " tells nothing of its messages: it does not run, or takes no commands"});
+  const auto paths = find_paths(collected.traced, options.port);
+  // Each message has at most one critical path that is whole.
+  const auto messages = static_cast<std::size_t>(
+      std::ranges::count_if(paths, [](const auto& path) { return path.is_critical; }));
+  if (paths.empty())
+    throw Failure({hc::Code::NotFound,
+                   "no message of " + options.port + " could be traced to where it began"});
+  const auto summaries = summarise(paths);
+  print(options.json ? json_of(options.port, summaries, messages, collected.lost)
+                     : table_of(summaries, messages));
+}
+
+}  // namespace
+
+void add_trace(CLI::App& app) {
+  auto options = std::make_shared<TraceOptions>();
+  options->graph.token = hc::graph_token();
+  auto* verb = app.add_subcommand(
+      "trace", "Show what messages were derived from, and how long each step took");
+  verb->add_option("port", options->port, "MODULE.PORT of a running graph");
+  add_of(*verb, options->of);
+  verb->add_option("--duration", options->duration, "of the trace of a running graph [s]")
+      ->check(CLI::Range(0.1, 3600.0));
+  verb->add_option("--recording", options->recording,
+                   "folder that hc run --record wrote, in place of a running graph");
+  verb->add_option("--graph", options->graph.file,
+                   "graph file of the recording, for modules that take no commands")
+      ->transform(find_graph);
+  verb->add_option("--perfetto", options->perfetto,
+                   "write all that happened into this file (ui.perfetto.dev opens it)");
+  verb->add_flag("--json", options->json, "print one line of JSON");
+  verb->callback([options] { trace(*options); });
+}
+
+}  // namespace tool

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace_paths.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <nlohmann/json.hpp>
+
+namespace tool {
+namespace {
+
+using What = hc::TraceEvent::What;
+using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
+
+constexpr std::size_t kMostSteps = 64;
+constexpr int kMostLooks = 10'000;  // at outputs, for one message
+
+Key key_of(const hc::TraceEvent& event) {
+  return {event.src, event.seq, event.time};
+}
+
+std::string module_of(const std::string& port) {
+  return port.substr(0, port.find('.'));
+}
+
+/// A message at an input. [ns]
+struct Visit {
+  std::string port;
+  Key key;
+  std::int64_t took = 0;
+  std::optional<std::int64_t> began, ended;
+};
+
+struct Sending {
+  std::string module, port;
+  Key key;
+  std::int64_t moment = 0;
+};
+
+struct Module {
+  std::vector<Visit> visits;                                // as taken
+  std::vector<std::pair<std::int64_t, std::int64_t>> busy;  // apart, in their order
+  std::multimap<std::int64_t, const Visit*> at_time;        // by the message's
+
+  /// How long of a period a handler was running.
+  [[nodiscard]] std::int64_t busy_within(std::int64_t begin, std::int64_t end) const {
+    std::int64_t sum = 0;
+    auto each = std::ranges::lower_bound(busy, begin, {}, [](const auto& b) { return b.second; });
+    for (; each != busy.end() && each->first < end; ++each)
+      sum += std::max<std::int64_t>(std::min(end, each->second) - std::max(begin, each->first), 0);
+    return sum;
+  }
+};
+
+/// Moments of one module, paired.
+Module read_module(const std::vector<hc::TraceEvent>& events) {
+  Module module;
+  std::map<std::pair<std::string, Key>, std::size_t> open;  // the newest such visit
+  std::int64_t begin = 0;
+  int depth = 0;  // messages taken together begin together
+  for (const auto& event : events) {
+    const auto name = std::pair(event.port, key_of(event));
+    const auto known = open.find(name);
+    Visit* visit = known == open.end() ? nullptr : &module.visits[known->second];
+    if (event.what == What::Took) {
+      open[name] = module.visits.size();
+      module.visits.push_back({event.port, key_of(event), event.moment, {}, {}});
+    } else if (event.what == What::Began) {
+      if (depth++ == 0) begin = event.moment;
+      if (visit != nullptr) visit->began = event.moment;
+    } else if (event.what == What::Ended) {
+      if (visit != nullptr) visit->ended = event.moment;
+      depth = std::max(depth - 1, 0);  // tracing may have begun within a handler
+      if (depth == 0 && begin != 0) module.busy.emplace_back(begin, event.moment);
+    }
+  }
+  for (const auto& visit : module.visits) module.at_time.emplace(std::get<2>(visit.key), &visit);
+  return module;
+}
+
+class PathFinder {
+ public:
+  explicit PathFinder(const Traced& traced) : links_(traced.links) {
+    for (const auto& [name, events] : traced.events) {
+      modules_[name] = read_module(events);
+      for (const auto& event : events)
+        if (event.what == What::Sent) {
+          const Sending sending{name, event.port, key_of(event), event.moment};
+          sent_[sending.key].push_back(sending);
+          sent_at_time_[event.time].push_back(sending);
+        }
+    }
+  }
+
+  std::vector<MessagePath> find(const std::string& port) {
+    const std::string name = module_of(port);
+    const std::string at = port.substr(std::min(port.size(), name.size() + 1));
+    const auto module = modules_.find(name);
+    if (module == modules_.end()) return {};
+    for (const auto& visit : module->second.visits)
+      if (visit.port == at && std::get<2>(visit.key) != 0)
+        collect([&] { arrive(name, visit); }, visit.took - std::get<2>(visit.key));
+    if (!found_.empty()) return std::move(found_);
+    for (const auto& [time, sendings] : sent_at_time_)
+      for (const auto& sending : sendings)
+        if (time != 0 && sending.module == name && sending.port == at)
+          collect([&] { leave(sending); }, sending.moment - time);
+    return std::move(found_);
+  }
+
+ private:
+  /// Walks back from a port; `back_` holds the steps that are behind.
+  template <typename Walk>
+  void collect(const Walk& walk, std::int64_t age) {
+    back_.clear();
+    is_critical_ = true;
+    age_ = age;
+    first_ = found_.size();
+    looked_ = 0;
+    walk();
+  }
+
+  void finish(Step step) {
+    MessagePath path;
+    path.steps.assign(back_.rbegin(), back_.rend());
+    path.steps.insert(path.steps.begin(), std::move(step));
+    path.age = age_;
+    path.is_critical = is_critical_;
+    found_.push_back(std::move(path));
+  }
+
+  /// The path ends at an input.
+  void arrive(const std::string& name, const Visit& visit) {
+    Step step{name, visit.port, "", false, 0, 0, 0};
+    if (visit.began) {
+      step.waiting = *visit.began - visit.took;
+      step.processing = visit.ended.value_or(*visit.began) - *visit.began;
+    }
+    before(name, visit, step);
+  }
+
+  /// Goes on to who sent what was taken; `step` lacks what was before it was taken.
+  void before(const std::string& name, const Visit& visit, Step step) {
+    if (back_.size() == kMostSteps) return;
+    const auto sending = sender(name, visit);
+    if (sending == nullptr) return outside(name, visit, std::move(step));
+    const auto busy = modules_.at(name).busy_within(sending->moment, visit.took);
+    step.link += visit.took - sending->moment - busy;
+    step.waiting += busy;
+    back_.push_back(std::move(step));
+    leave(*sending);
+    back_.pop_back();
+  }
+
+  /// The last that sent it before it was taken.
+  [[nodiscard]] const Sending* sender(const std::string& name, const Visit& visit) const {
+    const auto same = sent_.find(visit.key);
+    const Sending* last = nullptr;
+    if (same == sent_.end()) return nullptr;
+    for (const auto& each : same->second)
+      if (each.moment <= visit.took && each.module != name &&
+          (last == nullptr || each.moment > last->moment) &&
+          is_linked(each.module + "." + each.port, name + "." + visit.port))
+        last = &each;
+    return last;
+  }
+
+  [[nodiscard]] bool is_linked(const std::string& from, const std::string& to) const {
+    return links_.empty() || std::ranges::find(links_, std::pair(from, to)) != links_.end() ||
+           // What `hc run` links by itself may not be among them.
+           std::ranges::none_of(links_, [&](const auto& link) { return link.second == to; });
+  }
+
+  /// A module that told nothing, or the world outside, has sent it.
+  void outside(const std::string& name, const Visit& visit, Step step) {
+    std::string from;
+    for (const auto& link : links_)
+      if (link.second == name + "." + visit.port && !modules_.contains(module_of(link.first)))
+        from = link.first;
+    if (from.empty()) {
+      if (!links_.empty()) return;  // sent before the trace began
+      from = "outside.";
+    }
+    const bool is_uri = from.find(':') != std::string::npos;
+    Step other{is_uri ? from : module_of(from),
+               "",
+               is_uri ? "" : from.substr(from.find('.') + 1),
+               true,
+               0,
+               0,
+               0};
+    back_.push_back(std::move(step));
+    const auto time = std::get<2>(visit.key);
+    std::map<std::string, const Sending*> inputs;  // the last of each output that leads there
+    const auto same = sent_at_time_.find(time);
+    for (const auto& link : links_) {
+      if (is_uri || module_of(link.second) != other.module || same == sent_at_time_.end()) continue;
+      for (const auto& each : same->second)
+        if (each.moment <= visit.took && each.module + "." + each.port == link.first)
+          inputs[link.second] = &each;
+    }
+    if (inputs.empty()) {
+      other.processing = visit.took - time;
+      finish(other);
+    }
+    const Sending* last = inputs.empty() ? nullptr : inputs.begin()->second;
+    for (const auto& [to, sending] : inputs)
+      if (sending->moment > last->moment) last = sending;
+    for (const auto& [to, sending] : inputs) {
+      const bool was_critical = is_critical_;
+      is_critical_ = is_critical_ && sending == last;
+      Step through = other;
+      through.in = to.substr(to.find('.') + 1);
+      through.processing = visit.took - sending->moment;
+      back_.push_back(std::move(through));
+      leave(*sending);
+      back_.pop_back();
+      is_critical_ = was_critical;
+    }
+    back_.pop_back();
+  }
+
+  /// Goes on to what a module has derived a message from.
+  void leave(const Sending& sending) {
+    if (found_.size() - first_ == kMostPaths || ++looked_ > kMostLooks) return;
+    const auto& module = modules_.at(sending.module);
+    const auto time = std::get<2>(sending.key);
+    std::map<std::string, const Visit*> inputs;  // the last at each
+    const auto [begin, end] = module.at_time.equal_range(time);
+    for (auto each = begin; each != end; ++each)
+      if (each->second->began && *each->second->began <= sending.moment)
+        inputs[each->second->port] = each->second;
+    if (inputs.empty())
+      return finish({sending.module, "", sending.port, false, 0, 0, sending.moment - time});
+    const Visit* last = inputs.begin()->second;
+    for (const auto& [port, visit] : inputs)
+      if (visit->took > last->took) last = visit;
+    for (const auto& [port, visit] : inputs) {
+      const bool was_critical = is_critical_;
+      is_critical_ = is_critical_ && visit == last;
+      Step step{sending.module, port, sending.port, false, 0, 0, 0};
+      // A handler that is still running counts up to here.
+      const auto running = visit->ended && *visit->ended <= sending.moment
+                               ? module.busy_within(*visit->began, sending.moment)
+                               : sending.moment - *visit->began;
+      step.processing = running;
+      step.waiting = sending.moment - visit->took - running;
+      before(sending.module, *visit, std::move(step));
+      is_critical_ = was_critical;
+    }
+  }
+
+  std::vector<std::pair<std::string, std::string>> links_;
+  std::map<std::string, Module> modules_;
+  std::map<Key, std::vector<Sending>> sent_;
+  std::map<std::int64_t, std::vector<Sending>> sent_at_time_;
+  std::vector<MessagePath> found_;
+  std::vector<Step> back_;
+  bool is_critical_ = true;
+  std::int64_t age_ = 0;
+  std::size_t first_ = 0;  // path of this message
+  int looked_ = 0;
+};
+
+}  // namespace
+
+std::string Step::text() const {
+  if (in.empty()) return out.empty() ? module : module + "." + out;
+  return out.empty() ? module + "." + in : module + ": " + in + " → " + out;
+}
+
+std::vector<MessagePath> find_paths(const Traced& traced, const std::string& port) {
+  return PathFinder(traced).find(port);
+}
+
+Spread spread_of(std::vector<std::int64_t> durations) {
+  if (durations.empty()) return {};
+  std::ranges::sort(durations);
+  return {durations[(durations.size() - 1) / 2], durations[(durations.size() - 1) * 99 / 100]};
+}
+
+std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths) {
+  std::map<std::string, std::vector<const MessagePath*>> ways;
+  for (const auto& path : paths) {
+    std::string way;
+    for (const auto& step : path.steps) way += step.text() + "\n";
+    ways[way].push_back(&path);
+  }
+  std::vector<PathSummary> summaries;
+  for (const auto& [way, same] : ways) {
+    auto& summary = summaries.emplace_back();
+    summary.steps = same.front()->steps;
+    summary.messages = same.size();
+    summary.critical = static_cast<std::size_t>(
+        std::ranges::count_if(same, [](const auto* path) { return path->is_critical; }));
+    auto spread = [&](const auto& duration) {
+      std::vector<std::int64_t> all;
+      for (const auto* path : same) all.push_back(duration(*path));
+      return spread_of(std::move(all));
+    };
+    summary.age = spread([](const MessagePath& path) { return path.age; });
+    for (std::size_t i = 0; i < summary.steps.size(); ++i)
+      summary.durations.push_back(
+          {spread([i](const MessagePath& path) { return path.steps[i].link; }),
+           spread([i](const MessagePath& path) { return path.steps[i].waiting; }),
+           spread([i](const MessagePath& path) { return path.steps[i].processing; }),
+           spread([i](const MessagePath& path) { return path.steps[i].sum(); })});
+  }
+  std::ranges::stable_sort(summaries, [](const auto& a, const auto& b) {
+    return std::tie(a.critical, a.messages) > std::tie(b.critical, b.messages);
+  });
+  return summaries;
+}
+
+std::string to_chrome_trace(const Traced& traced) {
+  using nlohmann::json;
+  struct Sender {
+    int process;
+    std::int64_t moment;
+  };
+  std::map<Key, std::vector<Sender>> senders;
+  auto first = std::numeric_limits<std::int64_t>::max();
+  int process = 0;
+  for (const auto& [name, events] : traced.events) {
+    ++process;
+    for (const auto& event : events) {
+      first = std::min(first, event.moment);
+      if (event.what == What::Sent) senders[key_of(event)].push_back({process, event.moment});
+    }
+  }
+  std::string text = R"({"displayTimeUnit":"ms","traceEvents":[)";
+  auto add = [&](const char* kind, int of, const std::string& what, std::int64_t moment,
+                 json more) {
+    more.update({{"ph", kind},
+                 {"pid", of},
+                 {"tid", 1},
+                 {"cat", "message"},
+                 {"name", what},
+                 {"ts", static_cast<double>(moment - first) * 1e-3}});  // [µs]
+    text += "\n" + more.dump() + ",";
+  };
+  process = 0;
+  int arrows = 0;
+  for (const auto& [name, events] : traced.events) {
+    ++process;
+    add("M", process, "process_name", first, {{"args", {{"name", name}}}});
+    int depth = 0;
+    for (const auto& event : events) {
+      const json header = {{"src", event.src}, {"seq", event.seq}, {"time", event.time}};
+      if (event.what == What::Began && event.port.empty()) {
+        add("B", process, "timer", event.moment, json::object());
+        ++depth;
+      } else if (event.what == What::Began) {
+        add("B", process, event.port, event.moment, {{"args", header}});
+        ++depth;
+        const Sender* last = nullptr;
+        for (const auto& sender : senders[key_of(event)])
+          if (sender.moment <= event.moment && sender.process != process &&
+              (last == nullptr || sender.moment > last->moment))
+            last = &sender;
+        if (last == nullptr) continue;
+        add("s", last->process, "message", last->moment, {{"id", ++arrows}});
+        add("f", process, "message", event.moment, {{"id", arrows}, {"bp", "e"}});
+      } else if (event.what == What::Ended && depth > 0) {
+        add("E", process, event.port, event.moment, json::object());
+        --depth;
+      } else if (event.what == What::Took || event.what == What::Sent) {
+        add("i", process, (event.what == What::Took ? "took " : "sent ") + event.port, event.moment,
+            {{"s", "t"}, {"args", header}});
+      }
+    }
+  }
+  if (text.back() == ',') text.pop_back();
+  return text + "\n]}\n";
+}
+
+}  // namespace tool

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace_paths.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace tool {
+namespace {
+
+using hc::TraceEvent;
+using What = TraceEvent::What;
+
+constexpr std::int64_t kSeen = 1000;  // time of the message
+
+/// Events of one module, of messages of one time; moments are counted from it on.
+class Events {
+ public:
+  explicit Events(std::vector<TraceEvent>& events) : events_(events) {}
+  Events& took(const std::string& port, int src, std::int64_t at) {
+    return add(What::Took, port, src, at);
+  }
+  Events& handled(const std::string& port, int src, std::int64_t begin, std::int64_t end) {
+    add(What::Began, port, src, begin);
+    return add(What::Ended, port, src, end);
+  }
+  Events& began(const std::string& port, int src, std::int64_t at) {
+    return add(What::Began, port, src, at);
+  }
+  Events& ended(const std::string& port, int src, std::int64_t at) {
+    return add(What::Ended, port, src, at);
+  }
+  Events& sent(const std::string& port, int src, std::int64_t at) {
+    return add(What::Sent, port, src, at);
+  }
+  /// A handler of something else.
+  Events& busy(std::int64_t begin, std::int64_t end) {
+    events_.push_back({What::Began, "", 0, 0, 0, kSeen + begin});
+    events_.push_back({What::Ended, "", 0, 0, 0, kSeen + end});
+    return *this;
+  }
+
+ private:
+  Events& add(What what, const std::string& port, int src, std::int64_t at) {
+    events_.push_back({what, port, src, 5, kSeen, kSeen + at});
+    return *this;
+  }
+  std::vector<TraceEvent>& events_;
+};
+
+struct Chain : ::testing::Test {
+  Traced traced;
+  Events of(const std::string& module) { return Events(traced.events[module]); }
+};
+
+/// "module.out 30/0/100" …: link, waiting and processing of each step.
+std::string words(const MessagePath& path) {
+  std::string text;
+  for (const auto& step : path.steps)
+    text += (text.empty() ? "" : ", ") + step.text() + " " + std::to_string(step.link) + "/" +
+            std::to_string(step.waiting) + "/" + std::to_string(step.processing) +
+            (step.is_outside ? " outside" : "");
+  return text;
+}
+
+std::int64_t sum(const MessagePath& path) {
+  std::int64_t all = 0;
+  for (const auto& step : path.steps) all += step.sum();
+  return all;
+}
+
+TEST_F(Chain, StepsAddUpToTheAge) {
+  of("eye").sent("left", 1, 100);
+  of("blob")
+      .took("image", 1, 130)
+      .began("image", 1, 135)
+      .sent("target", 2, 180)
+      .ended("image", 1, 190);
+  of("neck").busy(150, 200).took("command", 2, 203).handled("command", 2, 204, 210);
+  const auto paths = find_paths(traced, "neck.command");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 30/5/45, neck.command 3/21/6");
+  EXPECT_EQ(paths[0].age, 203);
+  EXPECT_TRUE(paths[0].is_critical);
+  EXPECT_EQ(sum(paths[0]) - 1 - 6, paths[0].age);  // what came after it was taken
+}
+
+TEST_F(Chain, OfAnOutputEndsWithItsSending) {
+  of("eye").sent("left", 1, 100);
+  of("blob")
+      .took("image", 1, 130)
+      .began("image", 1, 135)
+      .sent("target", 2, 180)
+      .ended("image", 1, 190);
+  const auto paths = find_paths(traced, "blob.target");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 30/5/45");
+  EXPECT_EQ(paths[0].age, 180);
+  EXPECT_EQ(sum(paths[0]), paths[0].age);
+}
+
+TEST_F(Chain, OfTwoInputsTheLaterOneIsCritical) {
+  of("eyes").sent("left", 1, 10).sent("right", 2, 20);
+  of("depth").took("left", 1, 15).took("right", 2, 40);
+  of("depth").began("left", 1, 50).began("right", 2, 50).sent("depth", 3, 70);
+  of("depth").ended("left", 1, 80).ended("right", 2, 80);
+  const auto paths = find_paths(traced, "depth.depth");
+  ASSERT_EQ(paths.size(), 2U);
+  EXPECT_EQ(words(paths[0]), "eyes.left 0/0/10, depth: left → depth 5/35/20");
+  EXPECT_FALSE(paths[0].is_critical);
+  EXPECT_EQ(words(paths[1]), "eyes.right 0/0/20, depth: right → depth 20/10/20");
+  EXPECT_TRUE(paths[1].is_critical);
+  const auto summaries = summarise(paths);
+  ASSERT_EQ(summaries.size(), 2U);
+  EXPECT_EQ(summaries[0].steps[0].text(), "eyes.right");
+  EXPECT_EQ(summaries[0].critical, 1U);
+  EXPECT_EQ(summaries[0].durations[1].link.median, 20);
+}
+
+TEST_F(Chain, WhatATimerSendsHasWaitedForIt) {
+  of("eye").sent("left", 1, 10);
+  of("gaze").took("target", 1, 20).handled("target", 1, 20, 30).busy(35, 36);
+  of("gaze").began("", 0, 50).sent("command", 2, 52).ended("", 0, 53);
+  const auto paths = find_paths(traced, "gaze.command");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "eye.left 0/0/10, gaze: target → command 10/19/13");
+}
+
+TEST_F(Chain, AMessageWithATimeOfItsOwnBeginsThere) {
+  of("eye").took("gaze", 9, 5).handled("gaze", 9, 5, 6);
+  traced.events["eye"].push_back({What::Sent, "left", 1, 1, 2000, 2100});
+  const auto paths = find_paths(traced, "eye.left");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100");
+}
+
+TEST_F(Chain, GoesThroughARouterThatForwards) {
+  of("joystick").sent("stick", 1, 10);
+  of("router").took("in", 1, 15).began("in", 1, 16).sent("out", 1, 18).ended("in", 1, 19);
+  of("neck").took("command", 1, 25).handled("command", 1, 25, 30);
+  const auto paths = find_paths(traced, "neck.command");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "joystick.stick 0/0/10, router: in → out 5/1/2, neck.command 7/0/5");
+}
+
+TEST_F(Chain, AModuleThatTellsNothingIsOneStep) {
+  of("eye").sent("left", 1, 10);
+  of("neck").took("command", 7, 100).handled("command", 7, 100, 101);
+  traced.links = {{"eye.left", "finder.image"}, {"finder.target", "neck.command"}};
+  auto paths = find_paths(traced, "neck.command");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]),
+            "eye.left 0/0/10, finder: image → target 0/0/90 outside, neck.command 0/0/1");
+  traced.links = {{"tcp:host:1", "neck.command"}};
+  paths = find_paths(traced, "neck.command");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "tcp:host:1 0/0/100 outside, neck.command 0/0/1");
+}
+
+TEST_F(Chain, WhatWasSentBeforeTheTraceBeganIsLeftOut) {
+  of("eye");
+  of("blob").took("image", 1, 130).handled("image", 1, 135, 140);
+  traced.links = {{"eye.left", "blob.image"}};
+  EXPECT_TRUE(find_paths(traced, "blob.image").empty());
+}
+
+TEST_F(Chain, BranchesAreBounded) {
+  // Each of eight modules has two inputs from the one before it: 256 ways.
+  of("m0").sent("a", 1, 0).sent("b", 2, 0);
+  for (int i = 1; i <= 8; ++i) {
+    auto events = of("m" + std::to_string(i));
+    const int at = 10 * i, src = 2 * i;
+    events.took("a", src - 1, at).took("b", src, at + 1);
+    events.began("a", src - 1, at + 2).began("b", src, at + 2);
+    events.sent("a", src + 1, at + 3).sent("b", src + 2, at + 3);
+    events.ended("a", src - 1, at + 4).ended("b", src, at + 4);
+  }
+  EXPECT_EQ(find_paths(traced, "m8.a").size(), kMostPaths);
+}
+
+TEST(Spread, IsOfAllDurations) {
+  EXPECT_EQ(spread_of({}).median, 0);
+  std::vector<std::int64_t> all;
+  for (int i = 0; i <= 200; ++i) all.push_back(200 - i);
+  EXPECT_EQ(spread_of(all).median, 100);
+  EXPECT_EQ(spread_of(all).p99, 198);
+}
+
+TEST_F(Chain, IsWrittenForPerfetto) {
+  of("eye").sent("left", 1, 100);
+  of("blob").took("image", 1, 130).handled("image", 1, 1135, 1190);
+  const auto json = nlohmann::json::parse(to_chrome_trace(traced));
+  std::map<std::string, int> kinds;
+  for (const auto& event : json["traceEvents"]) ++kinds[event["ph"].get<std::string>()];
+  EXPECT_EQ(kinds, (std::map<std::string, int>{
+                       {"M", 2}, {"B", 1}, {"E", 1}, {"i", 2}, {"s", 1}, {"f", 1}}));
+  for (const auto& event : json["traceEvents"])
+    if (event["ph"] == "B") EXPECT_EQ(event["ts"], 1.035);
+  EXPECT_EQ(nlohmann::json::parse(to_chrome_trace({}))["traceEvents"].size(), 0U);
+}
+
+}  // namespace
+}  // namespace tool
