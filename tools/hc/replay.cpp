@@ -132,7 +132,7 @@ void write_taken(const fs::path& from, const std::set<Key>& taken, const fs::pat
     const auto& header = message.header;
     if (taken.contains({header.src, header.seq, header.time}) && !send(*sink, message, to)) return;
   }
-  if (auto closed = sink->close(); !closed) throw Failure(to, closed.error());
+  if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
 }
 
 class Replay {

@@ -180,7 +180,7 @@ std::string table_of(const std::vector<PathSummary>& summaries, std::size_t mess
   constexpr std::string_view kHead = "  median and p99 [ms]";
   std::size_t widest = kHead.size();
   auto name_of = [](const Step& step) {
-    return step.text() + (step.is_outside ? "  (outside)" : "");
+    return step.text() + (step.is_outside ? "  (outside)" : step.renews_time ? "  (new time)" : "");
   };
   // Columns of names: an arrow takes three bytes.
   auto width_of = [](const std::string& text) {
@@ -192,11 +192,16 @@ std::string table_of(const std::vector<PathSummary>& summaries, std::size_t mess
   std::string text;
   for (std::size_t i = 0; i < std::min(summaries.size(), kShown); ++i) {
     const auto& summary = summaries[i];
+    const bool renews = std::ranges::any_of(summary.steps, &Step::renews_time);
+    const std::string since =
+        renews ? hc::format(", {} ms (p99 {}) since it was sensed",
+                            milliseconds(summary.total.median), milliseconds(summary.total.p99))
+               : "";
     const std::string title = hc::format(
-        "{} of {}, {} ms old (p99 {})",
+        "{} of {}, {} ms old (p99 {}){}",
         summary.critical > 0 ? hc::format("critical path of {}", summary.critical)
                              : hc::format("path of {}, never critical,", summary.messages),
-        messages, milliseconds(summary.age.median), milliseconds(summary.age.p99));
+        messages, milliseconds(summary.age.median), milliseconds(summary.age.p99), since);
     text += (text.empty() ? "" : "\n") + title + "\n";
     text +=
         hc::format("{:<{}}{:>18}{:>18}{:>18}\n", kHead, widest, "link", "waiting", "processing");
@@ -231,6 +236,7 @@ std::string json_of(const std::string& port, const std::vector<PathSummary>& sum
                        {"in", step.in},
                        {"out", step.out},
                        {"outside", step.is_outside},
+                       {"renews_time", step.renews_time},
                        {"link", pair(durations.link)},
                        {"waiting", pair(durations.waiting)},
                        {"processing", pair(durations.processing)}});
@@ -238,6 +244,7 @@ std::string json_of(const std::string& port, const std::vector<PathSummary>& sum
     paths.push_back({{"messages", summary.messages},
                      {"critical", summary.critical},
                      {"age", pair(summary.age)},
+                     {"total", pair(summary.total)},
                      {"steps", std::move(steps)}});
   }
   return json{{"port", port}, {"messages", messages}, {"lost", lost}, {"paths", paths}}.dump() +

@@ -16,7 +16,8 @@ using What = hc::TraceEvent::What;
 using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
 
 constexpr std::size_t kMostSteps = 64;
-constexpr int kMostLooks = 10'000;  // at outputs, for one message
+constexpr std::int64_t kHeld = 1'000'000'000;  // what is older has no part in a new message [ns]
+constexpr int kMostLooks = 10'000;             // at outputs, for one message
 
 Key key_of(const hc::TraceEvent& event) {
   return {event.src, event.seq, event.time};
@@ -102,32 +103,34 @@ class PathFinder {
     if (module == modules_.end()) return {};
     for (const auto& visit : module->second.visits)
       if (visit.port == at && std::get<2>(visit.key) != 0)
-        collect([&] { arrive(name, visit); }, visit.took - std::get<2>(visit.key));
+        collect([&] { arrive(name, visit); }, visit.took, std::get<2>(visit.key));
     if (!found_.empty()) return std::move(found_);
     for (const auto& [time, sendings] : sent_at_time_)
       for (const auto& sending : sendings)
         if (time != 0 && sending.module == name && sending.port == at)
-          collect([&] { leave(sending); }, sending.moment - time);
+          collect([&] { leave(sending); }, sending.moment, time);
     return std::move(found_);
   }
 
  private:
   /// Walks back from a port; `back_` holds the steps that are behind.
   template <typename Walk>
-  void collect(const Walk& walk, std::int64_t age) {
+  void collect(const Walk& walk, std::int64_t end, std::int64_t time) {
     back_.clear();
     is_critical_ = true;
-    age_ = age;
+    end_ = end;
+    age_ = end - time;
     first_ = found_.size();
     looked_ = 0;
     walk();
   }
 
-  void finish(Step step) {
+  void finish(Step step, std::int64_t time) {
     MessagePath path;
     path.steps.assign(back_.rbegin(), back_.rend());
     path.steps.insert(path.steps.begin(), std::move(step));
     path.age = age_;
+    path.total = end_ - time;
     path.is_critical = is_critical_;
     found_.push_back(std::move(path));
   }
@@ -204,7 +207,7 @@ class PathFinder {
     }
     if (inputs.empty()) {
       other.processing = visit.took - time;
-      finish(other);
+      finish(other, time);
     }
     const Sending* last = inputs.empty() ? nullptr : inputs.begin()->second;
     for (const auto& [to, sending] : inputs)
@@ -233,15 +236,38 @@ class PathFinder {
     for (auto each = begin; each != end; ++each)
       if (each->second->began && *each->second->began <= sending.moment)
         inputs[each->second->port] = each->second;
-    if (inputs.empty())
-      return finish({sending.module, "", sending.port, false, 0, 0, sending.moment - time});
+    const bool renews = inputs.empty() && back_.size() <= 1;
+    if (renews) inputs = last_handled(module, sending.moment);
+    const auto before_this = found_.size();
+    follow(sending, inputs, renews);
+    if (inputs.empty() || (renews && found_.size() == before_this))
+      finish({sending.module, "", sending.port, false, 0, 0, sending.moment - time}, time);
+  }
+
+  /// The last message at each input, in the second before.
+  static std::map<std::string, const Visit*> last_handled(const Module& module,
+                                                          std::int64_t moment) {
+    std::map<std::string, const Visit*> inputs;
+    for (const auto& visit : module.visits)
+      if (visit.began && *visit.began <= moment && *visit.began > moment - kHeld &&
+          std::get<2>(visit.key) != 0)
+        inputs[visit.port] = &visit;
+    return inputs;
+  }
+
+  /// Goes on at each of the messages of which one that was sent was made.
+  void follow(const Sending& sending, const std::map<std::string, const Visit*>& inputs,
+              bool renews) {
+    if (inputs.empty()) return;
+    const auto& module = modules_.at(sending.module);
     const Visit* last = inputs.begin()->second;
     for (const auto& [port, visit] : inputs)
-      if (visit->took > last->took) last = visit;
+      if (renews ? std::get<2>(visit->key) < std::get<2>(last->key) : visit->took > last->took)
+        last = visit;
     for (const auto& [port, visit] : inputs) {
       const bool was_critical = is_critical_;
       is_critical_ = is_critical_ && visit == last;
-      Step step{sending.module, port, sending.port, false, 0, 0, 0};
+      Step step{sending.module, port, sending.port, false, 0, 0, 0, renews};
       // A handler that is still running counts up to here.
       const auto running = visit->ended && *visit->ended <= sending.moment
                                ? module.busy_within(*visit->began, sending.moment)
@@ -260,7 +286,7 @@ class PathFinder {
   std::vector<MessagePath> found_;
   std::vector<Step> back_;
   bool is_critical_ = true;
-  std::int64_t age_ = 0;
+  std::int64_t end_ = 0, age_ = 0;
   std::size_t first_ = 0;  // path of this message
   int looked_ = 0;
 };
@@ -302,6 +328,7 @@ std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths) {
       return spread_of(std::move(all));
     };
     summary.age = spread([](const MessagePath& path) { return path.age; });
+    summary.total = spread([](const MessagePath& path) { return path.total; });
     for (std::size_t i = 0; i < summary.steps.size(); ++i)
       summary.durations.push_back(
           {spread([i](const MessagePath& path) { return path.steps[i].link; }),

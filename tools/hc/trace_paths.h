@@ -31,14 +31,19 @@ struct Step {
   std::int64_t waiting = 0;     ///< for the module, a partner message, or a timer that sends
   std::int64_t processing = 0;  ///< in handlers; of the first step from the message's time on
 
+  /// What it sent has a time of its own: it was derived from what the module handled last.
+  bool renews_time = false;
+
   [[nodiscard]] std::int64_t sum() const { return link + waiting + processing; }
   [[nodiscard]] std::string text() const;
 };
 
 /// How a message came to be at the port that was asked for.
 struct MessagePath {
-  std::vector<Step> steps;   ///< first the step where it began
-  std::int64_t age = 0;      ///< when taken by the input, or sent by the output [ns]
+  std::vector<Step> steps;  ///< first the step where it began
+  std::int64_t age = 0;     ///< when taken by the input, or sent by the output [ns]
+  std::int64_t total =
+      0;  ///< the same from where the path begins; more, where a step renews the time
   bool is_critical = false;  ///< of the inputs of each step, the one that came last
 };
 
@@ -46,8 +51,10 @@ struct MessagePath {
 /// far as they are known whole. At most `kMostPaths` of one message.
 ///
 /// An output's message is derived from the last messages of the same time that its module took
-/// before (R43); where there is none, it begins there. Where the port is an input, what its module
-/// does with the message after taking it is the last step, and no part of its age.
+/// before (R43); where there is none, it begins there. Only the module next to the port may have
+/// renewed the time, as controllers do: then the path goes on at the messages that it handled last
+/// within a second, and the one that was sensed first is critical. Where the port is an input, what
+/// its module does with the message after taking it is the last step, and no part of its age.
 std::vector<MessagePath> find_paths(const Traced& traced, const std::string& port);
 inline constexpr std::size_t kMostPaths = 64;
 
@@ -64,7 +71,7 @@ struct PathSummary {
     Spread link, waiting, processing, sum;
   };
   std::vector<Durations> durations;        ///< of each step
-  Spread age;                              ///< at the port that was asked for
+  Spread age, total;                       ///< as MessagePath
   std::size_t messages = 0, critical = 0;  ///< and of how many it was the critical path
 };
 

@@ -126,12 +126,40 @@ TEST_F(Chain, WhatATimerSendsHasWaitedForIt) {
   EXPECT_EQ(words(paths[0]), "eye.left 0/0/10, gaze: target → command 10/19/13");
 }
 
-TEST_F(Chain, AMessageWithATimeOfItsOwnBeginsThere) {
+TEST_F(Chain, OfAControllersNewTimeThePathGoesOnAtWhatItHandledLast) {
+  of("eye").sent("left", 1, 100);
+  of("gaze").took("target", 1, 120).handled("target", 1, 130, 140);
+  auto& gaze = traced.events["gaze"];
+  const auto again = kSeen + 300;  // a newer pose, and a command
+  gaze.push_back({What::Took, "pose", 5, 1, again, again + 5});
+  gaze.push_back({What::Began, "pose", 5, 1, again, again + 6});
+  gaze.push_back({What::Ended, "pose", 5, 1, again, again + 7});
+  gaze.push_back({What::Sent, "command", 2, 0, again + 20, again + 21});
+  traced.events["neck"] = {{What::Sent, "pose", 5, 1, again, again + 1},
+                           {What::Took, "command", 2, 0, again + 20, again + 31}};
+  const auto paths = find_paths(traced, "neck.command");
+  ASSERT_EQ(paths.size(), 2U);
+  EXPECT_EQ(words(paths[0]), "neck.pose 0/0/1, gaze: pose → command 4/15/1, neck.command 10/0/0");
+  EXPECT_FALSE(paths[0].is_critical);
+  EXPECT_EQ(paths[0].total, 31);
+  EXPECT_EQ(words(paths[1]),
+            "eye.left 0/0/100, gaze: target → command 20/190/11, neck.command 10/0/0");
+  EXPECT_TRUE(paths[1].steps[1].renews_time);
+  EXPECT_TRUE(paths[1].is_critical);  // sensed first
+  EXPECT_EQ(paths[1].age, 11);
+  EXPECT_EQ(paths[1].total, 331);
+}
+
+TEST_F(Chain, ASensorBehindTheNextModuleBegins) {
   of("eye").took("gaze", 9, 5).handled("gaze", 9, 5, 6);
   traced.events["eye"].push_back({What::Sent, "left", 1, 1, 2000, 2100});
-  const auto paths = find_paths(traced, "eye.left");
+  traced.events["blob"] = {{What::Took, "image", 1, 1, 2000, 2110},
+                           {What::Began, "image", 1, 1, 2000, 2120},
+                           {What::Sent, "target", 2, 1, 2000, 2130}};
+  traced.events["gaze"] = {{What::Took, "target", 2, 1, 2000, 2140}};
+  const auto paths = find_paths(traced, "gaze.target");
   ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100");
+  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 10/10/10, gaze.target 10/0/0");
 }
 
 TEST_F(Chain, GoesThroughARouterThatForwards) {
@@ -194,8 +222,11 @@ TEST_F(Chain, IsWrittenForPerfetto) {
   for (const auto& event : json["traceEvents"]) ++kinds[event["ph"].get<std::string>()];
   EXPECT_EQ(kinds, (std::map<std::string, int>{
                        {"M", 2}, {"B", 1}, {"E", 1}, {"i", 2}, {"s", 1}, {"f", 1}}));
-  for (const auto& event : json["traceEvents"])
-    if (event["ph"] == "B") EXPECT_EQ(event["ts"], 1.035);
+  for (const auto& event : json["traceEvents"]) {
+    if (event["ph"] == "B") {
+      EXPECT_EQ(event["ts"], 1.035);
+    }
+  }
   EXPECT_EQ(nlohmann::json::parse(to_chrome_trace({}))["traceEvents"].size(), 0U);
 }
 

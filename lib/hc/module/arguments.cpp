@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include <hc/base/suggestion.h>
+#include <hc/contract/trace.h>
 
 namespace hc::internal {
 namespace {
