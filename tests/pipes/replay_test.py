@@ -5,7 +5,8 @@
 import re
 import unittest
 
-from harness import Pipes
+from harness import Pipes, ROOT
+from recordings import read_messages
 from trace_test import graph
 
 OPTIONS = " --graph g.toml --check"
@@ -68,6 +69,21 @@ class Replay(Pipes):
         out = self.shell("hc replay kept" + OPTIONS, 1)
         self.assertRegex(out, "DIFFERS first.out: [0-9]+ messages, [0-9]+ more; first: ")
         self.assertRegex(out, "\nsecond.out: [0-9]+ messages, the same\n")
+
+    def test_a_task_of_the_head(self):
+        graph = str(ROOT / "graphs/score_track.toml") + " --set track_score.duration=2"
+        self.shell("hc run --record kept --quiet " + graph)
+        first = read_messages(self.path("kept/head_eyes.left.mtp"))[0]
+        out = self.shell(
+            "hc replay kept --check --graph %s --set head_eyes.start=%d --except head_neck"
+            " --share head_eyes=0.7 --time-tolerance workspace=0.25 --share workspace=0.8"
+            " --time-tolerance track=0.1 --tolerance track=0.0175 --share track=0.7"
+            % (graph, first.time)
+        )
+        for output in ("left_ball.target", "right_ball.target"):
+            self.assertRegex("\n" + out, "\n%s: [0-9]+ messages, the same\n" % output)
+        for output in ("head_eyes.left", "workspace.focus", "track.command", "track.bid"):
+            self.assertIn("\n%s: " % output, "\n" + out)
 
     def test_what_cannot_be_replayed_is_said(self):
         self.record()
