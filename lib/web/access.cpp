@@ -100,14 +100,18 @@ std::string Access::make_token(Right right) {
   return add(tokens_, right, kMaxTokens);
 }
 
-std::string Access::invite(Right right) {
+std::string Access::authority() const {
   const bool is_any = place_.address == "0.0.0.0" || place_.address == "::";
   std::string host = !is_any                ? place_.address
                      : place_.hosts.empty() ? own_address()
                                             : place_.hosts.front();
   if (host.find(':') != std::string::npos) host = "[" + host + "]";
-  return std::string(place_.is_secure ? "https://" : "http://") + host + ":" +
-         std::to_string(place_.port) + "/?token=" + make_token(right);
+  return host + ":" + std::to_string(place_.port);
+}
+
+std::string Access::invite(Right right) {
+  return std::string(place_.is_secure ? "https://" : "http://") + authority() +
+         "/?token=" + make_token(right);
 }
 
 std::optional<std::string> Access::redeem(std::string_view token) {
@@ -116,7 +120,17 @@ std::optional<std::string> Access::redeem(std::string_view token) {
   if (found == tokens_.end()) return std::nullopt;
   const Right right = found->second;
   tokens_.erase(found);
+  return begin_session(right);
+}
+
+std::string Access::begin_session(Right right) {
   return add(sessions_, right, kMaxSessions);
+}
+
+std::optional<Right> Access::right_of_session(std::string_view name) const {
+  for (const auto& [session, right] : sessions_)
+    if (is_same(session, name)) return right;
+  return std::nullopt;
 }
 
 std::optional<Right> Access::right_of(std::string_view cookies) const {
@@ -127,8 +141,7 @@ std::optional<Right> Access::right_of(std::string_view cookies) const {
     while (cookie.starts_with(' ')) cookie.remove_prefix(1);
     if (!cookie.starts_with(name)) continue;
     cookie.remove_prefix(name.size());
-    for (const auto& [session, right] : sessions_)
-      if (is_same(session, cookie)) return right;
+    if (const auto right = right_of_session(cookie)) return right;
   }
   return std::nullopt;
 }

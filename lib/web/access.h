@@ -38,12 +38,19 @@ class Access {
 
   /// A new token, which counts once. Of more than 64 the oldest is forgotten.
   std::string make_token(Right right);
+  /// Where the server is reached, as in a URL: "127.0.0.1:8470".
+  [[nodiscard]] std::string authority() const;
   /// A URL with a new token.
   std::string invite(Right right);
 
   /// Begins a session; nothing for a wrong or used token. Of more than 1024 the oldest ends.
   /// @returns  the value of the session's cookie, kCookie.
   std::optional<std::string> redeem(std::string_view token);
+
+  /// Begins a session for whoever knows its name. @returns  the name, as of redeem().
+  std::string begin_session(Right right);
+  /// What a session may do, by its name; nothing where there is none.
+  [[nodiscard]] std::optional<Right> right_of_session(std::string_view name) const;
 
   /// What the session of a `Cookie` header may do; nothing where it has none.
   [[nodiscard]] std::optional<Right> right_of(std::string_view cookies) const;

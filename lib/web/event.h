@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How the threads of this module speak to one another.
+// How a server's thread and others speak to one another.
 
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <cstdint>
 #include <functional>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 #include <hc/base/check.h>
 
@@ -37,6 +40,31 @@ class Event {
 
  private:
   int descriptor_;
+};
+
+/// What other threads hand to one that waits for its descriptor.
+class Inbox {
+ public:
+  /// From any thread.
+  void put(std::function<void()> call) {
+    const std::lock_guard lock(mutex_);
+    calls_.push_back(std::move(call));
+    event_.set();
+  }
+  /// Calls all that was put.
+  void work_off() {
+    event_.clear();
+    std::unique_lock lock(mutex_);
+    auto calls = std::exchange(calls_, {});
+    lock.unlock();
+    for (auto& call : calls) call();
+  }
+  [[nodiscard]] int descriptor() const { return event_.descriptor(); }
+
+ private:
+  Event event_;
+  std::mutex mutex_;
+  std::vector<std::function<void()>> calls_;
 };
 
 }  // namespace hc::web

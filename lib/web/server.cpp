@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/server.h>
 
+#include <array>
 #include <deque>
 #include <optional>
 #include <set>
@@ -73,6 +74,7 @@ std::optional<Request> request_of(const http::request<http::empty_body, Fields>&
   request.host = view_of(head[http::field::host]);
   request.origin = view_of(head[http::field::origin]);
   request.cookies = view_of(head[http::field::cookie]);
+  request.protocols = view_of(head[http::field::sec_websocket_protocol]);
   request.is_socket = websocket::is_upgrade(head);
   return request;
 }
@@ -106,7 +108,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
   Socket(Stream&& stream, std::shared_ptr<Counted> counted)
       : stream_(std::move(stream)), counted_(std::move(counted)) {}
 
-  void accept(http::request<http::empty_body> head, Request request) {
+  void accept(http::request<http::empty_body> head, Request request, const Reply& reply) {
     beast::get_lowest_layer(stream_).expires_never();
     stream_.set_option(websocket::stream_base::timeout{kHeadTime, kIdleTime, true});
     stream_.read_message_max(kMaxMessage);
@@ -114,6 +116,10 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
     websocket::permessage_deflate off;
     off.server_enable = false;
     stream_.set_option(off);
+    stream_.set_option(websocket::stream_base::decorator(
+        [fields = reply.fields](websocket::response_type& response) {
+          for (const auto& [name, value] : fields) response.set(name, value);
+        }));
     // Little waits in the kernel, so that what is sent is new.
     beast::error_code ignored;
     beast::get_lowest_layer(stream_).socket().set_option(
@@ -129,9 +135,11 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
   }
 
   void send_text(std::string text) override {
-    add({true, std::make_shared<const std::string>(std::move(text))});
+    add({true, {}, std::make_shared<const std::string>(std::move(text))});
   }
-  void send(Bytes message) override { add({false, std::move(message)}); }
+  void send(Bytes message, std::string head) override {
+    add({false, std::move(head), std::move(message)});
+  }
   [[nodiscard]] std::size_t waiting() const override { return queue_.size(); }
 
   void close(int code, std::string reason) override {
@@ -147,6 +155,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
  private:
   struct Outgoing {
     bool is_text = false;
+    std::string head;
     Bytes bytes;
   };
 
@@ -158,14 +167,16 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
 
   void write() {
     is_writing_ = true;
-    stream_.text(queue_.front().is_text);
-    stream_.async_write(asio::buffer(*queue_.front().bytes),
+    const Outgoing& next = queue_.front();
+    stream_.text(next.is_text);
+    stream_.async_write(std::array{asio::buffer(next.head), asio::buffer(*next.bytes)},
                         [self = this->shared_from_this()](beast::error_code error, std::size_t) {
                           self->is_writing_ = false;
                           self->queue_.pop_front();
                           if (error) return self->lose();
                           if (self->closing_) return self->finish();
                           if (!self->queue_.empty()) self->write();
+                          if (const auto sent = self->on_sent) sent();
                         });
   }
 
@@ -194,7 +205,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
     forget();
     if (closed) closed();
   }
-  void forget() { on_text = on_binary = nullptr, on_close = nullptr; }
+  void forget() { on_text = on_binary = nullptr, on_sent = on_close = nullptr; }
 
   websocket::stream<Stream> stream_;
   std::shared_ptr<Counted> counted_;
@@ -251,7 +262,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     Reply reply = counted_->site().reply(*request);
     if (reply.status != 101) return write(std::move(reply), keeps);
     std::make_shared<Socket<Stream>>(std::move(stream_), counted_)
-        ->accept(std::move(head), std::move(*request));
+        ->accept(std::move(head), std::move(*request), reply);
   }
 
   static Bytes text(const char* words) { return std::make_shared<const std::string>(words); }
@@ -410,6 +421,16 @@ class BeastServer final : public Server {
 };
 
 }  // namespace
+
+std::string_view option(std::string_view query, std::string_view name) {
+  while (!query.empty()) {
+    const auto each = query.substr(0, query.find('&'));
+    query.remove_prefix(std::min(query.size(), each.size() + 1));
+    if (each.starts_with(name) && each.size() > name.size() && each[name.size()] == '=')
+      return each.substr(name.size() + 1);
+  }
+  return {};
+}
 
 Result<std::unique_ptr<Server>> Server::listen(const std::string& address, std::uint16_t port,
                                                int ports, const Identity* identity, LogSink log) {

@@ -26,7 +26,11 @@ struct Request {
   std::string query;  ///< behind `?`, as it came
   std::string host, origin, cookies;
   bool is_socket = false;  ///< asks for a WebSocket
+  std::string protocols;   ///< of WebSockets, those that it offers
 };
+
+/// The value of an option in a query; empty where there is none.
+std::string_view option(std::string_view query, std::string_view name);
 
 struct Reply {
   int status = 200;
@@ -41,13 +45,16 @@ class WebSocket {
  public:
   virtual ~WebSocket() = default;
   virtual void send_text(std::string text) = 0;
-  virtual void send(Bytes message) = 0;
+  /// @param head  bytes of the message before these.
+  virtual void send(Bytes message, std::string head = {}) = 0;
   /// @param code  of RFC 6455, section 7.4, or from 4000 on. Nothing is called afterwards.
   virtual void close(int code, std::string reason) = 0;
   /// Messages that have not been written yet.
   [[nodiscard]] virtual std::size_t waiting() const = 0;
 
   std::function<void(std::string_view)> on_text, on_binary;
+  /// A message has been written.
+  std::function<void()> on_sent;
   /// The connection is closed or has failed.
   std::function<void()> on_close;
 };
@@ -56,7 +63,8 @@ class WebSocket {
 class Site {
  public:
   virtual ~Site() = default;
-  /// What is answered to a GET; of a request for a WebSocket, why it is refused, or status 101.
+  /// What is answered to a GET; of a request for a WebSocket, why it is refused, or status 101 and
+  /// the fields of that answer.
   virtual Reply reply(const Request& request) = 0;
   /// A WebSocket for which reply() gave 101.
   virtual void open(std::shared_ptr<WebSocket> socket, const Request& request) = 0;

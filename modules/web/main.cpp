@@ -11,46 +11,11 @@
 #include <hc/module/module.h>
 
 #include <web/event.h>
-#include <web/identity.h>
+#include <web/listening.h>
 #include <web/qr.h>
 #include "page.h"
 
 namespace {
-
-/// What the server's thread hands to the module's.
-class Inbox {
- public:
-  void put(std::function<void()> call) {
-    const std::lock_guard lock(mutex_);
-    calls_.push_back(std::move(call));
-    event_.set();
-  }
-  void work_off() {
-    event_.clear();
-    std::unique_lock lock(mutex_);
-    auto calls = std::exchange(calls_, {});
-    lock.unlock();
-    for (auto& call : calls) call();
-  }
-  [[nodiscard]] int descriptor() const { return event_.descriptor(); }
-
- private:
-  web::Event event_;
-  std::mutex mutex_;
-  std::vector<std::function<void()>> calls_;
-};
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c != ',' && c != ' ')
-      words.back() += c;
-    else if (!words.back().empty())
-      words.emplace_back();
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
 
 /// Opens a URL in the browser of a desktop, if there is one.
 void open_in_browser(const std::string& url) {
@@ -95,7 +60,7 @@ int main(int argc, char** argv) {
       module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
                        {.min = 0, .max = 1e6});
 
-  Inbox inbox;
+  web::Inbox inbox;
   Robot robot;
   std::optional<web::Access> access;
   std::unique_ptr<web::Server> server;
@@ -136,14 +101,10 @@ int main(int argc, char** argv) {
       throw hc::ModuleError(
           "HC_GRAPH does not name a running graph, NAME.PID; run this module in "
           "a graph, or with hc run GRAPH --page");
-    std::optional<web::Identity> identity;
-    const bool is_local = *listen == "127.0.0.1" || *listen == "::1" || *listen == "localhost";
-    if (*tls || !is_local) identity = hc::value_or_end(web::load_identity(web::settings_folder()));
-    constexpr int kPorts = 10;
-    server = hc::value_or_end(web::Server::listen(
-        *listen == "localhost" ? "127.0.0.1" : *listen, static_cast<std::uint16_t>(*port),
-        *port == 0 ? 1 : kPorts, identity ? &*identity : nullptr, log));
-    access.emplace(web::Place{*listen, server->port(), identity.has_value(), words_of(*hosts)});
+    auto opened =
+        hc::value_or_end(web::open_server({*listen, static_cast<int>(*port), *tls, *hosts}, log));
+    server = std::move(opened.server);
+    access.emplace(opened.place);
     page = std::make_unique<Page>(
         Page::Options{*graph, module.instance(), *frames, *recordings}, *access, *server, robot,
         Page::Hears{[&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
@@ -157,10 +118,8 @@ int main(int argc, char** argv) {
                     [&](const std::string& line) { log(hc::Severity::Info, line); }});
     const std::string url = access->invite(web::Right::Drive);
     module.log("notice: page: " + url);
-    if (identity)
-      module.log("notice: page: certificate " +
-                 hc::value_or_end(web::fingerprint(identity->certificate)));
-    if (!is_local)
+    if (!opened.fingerprint.empty()) module.log("notice: page: certificate " + opened.fingerprint);
+    if (!web::is_local(*listen))
       for (const auto& line : web::qr_lines(access->invite(web::Right::Drive)))
         module.log("notice: " + line);
     thread = std::thread([&] { server->run(*page); });

@@ -92,17 +92,6 @@ Rows words_of(const std::string& line) {
   return words;
 }
 
-/// The value of an option in a query; empty where there is none.
-std::string_view option(std::string_view query, std::string_view name) {
-  while (!query.empty()) {
-    const auto each = query.substr(0, query.find('&'));
-    query.remove_prefix(std::min(query.size(), each.size() + 1));
-    if (each.starts_with(name) && each.size() > name.size() && each[name.size()] == '=')
-      return each.substr(name.size() + 1);
-  }
-  return {};
-}
-
 }  // namespace
 
 Page::Page(Options options, web::Access& access, web::Server& server, Robot& robot, Hears hears)
@@ -130,7 +119,7 @@ web::Reply Page::reply(const web::Request& request) {
   if (!access_.is_host(request.host))
     return refusal(421, "this server is not \"" + request.host.substr(0, 64) +
                             "\"; open it by the URL that it printed");
-  if (request.path == "/" && !option(request.query, "token").empty())
+  if (request.path == "/" && !web::option(request.query, "token").empty())
     return reply_to_token(request);
   const auto right = access_.right_of(request.cookies);
   if (!right)
@@ -153,7 +142,7 @@ web::Reply Page::reply(const web::Request& request) {
 }
 
 web::Reply Page::reply_to_token(const web::Request& request) {
-  const auto session = access_.redeem(option(request.query, "token"));
+  const auto session = access_.redeem(web::option(request.query, "token"));
   if (!session) {
     // Whoever has a session already opened the link once more.
     if (!access_.right_of(request.cookies))
@@ -279,7 +268,7 @@ void Page::open_stream(const std::shared_ptr<web::WebSocket>& socket, const web:
 }
 
 void Page::open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request) {
-  if (driver_socket_ && option(request.query, "take") != "1")
+  if (driver_socket_ && web::option(request.query, "take") != "1")
     return socket->close(kTaken, "another page drives");
   if (driver_socket_) {
     give(driver_.leave(clock_.wall()));

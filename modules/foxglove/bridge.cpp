@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bridge.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace web = hc::web;
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kProtocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};  // best first
+constexpr std::int32_t kFailed = 2;  // level of an error
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+web::Reply refusal(int status, std::string words) {
+  web::Reply reply;
+  reply.status = status;
+  reply.body = std::make_shared<const std::string>(std::move(words) + "\n");
+  return reply;
+}
+
+/// The protocol to speak of those that are offered, joined by commas; null where none is ours.
+const char* chosen(std::string_view offered) {
+  for (const char* ours : kProtocols) {
+    for (std::string_view left = offered; !left.empty();) {
+      auto each = left.substr(0, left.find(','));
+      left.remove_prefix(std::min(left.size(), each.size() + 1));
+      while (each.starts_with(' ')) each.remove_prefix(1);
+      while (each.ends_with(' ')) each.remove_suffix(1);
+      if (each == ours) return ours;
+    }
+  }
+  return nullptr;
+}
+
+std::string string_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// The list of a key; empty where there is none.
+const Json& list_of(const Json& object, const char* key) {
+  static const Json kNone = Json::array();
+  const auto found = object.find(key);
+  return found != object.end() && found->is_array() ? *found : kNone;
+}
+
+std::vector<std::string> strings_of(const Json& object, const char* key) {
+  std::vector<std::string> strings;
+  for (const Json& each : list_of(object, key))
+    if (each.is_string()) strings.push_back(each.get<std::string>());
+  return strings;
+}
+
+/// The number of a key, where it is one of 32 bits.
+std::optional<std::uint32_t> number_of(const Json& object, const char* key) {
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  if (!object.is_object() || found == object.end() || !found->is_number_unsigned() ||
+      found->get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+    return std::nullopt;
+  return found->get<std::uint32_t>();
+}
+
+/// What a module is set to.
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  // JavaScript has no integers; a whole number is to be one for us.
+  if (value.is_number_float() && value.get<double>() == std::floor(value.get<double>()) &&
+      std::abs(value.get<double>()) < 1e15)
+    return std::to_string(value.get<std::int64_t>());
+  return value.dump();
+}
+
+/// "MODULE: warning: …" is a warning of the module.
+Payload log_payload(hc::ros::Encoder& encoder, std::int64_t time, std::string_view line) {
+  std::string_view name = "graph", text = line;
+  const auto colon = line.find(": ");
+  if (colon != std::string_view::npos && hc::is_name(line.substr(0, colon))) {
+    name = line.substr(0, colon);
+    text = line.substr(colon + 2);
+  }
+  auto severity = hc::Severity::Info;
+  if (text.starts_with("warning: ")) severity = hc::Severity::Warning;
+  if (text.starts_with("error: ")) severity = hc::Severity::Error;
+  return {time, bytes_of(encoder.encode(time, severity, name, text))};
+}
+
+}  // namespace
+
+Bridge::Bridge(Options options, web::Access& access, web::Server& server)
+    : options_(std::move(options)),
+      access_(access),
+      server_(server),
+      session_(web::make_secret()),
+      catalog_(options_.jpeg) {
+  for (const auto& joint : options_.joints) joints_[joint.child] = joint;
+  constexpr std::chrono::milliseconds kTick{100};
+  server_.every(kTick, [this] { tick(); });
+  graph_ = std::make_unique<web::GraphClient>(
+      options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
+      web::GraphClient::Hears{[this](const hc::Message& message) { take_graph(message); },
+                              [this] { options_.end(); }});
+}
+
+Bridge::~Bridge() {
+  graph_.reset();  // what is posted from now on is not called any more
+}
+
+web::Reply Bridge::reply(const web::Request& request) {
+  if (!access_.is_host(request.host))
+    return refusal(421, "this server is not \"" + request.host.substr(0, 64) +
+                            "\"; open the URL that it printed");
+  if (!request.is_socket)
+    return refusal(426, "this is a server for Foxglove and Lichtblick: open its ws:// URL there");
+  if (request.path != "/") return refusal(404, "there is no such socket; the path is /");
+  if (!access_.right_of_session(web::option(request.query, "token")))
+    return refusal(401, "the URL needs the token that was printed when the graph started");
+  const char* protocol = chosen(request.protocols);
+  if (protocol == nullptr)
+    return refusal(400,
+                   "no protocol in common: this server speaks foxglove.sdk.v1 and "
+                   "foxglove.websocket.v1");
+  web::Reply reply;
+  reply.status = 101;
+  reply.fields = {{"Sec-WebSocket-Protocol", protocol}};
+  return reply;
+}
+
+void Bridge::open(std::shared_ptr<web::WebSocket> socket, const web::Request& request) {
+  const auto right = access_.right_of_session(web::option(request.query, "token"));
+  auto& events = *socket;
+  auto viewer = std::make_shared<Viewer>(std::move(socket), right.value_or(web::Right::View));
+  viewers_.push_back(viewer);
+  events.on_text = [this, weak = std::weak_ptr(viewer)](std::string_view text) {
+    if (const auto still = weak.lock()) take_text(*still, text);
+  };
+  events.on_binary = [weak = std::weak_ptr(viewer)](std::string_view) {
+    if (const auto still = weak.lock())
+      still->say_status(kFailed, "binary messages are not taken here: nothing can be published");
+  };
+  events.on_close = [this, viewer = viewer.get()] { remove(viewer); };
+  viewer->say(Json{
+      {"op", "serverInfo"},
+      {"name", "Hypercolumn: " + options_.graph.name},
+      {"capabilities", {"parameters", "parametersSubscribe", "connectionGraph", "time"}},
+      {"supportedEncodings", Json::array()},
+      {"metadata", {{"graph", options_.graph.text()}}},
+      {"sessionId",
+       session_}}.dump());
+  std::vector<Channel> channels;
+  for (const auto& [id, channel] : catalog_.channels()) channels.push_back(channel);
+  viewer->say(Catalog::advertise(channels));
+}
+
+void Bridge::take_text(Viewer& viewer, std::string_view text) {
+  const auto found =
+      std::ranges::find_if(viewers_, [&](const auto& each) { return each.get() == &viewer; });
+  const auto kept = *found;  // it may be disconnected meanwhile
+  const Json request = Json::parse(text, nullptr, false);
+  if (!request.is_object()) return viewer.say_status(kFailed, "what was sent is no JSON object");
+  const std::string op = string_of(request, "op");
+  if (op == "subscribe") {
+    subscribe(viewer, request);
+  } else if (op == "unsubscribe") {
+    unsubscribe(viewer, request);
+  } else if (op == "getParameters") {
+    get_parameters(viewer, request);
+  } else if (op == "setParameters") {
+    set_parameters(kept, request);
+  } else if (op == "subscribeParameterUpdates" || op == "unsubscribeParameterUpdates") {
+    const auto names = strings_of(request, "parameterNames");
+    const bool is_wanted = op.starts_with("s");
+    if (names.empty()) {
+      viewer.all_parameters = is_wanted;
+      if (!is_wanted) viewer.parameters.clear();
+    }
+    for (const auto& name : names) {
+      if (!is_wanted) viewer.parameters.erase(name);
+      if (is_wanted && catalog_.has_parameter(name)) viewer.parameters.insert(name);
+    }
+  } else if (op == "subscribeConnectionGraph" || op == "unsubscribeConnectionGraph") {
+    viewer.graph = op.starts_with("s");
+    if (viewer.graph) viewer.say(catalog_.connection_graph());
+  } else {
+    viewer.say_status(kFailed, "\"" + op.substr(0, 64) + "\" is not done here");
+  }
+}
+
+void Bridge::subscribe(Viewer& viewer, const Json& request) {
+  for (const Json& each : list_of(request, "subscriptions")) {
+    const auto id = number_of(each, "id"), channel = number_of(each, "channelId");
+    const auto found = catalog_.channels().find(channel.value_or(0));
+    if (!id || found == catalog_.channels().end()) {
+      viewer.say_status(kFailed, "there is no such channel: " + each.dump().substr(0, 100));
+      continue;
+    }
+    if (!viewer.subscribe(*id, found->second)) {
+      viewer.say_status(kFailed, "already subscribed, or too often: " + each.dump().substr(0, 100));
+      continue;
+    }
+    if (found->second == catalog_.frames()) publish_frames(viewer);
+    auto& publisher = publishers_[*channel];
+    if (publisher || found->second.port.empty()) continue;
+    publisher = std::make_unique<Publisher>(
+        options_.graph, found->second, options_.frames,
+        [this](std::function<void()> call) { server_.post(std::move(call)); },
+        Publisher::Hears{
+            [this, channel = *channel](const Payload& payload) { publish(channel, payload); },
+            [this, topic = found->second.topic](const std::string& why) {
+              for (const auto& other : viewers_)
+                other->say_status(kFailed, topic + ": " + why, "topic:" + topic);
+            }});
+  }
+}
+
+void Bridge::unsubscribe(Viewer& viewer, const Json& request) {
+  for (const Json& each : list_of(request, "subscriptionIds"))
+    if (each.is_number_unsigned())
+      viewer.unsubscribe(static_cast<std::uint32_t>(
+          std::min<std::uint64_t>(each.get<std::uint64_t>(), UINT32_MAX)));
+}
+
+void Bridge::get_parameters(Viewer& viewer, const Json& request) {
+  viewer.say(
+      catalog_.parameter_values(strings_of(request, "parameterNames"), string_of(request, "id")));
+}
+
+void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request) {
+  if (viewer->right() != web::Right::Drive)
+    return viewer->say_status(kFailed, "this URL may view, and not change anything");
+  std::vector<std::string> names;
+  for (const Json& each : list_of(request, "parameters")) {
+    const std::string name = each.is_object() ? string_of(each, "name") : std::string();
+    if (!catalog_.has_parameter(name) || !each.contains("value")) {
+      viewer->say_status(kFailed, "there is no such parameter: " + each.dump().substr(0, 100));
+      continue;
+    }
+    names.push_back(name);
+    const std::string value = text_of(each["value"]);
+    if (value.find('\n') != std::string::npos) {
+      viewer->say_status(kFailed, name + ": a value is one line");
+      continue;
+    }
+    graph_->command("set " + name + "=" + value,
+                    [weak = std::weak_ptr(viewer), name](const std::vector<std::string>& rows) {
+                      const auto still = weak.lock();
+                      if (still && (rows.empty() || rows.front() != "ok"))
+                        still->say_status(kFailed, rows.empty() ? name : rows.front());
+                    });
+  }
+  // The values as they are once that is done; the state brings those that have changed.
+  if (const auto id = string_of(request, "id"); !id.empty())
+    graph_->command(
+        "describe " +
+            (names.empty() ? std::string() : names.front().substr(0, names.front().find('.'))),
+        [this, weak = std::weak_ptr(viewer), names, id](const std::vector<std::string>&) {
+          if (const auto still = weak.lock()) still->say(catalog_.parameter_values(names, id));
+        });
+}
+
+void Bridge::take_graph(const hc::Message& message) {
+  const std::string_view text(reinterpret_cast<const char*>(message.elements.data()),
+                              message.elements.size());
+  if (message.header.src == hc::kStateSource) return apply(catalog_.take_state(text));
+  if (message.header.src != hc::kLogSource) return;
+  const std::int64_t time = message.header.time != 0 ? message.header.time : clock_.wall();
+  const Channel& log = catalog_.log();
+  publish(log.id, log_payload(encoder_, time, text.substr(0, text.find('\0'))));
+}
+
+void Bridge::apply(const Catalog::Changes& changes) {
+  for (const auto& module : changes.unknown)
+    graph_->command("describe " + module, [this, module](const std::vector<std::string>& rows) {
+      if (rows.size() > 1 && rows.front() == "ok") apply(catalog_.describe(module, rows[1]));
+    });
+  for (const auto& channel : changes.removed) publishers_.erase(channel.id);
+  for (const auto& viewer : viewers_) {
+    for (const auto& channel : changes.removed) viewer->forget(channel.id);
+    if (!changes.removed.empty()) viewer->say(Catalog::unadvertise(changes.removed));
+    if (!changes.added.empty()) viewer->say(Catalog::advertise(changes.added));
+    if (changes.graph && viewer->graph) viewer->say(catalog_.connection_graph());
+    std::vector<std::string> wanted;
+    for (const auto& name : changes.parameters)
+      if (viewer->all_parameters || viewer->parameters.contains(name)) wanted.push_back(name);
+    if (!wanted.empty()) viewer->say(catalog_.parameter_values(wanted, {}));
+  }
+}
+
+void Bridge::publish(std::uint32_t channel, const Payload& payload) {
+  for (const auto& viewer : viewers_) viewer->offer(channel, payload);
+}
+
+void Bridge::move(const hc::ros::Joint& joint) {
+  joints_[joint.child] = joint;
+  const bool is_wanted = std::ranges::any_of(
+      viewers_, [&](const auto& viewer) { return viewer->is_subscribed(catalog_.frames().id); });
+  if (is_wanted)
+    publish(catalog_.frames().id, {joint.time, bytes_of(encoder_.encode(std::span(&joint, 1)))});
+}
+
+void Bridge::publish_frames(Viewer& viewer) {
+  std::vector<hc::ros::Joint> all;
+  for (const auto& [child, joint] : joints_) all.push_back(joint);
+  if (!all.empty())
+    viewer.offer(catalog_.frames().id, {clock_.wall(), bytes_of(encoder_.encode(all))});
+}
+
+void Bridge::remove(const Viewer* viewer) {
+  std::erase_if(viewers_, [&](const auto& each) { return each.get() == viewer; });
+}
+
+void Bridge::tick() {
+  std::erase_if(viewers_, [](const auto& viewer) { return viewer->is_lost(); });
+  const std::int64_t now = clock_.wall();
+  const bool reports = now >= reported_ + kSecond || now < reported_;
+  if (reports) reported_ = now;
+  for (const auto& viewer : viewers_) {
+    viewer->say_time(now);
+    if (!reports) continue;
+    viewer->report_dropped();
+    publish_frames(*viewer);
+  }
+  std::erase_if(publishers_, [&](const auto& each) {
+    return std::ranges::none_of(
+        viewers_, [&](const auto& viewer) { return viewer->is_subscribed(each.first); });
+  });
+}
+
+void Bridge::close() {
+  viewers_.clear();
+  publishers_.clear();
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the server serves: Foxglove's WebSocket protocol, over a running graph (doc/foxglove.md).
+// For the server's thread.
+
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/base/clock.h>
+#include <hc/observe/running.h>
+#include <ros/encode.h>
+#include <web/access.h>
+#include <web/graph_client.h>
+#include <web/server.h>
+#include <nlohmann/json_fwd.hpp>
+
+#include "catalog.h"
+#include "publisher.h"
+#include "viewer.h"
+
+class Bridge final : public hc::web::Site {
+ public:
+  struct Options {
+    hc::RunningGraph graph;
+    std::map<std::int32_t, std::string> frames;  ///< their names, by number
+    std::vector<hc::ros::Joint> joints;          ///< those that do not move
+    bool jpeg = false;
+    std::function<void()> end;  ///< called when the graph has ended
+  };
+
+  Bridge(Options options, hc::web::Access& access, hc::web::Server& server);
+  ~Bridge() override;
+
+  hc::web::Reply reply(const hc::web::Request& request) override;
+  void open(std::shared_ptr<hc::web::WebSocket> socket, const hc::web::Request& request) override;
+
+  /// A pose of a frame that moves.
+  void move(const hc::ros::Joint& joint);
+  /// Disconnects all.
+  void close();
+
+ private:
+  void take_text(Viewer& viewer, std::string_view text);
+  void subscribe(Viewer& viewer, const nlohmann::json& request);
+  void unsubscribe(Viewer& viewer, const nlohmann::json& request);
+  void get_parameters(Viewer& viewer, const nlohmann::json& request);
+  void set_parameters(const std::shared_ptr<Viewer>& viewer, const nlohmann::json& request);
+
+  void take_graph(const hc::Message& message);
+  void apply(const Catalog::Changes& changes);
+  void publish(std::uint32_t channel, const Payload& payload);
+  void publish_frames(Viewer& viewer);
+  void remove(const Viewer* viewer);
+  void tick();
+
+  const Options options_;
+  hc::web::Access& access_;
+  hc::web::Server& server_;
+  const hc::SystemClock clock_;
+  const std::string session_;
+  Catalog catalog_;
+  hc::ros::Encoder encoder_;
+  std::map<std::string, hc::ros::Joint> joints_;  // by child
+  std::list<std::shared_ptr<Viewer>> viewers_;
+  std::map<std::uint32_t, std::unique_ptr<Publisher>> publishers_;  // by channel
+  std::int64_t reported_ = 0;                                       // when what was dropped was
+  std::unique_ptr<hc::web::GraphClient> graph_;  // last: its threads call the above
+};

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "catalog.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <ros/encode.h>
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::string topic_of(std::string port) {
+  std::ranges::replace(port, '.', '/');
+  return "/" + port;
+}
+
+hc::ros::Type type_of(const hc::PortDescription& port, bool jpeg) {
+  using hc::ros::Type;
+  if (port.types.size() != 1) return Type::Matrix;  // it may be anything
+  hc::PortType type = port.types.front();
+  if (type.info.encoding == hc::Encoding::Zstd) type.info.encoding = hc::Encoding::Binary;
+  const bool is_picture = (type.info.type == hc::MatrixType::RgbImage ||
+                           type.info.type == hc::MatrixType::IntensityImage) &&
+                          type.info.scalar == hc::Scalar::U8 && type.info.components != 4;
+  if (is_picture && jpeg) type.info.encoding = hc::Encoding::Jpeg;
+  return hc::ros::type_for(type).value_or(Type::Matrix);
+}
+
+/// The value of a key that is a string; empty where it is none.
+std::string string_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+Json list_of(const std::map<std::string, std::vector<std::string>>& names, const char* key) {
+  Json list = Json::array();
+  for (const auto& [topic, modules] : names) list.push_back({{"name", topic}, {key, modules}});
+  return list;
+}
+
+/// A parameter's value in JSON.
+Json value_of(const hc::ParameterState& parameter) {
+  return std::visit([](const auto& value) { return Json(value); }, parameter.value);
+}
+
+}  // namespace
+
+Catalog::Catalog(bool jpeg) : jpeg_(jpeg) {
+  channels_[kLog] = {kLog, "/log", "", hc::ros::Type::Log};
+  channels_[kFrames] = {kFrames, "/tf", "", hc::ros::Type::TfMessage};
+}
+
+Catalog::Changes Catalog::take_state(std::string_view state) {
+  Changes changes;
+  const Json json = Json::parse(state, nullptr, false);
+  if (!json.is_object() || !json.contains("modules") || !json.contains("links")) return changes;
+  name_ = string_of(json, "graph");
+  std::set<std::string> there;
+  for (const Json& each : json["modules"]) {
+    const std::string module = string_of(each, "name"), program = string_of(each, "program");
+    there.insert(module);
+    const auto known = modules_.find(module);
+    if (known == modules_.end() || known->second.program != program) {
+      if (known != modules_.end()) remove_outputs(module, changes);
+      modules_[module] = {program, {}, false};
+      changes.unknown.push_back(module);
+    }
+    if (each.contains("parameters")) set_parameters(module, each["parameters"], changes);
+  }
+  for (auto known = modules_.begin(); known != modules_.end();) {
+    if (!there.contains(known->first)) {
+      remove_outputs(known->first, changes);
+      known = modules_.erase(known);
+    } else {
+      ++known;
+    }
+  }
+  Names published, taken;
+  auto split = [](const std::string& port) { return port.substr(0, port.find('.')); };
+  for (const Json& link : json["links"]) {
+    const std::string from = string_of(link, "from"), to = string_of(link, "to");
+    if (!there.contains(split(from))) continue;  // from outside
+    auto& publishers = published[topic_of(from)];
+    publishers = {split(from)};
+    if (there.contains(split(to))) taken[topic_of(from)].push_back(split(to));
+  }
+  changes.graph = published != published_ || taken != taken_;
+  published_ = std::move(published);
+  taken_ = std::move(taken);
+  return changes;
+}
+
+Catalog::Changes Catalog::describe(const std::string& module, std::string_view description) {
+  Changes changes;
+  const auto known = modules_.find(module);
+  auto parsed = hc::parse_description(description);
+  if (known == modules_.end() || !parsed) return changes;
+  remove_outputs(module, changes);
+  known->second.description = std::move(*parsed);
+  known->second.is_described = true;
+  publish_outputs(module, changes);
+  for (const auto& parameter : known->second.description.parameters) {
+    auto& state = parameters_[module + "." + parameter.name] = parameter;
+    const auto value = values_.find(module + "." + parameter.name);
+    if (value != values_.end()) static_cast<void>(state.set(value->second));
+  }
+  return changes;
+}
+
+void Catalog::publish_outputs(const std::string& module, Changes& changes) {
+  for (const auto& output : modules_.at(module).description.outputs) {
+    const std::string port = module + "." + output.name;
+    Channel channel{next_++, topic_of(port), port, type_of(output, jpeg_)};
+    changes.added.push_back(channel);
+    channels_[channel.id] = std::move(channel);
+  }
+}
+
+void Catalog::remove_outputs(const std::string& module, Changes& changes) {
+  const std::string prefix = module + ".";
+  std::erase_if(channels_, [&](const auto& each) {
+    if (!each.second.port.starts_with(prefix)) return false;
+    changes.removed.push_back(each.second);
+    return true;
+  });
+  std::erase_if(parameters_, [&](const auto& each) { return each.first.starts_with(prefix); });
+}
+
+void Catalog::set_parameters(const std::string& module, const Json& values, Changes& changes) {
+  if (!values.is_object()) return;
+  for (const auto& [key, value] : values.items()) {
+    const std::string name = module + "." + key;
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    auto& known = values_[name];
+    if (known == text) continue;
+    known = text;
+    const auto parameter = parameters_.find(name);
+    if (parameter != parameters_.end() && parameter->second.set(text))
+      changes.parameters.push_back(name);
+  }
+}
+
+std::string Catalog::advertise(const std::vector<Channel>& channels) {
+  Json list = Json::array();
+  for (const auto& channel : channels) {
+    const auto& schema = hc::ros::schema(channel.type);
+    list.push_back({{"id", channel.id},
+                    {"topic", channel.topic},
+                    {"encoding", "cdr"},
+                    {"schemaName", schema.name},
+                    {"schemaEncoding", "ros2msg"},
+                    {"schema", schema.text}});
+  }
+  return Json{{"op", "advertise"}, {"channels", std::move(list)}}.dump();
+}
+
+std::string Catalog::unadvertise(const std::vector<Channel>& channels) {
+  Json list = Json::array();
+  for (const auto& channel : channels) list.push_back(channel.id);
+  return Json{{"op", "unadvertise"}, {"channelIds", std::move(list)}}.dump();
+}
+
+std::string Catalog::connection_graph() const {
+  return Json{{"op", "connectionGraphUpdate"},
+              {"publishedTopics", list_of(published_, "publisherIds")},
+              {"subscribedTopics", list_of(taken_, "subscriberIds")},
+              {"advertisedServices", Json::array()},
+              {"removedTopics", Json::array()},
+              {"removedServices", Json::array()}}
+      .dump();
+}
+
+std::string Catalog::parameter_values(const std::vector<std::string>& names,
+                                      const std::string& id) const {
+  Json list = Json::array();
+  auto add = [&](const std::string& name, const hc::ParameterState& parameter) {
+    Json each = {{"name", name}, {"value", value_of(parameter)}};
+    const bool is_number = std::holds_alternative<std::int64_t>(parameter.value) ||
+                           std::holds_alternative<double>(parameter.value);
+    if (is_number) each["type"] = "float64";
+    list.push_back(std::move(each));
+  };
+  if (names.empty())
+    for (const auto& [name, parameter] : parameters_) add(name, parameter);
+  for (const auto& name : names)
+    if (const auto found = parameters_.find(name); found != parameters_.end())
+      add(name, found->second);
+  Json values = {{"op", "parameterValues"}, {"parameters", std::move(list)}};
+  if (!id.empty()) values["id"] = id;
+  return values.dump();
+}

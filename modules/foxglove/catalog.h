@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a running graph is, in Foxglove's words: topics, parameters, and who publishes and takes
+// them. Made of the graph's state (spec/graph.md, G45) and of what its modules say of themselves.
+// For one thread.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hc/base/parameter.h>
+#include <hc/contract/description.h>
+#include <nlohmann/json.hpp>
+
+#include "publisher.h"
+
+class Catalog {
+ public:
+  /// @param jpeg  images of u8 are CompressedImage.
+  explicit Catalog(bool jpeg);
+
+  struct Changes {
+    std::vector<Channel> added, removed;
+    std::vector<std::string> parameters;  ///< names of those whose value is another
+    bool graph = false;                   ///< who publishes and takes what is another
+    std::vector<std::string> unknown;     ///< modules that are to be described
+  };
+  /// Takes in the graph's state, one line of JSON.
+  Changes take_state(std::string_view state);
+  /// Takes in what `--describe` of a module printed; nothing where it is no description.
+  Changes describe(const std::string& module, std::string_view description);
+
+  [[nodiscard]] const std::string& graph_name() const { return name_; }
+  /// By id.
+  [[nodiscard]] const std::map<std::uint32_t, Channel>& channels() const { return channels_; }
+
+  /// {"op":"advertise","channels":[…]}
+  [[nodiscard]] static std::string advertise(const std::vector<Channel>& channels);
+  [[nodiscard]] static std::string unadvertise(const std::vector<Channel>& channels);
+  /// {"op":"connectionGraphUpdate",…}, whole.
+  [[nodiscard]] std::string connection_graph() const;
+  /// {"op":"parameterValues",…} of those named that there are; all where none is named.
+  [[nodiscard]] std::string parameter_values(const std::vector<std::string>& names,
+                                             const std::string& id) const;
+  /// Whether there is a parameter MODULE.NAME.
+  [[nodiscard]] bool has_parameter(const std::string& name) const {
+    return parameters_.contains(name);
+  }
+
+  /// The channels that are made here: the log, and the frames.
+  [[nodiscard]] const Channel& log() const { return channels_.at(kLog); }
+  [[nodiscard]] const Channel& frames() const { return channels_.at(kFrames); }
+
+ private:
+  static constexpr std::uint32_t kLog = 1, kFrames = 2;
+  struct Known {
+    std::string program;
+    hc::Description description;
+    bool is_described = false;
+  };
+  using Names = std::map<std::string, std::vector<std::string>>;  // of modules, by topic
+
+  void publish_outputs(const std::string& module, Changes& changes);
+  void remove_outputs(const std::string& module, Changes& changes);
+  void set_parameters(const std::string& module, const nlohmann::json& values, Changes& changes);
+
+  const bool jpeg_;
+  std::string name_;
+  std::uint32_t next_ = kFrames + 1;
+  std::map<std::uint32_t, Channel> channels_;
+  std::map<std::string, Known> modules_;
+  std::map<std::string, hc::ParameterState> parameters_;  // by MODULE.NAME
+  std::map<std::string, std::string> values_;             // as the state says, by MODULE.NAME
+  Names published_, taken_;
+};

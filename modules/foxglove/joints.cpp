@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "joints.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include <frames/messages.h>
+
+namespace {
+
+hc::ros::Joint joint(std::string parent, std::string child, const Eigen::Isometry3d& T,
+                     std::int64_t time) {
+  const hc::frames::Pose pose(T);
+  return {std::move(parent),
+          std::move(child),
+          {pose.p.x(), pose.p.y(), pose.p.z()},
+          {pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w()},
+          time};
+}
+
+}  // namespace
+
+hc::Result<GraphJoints> GraphJoints::read(const std::string& text) {
+  auto frames = hc::frames::read_frames(text);
+  if (!frames) return frames.error();
+  GraphJoints joints{std::move(*frames), {}, {}};
+  std::istringstream entries(text);
+  for (std::string entry; std::getline(entries, entry, ';');) {
+    std::istringstream words(entry);
+    std::string child, parent;
+    std::int32_t number = 0;
+    if (!(words >> child >> number >> parent)) continue;
+    if (number != 0) joints.names[number] = child;
+    const bool moves = std::ranges::find(joints.frames.movers, child, &hc::frames::Mover::child) !=
+                       joints.frames.movers.end();
+    if (moves) continue;
+    auto T = joints.frames.tree.lookup(std::string_view(parent), std::string_view(child), 0);
+    if (!T) return T.error();
+    joints.fixed.push_back(joint(parent, child, *T, 0));
+  }
+  return joints;
+}
+
+hc::Result<hc::ros::Joint> GraphJoints::joint_of(const hc::Message& pose) const {
+  auto mover = frames.mover_of(pose.header.src, pose.header.coord);
+  if (!mover) return mover.error();
+  auto T = hc::rigid_of(pose);
+  if (!T) return T.error();
+  return joint((*mover)->parent, (*mover)->child, *T, pose.header.time);
+}

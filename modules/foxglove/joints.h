@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The frames of a graph as joints of ROS. Pure.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <frames/graph_frames.h>
+#include <hc/base/result.h>
+#include <hc/mtp/message.h>
+#include <ros/encode.h>
+
+struct GraphJoints {
+  hc::frames::GraphFrames frames;
+  std::map<std::int32_t, std::string> names;  ///< of frames, by their number
+  std::vector<hc::ros::Joint> fixed;          ///< those that do not move
+
+  /// @param text  of a module's parameter `frames` (spec/graph.md, G31).
+  /// Errors: as frames::read_frames().
+  static hc::Result<GraphJoints> read(const std::string& text);
+
+  /// The joint that a pose moves. Errors: as frames::GraphFrames::mover_of() and rigid_of().
+  [[nodiscard]] hc::Result<hc::ros::Joint> joint_of(const hc::Message& pose) const;
+};

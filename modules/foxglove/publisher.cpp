@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "publisher.h"
+
+#include <chrono>
+#include <utility>
+
+#include <hc/base/clock.h>
+#include <hc/compress/compress.h>
+
+namespace web = hc::web;
+
+web::Bytes bytes_of(const hc::ros::Pieces& pieces) {
+  std::string bytes;
+  bytes.reserve(pieces.size());
+  for (const auto& piece : {pieces.head, pieces.body, pieces.tail})
+    bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+  return std::make_shared<const std::string>(std::move(bytes));
+}
+
+Publisher::Publisher(hc::RunningGraph graph, Channel channel,
+                     std::map<std::int32_t, std::string> frames, web::Post post, Hears hears)
+    : channel_(std::move(channel)),
+      post_(std::move(post)),
+      shared_(std::make_shared<Shared>()),
+      observer_((encoder_.frames = std::move(frames), shared_->hears = std::move(hears),
+                 std::move(graph)),
+                channel_.port,
+                {.message = [this](const hc::Message& message) { take(message); },
+                 .end = [this](const std::string& why,
+                               bool) { call([why](const Hears& heard) { heard.end(why); }); }}) {}
+
+void Publisher::call(std::function<void(const Hears&)> what) const {
+  post_([weak = std::weak_ptr(shared_), what = std::move(what)] {
+    if (const auto shared = weak.lock()) what(shared->hears);
+  });
+}
+
+void Publisher::take(const hc::Message& message) {
+  if (shared_->waiting >= kMaxWaiting) return;
+  auto bytes = encode(message);
+  if (!bytes) {
+    // A message that is not as its port says; the same words once.
+    if (std::exchange(failed_, bytes.error().detail) != failed_)
+      call([why = failed_](const Hears& heard) { heard.end(why); });
+    return;
+  }
+  const std::int64_t time =
+      message.header.time != 0 ? message.header.time : hc::SystemClock().wall();
+  ++shared_->waiting;
+  call([payload = Payload{time, std::move(*bytes)},
+        &waiting = shared_->waiting](const Hears& hears) {
+    --waiting;
+    hears.message(payload);
+  });
+}
+
+hc::Result<web::Bytes> Publisher::encode(const hc::Message& message) {
+  using hc::ros::Type;
+  const bool is_jpeg = message.header.info.encoding == hc::Encoding::Jpeg;
+  auto made = hc::Result<hc::Message>(message);
+  if (channel_.type == Type::CompressedImage && !is_jpeg) {
+    made = hc::expand(message);
+    if (made) made = hc::compress(*made, hc::Encoding::Jpeg);
+  } else if (channel_.type != Type::CompressedImage && channel_.type != Type::Matrix) {
+    made = hc::expand(message);
+  }
+  if (!made) return made.error();
+  if (channel_.type == Type::Matrix) return bytes_of(encoder_.encode_matrix(*made));
+  const auto pieces = encoder_.encode(channel_.type, *made);
+  if (!pieces) return pieces.error();
+  return bytes_of(*pieces);
+}

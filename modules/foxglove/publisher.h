@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// An output of the graph as a topic: observed while somebody subscribes, each message encoded once
+// for all of them.
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <hc/mtp/message.h>
+#include <ros/encode.h>
+#include <web/observer.h>
+#include <web/server.h>
+
+/// What viewers can subscribe to.
+struct Channel {
+  std::uint32_t id = 0;
+  std::string topic;  ///< "/head_eyes/left"
+  std::string port;   ///< "head_eyes.left"; empty: it is made here
+  hc::ros::Type type = hc::ros::Type::Matrix;
+  bool operator==(const Channel&) const = default;
+};
+
+/// A message in CDR.
+struct Payload {
+  std::int64_t time = 0;  ///< of the message [ns since the Unix epoch]
+  hc::web::Bytes bytes;
+};
+
+/// The bytes of what an encoder gives.
+hc::web::Bytes bytes_of(const hc::ros::Pieces& pieces);
+
+class Publisher {
+ public:
+  /// Called on the server's thread.
+  struct Hears {
+    std::function<void(const Payload&)> message;
+    /// There is nothing more: why.
+    std::function<void(const std::string&)> end;
+  };
+
+  /// @param frames  names of frames by their number, for frame_ids.
+  Publisher(hc::RunningGraph graph, Channel channel, std::map<std::int32_t, std::string> frames,
+            hc::web::Post post, Hears hears);
+
+ private:
+  /// Of what waits for the server's thread; more is dropped. [message]
+  static constexpr int kMaxWaiting = 32;
+
+  // On the observer's thread.
+  void take(const hc::Message& message);
+  hc::Result<hc::web::Bytes> encode(const hc::Message& message);
+  void call(std::function<void(const Hears&)> what) const;
+
+  const Channel channel_;
+  const hc::web::Post post_;
+  hc::ros::Encoder encoder_;
+  std::string failed_;  // why the last message could not be encoded
+  /// What the server's thread calls, if it is still there then; and how many calls wait.
+  struct Shared {
+    Hears hears;
+    std::atomic<int> waiting{0};
+  };
+  std::shared_ptr<Shared> shared_;
+  hc::web::Observer observer_;  // last: its thread uses the above
+};

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kMaxQueued = std::size_t{8} << 20, kMaxMessages = 1024;  // [byte], 1
+constexpr std::size_t kLarge = 65536;     // of these the newest alone waits [byte]
+constexpr std::size_t kMaxWaiting = 512;  // texts that nobody reads
+constexpr std::size_t kMaxUnderWay = 2;   // messages that the socket has
+constexpr std::size_t kMaxSubscriptions = 1024;
+constexpr char kMessageData = 1, kTime = 2;
+
+/// Numbers as they are on the wire, little-endian.
+template <typename... Number>
+std::string binary(char opcode, Number... number) {
+  std::string bytes(1, opcode);
+  (bytes.append(reinterpret_cast<const char*>(&number), sizeof number), ...);
+  return bytes;
+}
+
+}  // namespace
+
+Viewer::Viewer(std::shared_ptr<hc::web::WebSocket> socket, hc::web::Right right)
+    : socket_(std::move(socket)), right_(right) {
+  socket_->on_sent = [this] { flush(); };
+}
+
+Viewer::~Viewer() {
+  socket_->close(1001, "the graph has ended");
+}
+
+void Viewer::say(std::string json) {
+  if (socket_->waiting() < kMaxWaiting) return socket_->send_text(std::move(json));
+  is_lost_ = true;
+  socket_->close(1008, "too slow: 512 messages wait to be read");
+}
+
+void Viewer::say_time(std::int64_t time) {
+  if (socket_->waiting() < kMaxUnderWay)
+    socket_->send(std::make_shared<const std::string>(), binary(kTime, time));
+}
+
+void Viewer::say_status(int level, const std::string& text, const std::string& id) {
+  Json status = {{"op", "status"}, {"level", level}, {"message", text}};
+  if (!id.empty()) status["id"] = id;
+  say(status.dump());
+}
+
+bool Viewer::subscribe(std::uint32_t subscription, const Channel& channel) {
+  if (channels_.contains(subscription) || by_channel_.contains(channel.id) ||
+      channels_.size() >= kMaxSubscriptions)
+    return false;
+  channels_[subscription] = channel.id;
+  by_channel_[channel.id] = subscription;
+  dropped_[channel.id].topic = channel.topic;
+  return true;
+}
+
+void Viewer::unsubscribe(std::uint32_t subscription) {
+  if (const auto found = channels_.find(subscription); found != channels_.end())
+    forget(found->second);
+}
+
+void Viewer::forget(std::uint32_t channel) {
+  const auto found = by_channel_.find(channel);
+  if (found == by_channel_.end()) return;
+  channels_.erase(found->second);
+  by_channel_.erase(found);
+  dropped_.erase(channel);
+  std::erase_if(queue_, [&](const Outgoing& each) {
+    if (each.channel != channel) return false;
+    queued_ -= each.payload.bytes->size();
+    return true;
+  });
+}
+
+void Viewer::drop(std::deque<Outgoing>::iterator which) {
+  queued_ -= which->payload.bytes->size();
+  ++dropped_[which->channel].messages;
+  queue_.erase(which);
+}
+
+void Viewer::offer(std::uint32_t channel, const Payload& payload) {
+  if (!is_subscribed(channel)) return;
+  if (payload.bytes->size() >= kLarge) {
+    const auto older = std::ranges::find(queue_, channel, &Outgoing::channel);
+    if (older != queue_.end()) drop(older);
+  }
+  queue_.push_back({channel, payload});
+  queued_ += payload.bytes->size();
+  while (queue_.size() > kMaxMessages || (queued_ > kMaxQueued && queue_.size() > 1))
+    drop(queue_.begin());
+  flush();
+}
+
+void Viewer::flush() {
+  while (!queue_.empty() && socket_->waiting() < kMaxUnderWay) {
+    auto [channel, payload] = std::move(queue_.front());
+    queue_.pop_front();
+    queued_ -= payload.bytes->size();
+    socket_->send(payload.bytes, binary(kMessageData, by_channel_.at(channel), payload.time));
+  }
+}
+
+void Viewer::report_dropped() {
+  for (auto& [channel, dropped] : dropped_) {
+    if (dropped.messages == dropped.reported) continue;
+    dropped.reported = dropped.messages;
+    say_status(1,
+               std::to_string(dropped.messages) + " messages of " + dropped.topic +
+                   " were dropped: this viewer or its network takes them too slowly",
+               "dropped:" + dropped.topic);
+  }
+}
