@@ -85,6 +85,18 @@ class Replay(Pipes):
         for output in ("head_eyes.left", "workspace.focus", "track.command", "track.bid"):
             self.assertIn("\n%s: " % output, "\n" + out)
 
+    def test_what_is_read_is_the_same(self):
+        settings = ["head_eyes.rate=10", "read.repeat=6", "speak.rate=450", "speaker.save=said.wav"]
+        settings += ["read_score.count=2", "read_score.pause=0.1"]
+        graph = str(ROOT / "graphs/score_read.toml") + "".join(" --set " + s for s in settings)
+        self.shell("hc run --record kept --quiet " + graph)
+        excepted = "head_neck head_eyes workspace look read_score".split()
+        out = self.shell(
+            "hc replay kept --check --graph " + graph + "".join(" --except " + e for e in excepted)
+        )
+        for output in ("read.target", "read.text", "speak.sound"):
+            self.assertRegex(out, "\n%s: [0-9]+ messages, the same\n" % output)
+
     def test_what_cannot_be_replayed_is_said(self):
         self.record()
         self.shell("hc replay nosuch" + OPTIONS, 1)

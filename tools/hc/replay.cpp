@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
-using Taken = std::map<std::string, std::set<Key>>;                // by input
+using Handled = std::map<std::string, std::set<Key>>;              // by input
 
 struct ReplayOptions {
   std::string recording, out;
@@ -107,30 +107,31 @@ class Settings {
   std::map<std::string, double> values_;
 };
 
-/// What a module took, by what it told while it was recorded; nothing where that is not known.
-std::optional<Taken> read_taken(const fs::path& file) {
+/// What a module handled, by what it told while it was recorded; nothing where that is not known.
+std::optional<Handled> read_handled(const fs::path& file) {
   std::error_code missing;
   if (!fs::exists(file, missing)) return std::nullopt;
-  Taken taken;
+  Handled handled;
   auto source = open_file_source(file, kDefaultLimit);
   hc::Message message;
   while (receive(*source, message, file))
     for (const auto& event : hc::read_trace(message)) {
       if (event.what == hc::TraceEvent::What::Lost) return std::nullopt;
-      if (event.what == hc::TraceEvent::What::Took)
-        taken[event.port].insert({event.src, event.seq, event.time});
+      if (event.what == hc::TraceEvent::What::Began)
+        handled[event.port].insert({event.src, event.seq, event.time});
     }
-  return taken;
+  return handled;
 }
 
-/// Writes the messages that were taken into a file.
-void write_taken(const fs::path& from, const std::set<Key>& taken, const fs::path& to) {
+/// Writes the messages that were handled into a file.
+void write_handled(const fs::path& from, const std::set<Key>& handled, const fs::path& to) {
   auto source = open_file_source(from, kDefaultLimit);
   auto sink = open_file_sink(to);
   hc::Message message;
   while (receive(*source, message, from)) {
     const auto& header = message.header;
-    if (taken.contains({header.src, header.seq, header.time}) && !send(*sink, message, to)) return;
+    if (handled.contains({header.src, header.seq, header.time}) && !send(*sink, message, to))
+      return;
   }
   if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
 }
@@ -244,15 +245,15 @@ class Replay {
     return "";
   }
 
-  /// The file that an input reads: of what was recorded, what the module took.
+  /// The file that an input reads: of what was recorded, what the module handled.
   std::string input_file(const hc::PlannedModule& module, const hc::PlannedEnd& end,
-                         const std::optional<Taken>& taken) {
+                         const std::optional<Handled>& handled) {
     const auto writer = writer_of(module, end);
-    const auto port = taken ? taken->find(end.port) : Taken::const_iterator();
+    const auto port = handled ? handled->find(end.port) : Handled::const_iterator();
     // The focus is no input that is told of.
-    if (!taken || end.port == "focus") return recorded(writer);
+    if (!handled || end.port == "focus") return recorded(writer);
     const fs::path file = folder_.path() / (module.name + "." + end.port + "." + writer + ".in");
-    write_taken(recorded(writer), port == taken->end() ? std::set<Key>() : port->second, file);
+    write_handled(recorded(writer), port == handled->end() ? std::set<Key>() : port->second, file);
     return file;
   }
 
@@ -261,11 +262,11 @@ class Replay {
     words.insert(words.end(), module.options.begin(), module.options.end());
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
     words.insert(words.end(), {"--clock", "messages"});
-    const auto taken = read_taken(recorded(module.name + "." + hc::kTracePort));
+    const auto handled = read_handled(recorded(module.name + "." + hc::kTracePort));
     for (const auto& end : module.ends) {
       std::string link = end.port + "=file:";
       if (end.is_input)
-        link += input_file(module, end, taken);
+        link += input_file(module, end, handled);
       else if (is_of_recording(end))
         link += folder_.path() / (module.name + "." + end.port + ".mtp");
       else
