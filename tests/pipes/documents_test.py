@@ -7,7 +7,7 @@ import re
 import resource
 import unittest
 
-from harness import DATA, Pipes, ROOT, free_port
+from harness import BUILD, DATA, Pipes, ROOT, free_port
 
 
 # What a document shows of figures that differ from run to run, and the bounds of what it shows and
@@ -100,6 +100,7 @@ class Documents(Pipes):
         pathlib.Path(self.path("graphs")).symlink_to(ROOT / "graphs")
         pathlib.Path(self.path("modules")).symlink_to(ROOT / "modules")
         pathlib.Path(self.path("templates")).symlink_to(ROOT / "templates")
+        pathlib.Path(self.path("python")).symlink_to(ROOT / "python")
         pathlib.Path(self.path("data")).symlink_to(DATA)
         for block in self.commands(name):
             with self.subTest(block):
@@ -147,6 +148,12 @@ class Documents(Pipes):
 
     def test_trace(self):
         self.run_document("doc/trace.md")
+
+    def test_python(self):
+        if not list(BUILD.glob("python/hypercolumn/_hypercolumn*.so")):
+            self.skipTest("the Python package was not built")
+        self.environment["PYTHONPATH"] = str(BUILD / "python")
+        self.run_document("doc/python.md")
 
     def test_tasks(self):
         self.run_document("doc/tasks.md")
