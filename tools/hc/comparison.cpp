@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <map>
 #include <optional>
+#include <span>
 
 #include <hc/base/format.h>
 
@@ -26,8 +26,9 @@ std::string difference_of(const hc::Message& recorded, const hc::Message& replay
   const auto a = recorded.view<T>()->numbers(), b = replayed.view<T>()->numbers();
   for (std::size_t i = 0; i < a.size(); ++i) {
     const auto one = static_cast<double>(a[i]), other = static_cast<double>(b[i]);
-    const bool is_same = std::memcmp(&a[i], &b[i], sizeof(T)) == 0 ||
-                         (tolerance > 0 && std::abs(one - other) <= tolerance);
+    const bool is_same =  // two NaN of the same bits are
+        std::ranges::equal(std::as_bytes(a.subspan(i, 1)), std::as_bytes(b.subspan(i, 1))) ||
+        (tolerance > 0 && std::abs(one - other) <= tolerance);
     if (is_same) continue;
     const auto components = recorded.header.info.components;
     const auto element = i / components, width = static_cast<std::size_t>(recorded.header.width);

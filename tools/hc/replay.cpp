@@ -192,6 +192,7 @@ class Replay {
 
   static std::vector<std::string> with_values(const std::vector<std::string>& names) {
     std::vector<std::string> words;
+    words.reserve(names.size());
     for (const auto& name : names) words.push_back(name + "=0");
     return words;
   }
