@@ -20,6 +20,9 @@ def open(uri: str, *, limit: Optional[int] = None) -> Stream:
     return Stream(uri, limit)
 
 
-def read(path: "Union[str, os.PathLike[str]]", *, limit: Optional[int] = None) -> Stream:
-    """The messages of a recording, a file of MTP/1, in their order."""
-    return Stream("file:" + os.fspath(path), limit)
+def read(
+    path: "Union[str, os.PathLike[str]]", stream: str = "", *, limit: Optional[int] = None
+) -> Stream:
+    """The messages of a recording in their order: a file of MTP/1, or one in MCAP whose name ends in
+    ".mcap", of which `stream` chooses one, as "head_eyes.left"."""
+    return Stream("file:" + os.fspath(path) + ("?stream=" + stream if stream else ""), limit)

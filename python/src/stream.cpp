@@ -12,6 +12,7 @@
 
 #include "message.h"
 #include "python.h"
+#include "recording.h"
 
 namespace python {
 namespace {
@@ -39,28 +40,32 @@ class Stream {
  public:
   Stream(const std::string& text, const std::optional<std::uint64_t>& limit)
       : keeper_(std::make_shared<Keeper>(Keeper{text})) {
-    const auto uri = value_or_raise(hc::parse_uri(text));
     std::optional<hc::Result<std::unique_ptr<hc::Source>>> opened;
     {
       const py::gil_scoped_release outside;
-      opened.emplace(hc::open_source(uri, link_options(limit)));
+      opened.emplace(open_any(text, link_options(limit)));
     }
     if (!*opened) raise({opened->error().code, text + ": " + opened->error().detail});
     source_ = std::move(**opened);
+    is_in_memory_ = source_->wake_descriptor() >= 0;
   }
 
   /// The next message; None after `seconds` without one. Raises StopIteration at the end.
   py::object take(const std::optional<double>& seconds) {
+    // What is in memory is taken at once; to let go of the GIL and take it again would cost more.
+    if (source_ != nullptr && is_in_memory_ && !is_busy_) {
+      hc::Message message;
+      const auto got = source_->take(message);
+      if (!got) raise({got.error().code, keeper_->name + ": " + got.error().detail});
+      if (*got == hc::Got::Message && message.plain()) return wrapped(std::move(message));
+      if (*got == hc::Got::Message) return wrapped(value_or_raise(hc::expand(message)));
+    }
     const auto until = seconds ? Clock::now() + hc::duration(*seconds) : Clock::time_point::max();
     while (true) {
       hc::Message message;
       const hc::Got got = try_take(message);
       if (got == hc::Got::End) throw py::stop_iteration();
-      if (got == hc::Got::Message) {
-        auto wrapped = py::reinterpret_steal<py::object>(wrap(std::move(message), keeper_));
-        if (!wrapped) throw py::error_already_set();
-        return wrapped;
-      }
+      if (got == hc::Got::Message) return wrapped(std::move(message));
       if (Clock::now() >= until) return py::none();
       check_signals();
     }
@@ -72,6 +77,12 @@ class Stream {
   }
 
  private:
+  py::object wrapped(hc::Message message) const {
+    auto object = py::reinterpret_steal<py::object>(wrap(std::move(message), keeper_));
+    if (!object) throw py::error_already_set();
+    return object;
+  }
+
   /// Takes a message, or waits for a moment, without the GIL.
   hc::Got try_take(hc::Message& message) {
     if (source_ == nullptr) return hc::Got::End;
@@ -102,8 +113,22 @@ class Stream {
 
   std::unique_ptr<hc::Source> source_;
   std::shared_ptr<Keeper> keeper_;
+  bool is_in_memory_ = false;
   bool is_busy_ = false;  // a thread waits without the GIL
 };
+
+/// The next message for a loop, without pybind11's way to a method, which takes as long as the
+/// rest.
+PyObject* next(PyObject* self) {
+  try {
+    return py::cast<Stream&>(py::handle(self)).take(std::nullopt).release().ptr();
+  } catch (const py::stop_iteration&) {
+    return nullptr;
+  } catch (...) {
+    set_current_exception();
+    return nullptr;
+  }
+}
 
 std::vector<std::string> ask(const hc::RunningGraph& graph,
                              const std::vector<std::string>& commands) {
@@ -131,8 +156,10 @@ hc::Observation observe(const hc::RunningGraph& graph, const std::string& port) 
 }  // namespace
 
 void add_streams(py::module_& extension) {
-  py::class_<Stream>(extension, "Stream",
-                     "Messages of a recording or a link, one after the other; for a with, too.")
+  py::class_<Stream> stream(
+      extension, "Stream",
+      "Messages of a recording or a link, one after the other; for a with, too.");
+  stream
       .def(py::init<const std::string&, const std::optional<std::uint64_t>&>(), py::arg("uri"),
            py::arg("limit") = py::none())
       .def("__iter__", [](const py::object& self) { return self; })
@@ -142,6 +169,7 @@ void add_streams(py::module_& extension) {
       .def("close", &Stream::close, "Ends the link.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](Stream& self, const py::args&) { self.close(); });
+  reinterpret_cast<PyTypeObject*>(stream.ptr())->tp_iternext = next;
   py::class_<hc::RunningGraph>(extension, "RunningGraph")
       .def_readonly("name", &hc::RunningGraph::name)
       .def_readonly("process", &hc::RunningGraph::process)

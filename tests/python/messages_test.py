@@ -13,7 +13,7 @@ import warnings
 
 import numpy
 
-from package import Package, hc, is_shared, wait_until
+from package import BUILD, Package, hc, is_shared, wait_until
 
 FULL = os.environ.get("HC_FULL") == "1"
 KEPT = 40  # messages of a publisher's memory that are kept at most
@@ -72,6 +72,20 @@ class Fields(Package):
         self.shell("hc send --encoding zstd 1 2 3 >z.mtp")
         (message,) = hc.read(self.path("z.mtp"))
         self.assertEqual((message.numbers, message.encoding), ((1, 2, 3), "binary"))
+
+    def test_recordings_in_mcap(self):
+        if not (BUILD / "tests/programs/to_mcap").exists():
+            self.skipTest("this build has no zstd, and so no MCAP")
+        self.write("x", b"1 4 0 0 8 5 120190 0 0 2 1\n1 2.5\n1 5 0 1 8 6 120190 0 0 1 1\n3\n")
+        self.shell("to_mcap x.mcap <x")
+        path = self.path("x.mcap")
+        kept = [(m.src, m.seq, m.time, m.numbers) for m in hc.read(path)]
+        self.assertEqual(kept, [(4, 0, 5, (1, 2.5)), (5, 1, 6, (3,))])
+        with self.assertRaises(hc.Error) as caught:
+            list(hc.read(path, "no.such"))
+        self.assertEqual(caught.exception.code, "NotFound")
+        (chosen,) = hc.read(path, "src_5")
+        self.assertEqual(chosen.src, 5)
 
     def test_errors_are_those_of_the_commands(self):
         self.write("bad.mtp", b"1 1 0 0 8 0 120190 0 0 2 1\n1 x\n")
