@@ -228,8 +228,8 @@ PyGetSetDef fields[] = {
     {"width", get_field<&hc::Header::width>, nullptr, "Elements in a row.", nullptr},
     {"height", get_field<&hc::Header::height>, nullptr, "Rows.", nullptr},
     {"components", get_components, nullptr, "Numbers in an element.", nullptr},
-    {"type", get_type, nullptr, "Type of the matrix, such as \"rgb_image\" or \"table\".", nullptr},
-    {"scalar", get_scalar, nullptr, "What a number is, such as \"u8\" or \"f64\".", nullptr},
+    {"type", get_type, nullptr, "Type of the matrix, such as rgb_image or table.", nullptr},
+    {"scalar", get_scalar, nullptr, "What a number is, such as u8 or f64.", nullptr},
     {"encoding", get_encoding, nullptr, "How it was written: text, binary, zstd or jpeg.", nullptr},
     {}};
 

@@ -4,6 +4,15 @@
 #include <hc/module/loop.h>
 
 namespace python {
+namespace {
+
+hc::ModuleError module_error(const std::string& text, std::string_view code) {
+  hc::ModuleError error(text);
+  error.is_usage = code == hc::name(hc::Code::Invalid);
+  return error;
+}
+
+}  // namespace
 
 Function hold(const py::object& function) {
   return {function.inc_ref().ptr(), [](PyObject* held) {
@@ -36,10 +45,9 @@ int Program::run(const std::vector<std::string>& words) {
   is_running_ = false;
   failure_ = nullptr;
   if (thrown) std::rethrow_exception(thrown);
-  if (exit_type_) {
-    PyErr_Restore(exit_type_.release().ptr(), exit_value_.release().ptr(),
-                  exit_trace_.release().ptr());
-    throw py::error_already_set();
+  if (exit_) {
+    auto error = *std::exchange(exit_, std::nullopt);
+    throw py::error_already_set(error);
   }
   return status;
 }
@@ -50,28 +58,18 @@ void Program::end_by_error() {
     std::rethrow_exception(std::exchange(failure_, nullptr));
   }
   failure_ = nullptr;
-  PyObject *type = nullptr, *value = nullptr, *trace = nullptr;
-  PyErr_Fetch(&type, &value, &trace);
-  PyErr_NormalizeException(&type, &value, &trace);
-  if (trace != nullptr) PyException_SetTraceback(value, trace);
-  const auto own_type = py::reinterpret_steal<py::object>(type);
-  const auto own_value = py::reinterpret_steal<py::object>(value);
-  const auto own_trace = py::reinterpret_steal<py::object>(trace);
-  const auto text = py::str(own_value).cast<std::string>();
-  if (PyErr_GivenExceptionMatches(type, error_type()) != 0) {
-    hc::ModuleError error(text);
-    const py::object code = py::getattr(own_value, "code", py::str(""));
-    error.is_usage = py::str(code).cast<std::string>() == hc::name(hc::Code::Invalid);
-    throw error;
+  py::error_already_set raised;
+  const auto text = py::str(raised.value()).cast<std::string>();
+  if (raised.matches(error_type())) {
+    const py::object code = py::getattr(raised.value(), "code", py::str(""));
+    throw module_error(text, py::str(code).cast<std::string>());
   }
-  if (PyErr_GivenExceptionMatches(type, PyExc_Exception) == 0) {  // SystemExit, KeyboardInterrupt
-    exit_type_ = own_type;
-    exit_value_ = own_value;
-    exit_trace_ = own_trace;
+  if (!raised.matches(PyExc_Exception)) {  // SystemExit, KeyboardInterrupt
+    exit_ = raised;
     throw hc::internal::Stopped();
   }
-  PyErr_Display(own_type.ptr(), own_value.ptr(), own_trace.ptr());
-  const auto name = own_type.attr("__name__").cast<std::string>();
+  const auto name = py::object(raised.type().attr("__name__")).cast<std::string>();
+  PyErr_Display(raised.type().ptr(), raised.value().ptr(), raised.trace().ptr());
   const std::string line = text.substr(0, text.find('\n'));  // the traceback has all of them
   throw hc::ModuleError(line.empty() ? name : name + ": " + line);
 }

@@ -5,6 +5,7 @@
 
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -85,7 +86,7 @@ class Program {
   std::thread::id thread_;
   bool is_running_ = false;
   std::exception_ptr failure_;  // went through Python, and ends the module where it comes out
-  py::object exit_type_, exit_value_, exit_trace_;  // what a handler ends the interpreter by
+  std::optional<py::error_already_set> exit_;  // what a handler ends the interpreter by
 };
 
 }  // namespace python
