@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <mcap/chunk.h>
 
-#include <zstd.h>
-
 #include <algorithm>
 
-#include <hc/base/check.h>
+#include <mcap/chunk_codec.h>
 
 namespace hc::mcap {
 namespace {
-
-/// Most bytes that one byte of zstd can stand for. Source: RFC 8878, 3.1.1.2; as in compress.
-constexpr std::uint64_t kMaxExpansion = (std::uint64_t{128} << 10) / 4;
 
 Error damaged(const std::string& what) {
   return {Code::Malformed, "MCAP chunk: " + what};
@@ -33,29 +28,16 @@ void ChunkBuilder::add(const MessageRecord& message,
   records_.end();
 }
 
-struct ChunkPacker::Zstd {
-  ZSTD_CCtx* context = ZSTD_createCCtx();
-  std::vector<std::byte> room;
-};
+ChunkPacker::ChunkPacker(int level) : compressor_(internal::make_compressor(level)) {}
 
-ChunkPacker::ChunkPacker(int level) : zstd_(std::make_unique<Zstd>()) {
-  HC_CHECK(zstd_->context != nullptr);
-  ZSTD_CCtx_setParameter(zstd_->context, ZSTD_c_compressionLevel, level);
-}
-
-ChunkPacker::~ChunkPacker() {
-  ZSTD_freeCCtx(zstd_->context);
-}
+ChunkPacker::~ChunkPacker() = default;
 
 PackedChunk ChunkPacker::pack(const ChunkBuilder& chunk) {
   const std::span<const std::byte> plain(chunk.records_.bytes);
-  zstd_->room.resize(ZSTD_compressBound(plain.size()));
-  const std::size_t size = ZSTD_compress2(zstd_->context, zstd_->room.data(), zstd_->room.size(),
-                                          plain.data(), plain.size());
-  HC_CHECK(ZSTD_isError(size) == 0, ZSTD_getErrorName(size));
   // What does not get smaller stands as it is.
-  const bool helps = size < plain.size();
-  const auto stored = helps ? std::span<const std::byte>(zstd_->room).first(size) : plain;
+  const auto smaller = compressor_ != nullptr ? compressor_->compress(plain) : plain;
+  const bool helps = smaller.size() < plain.size();
+  const auto stored = helps ? smaller : plain;
 
   RecordWriter out;
   out.bytes.reserve(stored.size() + 128 + 64 * chunk.index_.size());
@@ -103,13 +85,9 @@ Result<std::vector<std::byte>> unpack_chunk(std::span<const std::byte> content,
   if (compression.empty()) {
     plain.assign(stored.begin(), stored.end());
   } else if (compression == "zstd") {
-    if (plain_size / kMaxExpansion > stored.size())
-      return damaged("it is too short for what it promises");
-    plain.resize(plain_size);
-    const std::size_t size =
-        ZSTD_decompress(plain.data(), plain.size(), stored.data(), stored.size());
-    if (ZSTD_isError(size) != 0) return damaged(std::string("zstd: ") + ZSTD_getErrorName(size));
-    plain.resize(size);
+    auto expanded = internal::expand_zstd(stored, plain_size);
+    if (!expanded) return expanded.error();
+    plain = std::move(*expanded);
   } else {
     return Error{Code::Unsupported,
                  "MCAP chunk: compression \"" + std::string(compression.substr(0, 20)) +

@@ -14,6 +14,10 @@
 #include <hc/base/result.h>
 #include <mcap/record.h>
 
+namespace hc::internal {
+class Compressor;
+}
+
 namespace hc::mcap {
 
 /// A message of a file.
@@ -71,8 +75,7 @@ class ChunkPacker {
   PackedChunk pack(const ChunkBuilder& chunk);
 
  private:
-  struct Zstd;
-  std::unique_ptr<Zstd> zstd_;
+  std::unique_ptr<internal::Compressor> compressor_;  // null: this build has none
 };
 
 /// The messages of a chunk's record, plain.

@@ -156,16 +156,17 @@ std::vector<StreamInfo> streams(const Summary& summary) {
   std::vector<StreamInfo> all;
   for (const auto& [id, channel] : summary.channels) {
     if (!is_matrix(summary, channel)) continue;
-    StreamInfo stream{stream_name(channel), "", "", 0};
+    StreamInfo stream{stream_name(channel), "", "", {channel.topic}, 0};
     if (const auto count = summary.counts.find(id); count != summary.counts.end())
       stream.messages = count->second;
     for (const auto& [other_id, other] : summary.channels) {
       const auto beside = other.metadata.find(kBeside);
       const auto schema = summary.schemas.find(other.schema);
       if (beside == other.metadata.end() || beside->second != channel.topic) continue;
+      stream.topics.push_back(other.topic);
+      if (!stream.topic.empty()) continue;
       stream.topic = other.topic;
       if (schema != summary.schemas.end()) stream.type = schema->second.name;
-      break;
     }
     all.push_back(std::move(stream));
   }

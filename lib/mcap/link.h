@@ -20,11 +20,12 @@ std::optional<Uri> recording_uri(std::string_view text);
 
 /// A stream of a recording.
 struct StreamInfo {
-  std::string name;         ///< "head_eyes.left"
-  std::string topic, type;  ///< of its messages of ROS 2; empty: it has none
+  std::string name;                 ///< "head_eyes.left"
+  std::string topic, type;          ///< of its messages of ROS 2; empty: it has none
+  std::vector<std::string> topics;  ///< all that it has, with that of MTP
   std::uint64_t messages = 0;
 };
-/// The streams of a recording, by name; and how many other topics it has.
+/// The streams of a recording, by name.
 std::vector<StreamInfo> streams(const Summary& summary);
 
 /// The messages of a recording, or of one of its streams, in the order in which they were recorded.

@@ -152,7 +152,7 @@ TEST(Mcap, AStreamIsReadAlone) {
   ASSERT_TRUE(recorder->close());
   EXPECT_EQ(play(folder / "x.mcap?stream=eye.right").messages, all);
   EXPECT_EQ(play(folder / "x.mcap").messages.size(), 30U);
-  const auto wrong = play(folder / "x.mcap?stream=eye.rigth");
+  const auto wrong = play(folder / "x.mcap?stream=eye.rght");
   ASSERT_TRUE(wrong.error);
   EXPECT_EQ(wrong.error->code, Code::NotFound);
   EXPECT_NE(wrong.error->detail.find("did you mean \"eye.right\"?"), std::string::npos);

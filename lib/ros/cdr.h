@@ -59,8 +59,8 @@ class CdrWriter {
   /// of Numbers or Characters is a bug.
   template <internal::HasMembers T>
   Pieces write(const T& message) {
-    buffer_.clear();
-    append("\0\1\0", 4);
+    buffer_.assign(4, std::byte{0});
+    buffer_[1] = std::byte{1};
     body_ = {};
     split_ = kNone;
     put(message);

@@ -146,6 +146,9 @@ class Documents(Pipes):
     def test_head(self):
         self.run_document("doc/head.md")
 
+    def test_recordings(self):
+        self.run_document("doc/recordings.md")
+
     def test_trace(self):
         self.run_document("doc/trace.md")
 

@@ -133,7 +133,7 @@ class Tool(Pipes):
     def test_shells_and_man_know_the_commands(self):
         self.shell("hc completion >completion")
         complete = "source completion; COMP_WORDS=(%s) COMP_CWORD=%d; _hc; echo ${COMPREPLY[*]}"
-        self.assertEqual(self.shell(complete % ("hc reco", 1)).split(), ["record"])
+        self.assertEqual(self.shell(complete % ("hc reco", 1)).split(), ["record", "recorder"])
         self.assertIn("brightness", self.shell(complete % ("hc br", 1)).split())
         self.assertEqual(self.shell(complete % ("hc cat --js", 2)).split(), ["--json"])
         self.assertIn("unlink", self.shell(complete % ("hc graph unl", 2)).split())

@@ -10,6 +10,7 @@
 
 #include <hc/base/format.h>
 #include <hc/os/program.h>
+#include <mcap/link.h>
 
 namespace tool {
 namespace {
@@ -44,14 +45,19 @@ void write_error(const std::string& text) {
 }  // namespace
 
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit) {
+  if (const auto recording = hc::mcap::recording_uri(uri))
+    return value_or_fail(hc::mcap::read_recording(*recording, link_options(limit)), uri);
   return value_or_fail(hc::open_source(parse(uri), link_options(limit)), uri);
 }
 
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri) {
+  if (const auto recording = hc::mcap::recording_uri(uri))
+    return value_or_fail(hc::mcap::write_recording(*recording, link_options()), uri);
   return value_or_fail(hc::open_sink(parse(uri), link_options()), uri);
 }
 
 std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit) {
+  if (hc::mcap::recording_uri(path)) return open_source(path, limit);
   return value_or_fail(hc::open_source({"file", path, {}}, link_options(limit)), path);
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include <hc/base/format.h>
+#include <mcap/link.h>
 
 #include "common.h"
 #include "observer.h"
@@ -74,7 +75,50 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
   print(text);
 }
 
+/// What the summary of a recording in MCAP says; its messages are not read.
+void print_recording(const hc::Uri& uri) {
+  auto reader = value_or_fail(hc::mcap::Reader::open(uri.rest), uri.rest);
+  const auto summary = value_or_fail(reader.summary(), uri.rest);
+  const double seconds = static_cast<double>(summary.end - summary.begin) * 1e-9;
+  std::string text = hc::format("{:<32} {:>9} {:>8}  {}\n", "stream", "messages", "rate", "type");
+  std::uint64_t messages = 0, plain = 0;
+  auto add = [&](const std::string& name, std::uint64_t count, const std::string& type) {
+    text += hc::format(
+        "{:<32} {:>9} {:>8}  {}\n", name, count,
+        seconds > 0 ? hc::format("{:.3g} Hz", static_cast<double>(count) / seconds) : "-", type);
+  };
+  std::set<std::string> topics;
+  for (const auto& stream : hc::mcap::streams(summary)) {
+    add(stream.name, stream.messages, stream.type);
+    messages += stream.messages;
+    topics.insert(stream.topics.begin(), stream.topics.end());
+  }
+  for (const auto& [id, channel] : summary.channels) {
+    if (topics.contains(channel.topic)) continue;
+    const auto count = summary.counts.find(id);
+    const auto schema = summary.schemas.find(channel.schema);
+    add(channel.topic, count == summary.counts.end() ? 0 : count->second,
+        schema == summary.schemas.end() ? channel.encoding : schema->second.name);
+  }
+  for (const auto& chunk : summary.chunks) plain += chunk.plain;
+  text += hc::format("{} message{}, {} in {} chunk{} of {}, {:.3f} s\n", messages,
+                     messages == 1 ? "" : "s", bytes_in_words(static_cast<double>(reader.size())),
+                     summary.chunks.size(), summary.chunks.size() == 1 ? "" : "s",
+                     bytes_in_words(static_cast<double>(plain)), seconds);
+  if (!summary.metadata.empty())
+    text += hc::format("{} records of metadata, such as {}\n", summary.metadata.size(),
+                       summary.metadata.front().first);
+  print(text);
+  if (!summary.is_whole)
+    throw Failure(uri.rest, {hc::Code::Truncated,
+                             "the file has no end, as a recorder that was killed leaves it; this "
+                             "is what it holds in whole chunks"});
+}
+
 void run(const InfoOptions& options) {
+  const auto recording = hc::mcap::recording_uri(options.uri);
+  if (recording && recording->options.empty() && options.count == 0)
+    return print_recording(*recording);
   auto source = open_source(source_uri(options.uri, options.of), options.limit);
   std::map<std::int32_t, Sender> senders;
   hc::Message message;

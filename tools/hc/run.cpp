@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include <hc/base/format.h>
 #include <hc/graph/run.h>
@@ -23,7 +26,12 @@ struct RunOptions {
   hc::LoadOptions graph;
   std::string name;
   bool quiet = false, links = false;
+  std::string record;                           // folder, or file of MCAP
+  std::map<std::string, std::string> recorder;  // parameters of who writes that
 };
+
+/// Set by SIGUSR1: what is kept of the last time is to be saved.
+volatile std::sig_atomic_t save_requested = 0;
 
 std::string counted(std::uint64_t number, std::string_view what) {
   return hc::format("{} {}{}", number, what, number == 1 ? "" : "s");
@@ -51,7 +59,7 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
                              {ignored, "ignored out of focus"}})
     if (count > 0) lost += hc::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
   if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");
-  if (!options.graph.record.empty()) text += "  recorded into " + options.graph.record + "\n";
+  if (!options.record.empty()) text += "  recorded into " + options.record + "\n";
   print(text);
 }
 
@@ -107,6 +115,28 @@ void allow_descriptors() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/// Where outputs are recorded: a folder, or a file that a module writes.
+void take_record(const RunOptions& options, hc::LoadOptions& load) {
+  const auto& place = options.record;
+  std::error_code failed;
+  for (const auto& [name, value] : options.recorder)
+    if (!value.empty())
+      load.recorder[name] =
+          name == "last" && value.ends_with('s') ? value.substr(0, value.size() - 1) : value;
+  if (place.ends_with(".mcap")) {
+    std::filesystem::remove(place, failed);
+    load.recorder["file"] = place;
+    std::signal(SIGUSR1, [](int) { save_requested = 1; });
+  } else if (!load.recorder.empty()) {
+    throw Failure({hc::Code::Invalid, "--" + load.recorder.begin()->first +
+                                          " is for recordings in MCAP: --record FILE.mcap"});
+  } else if (!place.empty()) {
+    load.record = place;
+    std::filesystem::create_directories(place, failed);
+    if (failed) throw Failure({hc::Code::System, place + ": " + failed.message()});
+  }
+}
+
 /// Logs the reason as everything else was logged: its reader may be gone.
 [[noreturn]] void fail(StatusLine& status, const hc::Error& error) {
   status.say("hc run: " + error.text());
@@ -116,18 +146,13 @@ void allow_descriptors() {
 void run(const RunOptions& options) {
   allow_descriptors();
   check_name(options);
-  if (const auto& folder = options.graph.record; !folder.empty()) {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed) throw Failure({hc::Code::System, folder + ": " + failed.message()});
-  }
   hc::LoadOptions load_options = options.graph;
+  take_record(options, load_options);
   load_options.holds_ports = true;
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
   StatusLine status(!options.quiet);
-  if (const auto& unlinked = graph.plan->unlinked;
-      !options.graph.record.empty() && !unlinked.empty()) {
+  if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
     std::string list;
     for (const auto& output : unlinked) list += (list.empty() ? "" : ", ") + output;
     status.say("graph: not recorded, as not linked: " + list);
@@ -141,7 +166,13 @@ void run(const RunOptions& options) {
     bool is_event = line.ends_with(": started") || line.ends_with(": ended");
     if (!(options.quiet && is_event)) status.say(line);
   };
-  run_options.state = [&](const hc::GraphState& state) { status.show(state); };
+  run_options.state = [&](const hc::GraphState& state) {
+    status.show(state);
+    if (std::exchange(save_requested, 0) == 0) return;
+    for (const auto& module : state.modules)
+      if (std::filesystem::path(module.program).filename() == "recorder" && module.process > 0)
+        ::kill(module.process, SIGUSR1);
+  };
   run_options.name = name_of(options);
   run_options.file = options.graph.file;
   run_options.loader = loader.get();
@@ -164,8 +195,15 @@ void add_run(CLI::App& app) {
   auto* verb = app.add_subcommand("run", "Run a graph of modules");
   add_graph_options(*verb, options->graph);
   verb->add_option("--as", options->name, "name of the running graph (default: the file's)");
-  verb->add_option("--record", options->graph.record,
-                   "record every linked output into this folder, as MODULE.PORT.mtp");
+  auto* record = verb->add_option(
+      "--record", options->record,
+      "record every linked output into this folder, as MODULE.PORT.mtp, or into one FILE.mcap");
+  for (const auto& [name, text] :
+       {std::pair("split", "begin a new .mcap file after so many bytes (1G)"),
+        {"keep", "remove the oldest of such files beyond so many bytes (10G)"},
+        {"last", "keep the last seconds in memory, and save them on SIGUSR1"},
+        {"when", "MODULE.PORT: save them when its first number becomes other than 0"}})
+    verb->add_option(std::string("--") + name, options->recorder[name], text)->needs(record);
   auto* page = verb->add_flag("--page", options->graph.page,
                               "serve a page, print its URL, open it where there is a desktop");
   verb->add_option("--listen", options->graph.listen,

@@ -183,7 +183,10 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
   return graph;
 }
 
-void record_outputs(Graph& graph, const std::string& folder) {
+namespace {
+
+/// What is recorded of a graph, and where it is named first.
+std::map<std::pair<std::string, std::string>, Place> recorded_outputs(const Graph& graph) {
   std::map<std::pair<std::string, std::string>, Place> outputs;
   for (const auto& link : graph.links)
     if (link.from.uri.empty())
@@ -194,13 +197,44 @@ void record_outputs(Graph& graph, const std::string& folder) {
     if (frame.moved_by)
       outputs.emplace(std::pair(frame.moved_by->value.module, frame.moved_by->value.port),
                       frame.moved_by->place);
-  for (const auto& [output, place] : outputs) {
+  return outputs;
+}
+
+}  // namespace
+
+void record_outputs(Graph& graph, const std::string& folder) {
+  for (const auto& [output, place] : recorded_outputs(graph)) {
     GraphLink link;
     link.from = {output.first, output.second, ""};
     link.to.uri = "file:" + folder + "/" + link.from.text() + ".mtp";
     link.place = place;
     graph.links.push_back(std::move(link));
   }
+}
+
+std::vector<std::string> add_recorder(Graph& graph, const std::string& program,
+                                      const std::map<std::string, std::string>& parameters) {
+  constexpr const char* kKept = "1024";  // messages, while the recorder waits for the disk
+  GraphModule recorder;
+  recorder.name = "recorder";
+  while (graph.find(recorder.name) != nullptr) recorder.name += "_mcap";
+  recorder.program.value = program;
+  for (const auto& [name, value] : parameters) recorder.parameters[name] = {value, {}};
+  std::vector<std::string> inputs;
+  std::string streams;
+  for (const auto& [output, place] : recorded_outputs(graph)) {
+    GraphLink link;
+    link.from = {output.first, output.second, ""};
+    link.to = {recorder.name, "stream_" + std::to_string(inputs.size()), ""};
+    link.place = place;
+    link.policy["keep"] = {kKept, {}};
+    streams += (streams.empty() ? "" : " ") + link.to.port + "=" + link.from.text();
+    inputs.push_back(link.to.port);
+    graph.links.push_back(std::move(link));
+  }
+  recorder.parameters["streams"] = {streams, {}};
+  graph.modules.push_back(std::move(recorder));
+  return inputs;
 }
 
 void set_parameter(Graph& graph, std::string_view assignment, Problems& problems) {

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include <hc/base/suggestion.h>
+#include <hc/contract/description.h>
 #include <hc/contract/trace.h>
 #include <hc/graph/commands.h>
 #include <hc/graph/programs.h>
@@ -109,6 +110,14 @@ void record_traces(Plan& plan, const std::string& folder) {
                              "file:" + folder + "/" + module.name + "." + kTracePort + ".mtp", ""});
 }
 
+/// A description with inputs of anything.
+Result<std::string> with_inputs(const std::string& text, const std::vector<std::string>& inputs) {
+  auto description = parse_description(text);
+  if (!description) return text;
+  for (const auto& name : inputs) description->inputs.push_back({name, "a stream", {}, false});
+  return to_json(*description);
+}
+
 class FileLoader : public GraphLoader {
  public:
   explicit FileLoader(LoadOptions options) : options_(std::move(options)) {}
@@ -135,11 +144,16 @@ class FileLoader : public GraphLoader {
     find_programs(graph, problems);
     LoadedGraph loaded{graph, {}, {}};
     if (!options_.record.empty()) record_outputs(graph, options_.record);
+    std::vector<std::string> recorded;
+    const std::string recorder = options_.recorder.empty() ? "" : find_program("recorder");
+    if (!options_.recorder.empty()) recorded = add_recorder(graph, recorder, options_.recorder);
     std::map<std::string, Result<std::string>> described;  // also those that failed
-    auto describe = [&](const std::string& program) {
+    auto describe = [&](const std::string& program) -> Result<std::string> {
       auto known = described.find(program);
       if (known == described.end())
         known = described.emplace(program, describe_once(program, stop)).first;
+      if (program == recorder && !recorder.empty() && known->second)
+        return with_inputs(*known->second, recorded);
       return known->second;
     };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,

@@ -3,6 +3,7 @@
 // From the name of a graph file to a plan: reads the files, finds the programs, asks them for their
 // descriptions, and checks all of it.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,8 +20,10 @@ struct LoadOptions {
   bool page = false;                  ///< has a module `web`, which opens a browser
   std::string listen;                 ///< address that it listens on; empty: its own
   std::string record;                 ///< folder to record all outputs in; empty: none
-  std::string token;                  ///< for make_plan()
-  bool holds_ports = false;           ///< that links over TCP need, where the plan is to run
+  /// Parameters of the module that records them into one file of MCAP; empty: none does.
+  std::map<std::string, std::string> recorder = {};
+  std::string token;         ///< for make_plan()
+  bool holds_ports = false;  ///< that links over TCP need, where the plan is to run
 };
 
 /// A graph that has been read and checked.

@@ -227,6 +227,22 @@ void Module::Loop::run() {
   if (module_.end_) module_.end_();
 }
 
+/// Module::finish_when_stopped().
+void Module::Loop::take_rest() {
+  constexpr std::chrono::milliseconds kSilence{200}, kLongest{2000};
+  constexpr int kPause = 5;  // [ms]
+  const auto begin = module_.clock_.monotonic();
+  for (auto last = begin; now_ - last < kSilence && now_ - begin < kLongest && !all_ended();) {
+    now_ = module_.clock_.monotonic();
+    if (take_each())
+      last = now_;
+    else
+      ::poll(nullptr, 0, kPause);
+  }
+  module_.handled_ = {};
+  if (module_.end_) module_.end_();
+}
+
 /// Whether nothing can come any more. A module that takes commands waits for a new link
 /// where an input has none; one without inputs has its timers.
 bool Module::Loop::all_ended() const {

@@ -59,6 +59,8 @@ struct Module::Loop {
 
   /// Until all inputs have ended, and the generator has.
   void run();
+  /// Takes what comes of modules that end beside it (Module::finish_when_stopped()).
+  void take_rest();
   /// Waits until a time that `due` gives, which may change with the focus; obeys meanwhile.
   void pause(const std::function<MonotonicTime()>& due);
   /// Ends the outputs.

@@ -302,6 +302,7 @@ int Module::run_loop(const internal::Arguments& arguments) {
       loop.run();
     } catch (const internal::Stopped&) {
       // No reader is left, or it was stopped: a clean end.
+      if (finishes_) loop.take_rest();
     }
     loop.close();
   } catch (const internal::Stopped&) {

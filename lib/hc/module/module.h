@@ -206,6 +206,10 @@ class Module {
   /// for a device that sends by itself. Not with `--clock messages`.
   void keep_running() { keeps_running_ = true; }
 
+  /// Has the module, when it is asked to stop, first take what has come and what still comes from
+  /// modules that end beside it, until none has for 0.2 s, at most 2 s; on_end() is called then.
+  void finish_when_stopped() { finishes_ = true; }
+
   /// Calls a handler when a descriptor of the module's own is readable, such as a device's, or has
   /// failed, between messages. Does not keep a module running whose inputs have ended; a generator
   /// is not woken by it.
@@ -319,6 +323,7 @@ class Module {
   std::vector<std::unique_ptr<internal::TogetherState>> together_;
   std::function<void()> start_, end_;
   std::function<bool()> generate_;
+  bool finishes_ = false;
   std::vector<Timer> timers_;
   std::vector<Watch> watches_;
   std::vector<std::shared_ptr<Timeout::State>> timeouts_;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What a recording says beside its messages: the graph, its modules, their parameters, the log.
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <hc/observe/running.h>
+#include <mcap/recorder.h>
+
+/// Listens to the graph that one is a module of.
+class Story {
+ public:
+  /// Null where there is no such graph.
+  static std::unique_ptr<Story> listen(const char* graph);
+  ~Story();
+
+  /// Readable when tell() has something to do.
+  [[nodiscard]] int descriptor() const { return source_ != nullptr ? source_->descriptor() : -1; }
+  /// Records what has been said since.
+  void tell(hc::mcap::Recorder& recorder, std::int64_t now);
+
+ private:
+  explicit Story(hc::RunningGraph graph) : graph_(std::move(graph)) {}
+  void tell_state(hc::mcap::Recorder& recorder, std::string_view json);
+  void ask_modules(const std::vector<std::string>& names);
+
+  hc::RunningGraph graph_;
+  std::unique_ptr<hc::Source> source_;
+  std::map<std::string, hc::mcap::Words> told_;  // metadata, by name
+  std::thread asker_;                            // for descriptions
+  std::mutex mutex_;
+  std::vector<std::pair<std::string, std::string>> answers_;  // modules and their descriptions
+  std::atomic<bool> is_ending_{false};
+  bool has_asked_ = false;
+};

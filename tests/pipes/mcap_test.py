@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings in MCAP wherever a recording goes, and a recorder that is killed, full or too slow. In
+full, with 200 kills, by HC_FULL=1."""
+
+import json
+import os
+import pathlib
+import random
+import re
+import resource
+import signal
+import struct
+import subprocess
+import unittest
+
+from harness import Pipes, WATCHDOG, wait_until
+
+KILLS = 200 if os.environ.get("HC_FULL") else 20
+CAMERA = "hc camera $HC_DATA/aloeL.jpg --width 80 --height 60 --loop --rate 50"
+GRAPH = """version = 1
+[modules.camera]
+parameters = { source = "%s/aloeL.jpg", width = 80, height = 60, loop = true, rate = 50, count = %d }
+ends_graph = true
+[modules.brightness]
+inputs.image = { from = "camera.left", keep = "all" }
+outputs.mean = "file:mean.mtp"
+[modules.view]
+parameters = { save = "last.png", window = "no" }
+inputs.image = "camera.left"
+"""
+
+
+def whole_chunks(data):
+    """Where the last whole chunk of a file ends, with the records behind it that are whole."""
+    at, end = 8, 8
+    while at + 9 <= len(data):
+        (length,) = struct.unpack_from("<Q", data, at + 1)
+        if at + 9 + length > len(data):
+            break
+        at += 9 + length
+        end = at
+    return end
+
+
+class Recordings(Pipes):
+    def noise(self, count, name="noise.mtp"):
+        """A file of so many grey images of 16 kB, which do not get smaller."""
+        head = "1 7 0 %d 8 %d 40101 0 7 128 128\n"
+        with open(self.path(name), "wb") as file:
+            for i in range(count):
+                file.write(
+                    (head % (i, 10**18 + i * 1000)).encode() + os.urandom(128 * 128) + b"\n"
+                )
+
+    def seqs(self, name):
+        """The seq of each message of a recording."""
+        out = self.shell("hc cat --json '%s'" % name)
+        return [int(seq) for seq in re.findall(r'"seq":(\d+)', out)]
+
+    def test_a_recording_goes_through_mcap_and_back_byte_for_byte(self):
+        self.shell(
+            "(%s --count 5; hc send hello; hc send --type position 0.1 0.2 0.3;"
+            " hc send --encoding zstd 1 2 3; hc send --image $HC_DATA/aloeL.jpg --encoding jpeg)"
+            " >r.mtp" % CAMERA
+        )
+        self.shell("hc record r.mtp x.mcap && hc record x.mcap copy.mtp && cmp r.mtp copy.mtp")
+        self.shell("hc record x.mcap y.mcap && hc cat --raw y.mcap | cmp - r.mtp")
+        self.shell("hc play --speed max x.mcap | cmp - r.mtp")
+        self.shell("hc play --speed max r.mtp --out z.mcap && hc cat --raw z.mcap | cmp - r.mtp")
+        self.assertEqual(
+            self.shell("hc cat --json x.mcap | md5sum"), self.shell("hc cat --json r.mtp | md5sum")
+        )
+        self.assertRegex(self.shell("hc info x.mcap"), r"r +8 .* sensor_msgs/msg/Image\n8 messages")
+        self.shell("hc record x.mcap nothing.mtp --in 'x.mcap?stream=l'", 1)
+        self.assertIn('no stream "l"', self.err)
+
+    def test_a_graph_is_recorded_into_one_file(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 30))
+        out = self.shell("hc run g.toml --record x.mcap --quiet")
+        self.assertIn("recorded into x.mcap", out)
+        out = self.shell("hc info x.mcap")
+        for line in (
+            r"camera\.left +30 .* sensor_msgs/msg/Image\n",
+            r"brightness\.mean +30 .* std_msgs/msg/Float64MultiArray\n",
+        ):
+            self.assertRegex(out, line)
+        self.assertEqual(self.seqs("x.mcap?stream=camera.left"), list(range(30)))
+        # Any module takes it, and the result is the recorded one.
+        self.shell("hc cat --raw 'x.mcap?stream=camera.left' | hc brightness | hc cat --json >a")
+        strip = "sed 's/.*\"elements\"//'"
+        self.shell(
+            "hc cat --json 'x.mcap?stream=brightness.mean' | %s >b; %s <a | cmp - b"
+            % (strip, strip)
+        )
+        # The graph, its modules and its log stand beside.
+        data = self.read_bytes("x.mcap")
+        for words in (b"hypercolumn.graph", b"hypercolumn.module.camera", b"parameter.rate"):
+            self.assertIn(words, data)
+
+    def test_a_killed_recorder_loses_its_last_chunk_at_most(self):
+        chance = random.Random(1)
+        self.noise(4000)  # 65 MB
+        for kill in range(KILLS):
+            name = "k%d.mcap" % kill
+            path = pathlib.Path(self.path(name))
+            recorder = self.start("exec hc record noise.mtp " + name)
+            least = chance.randrange(0, 50 << 20)
+            wait_until(lambda: path.exists() and path.stat().st_size >= least)
+            os.kill(recorder.pid, signal.SIGKILL)
+            recorder.wait(timeout=WATCHDOG)
+            data = path.read_bytes()
+            if len(data) > 8:
+                self.shell("hc cat --raw %s >out.mtp; true" % name)
+                out = self.read_bytes("out.mtp")
+                self.assertEqual(out, self.read_bytes("noise.mtp")[: len(out)])
+                # All chunks but one that was being written are read.
+                self.assertLess(len(data) - whole_chunks(data), 5 << 20)
+                self.assertGreater(len(out), whole_chunks(data) * 0.98 - 20000)
+            path.unlink()
+
+    def limit_files(self):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (10 << 20, 10 << 20))
+
+    def test_a_full_disk_ends_the_recording_and_not_the_robot(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 200))
+        runner = self.start(
+            "exec hc run g.toml --record x.mcap --set camera.width=640 --set camera.height=480"
+        )
+        for pid in wait_until(self.recorders):
+            resource.prlimit(pid, resource.RLIMIT_FSIZE, (8 << 20, 8 << 20))
+        out, err = (text.decode() for text in runner.communicate(timeout=WATCHDOG))
+        self.assertEqual(runner.returncode, 0, err)
+        self.assertEqual(err.count("error: recording ended"), 1, err)
+        self.assertIn("File too large", err)
+        self.assertRegex(out, r"recorder: \d+ messages in x\.mcap, \d+ not recorded")
+        self.assertLessEqual(os.path.getsize(self.path("x.mcap")), 8 << 20)
+        seqs = self.seqs("x.mcap?stream=camera.left")  # status 0: the file is whole
+        self.assertTrue(seqs)
+        self.assertEqual(seqs, list(range(len(seqs))))
+
+    def test_hc_record_says_that_the_disk_is_full(self):
+        self.noise(1600)
+        process = self.start("cat noise.mtp | hc record x.mcap", preexec_fn=self.limit_files)
+        _, err = process.communicate(timeout=WATCHDOG)
+        self.assertIn(b"File too large; what was recorded before is whole", err)
+        self.assertTrue(self.seqs("x.mcap"))
+
+    def test_files_are_split_and_the_oldest_removed(self):
+        self.noise(4000)
+        self.shell("hc record noise.mtp x.mcap --split 8M --keep 24M")
+        names = sorted(each for each in os.listdir(self.folder.name) if each.endswith(".mcap"))
+        self.assertNotIn("x_0001.mcap", names)
+        self.assertLess(sum(os.path.getsize(self.path(each)) for each in names), 30 << 20)
+        seqs = []
+        for name in names:
+            self.shell("hc cat --raw %s >out.mtp" % name)
+            seqs += [
+                int(seq)
+                for seq in re.findall(
+                    rb"(?m)^1 7 0 (\d+) 8 \d+ 40101 0 7 128 128$", self.read_bytes("out.mtp")
+                )
+            ]
+        self.assertEqual(seqs, list(range(seqs[0], 4000)))
+
+    def test_the_last_time_is_saved_on_a_signal_and_on_a_condition(self):
+        process = self.start(CAMERA + " | hc record x.mcap --last 30s")
+        line = process.stderr.readline().decode()
+        pid = re.search(r"keeps the last 30 s; SIGUSR1 to (\d+) saves them", line)[1]
+        os.kill(int(pid), signal.SIGUSR1)
+        self.assertIn("saved x_0001.mcap", process.stderr.readline().decode())
+        self.end(process)
+        seqs = self.seqs("x_0001.mcap")
+        self.assertEqual(seqs, list(range(len(seqs))))
+        self.write(
+            "bump.mtp",
+            "".join(
+                "1 7 0 %d 8 %d 120190 0 0 1 1\n%d\n" % (i, 10**18 + i, i // 5) for i in range(9)
+            ),
+        )
+        self.shell("hc record bump.mtp y.mcap --last 30 --when bump.mtp")
+        self.assertEqual(self.seqs("y_0001.mcap"), list(range(6)))
+
+    def test_a_recorder_that_is_stopped_makes_nobody_wait(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 400))
+        runner = self.start(
+            "exec hc run g.toml --as slow --record x.mcap --set camera.count=0 2>log"
+        )
+
+        sent = lambda: self.sent("slow", "camera.left", "brightness.image")
+        wait_until(lambda: "recorder: started" in self.read("log") and sent() > 10)
+        for pid in self.recorders():
+            os.kill(pid, signal.SIGSTOP)
+        before = sent()
+        wait_until(lambda: sent() > before + 100)  # the others go on without it
+        for pid in self.recorders():
+            os.kill(pid, signal.SIGCONT)
+        runner.send_signal(signal.SIGTERM)
+        runner.communicate(timeout=WATCHDOG)
+        self.assertEqual(runner.returncode, 0, self.read("log"))
+        seqs = self.seqs("x.mcap?stream=camera.left")
+        self.assertEqual(seqs, list(range(len(seqs))))
+        self.assertGreater(len(seqs), 110)
+
+    def recorders(self):
+        """The recorders that run in this folder."""
+        here = os.path.realpath(self.folder.name)
+        found = []
+        for pid in subprocess.run(["pgrep", "-x", "recorder"], stdout=-1).stdout.split():
+            try:
+                if os.readlink("/proc/%d/cwd" % int(pid)) == here:
+                    found.append(int(pid))
+            except OSError:
+                pass
+        return found
+
+    def sent(self, graph, source, target):
+        """How many messages have gone over a link."""
+        out = self.shell("hc top --json --once " + graph)
+        links = json.loads(out.split("\n")[0])["links"]
+        return next(
+            each["messages"] for each in links if (each["from"], each["to"]) == (source, target)
+        )
+
+    def test_info_of_a_file_without_its_end(self):
+        self.noise(2000)
+        self.shell("hc record noise.mtp x.mcap")
+        whole = self.read_bytes("x.mcap")
+        self.write("cut.mcap", whole[: len(whole) * 2 // 3])
+        out = self.shell("hc info cut.mcap", 1)
+        self.assertRegex(out, r"noise +1[0-9]{3} .* sensor_msgs/msg/Image\n")
+        self.assertIn("the file has no end", self.err)
+        self.shell("hc record cut.mcap mended.mcap", 1)
+        self.assertRegex(
+            self.shell("hc info mended.mcap"), r" 1[0-9]{3} .* sensor_msgs/msg/Image\n"
+        )
+
+    def test_what_is_no_recording_is_refused_in_a_line(self):
+        self.write("x.mcap", "1 7 0 0 8 0 10390 1 3 1 1\n1 2 3\n")
+        for command in ("hc cat x.mcap", "hc info x.mcap", "hc play x.mcap"):
+            self.shell(command, 1)
+            self.assertIn("no MCAP file", self.err)
+            self.assertEqual(self.err.count("\n"), 1)
+        self.shell("hc send 1 | hc record y.mtp --split 1G", 2)
+        self.shell("hc send 1 | hc record y.mcap --split x", 2)
+        self.shell("hc send 1 | hc record y.mcap --keep 1G", 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
