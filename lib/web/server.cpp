@@ -13,6 +13,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/ssl.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/ssl.hpp>
@@ -83,6 +84,7 @@ std::optional<Request> request_of(const http::request<http::empty_body, Fields>&
 struct Shared {
   Site* site = nullptr;
   int connections = 0;
+  asio::thread_pool files{1};  // makes those that take long
 };
 
 /// Counts a connection while it lives.
@@ -95,6 +97,7 @@ class Counted {
   Counted& operator=(const Counted&) = delete;
   ~Counted() { --shared_->connections; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
+  [[nodiscard]] asio::thread_pool& files() const { return shared_->files; }
 
  private:
   std::shared_ptr<Shared> shared_;
@@ -248,16 +251,17 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
   void take(beast::error_code error) {
     if (error == http::error::header_limit || error == http::error::body_limit)
-      return write({431, "text/plain", text("the request is too large\n"), {}, {}}, false);
+      return write({431, "text/plain", text("the request is too large\n"), {}, {}, {}}, false);
     if (error == beast::error::timeout || error == http::error::end_of_stream) return;
     if (error.category() == http::make_error_code(http::error::bad_line_ending).category())
-      return write({400, "text/plain", text("no request of HTTP\n"), {}, {}}, false);
+      return write({400, "text/plain", text("no request of HTTP\n"), {}, {}, {}}, false);
     if (error) return;
     auto head = parser_->release();
     auto request = request_of(head);
-    if (!request) return write({400, "text/plain", text("the path is malformed\n"), {}, {}}, false);
+    if (!request)
+      return write({400, "text/plain", text("the path is malformed\n"), {}, {}, {}}, false);
     if (head.method() != http::verb::get)
-      return write({405, "text/plain", text("only GET is served\n"), {}, {}}, false);
+      return write({405, "text/plain", text("only GET is served\n"), {}, {}, {}}, false);
     const bool keeps = head.keep_alive() && !request->is_socket;
     Reply reply = counted_->site().reply(*request);
     if (reply.status != 101) return write(std::move(reply), keeps);
@@ -293,12 +297,33 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
         });
   }
 
+  /// Has the file of a reply made elsewhere, and sends it then.
+  void make(Reply reply, bool keeps) {
+    beast::get_lowest_layer(stream_).expires_never();
+    asio::post(counted_->files(), [self = this->shared_from_this(), reply = std::move(reply),
+                                   keeps] {
+      auto path = reply.make_file();
+      asio::post(self->stream_.get_executor(), [self, reply, keeps,
+                                                path = std::move(path)]() mutable {
+        reply.make_file = nullptr;
+        if (path) reply.file = *path;
+        if (!path)
+          reply = {
+              404, "text/plain", std::make_shared<const std::string>(path.error().detail + "\n"),
+              {},  {},           {}};
+        self->write(std::move(reply), keeps);
+      });
+    });
+  }
+
   void write(Reply reply, bool keeps) {
+    if (reply.make_file) return make(std::move(reply), keeps);
     if (!reply.file.empty()) {
       auto response = std::make_shared<http::response<http::file_body>>();
       beast::error_code error;
       response->body().open(reply.file.c_str(), beast::file_mode::scan, error);
-      if (error) return write({404, "text/plain", text("there is no such file\n"), {}, {}}, keeps);
+      if (error)
+        return write({404, "text/plain", text("there is no such file\n"), {}, {}, {}}, keeps);
       set_head(*response, reply, keeps);
       return send(response, keeps, kWriteTime);
     }

@@ -35,8 +35,10 @@ std::string_view option(std::string_view query, std::string_view name);
 struct Reply {
   int status = 200;
   std::string type = "text/plain; charset=utf-8";
-  Bytes body;                                               ///< null: none, or `file`
-  std::string file;                                         ///< path of a file to send instead
+  Bytes body;        ///< null: none, or `file`
+  std::string file;  ///< path of a file to send instead
+  /// Gives that path; called on another thread, since it may take long. What fails is a 404.
+  std::function<Result<std::string>()> make_file;
   std::vector<std::pair<std::string, std::string>> fields;  ///< of the head, beside the usual ones
 };
 

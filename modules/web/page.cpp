@@ -134,7 +134,7 @@ web::Reply Page::reply(const web::Request& request) {
     const bool is_known =
         request.path == "/graph" || request.path == "/drive" ||
         (request.path.starts_with("/streams/") && is_port_name(request.path.substr(9)));
-    return is_known ? web::Reply{101, {}, {}, {}, {}} : refusal(404, "there is no such socket");
+    return is_known ? web::Reply{101, {}, {}, {}, {}, {}} : refusal(404, "there is no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
     return reply_with_recording(request);
@@ -147,11 +147,12 @@ web::Reply Page::reply_to_token(const web::Request& request) {
     // Whoever has a session already opened the link once more.
     if (!access_.right_of(request.cookies))
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
-    return {303, "text/plain", {}, {}, {{"Location", "/"}}};
+    return {303, "text/plain", {}, {}, {}, {{"Location", "/"}}};
   }
   hears_.log("notice: page opened; for another browser: " + access_.invite(web::Right::Drive));
   return {303,
           "text/plain",
+          {},
           {},
           {},
           {{"Location", "/"},
@@ -181,7 +182,8 @@ web::Reply Page::reply_with_recording(const web::Request& request) const {
     for (const auto& each : list_recordings(options_.recordings))
       list += hc::format(R"({}{{"name":{},"bytes":{},"streams":{}}})", list.empty() ? "" : ",",
                          json_string(each.name), each.bytes, json_list(each.streams));
-    return {200, "application/json", text("[" + list + "]"), {}, {{"Cache-Control", "no-store"}}};
+    return {
+        200, "application/json", text("[" + list + "]"), {}, {}, {{"Cache-Control", "no-store"}}};
   }
   std::string_view rest =
       std::string_view(request.path).substr(std::string_view("/recordings/").size());
@@ -189,12 +191,13 @@ web::Reply Page::reply_with_recording(const web::Request& request) const {
   if (slash == std::string_view::npos && rest.ends_with(".tar")) {
     rest.remove_suffix(4);
     if (!is_recording_name(rest)) return refusal(404, "there is no such recording");
-    const auto archive = write_archive(options_.recordings, std::string(rest));
-    if (!archive) return refusal(404, archive.error().detail);
     return {200,
             "application/x-tar",
             {},
-            *archive,
+            {},
+            [folder = options_.recordings, name = std::string(rest)] {
+              return write_archive(folder, name);
+            },
             {{"Content-Disposition", "attachment; filename=\"" + std::string(rest) + ".tar\""}}};
   }
   if (slash == std::string_view::npos || !rest.ends_with(".mtp"))
@@ -203,7 +206,8 @@ web::Reply Page::reply_with_recording(const web::Request& request) const {
   const auto port = rest.substr(slash + 1, rest.size() - slash - 1 - 4);
   if (!is_recording_name(name) || !is_port_name(port))
     return refusal(404, "there is no such recording");
-  return {200, "application/octet-stream", {}, options_.recordings + "/" + std::string(rest), {}};
+  return {200, "application/octet-stream", {}, options_.recordings + "/" + std::string(rest), {},
+          {}};
 }
 
 // Sockets.
