@@ -248,6 +248,44 @@ TEST(Mcap, HostileFilesCostNoMemory) {
   EXPECT_LT(usage.ru_maxrss, 700 << 10);  // [KiB]
 }
 
+TEST(Mcap, RecordsThatNoChunkHasAreNotKept) {
+  Folder folder;
+  RecordWriter plain;
+  for (int i = 0; i < 1000; ++i) {
+    plain.begin(Opcode::ChunkIndex);
+    plain.append(std::vector<std::byte>(72));
+    plain.end();
+    plain.begin(Opcode::MetadataIndex);
+    plain.append(std::vector<std::byte>(20));
+    plain.end();
+  }
+  RecordWriter out;
+  out.append(std::as_bytes(std::span(kMagic)));
+  out.begin(Opcode::Chunk);
+  out.number(std::uint64_t{0});
+  out.number(std::uint64_t{0});
+  out.number(std::uint64_t{plain.bytes.size()});
+  out.number(crc32(plain.bytes));
+  out.string("");
+  out.number(std::uint64_t{plain.bytes.size()});
+  out.append(plain.bytes);
+  out.end();
+  out.begin(Opcode::DataEnd);
+  out.number(std::uint32_t{0});
+  out.end();
+  std::ofstream(folder / "x.mcap", std::ios::binary)
+      .write(reinterpret_cast<const char*>(out.bytes.data()),
+             static_cast<std::streamsize>(out.bytes.size()));
+  auto reader = Reader::open(folder / "x.mcap");
+  ASSERT_TRUE(reader);
+  const auto end = reader->next();
+  ASSERT_TRUE(end) << end.error().text();
+  EXPECT_FALSE(*end);
+  EXPECT_EQ(reader->position(), out.bytes.size() - kRecordHead - 4);
+  EXPECT_TRUE(reader->found.chunks.empty());
+  EXPECT_TRUE(reader->found.metadata.empty());
+}
+
 TEST(Mcap, AFullDiskEndsTheRecordingWithAValidFile) {
   Folder folder;
   rlimit before{};

@@ -311,10 +311,9 @@ Result<std::optional<StoredMessage>> Reader::next_of_chunk() {
       return damaged("a record reaches over the end of its chunk", chunk_begin_);
     }
     chunk_at_ += rest.size() - reader.left();
-    if (opcode != Opcode::Message) {
+    if (opcode == Opcode::Schema || opcode == Opcode::Channel)
       if (auto taken = take(opcode, content, found, chunk_begin_); !taken) return taken.error();
-      continue;
-    }
+    if (opcode != Opcode::Message) continue;  // a chunk has no others
     RecordReader message(content);
     StoredMessage stored{read_head(message), {}, chunk_};
     if (!message.is_good()) return damaged("a message is shorter than its head", chunk_begin_);
