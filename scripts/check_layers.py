@@ -29,6 +29,7 @@ ALLOWED = {
     "web": {"base", "os", "mtp", "link", "observe"},
     "ros": {"base", "mtp", "contract"},
     "mcap": {"base", "os", "mtp", "link", "ros"},
+    "tls": {"base", "os", "link"},
     "drivers": {"base"},
     "modules": {
         "base",
@@ -66,6 +67,7 @@ ALLOWED = {
         "graph",
         "frames",
         "mcap",
+        "tls",
     },
 }
 CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "observe", "graph"}
@@ -91,7 +93,7 @@ def layer_of(path):
 def layer_of_include(name):
     inner = name[1:-1]
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|room|sound|gaze|web|ros|mcap|drivers)/", inner
+        r"(frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|drivers)/", inner
     )
     return match[1] if match else None
 

@@ -27,7 +27,8 @@ std::string footer() {
   std::string text = "Modules (hc NAME --help):";
   for (const auto& name : tool::module_names()) text += " " + name;
   return text +
-         "\nA link's end is -, a file, tcp:HOST:PORT, tcp-listen:PORT, unix:PATH, "
+         "\nA link's end is -, a file, tcp:HOST:PORT, tcp-listen:PORT, tls:HOST:PORT, "
+         "tls-listen:PORT, unix:PATH, "
          "unix-listen:PATH, shm:NAME.";
 }
 
@@ -130,6 +131,7 @@ int main(int argc, char** argv) {
   tool::add_replay(app);
   tool::add_describe(app);
   tool::add_new(app);
+  tool::add_key(app);
   tool::add_manual(app);
 
   if (argc == 1) {

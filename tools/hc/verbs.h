@@ -46,6 +46,7 @@ void add_doctor(CLI::App& app);
 void add_frames(CLI::App& app);
 void add_graph(CLI::App& app);
 void add_info(CLI::App& app);
+void add_key(CLI::App& app);
 void add_manual(CLI::App& app);
 void add_new(CLI::App& app);
 void add_play(CLI::App& app);

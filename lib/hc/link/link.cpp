@@ -49,15 +49,33 @@ OpenedSink listening_sink(const Uri& uri, const LinkOptions& options) {
   return socket ? internal::listening_sink(std::move(*socket), uri, options) : socket.error();
 }
 
+// Links by TLS, where the program has lib/tls.
+
+Error no_tls() {
+  return {Code::Unsupported, "tls: links need OpenSSL: this program is linked without lib/tls"};
+}
+
+Result<internal::Peer> find_tls_peer(const Uri& uri) {
+  return internal::tls_peer != nullptr ? internal::tls_peer(uri) : no_tls();
+}
+
+Result<internal::ListeningSocket> find_tls_listener(const Uri& uri) {
+  return internal::listen_tls != nullptr ? internal::listen_tls(uri) : no_tls();
+}
+
 /// Every transport there is. The options that an end has are named here, so that one misspelt is
 /// refused and not overlooked.
-constexpr std::array<Transport, 8> kTransports = {{
+constexpr std::array<Transport, 10> kTransports = {{
     {"-", "", "keep rate burst memory", internal::open_stdin, internal::open_stdout},
     {"file", "", "keep rate burst memory", internal::open_file_source, internal::open_file_sink},
     {"tcp", "wait reconnect same_user", "wait reconnect same_user keep rate burst memory",
      connect_source<internal::tcp_peer>, connect_sink<internal::tcp_peer>},
     {"tcp-listen", "same_user", "readers stay same_user keep rate burst memory",
      listening_source<internal::listen_tcp>, listening_sink<internal::listen_tcp>},
+    {"tls", "key peer wait reconnect", "key peer wait reconnect keep rate burst memory",
+     connect_source<find_tls_peer>, connect_sink<find_tls_peer>},
+    {"tls-listen", "key peer", "key peer readers stay keep rate burst memory",
+     listening_source<find_tls_listener>, listening_sink<find_tls_listener>},
     {"unix", "wait reconnect", "wait reconnect keep rate burst memory",
      connect_source<internal::unix_peer>, connect_sink<internal::unix_peer>},
     {"unix-listen", "", "readers stay keep rate burst memory",
@@ -113,8 +131,15 @@ Status check_options(const Uri& uri, std::string_view allowed) {
 /// Whether an end can be where it says, and its options have values that they can have.
 Status check_end(const Uri& uri, std::string_view allowed) {
   if (auto checked = check_options(uri, allowed); !checked) return checked;
-  if (uri.scheme.starts_with("tcp")) {
+  const bool is_tls = uri.scheme.starts_with("tls");
+  if (is_tls || uri.scheme.starts_with("tcp")) {
     if (auto place = parse_host_port(uri.rest); !place) return place.error();
+    for (const char* key : {"key", "peer"})
+      if (is_tls && uri.option(key, "").empty())
+        return Error{
+            Code::Invalid,
+            uri.scheme +
+                " needs the options key=FILE and peer=FINGERPRINT; hc key FILE makes a key"};
   } else if (uri.scheme != "-" && (uri.rest.empty() || uri.rest == "@")) {
     return Error{Code::Invalid, "there is no name"};
   }

@@ -142,14 +142,14 @@ struct LinkOptions {
 /// Opens the end of a link where messages come out, or go in.
 ///
 /// `-` is standard input or output, `file:PATH` a file, `tcp:HOST:PORT` and `unix:PATH` a peer that
-/// listens (`unix:@NAME` in the abstract namespace, which leaves no file), `tcp-listen:[HOST:]PORT`
-/// and `unix-listen:PATH` wait for peers, `shm:NAME` memory that the sink's process shares with any
-/// number of sources of this host and user, `inproc:NAME` another thread of this process.
-/// Listening is on loopback unless a host is given. Options in the URI:
-/// - `wait=SECONDS` (tcp, unix, shm source): how long to try while nobody listens yet; default 0,
+/// listens (`unix:@NAME` in the abstract namespace, without a file), `tcp-listen:[HOST:]PORT` and
+/// `unix-listen:PATH` wait for peers, `tls` and `tls-listen` are tcp encrypted (lib/tls),
+/// `shm:NAME` is memory that the sink's process shares with any number of sources of this host and
+/// user, `inproc:NAME` another thread of it. Listening is on loopback without HOST. Options:
+/// - `wait=SECONDS` (tcp, tls, unix, shm source): how long to try while nobody listens; default 0,
 ///   which gives a host that does not answer 4 s. The answer of a publisher of shm that is there
 ///   has 4 s in any case.
-/// - `reconnect=SECONDS` (tcp, unix, shm source): the link is there at once, outlives its
+/// - `reconnect=SECONDS` (tcp, tls, unix, shm source): the link is there at once, outlives its
 ///   connection, and ends when it has had none for so long; default 0: it ends with its connection.
 ///   If there never was a connection for so long, or for `wait` where it is given beside, take()
 ///   and send() fail with NotFound. A message that a sink has begun on a lost connection is sent

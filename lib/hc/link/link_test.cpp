@@ -10,11 +10,18 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
   auto source = open_source(*parse_uri("pigeon:home"));
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, Code::Invalid);
-  EXPECT_EQ(
-      source.error().detail,
-      "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, unix, unix-listen, inproc, "
-      "shm");
+  EXPECT_EQ(source.error().detail,
+            "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, tls, tls-listen, unix, "
+            "unix-listen, inproc, shm");
   EXPECT_FALSE(open_sink(*parse_uri("pigeon:home")));
+}
+
+TEST(Open, TlsNeedsALibraryOfItsOwn) {
+  for (const char* uri : {"tls:h:1?key=a&peer=b", "tls-listen:1?key=a&peer=b"}) {
+    EXPECT_EQ(open_source(*parse_uri(uri)).error().text(),
+              "Unsupported: tls: links need OpenSSL: this program is linked without lib/tls");
+    EXPECT_EQ(open_sink(*parse_uri(uri)).error().code, Code::Unsupported);
+  }
 }
 
 TEST(Open, OptionsAreChecked) {

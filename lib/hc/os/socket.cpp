@@ -83,11 +83,12 @@ Result<std::shared_ptr<const HeldPort>> hold_port() {
   return std::make_shared<const HeldPort>(HeldPort{std::move(*socket), ntohs(place.sin_port)});
 }
 
-Result<Descriptor> ListeningSocket::accept(const LogSink& log) const {
+Result<ConnectedSocket> ListeningSocket::accept(const LogSink& log) const {
+  if (take_agreed) return take_agreed(log);
   while (true) {
     int number = ::accept4(descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (number >= 0) {
-      Descriptor peer(number);
+      ConnectedSocket peer{Descriptor(number)};
       auto admitted = admit ? admit(number) : Status();
       if (!admitted) {
         if (log) log(Severity::Warning, admitted.error().detail);
@@ -96,7 +97,7 @@ Result<Descriptor> ListeningSocket::accept(const LogSink& log) const {
       set_up_connection(number);
       return peer;
     }
-    if (errno == EAGAIN || errno == EWOULDBLOCK) return Descriptor();
+    if (errno == EAGAIN || errno == EWOULDBLOCK) return ConnectedSocket();
     if (errno != EINTR && errno != ECONNABORTED) return system_error("accept", "");
   }
 }

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include <hc/base/log.h>
-#include <hc/os/descriptor.h>
+#include <hc/os/secure_channel.h>
 
 namespace hc::internal {
 
@@ -22,6 +22,10 @@ struct ListeningSocket {
   Descriptor descriptor;
   /// Whether a peer that was accepted is wanted; an error says why not. May be empty.
   std::function<Status(int peer)> admit;
+  /// Gives the peers in place of accept(), where they agree on a channel first: the next, none (-1)
+  /// just now, or an error of accept(). May be empty; `descriptor` is readable when it is to be
+  /// called.
+  std::function<Result<ConnectedSocket>(const LogSink& log)> take_agreed;
   std::string unlink_path;  ///< removed at the end; empty: nothing
   bool is_paused = false;   ///< somebody waits who could not be let in
 
@@ -30,6 +34,7 @@ struct ListeningSocket {
   ListeningSocket& operator=(ListeningSocket&& other) noexcept {
     std::swap(descriptor, other.descriptor);
     admit.swap(other.admit);
+    take_agreed.swap(other.take_agreed);
     unlink_path.swap(other.unlink_path);
     return *this;
   }
@@ -41,11 +46,11 @@ struct ListeningSocket {
   /// @param watch  of the socket: Loop::Handle or Watch; it is to call this.
   template <typename Handle>
   void accept_all(Handle& watch, const LogSink& log, const std::function<bool()>& has_room,
-                  const std::function<Status(Descriptor peer)>& let_in);
+                  const std::function<Status(ConnectedSocket peer)>& let_in);
 
  private:
   /// The next peer that has connected; none (-1) when there is none just now. Errors: System.
-  [[nodiscard]] Result<Descriptor> accept(const LogSink& log) const;
+  [[nodiscard]] Result<ConnectedSocket> accept(const LogSink& log) const;
 };
 
 /// Where a peer may listen: a sockaddr of some family.
@@ -108,7 +113,7 @@ PeerLook look_at_peer(int socket);
 template <typename Handle>
 void ListeningSocket::accept_all(Handle& watch, const LogSink& log,
                                  const std::function<bool()>& has_room,
-                                 const std::function<Status(Descriptor peer)>& let_in) {
+                                 const std::function<Status(ConnectedSocket peer)>& let_in) {
   constexpr std::chrono::milliseconds kRetryTime{200};
   bool must_wait = !has_room();
   for (; !must_wait; must_wait = must_wait || !has_room()) {

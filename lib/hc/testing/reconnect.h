@@ -10,12 +10,12 @@
 namespace hc::testing {
 
 TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
-  auto source = source_of(dial() + "?reconnect=60");
+  auto source = source_of(with(dial(), "reconnect=60"));
   Message message;
   EXPECT_EQ(*source->take(message), Got::Nothing);
   const int descriptor = source->descriptor();
   for (int i = 0; i < 3; ++i) {  // and outlives several
-    auto sink = sink_of(listen() + "?readers=1");
+    auto sink = sink_of(with(listen(), "readers=1"));
     std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
     ASSERT_TRUE(*receive(*source, message));
     EXPECT_EQ(message.header.seq, i);
@@ -27,11 +27,11 @@ TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
 
 TEST_P(SocketLink, ALossIsToldAndItsEnd) {
   Warnings warnings;
-  auto source = source_of(dial() + "?reconnect=60", warnings.options());
+  auto source = source_of(with(dial(), "reconnect=60"), warnings.options());
   Message message;
   for (int i = 0; i < 2; ++i) {
     {
-      auto sink = sink_of(listen() + "?readers=1");
+      auto sink = sink_of(with(listen(), "readers=1"));
       std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
       ASSERT_TRUE(*receive(*source, message));
       sender.join();
@@ -41,13 +41,13 @@ TEST_P(SocketLink, ALossIsToldAndItsEnd) {
       ASSERT_TRUE(source->wait());
     }
   }
-  EXPECT_EQ(warnings.lines,
-            (std::vector<std::string>{dial() + "?reconnect=60: sender closed; reconnecting",
-                                      dial() + "?reconnect=60: reconnected"}));
+  EXPECT_EQ(warnings.lines, (std::vector<std::string>{
+                                with(dial(), "reconnect=60") + ": sender closed; reconnecting",
+                                with(dial(), "reconnect=60") + ": reconnected"}));
 }
 
 TEST_P(SocketLink, ASinkThatLosesNothingWaitsForEachReader) {
-  auto sink = sink_of(dial() + "?reconnect=60");
+  auto sink = sink_of(with(dial(), "reconnect=60"));
   std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
   auto source = source_of(listen());
   Message message;
@@ -57,7 +57,7 @@ TEST_P(SocketLink, ASinkThatLosesNothingWaitsForEachReader) {
 }
 
 TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
-  auto sink = sink_of(dial() + "?reconnect=60");
+  auto sink = sink_of(with(dial(), "reconnect=60"));
   Warnings warnings;
   auto options = warnings.options();
   options.limits.element_bytes = 1000;  // so that it closes a connection inside the message
@@ -80,7 +80,7 @@ TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
 }
 
 TEST_P(SocketLink, ASinkThatKeepsTheLatestWaitsForNobody) {
-  auto sink = sink_of(dial() + "?reconnect=60&keep=latest");
+  auto sink = sink_of(with(dial(), "reconnect=60&keep=latest"));
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
   EXPECT_EQ(sink->traffic().superseded, 9U);
   auto source = source_of(listen());
@@ -90,9 +90,9 @@ TEST_P(SocketLink, ASinkThatKeepsTheLatestWaitsForNobody) {
 }
 
 TEST_P(SocketLink, WhoNeverFindsAnybodySaysSo) {
-  for (const char* options : {"?reconnect=1", "?reconnect=86400&wait=1"}) {
-    auto source = source_of(dial() + options);
-    auto sink = sink_of(dial() + options);
+  for (const char* options : {"reconnect=1", "reconnect=86400&wait=1"}) {
+    auto source = source_of(with(dial(), options));
+    auto sink = sink_of(with(dial(), options));
     Message message;
     auto got = receive(*source, message);
     ASSERT_FALSE(got);
@@ -110,17 +110,18 @@ TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
   Message message;
   {
     auto writer = sink_of(listen());
-    source = source_of(dial() + "?reconnect=1", warnings.options());
-    ASSERT_TRUE(writer->send(numbered(0, 1)));
+    source = source_of(with(dial(), "reconnect=1"), warnings.options());
+    std::thread sender([&] { ASSERT_TRUE(writer->send(numbered(0, 1))); });
     ASSERT_TRUE(*receive(*source, message));
+    sender.join();
   }
   EXPECT_FALSE(*receive(*source, message));
   ASSERT_EQ(warnings.lines.size(), 2U);
-  EXPECT_EQ(warnings.lines[0], dial() + "?reconnect=1: sender closed; reconnecting");
-  EXPECT_TRUE(warnings.lines[1].starts_with(dial() + "?reconnect=1: no peer for 1 s: "));
+  EXPECT_EQ(warnings.lines[0], with(dial(), "reconnect=1") + ": sender closed; reconnecting");
+  EXPECT_TRUE(warnings.lines[1].starts_with(with(dial(), "reconnect=1") + ": no peer for 1 s: "));
   {
     auto reader = source_of(listen());
-    sink = sink_of(dial() + "?reconnect=1");
+    sink = sink_of(with(dial(), "reconnect=1"));
     ASSERT_TRUE(sink->send(numbered(0, 1)));
     ASSERT_TRUE(*receive(*reader, message));
   }
@@ -131,7 +132,7 @@ TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
 
 TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
   Warnings warnings;
-  auto source = source_of(dial() + "?reconnect=60", warnings.options());
+  auto source = source_of(with(dial(), "reconnect=60"), warnings.options());
   Message message;
   auto wait = [&] {
     ASSERT_TRUE(source->wait());
@@ -140,11 +141,11 @@ TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
   while (warnings.lines.empty()) wait();
   for (int i = 0; i < 3; ++i) wait();
   EXPECT_EQ(warnings.lines.size(), 1U);
-  EXPECT_TRUE(warnings.lines[0].starts_with(dial() + "?reconnect=60: no peer yet ("))
+  EXPECT_TRUE(warnings.lines[0].starts_with(with(dial(), "reconnect=60") + ": no peer yet ("))
       << warnings.lines[0];
   auto sink = sink_of(listen());
   while (warnings.lines.size() < 2) wait();
-  EXPECT_EQ(warnings.lines[1], dial() + "?reconnect=60: connected");
+  EXPECT_EQ(warnings.lines[1], with(dial(), "reconnect=60") + ": connected");
 }
 
 TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {
@@ -155,7 +156,7 @@ TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {
     ++lines;
     stop.raise();
   };
-  auto sink = sink_of(dial() + "?reconnect=60", options);
+  auto sink = sink_of(with(dial(), "reconnect=60"), options);
   EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
   EXPECT_EQ(lines, 1);
 }
@@ -163,9 +164,9 @@ TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {
 TEST_P(SocketLink, ConnectingEndsWhenToldToStop) {
   Stop stop;
   stop.raise();
-  auto sink = sink_of(dial() + "?reconnect=60", stop.options());
+  auto sink = sink_of(with(dial(), "reconnect=60"), stop.options());
   EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
-  auto source = source_of(dial() + "?reconnect=60");
+  auto source = source_of(with(dial(), "reconnect=60"));
   Message message;
   EXPECT_EQ(receive(*source, message, stop.options().stop).error().code, Code::Stopped);
 }

@@ -30,6 +30,8 @@ struct SocketScheme {
   std::string dial, listen;            ///< schemes
   /// A stream socket that is connected to a place, for what no link would send.
   std::function<internal::Descriptor(const std::string& place)> connect;
+  std::string options = {};  ///< of every end, such as "?key=eyes.pem"
+  int cuts = 10'000;         ///< how many streams to cut
 };
 
 inline void PrintTo(const SocketScheme& scheme, std::ostream* out) {
@@ -39,12 +41,12 @@ inline void PrintTo(const SocketScheme& scheme, std::ostream* out) {
 /// The two ways round as transports of the conformance suite.
 inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
   auto source_listens = [scheme] {
-    std::string place = scheme.place();
+    std::string place = scheme.place() + scheme.options;
     return std::pair{scheme.listen + place, scheme.dial + place};
   };
   auto sink_listens = [scheme] {
-    std::string place = scheme.place();
-    return std::pair{scheme.dial + place, scheme.listen + place + "?readers=1"};
+    std::string place = scheme.place() + scheme.options;
+    return std::pair{scheme.dial + place, with(scheme.listen + place, "readers=1")};
   };
   return {{scheme.name + "_source_listens", source_listens, false, false},
           {scheme.name + "_sink_listens", sink_listens, true, true}};
@@ -66,8 +68,10 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SocketLink);
 class SocketLink : public ::testing::TestWithParam<SocketScheme> {
  protected:
   void SetUp() override { place_ = GetParam().place(); }
-  [[nodiscard]] std::string dial() const { return GetParam().dial + place_; }
-  [[nodiscard]] std::string listen() const { return GetParam().listen + place_; }
+  [[nodiscard]] std::string dial() const { return GetParam().dial + place_ + GetParam().options; }
+  [[nodiscard]] std::string listen() const {
+    return GetParam().listen + place_ + GetParam().options;
+  }
   std::string place_;
 };
 
@@ -88,17 +92,17 @@ TEST_P(SocketLink, ANameInUseIsRefused) {
 TEST_P(SocketLink, ASecondListenerTakesNoReadersPlace) {
   Stop stop;
   stop.raise();  // or it would wait for its reader for ever
-  auto sink = sink_of(listen() + "?readers=1", stop.options());
+  auto sink = sink_of(with(listen(), "readers=1"), stop.options());
   EXPECT_FALSE(open_sink(*parse_uri(listen())));
   EXPECT_EQ(sink->send(numbered(0, 10)).error().code, Code::Stopped);
 }
 
 TEST_P(SocketLink, WaitsForAListener) {
   std::thread late([&] {
-    auto sink = sink_of(listen() + "?readers=1");
+    auto sink = sink_of(with(listen(), "readers=1"));
     ASSERT_TRUE(sink->close());
   });
-  auto source = source_of(dial() + "?wait=60");
+  auto source = source_of(with(dial(), "wait=60"));
   Message message;
   EXPECT_FALSE(*receive(*source, message));
   late.join();
@@ -108,7 +112,7 @@ TEST_P(SocketLink, WaitingEndsWhenToldToStop) {
   Stop stop;
   stop.raise();
   auto options = stop.options();
-  EXPECT_EQ(open_source(*parse_uri(dial() + "?wait=60"), options).error().code, Code::Stopped);
+  EXPECT_EQ(open_source(*parse_uri(with(dial(), "wait=60")), options).error().code, Code::Stopped);
   auto sink = sink_of(listen(), options);
   EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
 }
@@ -175,7 +179,7 @@ TEST_P(SocketLink, AReaderThatHasShutItsOwnSideReadsOn) {
 }
 
 TEST_P(SocketLink, ManyReadersGetEachMessage) {
-  auto sink = sink_of(listen() + "?readers=4");
+  auto sink = sink_of(with(listen(), "readers=4"));
   std::vector<std::unique_ptr<Source>> sources;
   for (int i = 0; i < 4; ++i) sources.push_back(source_of(dial()));
   std::thread sender([&] {
@@ -283,7 +287,7 @@ TEST_P(SocketLink, AWriterThatLeftIsForgotten) {
 
 TEST_P(SocketLink, AReaderThatLeftIsForgotten) {
   start_link_thread();
-  auto sink = sink_of(listen() + "?readers=1&stay=1&keep=latest");
+  auto sink = sink_of(with(listen(), "readers=1&stay=1&keep=latest"));
   const auto before = open_descriptors();
   Message message;
   for (int i = 0; i < kPeersThatLeave; ++i) {
@@ -296,7 +300,7 @@ TEST_P(SocketLink, AReaderThatLeftIsForgotten) {
 }
 
 TEST_P(SocketLink, WithNoReadersToWaitForItNeverWaits) {
-  auto sink = sink_of(listen() + "?readers=0");
+  auto sink = sink_of(with(listen(), "readers=0"));
   ASSERT_TRUE(sink->send(numbered(1, 1)));
   EXPECT_EQ(sink->traffic().cut, 1U);
   auto source = source_of(dial());
@@ -309,7 +313,11 @@ TEST_P(SocketLink, WithNoReadersToWaitForItNeverWaits) {
   EXPECT_TRUE(sink->close());
 }
 
-TEST_P(SocketLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
+/// Links that accept in the thread that uses them.
+class AcceptingLink : public SocketLink {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(AcceptingLink);
+
+TEST_P(AcceptingLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());
   auto sink = sink_of(dial());
@@ -326,7 +334,7 @@ TEST_P(SocketLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
   EXPECT_TRUE(*receive(*source, message));
 }
 
-TEST_P(SocketLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
+TEST_P(AcceptingLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
   Warnings warnings;
   auto options = warnings.options();
   Stop stop;
@@ -365,7 +373,7 @@ TEST_P(SocketLink, WhoIsSilentLongestMakesRoom) {
   ASSERT_EQ(::write(peers[0].get(), bytes.data(), bytes.size()), size);
   ASSERT_EQ(::write(peers[1].get(), bytes.data(), 1), 1);
   ASSERT_TRUE(*receive(*source, message));
-  auto sink = sink_of(dial() + "?wait=60");
+  auto sink = sink_of(with(dial(), "wait=60"));
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, 2);
@@ -386,7 +394,7 @@ TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
     ASSERT_EQ(::write(peers[i].get(), bytes.data(), 1), 1);
     ASSERT_EQ(*source->take(message), Got::Nothing);
   }
-  auto sink = sink_of(dial() + "?wait=60");
+  auto sink = sink_of(with(dial(), "wait=60"));
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   EXPECT_EQ(*source->take(message), Got::Nothing);
   auto rest = static_cast<ssize_t>(bytes.size()) - 1;
@@ -418,7 +426,7 @@ TEST_P(SocketLink, MoreReadersThanThereIsRoomForWait) {
 }
 
 TEST_P(SocketLink, OneSlowReaderHoldsUpNoOther) {
-  auto sink = sink_of(listen() + "?readers=2&keep=latest");
+  auto sink = sink_of(with(listen(), "readers=2&keep=latest"));
   auto slow = GetParam().connect(place_);
   auto source = source_of(dial());
   Message message;
@@ -431,7 +439,6 @@ TEST_P(SocketLink, OneSlowReaderHoldsUpNoOther) {
 }
 
 TEST_P(SocketLink, EveryStreamThatIsCutIsToldOnce) {
-  constexpr int kCount = 10'000;
   std::minstd_rand random(1);
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());
@@ -443,7 +450,7 @@ TEST_P(SocketLink, EveryStreamThatIsCutIsToldOnce) {
     while (*source->take(message) == Got::Message) ++messages;
   };
   std::size_t expected = 0;
-  for (int i = 0; i < kCount; ++i) {
+  for (int i = 0; i < GetParam().cuts; ++i) {
     std::size_t size = random() % bytes.size();
     auto peer = GetParam().connect(place_);
     ASSERT_EQ(::send(peer.get(), bytes.data(), size, 0), static_cast<ssize_t>(size));

@@ -25,7 +25,8 @@ bool is_tcp(int descriptor) {
 
 }  // namespace
 
-Result<std::unique_ptr<Connection>> Connection::make(Descriptor connection, const Policy& policy,
+Result<std::unique_ptr<Connection>> Connection::make(ConnectedSocket connection,
+                                                     const Policy& policy,
                                                      const LinkOptions& options,
                                                      std::unique_ptr<Dialer> dialer) {
   std::unique_ptr<Connection> made(new Connection(policy, options, std::move(dialer)));
@@ -48,7 +49,7 @@ Connection::~Connection() {
   fail({Code::Closed, "the link was closed"});
 }
 
-void Connection::connect(Descriptor connection, TimePoint now) {
+void Connection::connect(ConnectedSocket connection, TimePoint now) {
   is_tcp_ = is_tcp(connection.get());
   writer_.start(std::move(connection));
   blocked_ = false;
@@ -149,7 +150,7 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
   if (dialer_ == nullptr) return fail(why);
   remarks_.add(in_words(why) + "; reconnecting");
   news_ = "reconnected";
-  writer_.start(Descriptor());
+  writer_.start(ConnectedSocket());
   dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime, in_words(why));
 }
 
@@ -196,11 +197,18 @@ void Connection::on_event(std::uint32_t events) {
 /// Has the reactor call when there is something to do.
 void Connection::arm(TimePoint now) {
   if (failed_) return;
-  want(blocked_ || !connected() ? EPOLLOUT : EPOLLERR);
+  want(static_cast<std::uint32_t>(awaited_events()));
   auto when = due(now);
   if (when == TimePoint::max()) return;
   flush_is_due_ = writer_.gathered() > 0;
   watch_.call_at(when);
+}
+
+/// The events that the connection, or the attempt at one, waits for; those of poll and epoll are
+/// the same.
+short Connection::awaited_events() const {
+  if (!connected()) return dialer_->events();
+  return blocked_ ? POLLOUT : POLLERR;
 }
 
 /// Has the descriptor watched for events, which are told once. A file cannot be, and need not.
@@ -260,11 +268,12 @@ bool Connection::take_back() {
 Result<bool> Connection::wait(std::unique_lock<std::mutex>& lock, std::optional<TimePoint> give_up,
                               TimePoint now) {
   int descriptor = !connected() ? dialer_->descriptor() : blocked_ ? writer_.descriptor() : -1;
-  if (wanted_ == EPOLLOUT) want(0);  // this thread sees to it
+  if (wanted_ != EPOLLERR) want(0);  // this thread sees to it
   const auto until = std::min(due(now), give_up.value_or(TimePoint::max()));
+  const short events = awaited_events();
   waits_ = true;
   lock.unlock();
-  auto waited = wait_for(descriptor, POLLOUT, give_up ? -1 : stop_, until);
+  auto waited = wait_for(descriptor, events, give_up ? -1 : stop_, until);
   lock.lock();
   waits_ = false;
   return waited;

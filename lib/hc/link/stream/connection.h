@@ -69,7 +69,7 @@ class Connection {
   /// @param dialer  reconnects when the connection is lost; without one the link ends with it.
   ///
   /// Errors: System.
-  static Result<std::unique_ptr<Connection>> make(Descriptor connection, const Policy& policy,
+  static Result<std::unique_ptr<Connection>> make(ConnectedSocket connection, const Policy& policy,
                                                   const LinkOptions& options,
                                                   std::unique_ptr<Dialer> dialer = nullptr);
   ~Connection();
@@ -104,7 +104,7 @@ class Connection {
 
   [[nodiscard]] bool connected() const { return writer_.descriptor() >= 0; }
   [[nodiscard]] bool all_written() const { return writer_.empty() && queue_.empty(); }
-  void connect(Descriptor connection, TimePoint now);
+  void connect(ConnectedSocket connection, TimePoint now);
   void dial(TimePoint now);
   void put(const Parcel& parcel, TimePoint now);
   void advance(TimePoint now);
@@ -115,6 +115,7 @@ class Connection {
   void check_connection(TimePoint now);
   void on_event(std::uint32_t events);
   void arm(TimePoint now);
+  [[nodiscard]] short awaited_events() const;
   void want(std::uint32_t events);
   void stop_watching();
   [[nodiscard]] TimePoint due(TimePoint now);

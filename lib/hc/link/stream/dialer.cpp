@@ -21,7 +21,7 @@ Dialer::Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patie
       give_up_(now + first),
       next_try_(now) {}
 
-Result<Descriptor> Dialer::dial(TimePoint now) {
+Result<ConnectedSocket> Dialer::dial(TimePoint now) {
   if (!attempt_ && now >= next_try_) try_next(now);
   if (attempt_ && is_connected(now)) {
     was_there_ = true;
@@ -36,7 +36,7 @@ Result<Descriptor> Dialer::dial(TimePoint now) {
     return Error{
         was_there_ ? Code::Closed : Code::NotFound,
         "no peer for " + std::to_string((was_there_ ? patience_ : first_).count()) + " s: " + why_};
-  return Descriptor();
+  return ConnectedSocket();
 }
 
 std::optional<std::string> Dialer::take_remark(TimePoint now) {
@@ -65,6 +65,7 @@ void Dialer::try_next(TimePoint now) {
   auto socket = open_socket(address);
   if (!socket) return fail(errno, now);
   attempt_ = std::move(*socket);
+  events_ = POLLOUT;
   const auto share = (give_up_ - now) / static_cast<std::int64_t>(peer_.addresses.size() - turn_);
   answer_due_ = now + std::min<std::chrono::nanoseconds>(kAnswer, share);
   if (::connect(attempt_.get(), address.get(), address.size) != 0 && errno != EINPROGRESS)
@@ -73,6 +74,7 @@ void Dialer::try_next(TimePoint now) {
 
 /// Whether the try under way has succeeded; ends it if it has failed.
 bool Dialer::is_connected(TimePoint now) {
+  if (attempt_.channel) return has_agreed(now);
   pollfd polled{attempt_.get(), POLLOUT, 0};
   if (::poll(&polled, 1, 0) <= 0) return false;
   int status = 0;
@@ -80,14 +82,27 @@ bool Dialer::is_connected(TimePoint now) {
   ::getsockopt(attempt_.get(), SOL_SOCKET, SO_ERROR, &status, &size);
   if (status == 0 && is_with_itself(attempt_.get())) status = ECONNREFUSED;
   auto admitted = status == 0 && peer_.admit ? peer_.admit(attempt_.get()) : Status();
-  if (status == 0 && admitted) return true;
+  if (status == 0 && admitted) {
+    if (!peer_.secure) return true;
+    attempt_.channel = peer_.secure(attempt_.get());
+    answer_due_ = now + kAnswerTime;
+    return has_agreed(now);
+  }
   fail(status == 0 ? EACCES : status, now);
   if (status == 0) why_ = admitted.error().detail;
   return false;
 }
 
+bool Dialer::has_agreed(TimePoint now) {
+  auto awaited = attempt_.channel->agree();
+  if (awaited) return (events_ = *awaited) == 0;
+  fail(EACCES, now);
+  why_ = awaited.error().detail;
+  return false;
+}
+
 void Dialer::fail(int number, TimePoint now) {
-  attempt_.reset();
+  attempt_ = ConnectedSocket();
   why_ = std::strerror(number);
   turn_ = (turn_ + 1) % peer_.addresses.size();
   bool all_tried = turn_ == 0;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
@@ -39,6 +40,8 @@ struct Peer {
   std::string name;                ///< for error lines
   /// Whether a peer that has answered is wanted; an error says why not. May be empty.
   std::function<Status(int socket)> admit;
+  /// Makes the channel of a connection, which is of use once that is agreed on. May be empty.
+  std::function<std::unique_ptr<SecureChannel>(int socket)> secure = {};
   /// Between two tries: one on this host costs so little that nobody needs to be spared.
   std::chrono::milliseconds longest_pause = kLongestPause;
 };
@@ -65,9 +68,11 @@ class Dialer {
   /// Does what is to be done by now; gives the connection, or none (-1) when there is none yet.
   ///
   /// Errors: once patience is at its end, Closed, or NotFound if there never was a connection.
-  Result<Descriptor> dial(TimePoint now);
-  /// The try under way, for which one waits until it can be written to; -1: none.
+  Result<ConnectedSocket> dial(TimePoint now);
+  /// The try under way; -1: none.
   [[nodiscard]] int descriptor() const { return attempt_.get(); }
+  /// The poll events that it waits for.
+  [[nodiscard]] short events() const { return events_; }
   /// When to dial() again at the latest.
   [[nodiscard]] TimePoint due() const;
   /// Whether all addresses have been tried and have refused, so that nobody listens for now.
@@ -86,6 +91,7 @@ class Dialer {
  private:
   void try_next(TimePoint now);
   bool is_connected(TimePoint now);
+  bool has_agreed(TimePoint now);
   void fail(int number, TimePoint now);
 
   Peer peer_;
@@ -97,7 +103,8 @@ class Dialer {
   TimePoint begin_, give_up_, next_try_;
   std::size_t turn_ = 0;  // of the addresses
   bool is_refused_ = false, was_silent_ = false;
-  Descriptor attempt_;
+  ConnectedSocket attempt_;
+  short events_ = POLLOUT;
   TimePoint answer_due_;
   std::string why_;  // the last try failed
 };

@@ -96,7 +96,7 @@ class DialingSource final : public Source {
     }
     if (source_ == nullptr) {
       retry_ = loop_->call_at(std::min(dialer_->due(), tell_at_), [] {});
-      if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), EPOLLOUT);
+      if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), dialer_->events());
     }
     return {};
   }
@@ -117,8 +117,8 @@ class DialingSource final : public Source {
                   why.empty() ? "sender closed" : why);
   }
 
-  void watch(int descriptor, std::uint32_t events) {
-    auto watched = loop_->watch(descriptor, events, [](auto) {});
+  void watch(int descriptor, short events) {
+    auto watched = loop_->watch(descriptor, static_cast<std::uint32_t>(events), [](auto) {});
     if (watched) watch_ = std::move(*watched);
   }
 
@@ -161,7 +161,7 @@ Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
 
 }  // namespace
 
-Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
+Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
   auto wait = number_option(uri, "wait", 0, kMostSeconds);
   if (!wait) return wait.error();
   const auto first = *wait > 0 ? std::chrono::seconds(*wait) : kAnswerTime;
@@ -171,14 +171,14 @@ Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptio
     if (connected && *connected) return connected;
     if (!connected || (*wait == 0 && dialer.is_refused()))
       return Error{Code::Closed, "connect(" + peer.name + "): " + dialer.why()};
-    auto waited = wait_for(dialer.descriptor(), POLLOUT, options.stop, dialer.due());
+    auto waited = wait_for(dialer.descriptor(), dialer.events(), options.stop, dialer.due());
     if (!waited) return waited.error();
   }
 }
 
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options) {
-  auto open = [options](Descriptor connection) {
+  auto open = [options](ConnectedSocket connection) {
     set_up_reader(connection.get());
     return Result<std::unique_ptr<Source>>(
         std::make_unique<StreamSource>(std::move(connection), options));
@@ -204,7 +204,8 @@ Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
                                         const LinkOptions& options) {
   auto dialer = dialer_for(peer, uri);
   if (!dialer) return dialer.error();
-  if (*dialer != nullptr) return make_stream_sink(Descriptor(), uri, options, std::move(*dialer));
+  if (*dialer != nullptr)
+    return make_stream_sink(ConnectedSocket(), uri, options, std::move(*dialer));
   auto connected = connect_now(peer, uri, options);
   if (!connected) return connected.error();
   return make_stream_sink(std::move(*connected), uri, options);

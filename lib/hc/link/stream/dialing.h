@@ -13,12 +13,12 @@ namespace hc::internal {
 /// A connection to a peer that listens, waiting for it as long as `wait` says.
 ///
 /// Errors: Invalid, Closed (nobody listens), Stopped, System.
-Result<Descriptor> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options);
+Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options);
 
 /// What becomes of the connections of a source.
 struct Made {
   /// Makes the source of a connection; if that fails, the connection counts as lost.
-  std::function<Result<std::unique_ptr<Source>>(Descriptor connection)> open;
+  std::function<Result<std::unique_ptr<Source>>(ConnectedSocket connection)> open;
   int wake_descriptor = -1;  ///< of all sources that come of it
 };
 

@@ -110,12 +110,13 @@ class ListeningSink final : public Sink {
         if (peers_[i]->has_failed()) leave(i);
       return peers_.size() < kMaxPeers;
     };
-    socket_.accept_all(listening_, options_.log, has_room, [this](Descriptor accepted) -> Status {
-      auto connection = Connection::make(std::move(accepted), policy_, options_);
-      if (!connection) return connection.error();
-      peers_.push_back(std::move(*connection));
-      return {};
-    });
+    socket_.accept_all(listening_, options_.log, has_room,
+                       [this](ConnectedSocket accepted) -> Status {
+                         auto connection = Connection::make(std::move(accepted), policy_, options_);
+                         if (!connection) return connection.error();
+                         peers_.push_back(std::move(*connection));
+                         return {};
+                       });
   }
 
   void let_in() {

@@ -69,7 +69,7 @@ class ListeningSource final : public Source {
   void accept_all() {
     auto is_full = [this] { return peers_.size() == kMaxPeers; };
     auto has_room = [&] { return !is_full() || find_idlest() != peers_.size(); };
-    socket_.accept_all(listening_, options_.log, has_room, [&](Descriptor accepted) -> Status {
+    socket_.accept_all(listening_, options_.log, has_room, [&](ConnectedSocket accepted) -> Status {
       auto peer = std::make_unique<Peer>();
       auto watched = loop_->watch(accepted.get(), EPOLLIN, [this, each = peer.get()](auto) {
         if (std::exchange(each->is_ready, true)) return;

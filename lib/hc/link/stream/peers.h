@@ -17,6 +17,11 @@ namespace hc::internal {
 Result<Peer> tcp_peer(const Uri& uri);
 Result<Peer> unix_peer(const Uri& uri);
 
+/// The same of `tls:HOST:PORT`, and who listens at `tls-listen:[HOST:]PORT`. They are in lib/tls,
+/// and null in programs that are linked without it.
+[[gnu::weak]] Result<Peer> tls_peer(const Uri& uri);
+[[gnu::weak]] Result<ListeningSocket> listen_tls(const Uri& uri);
+
 /// A socket that listens at `tcp-listen:[HOST:]PORT`, on loopback without a host;
 /// `same_user` as above. Errors: Invalid, NotFound, System.
 Result<ListeningSocket> listen_tcp(const Uri& uri);

@@ -45,7 +45,7 @@ class StreamSink final : public Sink {
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_stream_sink(Descriptor descriptor, const Uri& uri,
+Result<std::unique_ptr<Sink>> make_stream_sink(ConnectedSocket descriptor, const Uri& uri,
                                                const LinkOptions& options,
                                                std::unique_ptr<Dialer> dialer) {
   auto policy = parse_policy(uri);

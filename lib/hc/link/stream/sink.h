@@ -20,7 +20,7 @@ namespace hc::internal {
 /// @param uri  for its policy.
 ///
 /// Errors: Invalid, System.
-Result<std::unique_ptr<Sink>> make_stream_sink(Descriptor descriptor, const Uri& uri,
+Result<std::unique_ptr<Sink>> make_stream_sink(ConnectedSocket descriptor, const Uri& uri,
                                                const LinkOptions& options,
                                                std::unique_ptr<Dialer> dialer = nullptr);
 

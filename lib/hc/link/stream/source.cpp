@@ -26,22 +26,23 @@ Result<Got> StreamSource::take(Message& message) {
     // Who asked and got an answer waits for the next one now: to read once more would be in vain.
     if (std::exchange(is_dry_, false) && between_messages()) return nothing();
     auto space = reader_.space();
-    ssize_t size = is_socket_ ? ::recv(descriptor_.get(), space.data(), space.size(), MSG_DONTWAIT)
-                              : ::read(descriptor_.get(), space.data(), space.size());
+    ssize_t size = read(space);
+    const SecureChannel* channel = descriptor_.channel.get();
     if (size < 0 && errno == ENOTSOCK && is_socket_) {
       is_socket_ = false;
       continue;
     }
     if (size > 0) {
       reader_.commit(static_cast<std::size_t>(size));
-      is_dry_ = is_socket_ && static_cast<std::size_t>(size) < space.size();
+      is_dry_ = is_socket_ && static_cast<std::size_t>(size) < space.size() &&
+                (channel == nullptr || !channel->has_unread());
       continue;
     }
     if (size < 0 && errno == EINTR) continue;
     if (size < 0 && would_wait(errno)) return nothing();
     // A peer that was killed with our bytes unread resets the connection: the end of what it said.
-    if (size < 0 && errno != ECONNRESET) {
-      auto error = system_error("read", "");
+    if (size < 0 && (channel != nullptr || errno != ECONNRESET)) {
+      auto error = channel != nullptr ? channel->failure() : system_error("read", "");
       if (error.code == Code::Closed && !between_messages()) error.code = Code::Truncated;
       return error;
     }
@@ -52,12 +53,19 @@ Result<Got> StreamSource::take(Message& message) {
   }
 }
 
+ssize_t StreamSource::read(std::span<std::byte> space) {
+  if (descriptor_.channel) return descriptor_.channel->read(space);
+  return is_socket_ ? ::recv(descriptor_.get(), space.data(), space.size(), MSG_DONTWAIT)
+                    : ::read(descriptor_.get(), space.data(), space.size());
+}
+
 /// Nothing more for now. Who waits inside a large message is woken for a good part of it (by TCP;
 /// Unix sockets wake for every piece): each wake keeps the writer from its work.
 Got StreamSource::nothing() {
   constexpr std::uint64_t kGoodPart = std::uint64_t{128} << 10;
   int bytes = static_cast<int>(std::clamp<std::uint64_t>(reader_.missing(), 1, kGoodPart));
-  if (is_socket_ && std::exchange(wakes_at_, bytes) != bytes)
+  const bool can_ask = is_socket_ && !descriptor_.channel;  // which has taken some of it already
+  if (can_ask && std::exchange(wakes_at_, bytes) != bytes)
     ::setsockopt(descriptor_.get(), SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
   return Got::Nothing;
 }

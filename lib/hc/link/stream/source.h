@@ -8,7 +8,7 @@
 
 #include <hc/link/link.h>
 #include <hc/mtp/stream_reader.h>
-#include <hc/os/descriptor.h>
+#include <hc/os/secure_channel.h>
 
 namespace hc::internal {
 
@@ -16,7 +16,8 @@ namespace hc::internal {
 class StreamSource final : public Source {
  public:
   /// @param may_await_writer  it is a FIFO, opened by name, perhaps before its first writer.
-  StreamSource(Descriptor descriptor, const LinkOptions& options, bool may_await_writer = false)
+  StreamSource(ConnectedSocket descriptor, const LinkOptions& options,
+               bool may_await_writer = false)
       : descriptor_(std::move(descriptor)),
         may_await_writer_(may_await_writer),
         begin_(::lseek(descriptor_.get(), 0, SEEK_CUR)),
@@ -32,8 +33,9 @@ class StreamSource final : public Source {
  private:
   [[nodiscard]] bool awaits_writer() const;
   Got nothing();
+  ssize_t read(std::span<std::byte> space);
 
-  Descriptor descriptor_;
+  ConnectedSocket descriptor_;
   bool may_await_writer_;
   off_t begin_;            // where in a file the stream begins, -1 in what is none [byte]
   bool is_socket_ = true;  // until a first read says otherwise

@@ -67,6 +67,7 @@ const SocketScheme kTcp{"tcp", free_port, "tcp:", "tcp-listen:", connect};
 
 INSTANTIATE_TEST_SUITE_P(Tcp, LinkConformance, ::testing::ValuesIn(both_ways(kTcp)));
 INSTANTIATE_TEST_SUITE_P(Tcp, SocketLink, ::testing::Values(kTcp));
+INSTANTIATE_TEST_SUITE_P(Tcp, AcceptingLink, ::testing::Values(kTcp));
 
 TEST(Tcp, ListensOnLoopbackUnlessAskedOtherwise) {
   std::string port = free_port().substr(10);

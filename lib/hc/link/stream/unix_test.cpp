@@ -43,6 +43,7 @@ const SocketScheme kPath{"path", path, "unix:", "unix-listen:", connect};
 INSTANTIATE_TEST_SUITE_P(Abstract, LinkConformance, ::testing::ValuesIn(both_ways(kAbstract)));
 INSTANTIATE_TEST_SUITE_P(Path, LinkConformance, ::testing::ValuesIn(both_ways(kPath)));
 INSTANTIATE_TEST_SUITE_P(Unix, SocketLink, ::testing::Values(kAbstract, kPath));
+INSTANTIATE_TEST_SUITE_P(Unix, AcceptingLink, ::testing::Values(kAbstract, kPath));
 
 TEST(Unix, LeavesNoFile) {
   std::string file = path();

@@ -100,8 +100,10 @@ Result<bool> StreamWriter::write() {
       add(piece.subspan(std::min(skip, piece.size())));
       skip -= std::min(skip, piece.size());
     }
-    ssize_t size = is_socket_ ? write_to_socket(descriptor_.get(), parts.data(), used)
-                              : write_to_pipe(descriptor_.get(), parts.data(), used);
+    auto* channel = descriptor_.channel.get();
+    ssize_t size = channel != nullptr ? channel->write(std::span(parts).first(used))
+                   : is_socket_       ? write_to_socket(descriptor_.get(), parts.data(), used)
+                                      : write_to_pipe(descriptor_.get(), parts.data(), used);
     if (size >= 0) {
       advance(static_cast<std::size_t>(size));
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
@@ -110,7 +112,7 @@ Result<bool> StreamWriter::write() {
     } else if (errno != EINTR) {
       int number = errno;
       forget_written();
-      return system_error("write", "", number);
+      return channel != nullptr ? channel->failure() : system_error("write", "", number);
     }
   }
   return true;
@@ -139,7 +141,7 @@ void StreamWriter::forget_written() {
 }
 
 bool StreamWriter::inside_message() const {
-  return written_ > 0 || (large_left_ > 0 && large_left_ < size_of(large_));
+  return written_ > 0 || (large_left_ > 0 && large_left_ < size_of(large_)) || has_unsent();
 }
 
 bool StreamWriter::take_back() {
@@ -157,7 +159,7 @@ bool StreamWriter::take_back() {
   return true;
 }
 
-void StreamWriter::start(Descriptor descriptor) {
+void StreamWriter::start(ConnectedSocket descriptor) {
   descriptor_ = std::move(descriptor);
   is_socket_ = internal::is_socket(descriptor_.get());
   written_ = 0;
@@ -174,8 +176,9 @@ std::size_t StreamWriter::clear() {
 }
 
 void StreamWriter::close() {
+  if (descriptor_.channel) descriptor_.channel->end();
   if (is_socket_) ::shutdown(descriptor_.get(), SHUT_WR);
-  descriptor_.reset();
+  descriptor_ = ConnectedSocket();
 }
 
 }  // namespace hc::internal

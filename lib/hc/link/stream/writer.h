@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <hc/mtp/codec.h>
-#include <hc/os/descriptor.h>
+#include <hc/os/secure_channel.h>
 
 namespace hc::internal {
 
@@ -29,10 +29,10 @@ class StreamWriter {
   /// Writes to a descriptor from now on. Where there was another before, the message that was begun
   /// on it is to be written anew, whole, and those behind it.
   /// @param descriptor  its writes do not wait; those of sockets never do. -1: none, for now.
-  void start(Descriptor descriptor);
+  void start(ConnectedSocket descriptor);
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
   [[nodiscard]] bool is_socket() const { return is_socket_; }
-  [[nodiscard]] bool empty() const { return gathered() == 0 && large_left_ == 0; }
+  [[nodiscard]] bool empty() const { return gathered() == 0 && large_left_ == 0 && !has_unsent(); }
   /// Of gathered messages, not written yet. [byte]
   [[nodiscard]] std::size_t gathered() const { return bytes_.size() - written_; }
 
@@ -68,11 +68,14 @@ class StreamWriter {
   void close();
 
  private:
+  [[nodiscard]] bool has_unsent() const {
+    return descriptor_.channel && descriptor_.channel->has_unsent();
+  }
   void gather(const Pieces& pieces);
   void advance(std::size_t size);
   void forget_written();
 
-  Descriptor descriptor_;
+  ConnectedSocket descriptor_;
   bool is_socket_ = false;
   std::vector<std::byte> bytes_;
   std::size_t written_ = 0;        // of bytes_

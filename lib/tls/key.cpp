@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tls/key.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <openssl/err.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/x509.h>
+
+#include <hc/os/descriptor.h>
+#include <tls/context.h>
+
+namespace hc::tls {
+namespace {
+
+using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
+
+/// A certificate for a key, signed by itself: TLS wants one.
+Certificate certificate_for(EVP_PKEY& key) {
+  Certificate certificate(X509_new());
+  constexpr long kVersion3 = 2;
+  auto* name = certificate ? X509_get_subject_name(certificate.get()) : nullptr;
+  if (name == nullptr || X509_set_version(certificate.get(), kVersion3) != 1 ||
+      ASN1_INTEGER_set(X509_get_serialNumber(certificate.get()), 1) != 1 ||
+      ASN1_TIME_set_string(X509_getm_notBefore(certificate.get()), "20000101000000Z") != 1 ||
+      ASN1_TIME_set_string(X509_getm_notAfter(certificate.get()), "99991231235959Z") != 1 ||
+      X509_set_pubkey(certificate.get(), &key) != 1 ||
+      X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC,
+                                 reinterpret_cast<const unsigned char*>("hypercolumn"), -1, -1,
+                                 0) != 1 ||
+      X509_set_issuer_name(certificate.get(), name) != 1 ||
+      X509_sign(certificate.get(), &key, EVP_sha256()) == 0)
+    return nullptr;
+  return certificate;
+}
+
+}  // namespace
+
+Status make_key(const std::string& path) {
+  ERR_clear_error();
+  const Key key(EVP_EC_gen("P-256"));
+  const auto certificate = key ? certificate_for(*key) : nullptr;
+  const File pem(BIO_new(BIO_s_mem()));
+  if (!certificate || !pem ||
+      PEM_write_bio_PrivateKey(pem.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1 ||
+      PEM_write_bio_X509(pem.get(), certificate.get()) != 1)
+    return openssl_error(Code::System, "no key could be made");
+  char* text = nullptr;
+  const auto size = BIO_get_mem_data(pem.get(), &text);
+
+  constexpr mode_t kOwnerOnly = 0600;
+  auto opened = internal::system_call("open", path, [&] {
+    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
+  });
+  if (!opened) return opened.error();
+  const internal::Descriptor file(*opened);
+  for (std::string_view rest(text, static_cast<std::size_t>(size)); !rest.empty();) {
+    auto written = internal::system_call(
+        "write", path, [&] { return ::write(file.get(), rest.data(), rest.size()); });
+    if (!written) {
+      ::unlink(path.c_str());
+      return written.error();
+    }
+    rest.remove_prefix(static_cast<std::size_t>(*written));
+  }
+  return {};
+}
+
+Result<std::string> fingerprint_of(const std::string& path) {
+  auto file = open_file(path);
+  if (!file) return file.error();
+  const Certificate certificate(PEM_read_bio_X509(file->get(), nullptr, nullptr, nullptr));
+  if (!certificate) return Error{Code::Invalid, path + ": no certificate in PEM"};
+  return fingerprint(*certificate);
+}
+
+}  // namespace hc::tls

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Keys by which the two ends of a TLS link know each other: P-256, in a file with a certificate
+// that nobody but its owner has signed, and whose dates and names nobody looks at.
+
+#include <string>
+
+#include <hc/base/result.h>
+
+namespace hc::tls {
+
+/// Writes a new key and its certificate, in PEM, to a file that only its owner can read.
+///
+/// Errors: System (the file exists; it cannot be written), Unsupported (built without OpenSSL).
+Status make_key(const std::string& path);
+
+/// The fingerprint of a key: SHA-256 of its public half (SubjectPublicKeyInfo, DER), in 64 digits
+/// of base 16. Of a file with several certificates, that of the first.
+///
+/// Errors: NotFound, Invalid (no certificate in PEM), System, Unsupported (built without OpenSSL).
+Result<std::string> fingerprint_of(const std::string& path);
+
+}  // namespace hc::tls
