@@ -181,6 +181,36 @@ class Recordings(Pipes):
         self.shell("hc record bump.mtp y.mcap --last 30 --when bump.mtp")
         self.assertEqual(self.seqs("y_0001.mcap"), list(range(6)))
 
+    def test_a_graph_that_cannot_run_leaves_the_last_recording(self):
+        self.write("x.mcap", "kept")
+        self.write("g.toml", "version = 1\n[modules.camer]\n")
+        self.shell("hc run g.toml --record x.mcap", 2)
+        self.assertEqual(self.read("x.mcap"), "kept")
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        self.shell("hc run g.toml --quiet --record x.mcap --last 9")
+        self.shell("hc run g.toml --quiet --record x.mcap --split 1G")
+        self.assertEqual(self.read("x.mcap"), "kept")
+        self.shell("hc run g.toml --quiet --record x.mcap")
+        self.assertEqual(self.seqs("x.mcap?stream=camera.left"), list(range(3)))
+
+    def test_the_recorder_alone_is_told_to_save(self):
+        self.write("recorder", '#!/bin/sh\nexec hc brightness "$@"\n', 0o755)
+        text = GRAPH % (self.environment["HC_DATA"], 0)
+        self.write(
+            "g.toml",
+            text.replace("[modules.brightness]", '[modules.brightness]\nprogram = "./recorder"'),
+        )
+        runner = self.start("exec hc run g.toml --as one --record x.mcap --last 9s 2>log")
+        sent = lambda: self.sent("one", "camera.left", "brightness.image")
+        wait_until(lambda: "recorder: started" in self.read("log") and sent() > 10)
+        runner.send_signal(signal.SIGUSR1)
+        wait_until(lambda: "saved x_0001.mcap" in self.read("log"))
+        before = sent()
+        wait_until(lambda: sent() > before + 10)
+        runner.send_signal(signal.SIGTERM)
+        runner.communicate(timeout=WATCHDOG)
+        self.assertEqual(self.read("log").count("brightness: started"), 1, self.read("log"))
+
     def test_a_recorder_that_is_stopped_makes_nobody_wait(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 400))
         runner = self.start(

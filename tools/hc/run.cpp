@@ -124,7 +124,6 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
       load.recorder[name] =
           name == "last" && value.ends_with('s') ? value.substr(0, value.size() - 1) : value;
   if (place.ends_with(".mcap")) {
-    std::filesystem::remove(place, failed);
     load.recorder["file"] = place;
     std::signal(SIGUSR1, [](int) { save_requested = 1; });
   } else if (!load.recorder.empty()) {
@@ -135,6 +134,14 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
     std::filesystem::create_directories(place, failed);
     if (failed) throw Failure({hc::Code::System, place + ": " + failed.message()});
   }
+}
+
+/// A single file is written anew; numbered ones stay.
+void remove_previous_file(const RunOptions& options, const hc::LoadOptions& load) {
+  std::error_code failed;
+  const bool is_numbered = load.recorder.contains("split") || load.recorder.contains("last");
+  if (options.record.ends_with(".mcap") && !is_numbered)
+    std::filesystem::remove(options.record, failed);
 }
 
 /// Logs the reason as everything else was logged: its reader may be gone.
@@ -151,6 +158,7 @@ void run(const RunOptions& options) {
   load_options.holds_ports = true;
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
+  remove_previous_file(options, load_options);
   StatusLine status(!options.quiet);
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
     std::string list;
@@ -166,12 +174,11 @@ void run(const RunOptions& options) {
     bool is_event = line.ends_with(": started") || line.ends_with(": ended");
     if (!(options.quiet && is_event)) status.say(line);
   };
-  run_options.state = [&](const hc::GraphState& state) {
+  run_options.state = [&, recorder = graph.recorder](const hc::GraphState& state) {
     status.show(state);
     if (std::exchange(save_requested, 0) == 0) return;
     for (const auto& module : state.modules)
-      if (std::filesystem::path(module.program).filename() == "recorder" && module.process > 0)
-        ::kill(module.process, SIGUSR1);
+      if (module.name == recorder && module.process > 0) ::kill(module.process, SIGUSR1);
   };
   run_options.name = name_of(options);
   run_options.file = options.graph.file;

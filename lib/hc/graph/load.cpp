@@ -142,11 +142,14 @@ class FileLoader : public GraphLoader {
  private:
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
     find_programs(graph, problems);
-    LoadedGraph loaded{graph, {}, {}};
+    LoadedGraph loaded{graph, {}, {}, {}};
     if (!options_.record.empty()) record_outputs(graph, options_.record);
     std::vector<std::string> recorded;
     const std::string recorder = options_.recorder.empty() ? "" : find_program("recorder");
-    if (!options_.recorder.empty()) recorded = add_recorder(graph, recorder, options_.recorder);
+    if (!options_.recorder.empty()) {
+      recorded = add_recorder(graph, recorder, options_.recorder);
+      loaded.recorder = graph.modules.back().name;
+    }
     std::map<std::string, Result<std::string>> described;  // also those that failed
     auto describe = [&](const std::string& program) -> Result<std::string> {
       auto known = described.find(program);

@@ -31,6 +31,7 @@ struct LoadedGraph {
   Graph graph;                        ///< with the paths of its programs
   std::optional<Plan> plan;           ///< nothing: it cannot run, and `problems` say why
   std::vector<std::string> problems;  ///< lines
+  std::string recorder;               ///< module added for LoadOptions::recorder; empty: none
 };
 
 /// Loads one graph, again and again while it runs. Not for two threads at once.
