@@ -2,6 +2,7 @@
 #include "python.h"
 
 #include <exception>
+#include <new>
 #include <stdexcept>
 
 #include <hc/module/module.h>
@@ -42,9 +43,11 @@ void set_error_text(const std::string& text) {
   set_error(text, "");
 }
 
-void set_current_exception() {
+void set_current_exception() noexcept try {
   try {
     throw;
+  } catch (const std::bad_alloc&) {
+    PyErr_NoMemory();
   } catch (py::error_already_set& error) {
     error.restore();
   } catch (const py::builtin_exception& error) {
@@ -56,6 +59,8 @@ void set_current_exception() {
   } catch (...) {
     PyErr_SetNone(stopped_type());
   }
+} catch (...) {  // its text had no room
+  PyErr_NoMemory();
 }
 
 }  // namespace python

@@ -44,8 +44,8 @@ void note_line(PyMessage& self) {
 }
 
 /// Warns that too many messages are kept. What a warning raises is raised where it was given.
-bool tell_kept(Keeper& keeper) {
-  keeper.told = true;
+bool warn_kept(Keeper& keeper) {
+  keeper.has_warned = true;
   py::object file = py::str("<unknown>");
   int line = 0;
   auto noted = std::find_if(keeper.kept.begin(), keeper.kept.end(), [](PyObject* each) {
@@ -117,12 +117,7 @@ PyObject* get_array(PyObject* self, void*) {
   auto& each = *reinterpret_cast<PyMessage*>(self);
   if (!must_be_plain(each.message)) return nullptr;
   if (each.keeper != nullptr && each.keeper->kept.size() > Keeper::kMostKept / 4) note_line(each);
-  try {
-    return view_elements(each.message.header, each.message.elements.data(), false, self);
-  } catch (py::error_already_set& error) {
-    error.restore();
-    return nullptr;
-  }
+  return view_elements(each.message.header, each.message.elements.data(), false, self);
 }
 
 template <typename T>
@@ -205,43 +200,47 @@ PyObject* describe(PyObject* self) {
 }
 
 PyGetSetDef fields[] = {
-    {"array", get_array, nullptr,
+    {"array", guarded<get_array>, nullptr,
      "The elements as a numpy array, read-only and without a copy: (height, width, components),\n"
      "without the last where it is 1. While an array lives, so does its memory; the publisher of\n"
      "shared memory lends few messages, so keep array.copy() of what is to be kept for long.",
      nullptr},
-    {"numbers", get_numbers, nullptr,
+    {"numbers", guarded<get_numbers>, nullptr,
      "All numbers, row by row, as a tuple of Python numbers: for few. Of many take array.",
      nullptr},
-    {"text", get_text, nullptr, "The text of a string; its rows have a line feed between them.",
+    {"text", guarded<get_text>, nullptr,
+     "The text of a string; its rows have a line feed between them.", nullptr},
+    {"src", guarded<get_field<&hc::Header::src>>, nullptr, "Address of the output that sent it.",
      nullptr},
-    {"src", get_field<&hc::Header::src>, nullptr, "Address of the output that sent it.", nullptr},
-    {"dst", get_field<&hc::Header::dst>, nullptr, "Address of whom it is for; 0: who is linked.",
-     nullptr},
-    {"seq", get_field<&hc::Header::seq>, nullptr, "Counts up by one per src.", nullptr},
-    {"ttl", get_field<&hc::Header::ttl>, nullptr, "Routers left to pass.", nullptr},
-    {"time", get_field<&hc::Header::time>, nullptr,
+    {"dst", guarded<get_field<&hc::Header::dst>>, nullptr,
+     "Address of whom it is for; 0: who is linked.", nullptr},
+    {"seq", guarded<get_field<&hc::Header::seq>>, nullptr, "Counts up by one per src.", nullptr},
+    {"ttl", guarded<get_field<&hc::Header::ttl>>, nullptr, "Routers left to pass.", nullptr},
+    {"time", guarded<get_field<&hc::Header::time>>, nullptr,
      "When the sensed thing happened [ns since the Unix epoch]; 0: unknown.", nullptr},
-    {"mode", get_field<&hc::Header::mode>, nullptr, "System mode of the sender; 0: none.", nullptr},
-    {"coord", get_field<&hc::Header::coord>, nullptr,
+    {"mode", guarded<get_field<&hc::Header::mode>>, nullptr, "System mode of the sender; 0: none.",
+     nullptr},
+    {"coord", guarded<get_field<&hc::Header::coord>>, nullptr,
      "Number of the coordinate system of the elements; 0: none given.", nullptr},
-    {"width", get_field<&hc::Header::width>, nullptr, "Elements in a row.", nullptr},
-    {"height", get_field<&hc::Header::height>, nullptr, "Rows.", nullptr},
-    {"components", get_components, nullptr, "Numbers in an element.", nullptr},
-    {"type", get_type, nullptr, "Type of the matrix, such as rgb_image or table.", nullptr},
-    {"scalar", get_scalar, nullptr, "What a number is, such as u8 or f64.", nullptr},
-    {"encoding", get_encoding, nullptr, "How it was written: text, binary, zstd or jpeg.", nullptr},
+    {"width", guarded<get_field<&hc::Header::width>>, nullptr, "Elements in a row.", nullptr},
+    {"height", guarded<get_field<&hc::Header::height>>, nullptr, "Rows.", nullptr},
+    {"components", guarded<get_components>, nullptr, "Numbers in an element.", nullptr},
+    {"type", guarded<get_type>, nullptr, "Type of the matrix, such as rgb_image or table.",
+     nullptr},
+    {"scalar", guarded<get_scalar>, nullptr, "What a number is, such as u8 or f64.", nullptr},
+    {"encoding", guarded<get_encoding>, nullptr, "How it was written: text, binary, zstd or jpeg.",
+     nullptr},
     {}};
 
-PyMethodDef methods[] = {
-    {"copy", copy, METH_NOARGS, "The same message with elements of its own, to be kept for long."},
-    {}};
+PyMethodDef methods[] = {{"copy", guarded<copy>, METH_NOARGS,
+                          "The same message with elements of its own, to be kept for long."},
+                         {}};
 
 PyType_Slot slots[] = {
     {Py_tp_dealloc, reinterpret_cast<void*>(end_message)},
     {Py_tp_getset, fields},
     {Py_tp_methods, methods},
-    {Py_tp_repr, reinterpret_cast<void*>(describe)},
+    {Py_tp_repr, reinterpret_cast<void*>(guarded<describe>)},
     {Py_tp_doc, const_cast<char*>("A message: a header, and a matrix of numbers that nobody "
                                   "changes any more.")},
     {0, nullptr}};
@@ -254,10 +253,11 @@ PyType_Spec spec = {"hypercolumn.Message", sizeof(PyMessage), 0,
 PyObject* wrap(hc::Message message, const std::shared_ptr<Keeper>& keeper) {
   const bool is_lent = keeper != nullptr && hc::is_lent(message);
   if (is_lent && keeper->kept.size() >= Keeper::kMostKept) {
-    if (!keeper->told && !tell_kept(*keeper)) return nullptr;
+    if (!keeper->has_warned && !warn_kept(*keeper)) return nullptr;
     message = with_own_elements(message);
     return wrap(std::move(message), nullptr);
   }
+  if (is_lent) keeper->kept.reserve(Keeper::kMostKept);
   auto* self = PyObject_New(PyMessage, message_type);
   if (self == nullptr) return nullptr;
   new (&self->message) hc::Message(std::move(message));

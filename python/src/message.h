@@ -21,7 +21,7 @@ struct Keeper {
   std::string name;                  ///< of the input, or the stream
   PyObject* handler = nullptr;       ///< borrowed; null: a stream
   std::vector<PyObject*> kept = {};  ///< messages that live and are lent by a publisher; borrowed
-  bool told = false;
+  bool has_warned = false;
 };
 
 /// A Python message of its own, with the GIL. Null when Python has raised.

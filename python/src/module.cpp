@@ -8,8 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include <frames/module_frames.h>
-
 #include "kind.h"
 #include "message.h"
 #include "output.h"
@@ -28,10 +26,30 @@ struct PyInput {
 
 /// A parameter of any type, as Python sees it.
 struct PyParameter {
+  const Program* program;
   std::shared_ptr<const hc::ParameterState> state;
 
   [[nodiscard]] py::object value() const {
+    program->check_thread();  // its loop sets the value without the GIL
     return std::visit([](const auto& each) -> py::object { return py::cast(each); }, state->value);
+  }
+};
+
+/// A timer, of the module that it is of.
+struct PyTimeout {
+  const Program* program;
+  hc::Timeout timeout;
+
+  void restart(std::optional<double> seconds) {
+    program->check_thread();
+    if (seconds)
+      timeout.restart(hc::duration(*seconds));
+    else
+      timeout.restart();
+  }
+  void stop() {
+    program->check_thread();
+    timeout.stop();
   }
 };
 
@@ -66,7 +84,7 @@ struct Handler {
 
 void on(Program& program, const PyInput& input, const py::object& function) {
   const Handler handler(program, function, {input});
-  program.module.on(input.input, [handler](hc::Message message) {
+  program.module().on(input.input, [handler](hc::Message message) {
     handler(std::make_index_sequence<1>(), std::move(message));
   });
 }
@@ -75,7 +93,7 @@ template <std::size_t... kIndex>
 void on_each(std::index_sequence<kIndex...> indices, Program& program,
              const std::vector<PyInput>& inputs, const py::object& function) {
   const Handler handler(program, function, inputs);
-  program.module.on(
+  program.module().on(
       hc::together(inputs[kIndex].input...),
       [handler, indices](const auto&... messages) { handler(indices, hc::Message(messages)...); });
 }
@@ -101,20 +119,20 @@ std::function<void()> action(Program& program, const py::object& function) {
 
 PyInput add_input(Program& program, const std::string& name, const Kind& kind,
                   const std::string& doc) {
-  return {name, program.module.input(name, hc::AnyKind{kind.types}, doc)};
+  return {name, program.module().input(name, hc::AnyKind{kind.types}, doc)};
 }
 
 py::object add_output(const py::object& self, const std::string& name, const Kind& kind,
                       const std::string& doc) {
   auto& program = self.cast<Program&>();
-  program.module.output(name, hc::AnyKind{{kind.only("an output")}}, doc);
-  return make_output(program, program.module.outputs().back(), self);
+  program.module().output(name, hc::AnyKind{{kind.only("an output")}}, doc);
+  return make_output(program, program.module().outputs().back(), self);
 }
 
 PyParameter add_parameter(Program& program, const std::string& name, const py::object& initial,
                           const std::string& unit, const std::string& doc,
                           const hc::ParameterOptions& options) {
-  auto& module = program.module;
+  auto& module = program.module();
   if (py::isinstance<py::bool_>(initial))
     module.parameter(name, initial.cast<bool>(), unit, doc, options);
   else if (py::isinstance<py::int_>(initial))
@@ -123,7 +141,7 @@ PyParameter add_parameter(Program& program, const std::string& name, const py::o
     module.parameter(name, initial.cast<double>(), unit, doc, options);
   else
     module.parameter(name, initial.cast<std::string>(), unit, doc, options);
-  return {module.parameters().back()};
+  return {&program, module.parameters().back()};
 }
 
 hc::ParameterOptions make_options(std::optional<double> min, std::optional<double> max,
@@ -140,7 +158,7 @@ hc::ParameterOptions make_options(std::optional<double> min, std::optional<doubl
 }
 
 void every(Program& program, const py::object& period, const py::object& function) {
-  auto& module = program.module;
+  auto& module = program.module();
   if (py::isinstance<PyParameter>(period)) {
     const auto& state = period.cast<const PyParameter&>().state;
     if (!std::holds_alternative<double>(state->value))
@@ -152,7 +170,7 @@ void every(Program& program, const py::object& period, const py::object& functio
 }
 
 void generate(Program& program, const py::object& function) {
-  program.module.generate([&program, held = hold(function)] {
+  program.module().generate([&program, held = hold(function)] {
     const Program::Inside inside(program);
     return program.call(held.get()).ptr() != Py_False;
   });
@@ -175,38 +193,36 @@ hc::frames::Frame frame_of(const py::object& frame) {
   return frame.cast<std::int32_t>();
 }
 
-/// The frames of a module's graph, in Python.
+/// The frames of a module's graph, in Python. The module owns them.
 class Frames {
  public:
-  Frames(Program& program) : program_(program), frames_(program.module) {}
+  Frames(Program& program) : program_(program) { program.frames(); }
 
   py::object lookup(const py::object& target, const py::object& source, std::int64_t time) {
-    return array_of(value_or_raise(frames_.lookup(frame_of(target), frame_of(source), time)));
+    return array_of(
+        value_or_raise(program_.frames().lookup(frame_of(target), frame_of(source), time)));
   }
   py::object nearest(const py::object& target, const py::object& source, std::int64_t time) {
-    return array_of(frames_.nearest(frame_of(target), frame_of(source), time));
+    return array_of(program_.frames().nearest(frame_of(target), frame_of(source), time));
   }
   void when_known(const py::object& target, const py::object& source, std::int64_t time,
                   const py::object& function) {
-    auto handler = [this, held = hold(function)](const hc::Result<Eigen::Isometry3d>& T) {
-      const Program::Inside inside(program_);
+    auto handler = [&program = program_,
+                    held = hold(function)](const hc::Result<Eigen::Isometry3d>& T) {
+      const Program::Inside inside(program);
       const py::object pose = T ? array_of(*T) : py::none();
-      program_.call(held.get(), pose.ptr());
+      program.call(held.get(), pose.ptr());
     };
     const auto to = frame_of(target), from = frame_of(source);
-    if (!program_.work([&] { frames_.when_known(to, from, time, handler); }))
-      throw py::error_already_set();
+    program_.work("when_known()", [&] { program_.frames().when_known(to, from, time, handler); });
   }
 
  private:
   Program& program_;
-  hc::ModuleFrames frames_;
 };
 
 void keep_rate(Program& program, double rate) {
-  if (!program.is_running())
-    raise({hc::Code::Invalid, "keep_rate() is for the handlers of a module that runs"});
-  if (!program.work([&] { program.module.keep_rate(rate); })) throw py::error_already_set();
+  program.work("keep_rate()", [&] { program.module().keep_rate(rate); });
 }
 
 void add_ports(py::module_& extension) {
@@ -216,19 +232,11 @@ void add_ports(py::module_& extension) {
       .def_property_readonly("value", &PyParameter::value, "What it is now.")
       .def_property_readonly(
           "name", [](const PyParameter& each) { return each.state->name; }, "Its name.");
-  py::class_<hc::Timeout>(extension, "Timeout",
-                          "A timer that fires once each time it is started: Module.after().")
-      .def(
-          "restart",
-          [](hc::Timeout& timeout, std::optional<double> seconds) {
-            if (seconds)
-              timeout.restart(hc::duration(*seconds));
-            else
-              timeout.restart();
-          },
-          py::arg("seconds") = py::none(),
-          "Has it fire when its time, or another one, has passed from now on.")
-      .def("stop", &hc::Timeout::stop, "Has it not fire.");
+  py::class_<PyTimeout>(extension, "Timeout",
+                        "A timer that fires once each time it is started: Module.after().")
+      .def("restart", &PyTimeout::restart, py::arg("seconds") = py::none(),
+           "Has it fire when its time, or another one, has passed from now on.")
+      .def("stop", &PyTimeout::stop, "Has it not fire.");
   py::class_<hc::ParameterOptions>(extension, "ParameterOptions").def(py::init(&make_options));
   py::class_<Frames>(extension, "Frames",
                      "The frames of the module's graph: where its eyes, its head and all else are.")
@@ -252,62 +260,65 @@ void add_modules(py::module_& extension) {
       .def(py::init<std::string, std::string>())
       .def("_input", add_input)
       .def("_output", add_output)
-      .def("_parameter", add_parameter)
-      .def("_actor", [](Self& self, const PyInput& input) { self.module.actor(input.input); })
+      .def("_parameter", add_parameter, py::keep_alive<0, 1>())
+      .def("_actor", [](Self& self, const PyInput& input) { self.module().actor(input.input); })
       .def("_on", on)
       .def("_on_together", on_together<>)
       .def("_every", every)
-      .def("_after",
-           [](Self& self, double seconds, const py::object& function) {
-             return self.module.after(hc::duration(seconds), action(self, function));
-           })
+      .def(
+          "_after",
+          [](Self& self, double seconds, const py::object& function) {
+            return PyTimeout{&self,
+                             self.module().after(hc::duration(seconds), action(self, function))};
+          },
+          py::keep_alive<0, 1>())
       .def("_generate", generate)
       .def("_on_start",
            [](Self& self, const py::object& function) {
-             self.module.on_start(action(self, function));
+             self.module().on_start(action(self, function));
            })
       .def("_on_end",
            [](Self& self, const py::object& function) {
-             self.module.on_end(action(self, function));
+             self.module().on_end(action(self, function));
            })
       .def("_run", &Program::run)
       .def("keep_rate", keep_rate, py::arg("rate"),
            "For generators: waits until the next period of a rate begins [Hz].")
       .def(
-          "keep_running", [](Self& self) { self.module.keep_running(); },
+          "keep_running", [](Self& self) { self.module().keep_running(); },
           "Has the module run until it is stopped, though its inputs have ended.")
       .def(
-          "background", [](Self& self) { self.module.background(); },
+          "background", [](Self& self) { self.module().background(); },
           "Has the process yield the processor to closed loops: for what is in no hurry.")
       .def(
-          "log", [](const Self& self, const std::string& line) { self.module.log(line); },
-          py::arg("line"), "Writes a line to standard error, with the module's name before it.")
+          "log", [](const Self& self, const std::string& line) { self.log(line); }, py::arg("line"),
+          "Writes a line to standard error, with the module's name before it.")
       .def(
           "log_once",
           [](Self& self, const std::string& kind, const std::string& line) {
-            self.module.log_once(kind, line);
+            self.module().log_once(kind, line);
           },
           py::arg("kind"), py::arg("line"),
           "Logs the first problem of a kind and counts the others; the counts are logged at the "
           "end.")
       .def(
-          "now", [](const Self& self) { return self.module.now(); },
+          "now", [](Self& self) { return self.module().now(); },
           "The time for messages that begin here [ns since the Unix epoch]: the machine's, or "
           "with --clock messages that of the messages.")
       .def(
           "seconds_since",
-          [](const Self& self, std::int64_t time) { return self.module.seconds_since(time); },
+          [](Self& self, std::int64_t time) { return self.module().seconds_since(time); },
           py::arg("time"), "Seconds from a time of a message to now().")
       .def_property_readonly(
-          "focus", [](const Self& self) { return self.module.focus(); },
+          "focus", [](Self& self) { return self.module().focus(); },
           "Number of the system mode in focus; 0: none.")
       .def_property_readonly(
-          "has_focus", [](const Self& self) { return self.module.has_focus(); },
+          "has_focus", [](Self& self) { return self.module().has_focus(); },
           "Whether the module's mode has the focus.")
       .def_property_readonly(
-          "name", [](const Self& self) { return self.module.name(); }, "Its name.")
+          "name", [](const Self& self) { return self.name(); }, "Its name.")
       .def_property_readonly(
-          "instance", [](const Self& self) { return self.module.instance(); },
+          "instance", [](Self& self) { return self.module().instance(); },
           "Its name in the graph.");
 }
 

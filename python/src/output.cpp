@@ -34,6 +34,7 @@ PyOutput& output_of(PyObject* self) {
 
 /// A message that is being made: bytes that are still ours, so they may be written.
 hc::Message make_message(const PyOutput& self, std::int32_t height, std::int32_t width) {
+  self.program->check_thread();
   hc::Header header;
   header.info = self.state->type().info;
   header.height = height;
@@ -180,6 +181,7 @@ hc::Message message_of(const PyOutput& self, PyObject* object) {
 
 /// The fields of the header that a sender may give.
 struct Fields {
+  const char* method;  // to which they are given
   PyObject *time = nullptr, *dst = nullptr, *mode = nullptr, *coord = nullptr;
 
   void take(PyObject* name, PyObject* value) {
@@ -189,7 +191,7 @@ struct Fields {
         *field = value;
         return;
       }
-    throw py::type_error("send() has time, dst, mode and coord, not " +
+    throw py::type_error(std::string(method) + " has time, dst, mode and coord, not " +
                          py::str(name).cast<std::string>());
   }
   void set(hc::Header& header) const {
@@ -208,26 +210,19 @@ void send_message(const PyOutput& self, hc::Message message) {
     raise({error.code, self.state->name + ": " + error.detail});
   }
   raise_if_failed(hc::check(header));
-  const bool sent =
-      self.program->work([&] { hc::internal::send(*self.state, std::move(message)); });
-  if (!sent) throw py::error_already_set();
+  self.program->work("send()", [&] { hc::internal::send(*self.state, std::move(message)); });
 }
 
 PyObject* send(PyObject* object, PyObject* const* arguments, Py_ssize_t count, PyObject* names) {
-  try {
-    if (count != 1) throw py::type_error("send() takes one message, array, or number");
-    Fields fields;
-    for (Py_ssize_t i = 0; names != nullptr && i < PyTuple_GET_SIZE(names); ++i)
-      fields.take(PyTuple_GET_ITEM(names, i), arguments[count + i]);
-    auto& self = output_of(object);
-    hc::Message message = message_of(self, arguments[0]);
-    fields.set(message.header);
-    send_message(self, std::move(message));
-    Py_RETURN_NONE;
-  } catch (...) {
-    set_current_exception();
-    return nullptr;
-  }
+  if (count != 1) throw py::type_error("send() takes one message, array, or number");
+  Fields fields{"send()"};
+  for (Py_ssize_t i = 0; names != nullptr && i < PyTuple_GET_SIZE(names); ++i)
+    fields.take(PyTuple_GET_ITEM(names, i), arguments[count + i]);
+  auto& self = output_of(object);
+  hc::Message message = message_of(self, arguments[0]);
+  fields.set(message.header);
+  send_message(self, std::move(message));
+  Py_RETURN_NONE;
 }
 
 /// A message that is written in place: a context that gives its array, and sends it at its end.
@@ -267,7 +262,7 @@ Loan loan(const py::object& self, std::optional<std::int32_t> height,
   const auto& type = output.state->type();
   hc::Message message =
       make_message(output, height.value_or(type.height), width.value_or(type.width));
-  Fields fields;
+  Fields fields{"loan()"};
   for (const auto& [name, value] : given) fields.take(name.ptr(), value.ptr());
   fields.set(message.header);
   return {self, std::move(message)};
@@ -282,6 +277,7 @@ void end_output(PyObject* self) {
 }
 
 PyObject* get_linked(PyObject* self, void*) {
+  output_of(self).program->check_thread();
   const bool linked = hc::Output<hc::TableKind<double>>(output_of(self).state).linked();
   return PyBool_FromLong(static_cast<long>(linked));
 }
@@ -296,10 +292,12 @@ constexpr const char* kLoanDoc =
     "an exception in it drops the message.\n\n"
     "    with output.loan(600, 800) as pixels:\n"
     "        pixels[:] = 0\n\n"
-    "time, dst, mode and coord are as of send(). The array is read-only afterwards.";
+    "time, dst, mode and coord are as of send(). The array is read-only afterwards; a slice of it "
+    "that\n"
+    "was taken in the with is not, and must not be written any more, as readers have it then.";
 
 PyMethodDef methods[] = {
-    {"send", reinterpret_cast<PyCFunction>(reinterpret_cast<void*>(send)),
+    {"send", reinterpret_cast<PyCFunction>(reinterpret_cast<void*>(guarded<send>)),
      METH_FASTCALL | METH_KEYWORDS,
      "send(message, *, time=…, dst=…, mode=…, coord=…)\n\n"
      "Sends a number, numbers row by row, a text, an array of shape (height, width, components) "
@@ -309,8 +307,8 @@ PyMethodDef methods[] = {
     {}};
 
 PyGetSetDef fields[] = {
-    {"linked", get_linked, nullptr, "Whether the output has a reader.", nullptr},
-    {"name", get_name, nullptr, "Its name.", nullptr},
+    {"linked", guarded<get_linked>, nullptr, "Whether the output has a reader.", nullptr},
+    {"name", guarded<get_name>, nullptr, "Its name.", nullptr},
     {}};
 
 PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(end_output)},

@@ -36,7 +36,7 @@ int Program::run(const std::vector<std::string>& words) {
   thread_state_ = PyEval_SaveThread();
   std::exception_ptr thrown;
   try {
-    status = module.run(static_cast<int>(copies.size()), pointers.data());
+    status = module_.run(static_cast<int>(copies.size()), pointers.data());
   } catch (...) {
     thrown = std::current_exception();
   }
@@ -74,22 +74,21 @@ void Program::end_by_error() {
   throw hc::ModuleError(line.empty() ? name : name + ": " + line);
 }
 
-bool Program::refuse_thread() {
-  set_error(hc::Error{hc::Code::Invalid,
-                      "a module is used on the thread that runs it; let another one hand over what "
-                      "it has, and send that from a handler, such as of every()"});
-  return false;
+void Program::refuse_thread() {
+  raise({hc::Code::Invalid,
+         "a module, its ports and parameters are used on the thread that runs it; let another one "
+         "hand over what it has, and use that in a handler, such as of every()"});
 }
 
 /// Raises the failure, and keeps what ends the module cleanly: it comes out in end_by_error().
-bool Program::raise_failure() {
+void Program::raise_failure() {
   try {
     std::rethrow_exception(failure_);
   } catch (...) {
     set_current_exception();
   }
   if (PyErr_ExceptionMatches(stopped_type()) == 0) failure_ = nullptr;
-  return false;
+  throw py::error_already_set();
 }
 
 }  // namespace python

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include <frames/module_frames.h>
 #include <hc/module/module.h>
 
 #include "python.h"
@@ -22,15 +23,30 @@ Function hold(const py::object& function);
 
 class Program {
  public:
-  Program(std::string name, std::string summary) : module(std::move(name), std::move(summary)) {}
+  Program(std::string name, std::string summary) : module_(std::move(name), std::move(summary)) {}
 
-  hc::Module module;
+  /// Of the thread that runs the module alone, while it runs; raised on another one.
+  void check_thread() const {
+    if (is_running_ && std::this_thread::get_id() != thread_) refuse_thread();
+  }
+  /// The module, where check_thread() lets it be used.
+  hc::Module& module() {
+    check_thread();
+    return module_;
+  }
+  /// The frames of its graph, declared by the first call.
+  hc::ModuleFrames& frames() {
+    auto& checked = module();
+    if (!frames_) frames_.emplace(checked);
+    return *frames_;
+  }
+  /// Its name in the graph and a line, on any thread.
+  void log(const std::string& line) const { module_.log(line); }
+  [[nodiscard]] const std::string& name() const { return module_.name(); }
 
   /// Runs the module; the GIL is free meanwhile but for its handlers. Raises what a handler has
   /// raised to end the interpreter.
   int run(const std::vector<std::string>& words);
-
-  [[nodiscard]] bool is_running() const { return is_running_; }
 
   /// Calls a handler from the loop, with the GIL. A handler that raises ends the module: by the
   /// text of a hypercolumn.Error; or by name and text of another exception, whose traceback goes to
@@ -61,11 +77,13 @@ class Program {
     Program& program_;
   };
 
-  /// Does, without the GIL, what a handler asks of the module and may wait, such as sending; false
-  /// when Python has raised. Of the thread that runs the module alone.
+  /// Does, without the GIL, what a handler asks of the module and may wait, such as sending. What
+  /// it throws is raised; so is a use outside of handlers. @param name  of what is asked.
   template <typename Work>
-  bool work(const Work& work) {
-    if (is_running_ && std::this_thread::get_id() != thread_) return refuse_thread();
+  void work(const char* name, const Work& work) {
+    check_thread();
+    if (!is_running_)
+      raise({hc::Code::Invalid, std::string(name) + " is for the handlers of a module that runs"});
     PyThreadState* outer = PyEval_SaveThread();
     std::swap(thread_state_, outer);
     try {
@@ -75,14 +93,16 @@ class Program {
     }
     std::swap(thread_state_, outer);
     PyEval_RestoreThread(outer);
-    return failure_ == nullptr || raise_failure();
+    if (failure_ != nullptr) raise_failure();
   }
 
  private:
-  static bool refuse_thread();
-  bool raise_failure();
+  [[noreturn]] static void refuse_thread();
+  [[noreturn]] void raise_failure();
 
-  PyThreadState* thread_state_ = nullptr;  // of the thread that runs, while it has not the GIL
+  hc::Module module_;
+  std::optional<hc::ModuleFrames> frames_;  // which the module's handlers use: as long as it
+  PyThreadState* thread_state_ = nullptr;   // of the thread that runs, while it has not the GIL
   std::thread::id thread_;
   bool is_running_ = false;
   std::exception_ptr failure_;  // went through Python, and ends the module where it comes out

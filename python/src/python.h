@@ -39,7 +39,24 @@ inline void raise_if_failed(const hc::Status& status) {
 
 /// Has Python raise the exception that is being handled in C++. Those of a module that is to stop
 /// become hypercolumn.Stopped, and are kept by their module (see Program).
-void set_current_exception();
+void set_current_exception() noexcept;
+
+/// A function that raises in Python what it throws in C++, as Python calls it.
+template <auto kFunction>
+struct Guard;
+template <typename... Arguments, PyObject* (*kFunction)(Arguments...)>
+struct Guard<kFunction> {
+  static PyObject* call(Arguments... arguments) noexcept {
+    try {
+      return kFunction(arguments...);
+    } catch (...) {
+      set_current_exception();
+      return nullptr;
+    }
+  }
+};
+template <auto kFunction>
+constexpr auto guarded = Guard<kFunction>::call;
 
 /// hypercolumn.Error and hypercolumn.Stopped, from hypercolumn/errors.py.
 PyObject* error_type();

@@ -120,14 +120,7 @@ class Stream {
 /// The next message for a loop, without pybind11's way to a method, which takes as long as the
 /// rest.
 PyObject* next(PyObject* self) {
-  try {
-    return py::cast<Stream&>(py::handle(self)).take(std::nullopt).release().ptr();
-  } catch (const py::stop_iteration&) {
-    return nullptr;
-  } catch (...) {
-    set_current_exception();
-    return nullptr;
-  }
+  return py::cast<Stream&>(py::handle(self)).take(std::nullopt).release().ptr();
 }
 
 std::vector<std::string> ask(const hc::RunningGraph& graph,
@@ -169,7 +162,7 @@ void add_streams(py::module_& extension) {
       .def("close", &Stream::close, "Ends the link.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](Stream& self, const py::args&) { self.close(); });
-  reinterpret_cast<PyTypeObject*>(stream.ptr())->tp_iternext = next;
+  reinterpret_cast<PyTypeObject*>(stream.ptr())->tp_iternext = guarded<next>;
   py::class_<hc::RunningGraph>(extension, "RunningGraph")
       .def_readonly("name", &hc::RunningGraph::name)
       .def_readonly("process", &hc::RunningGraph::process)

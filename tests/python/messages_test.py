@@ -68,6 +68,26 @@ class Fields(Package):
         with self.assertRaisesRegex(hc.Error, "no text: the message is a table"):
             table.text
 
+    def test_without_memory_it_raises(self):
+        self.write("x.mtp", b"1 1 0 0 8 0 60100 0 0 32000000 2\n" + b"x" * (64 * 10**6) + b"\n")
+        self.write(
+            "program.py",
+            """
+import resource
+import hypercolumn as hc
+(message,) = hc.read("x.mtp")
+resident = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (resident + (16 << 20), -1))
+for use in (message.copy, lambda: message.text, lambda: message.numbers):
+    try:
+        use()
+    except (MemoryError, hc.Error) as error:
+        print(type(error).__name__)
+""",
+        )
+        out = self.shell("python3 program.py")
+        self.assertEqual(out, "MemoryError\nMemoryError\nMemoryError\n")
+
     def test_what_is_compressed_is_expanded(self):
         self.shell("hc send --encoding zstd 1 2 3 >z.mtp")
         (message,) = hc.read(self.path("z.mtp"))

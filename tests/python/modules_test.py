@@ -6,6 +6,8 @@ import pathlib
 import signal
 import unittest
 
+import numpy
+
 from package import Package, hc
 
 TWIN = """
@@ -63,6 +65,7 @@ class Declared(Modules):
 
     def test_declarations_that_make_no_sense_are_errors(self):
         module = hc.Module("m", "a module")
+        sender = module.output("sender", hc.table(), "numbers")
         for kind, text in (
             (lambda: hc.table(100), "1 … 99 components"),
             (lambda: hc.sound(1, "u8").in_("nowhere"), 'no coordinate system "nowhere"'),
@@ -71,6 +74,7 @@ class Declared(Modules):
             (lambda: module.output("o", hc.anything(), "all"), "an output has one kind"),
             (lambda: module.every(0)(print), "a period is above 0 s"),
             (lambda: module.keep_rate(1), "keep_rate"),
+            (lambda: sender.send(1), "send() is for the handlers of a module that runs"),
             (lambda: hc.together(module.input("x", hc.table(), "x")), "two inputs or more"),
         ):
             with self.subTest(text), self.assertRaises(hc.Error) as caught:
@@ -247,20 +251,82 @@ module.run()
         self.assertEqual(out, "1 1 0 0 8 55 120190 3 0 1 1\n1\n")
         self.assertEqual(self.err, "hello\n")
 
-    def test_another_thread_cannot_send(self):
+    def test_another_thread_cannot_use_it(self):
         body = """
-    import threading
-    def other():
-        try:
-            out.send(1)
-        except hc.Error as error:
-            module.log(str(error))
-    thread = threading.Thread(target=other)
-    thread.start()
-    thread.join()
+    from threading import Thread
+    for use in uses:
+        def other():
+            try:
+                use()
+                module.log("done")
+            except hc.Error as error:
+                module.log(error.code + " " + str(error))
+        thread = Thread(target=other)
+        thread.start()
+        thread.join()
 """
-        self.assertEqual(self.echo("table()", body), "")
-        self.assertIn("on the thread that runs it", self.err)
+        uses = """
+gain = module.parameter("gain", 1.0, "", "a number")
+frames = module.frames()
+timer = module.after(9)(print)
+uses = [
+    lambda: out.send(1),
+    lambda: out.loan(1, 1),
+    lambda: out.linked,
+    lambda: gain.value,
+    lambda: frames.lookup("head", "robot", 5),
+    lambda: frames.nearest("head", "robot", 5),
+    lambda: frames.when_known("head", "robot", 5, print),
+    lambda: timer.restart(1),
+    timer.stop,
+    lambda: module.keep_rate(1),
+    module.keep_running,
+    lambda: module.focus,
+    lambda: module.has_focus,
+    lambda: module.log_once("kind", "line"),
+    module.now,
+    lambda: module.seconds_since(5),
+    lambda: module.every(1)(print),
+    lambda: module.input("more", hc.table(), "more"),
+]
+
+@module.on(numbers)
+"""
+        text = (ECHO % ("table()", body)).replace("\n@module.on(numbers)\n", uses)
+        self.assertEqual(self.run_module(text, "--in numbers=/dev/stdin", IN), "")
+        lines = self.err.splitlines()
+        self.assertEqual(len(lines), 18)
+        for line in lines:
+            self.assertIn(
+                "Invalid: a module, its ports and parameters are used on the thread", line
+            )
+
+    def test_a_module_owns_what_is_made_of_it(self):
+        self.environment["MALLOC_PERTURB_"] = "85"  # freed memory holds other bytes
+        text = """
+import gc
+import hypercolumn as hc
+gc.collect()
+timer = hc.Module("gone", "Is gone.").after(1)(print)
+rate = hc.Module("gone", "Is gone, too.").parameter("rate", 2.0, "Hz", "a rate")
+gc.collect()
+timer.restart()
+timer.stop()
+
+module = hc.Module("frames", "Has dropped its frames.")
+module.frames()
+gc.collect()
+module.after(0.1)(lambda: module.log(str(rate.value)) or exit(0))
+module.run()
+"""
+        uri = "unix-listen:@" + self.link()[4:]
+        self.run_module(text, "--in frames=" + uri)
+        self.assertEqual(self.err, "frames: 2.0\n")
+
+    def test_the_frames_of_a_module_are_the_same(self):
+        module = hc.Module("m", "a module")
+        module.frames()
+        self.assertEqual(module.frames().lookup("head", "head", 5).tolist(), numpy.eye(4).tolist())
 
 
 class Loop(Modules):
