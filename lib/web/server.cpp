@@ -84,7 +84,7 @@ std::optional<Request> request_of(const http::request<http::empty_body, Fields>&
 struct Shared {
   Site* site = nullptr;
   int connections = 0;
-  asio::thread_pool files{1};  // makes those that take long
+  asio::thread_pool* files = nullptr;  // where those that take long are made
 };
 
 /// Counts a connection while it lives.
@@ -97,7 +97,7 @@ class Counted {
   Counted& operator=(const Counted&) = delete;
   ~Counted() { --shared_->connections; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
-  [[nodiscard]] asio::thread_pool& files() const { return shared_->files; }
+  [[nodiscard]] asio::thread_pool& files() const { return *shared_->files; }
 
  private:
   std::shared_ptr<Shared> shared_;
@@ -389,8 +389,16 @@ class BeastServer final : public Server {
 
   void run(Site& site) override {
     shared_->site = &site;
+    shared_->files = &files_;
     accept();
-    context_.run();
+    while (true) {
+      try {
+        context_.run();
+        return;
+      } catch (const std::exception& error) {  // of a Site; the others are served on
+        log_(Severity::Error, std::string("server: ") + error.what());
+      }
+    }
   }
   void stop() override {
     asio::post(context_, [this] {
@@ -420,7 +428,7 @@ class BeastServer final : public Server {
     acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error) {
         // No descriptors are left, as a rule: the next attempt is not to be at once.
-        log_(Severity::Warning, "page: accept: " + error.message());
+        log_(Severity::Warning, "server: accept: " + error.message());
         auto timer = std::make_shared<asio::steady_timer>(context_, std::chrono::seconds(1));
         return timer->async_wait([this, timer](beast::error_code) { accept(); });
       }
@@ -443,6 +451,7 @@ class BeastServer final : public Server {
   std::optional<asio::ssl::context> secure_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
+  asio::thread_pool files_{1};  // last: what it makes is posted to the above
 };
 
 }  // namespace

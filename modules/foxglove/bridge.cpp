@@ -8,13 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 namespace web = hc::web;
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* kProtocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};  // best first
 constexpr std::int32_t kFailed = 2;  // level of an error
@@ -139,8 +135,8 @@ void Bridge::open(std::shared_ptr<web::WebSocket> socket, const web::Request& re
   auto& events = *socket;
   auto viewer = std::make_shared<Viewer>(std::move(socket), right.value_or(web::Right::View));
   viewers_.push_back(viewer);
-  events.on_text = [this, weak = std::weak_ptr(viewer)](std::string_view text) {
-    if (const auto still = weak.lock()) take_text(*still, text);
+  events.on_text = [this, weak = std::weak_ptr(viewer)](std::string_view line) {
+    if (const auto still = weak.lock()) take_text(still, line);
   };
   events.on_binary = [weak = std::weak_ptr(viewer)](std::string_view) {
     if (const auto still = weak.lock())
@@ -160,11 +156,9 @@ void Bridge::open(std::shared_ptr<web::WebSocket> socket, const web::Request& re
   viewer->say(Catalog::advertise(channels));
 }
 
-void Bridge::take_text(Viewer& viewer, std::string_view text) {
-  const auto found =
-      std::ranges::find_if(viewers_, [&](const auto& each) { return each.get() == &viewer; });
-  const auto kept = *found;  // it may be disconnected meanwhile
-  const Json request = Json::parse(text, nullptr, false);
+void Bridge::take_text(const std::shared_ptr<Viewer>& who, std::string_view line) {
+  Viewer& viewer = *who;
+  const Json request = Json::parse(line, nullptr, false);
   if (!request.is_object()) return viewer.say_status(kFailed, "what was sent is no JSON object");
   const std::string op = string_of(request, "op");
   if (op == "subscribe") {
@@ -174,7 +168,7 @@ void Bridge::take_text(Viewer& viewer, std::string_view text) {
   } else if (op == "getParameters") {
     get_parameters(viewer, request);
   } else if (op == "setParameters") {
-    set_parameters(kept, request);
+    set_parameters(who, request);
   } else if (op == "subscribeParameterUpdates" || op == "unsubscribeParameterUpdates") {
     const auto names = strings_of(request, "parameterNames");
     const bool is_wanted = op.starts_with("s");
@@ -190,7 +184,7 @@ void Bridge::take_text(Viewer& viewer, std::string_view text) {
     viewer.graph = op.starts_with("s");
     if (viewer.graph) viewer.say(catalog_.connection_graph());
   } else {
-    viewer.say_status(kFailed, "\"" + op.substr(0, 64) + "\" is not done here");
+    viewer.say_status(kFailed, excerpt(Json(op)) + " is not done here");
   }
 }
 
@@ -199,17 +193,16 @@ void Bridge::subscribe(Viewer& viewer, const Json& request) {
     const auto id = number_of(each, "id"), channel = number_of(each, "channelId");
     const auto found = catalog_.channels().find(channel.value_or(0));
     if (!id || found == catalog_.channels().end()) {
-      viewer.say_status(kFailed, "there is no such channel: " + each.dump().substr(0, 100));
+      viewer.say_status(kFailed, "there is no such channel: " + excerpt(each));
       continue;
     }
     if (!viewer.subscribe(*id, found->second)) {
-      viewer.say_status(kFailed, "already subscribed, or too often: " + each.dump().substr(0, 100));
+      viewer.say_status(kFailed, "already subscribed, or too often: " + excerpt(each));
       continue;
     }
-    if (found->second == catalog_.frames()) publish_frames(viewer);
-    auto& publisher = publishers_[*channel];
-    if (publisher || found->second.port.empty()) continue;
-    publisher = std::make_unique<Publisher>(
+    if (found->second == catalog_.frames()) publish_frames();
+    if (found->second.port.empty() || publishers_.contains(*channel)) continue;
+    publishers_[*channel] = std::make_unique<Publisher>(
         options_.graph, found->second, options_.frames,
         [this](std::function<void()> call) { server_.post(std::move(call)); },
         Publisher::Hears{
@@ -229,51 +222,62 @@ void Bridge::unsubscribe(Viewer& viewer, const Json& request) {
 }
 
 void Bridge::get_parameters(Viewer& viewer, const Json& request) {
-  viewer.say(
-      catalog_.parameter_values(strings_of(request, "parameterNames"), string_of(request, "id")));
+  auto names = strings_of(request, "parameterNames");
+  if (names.empty()) names = catalog_.parameter_names();
+  viewer.say(catalog_.parameter_values(names, string_of(request, "id")));
 }
 
 void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request) {
   if (viewer->right() != web::Right::Drive)
     return viewer->say_status(kFailed, "this URL may view, and not change anything");
-  std::vector<std::string> names;
+  std::map<std::string, std::string> values;
   for (const Json& each : list_of(request, "parameters")) {
     const std::string name = each.is_object() ? string_of(each, "name") : std::string();
     if (!catalog_.has_parameter(name) || !each.contains("value")) {
-      viewer->say_status(kFailed, "there is no such parameter: " + each.dump().substr(0, 100));
+      viewer->say_status(kFailed, "there is no such parameter: " + excerpt(each));
       continue;
     }
-    names.push_back(name);
-    const std::string value = text_of(each["value"]);
-    if (value.find('\n') != std::string::npos) {
+    std::string value = text_of(each["value"]);
+    if (value.find('\n') == std::string::npos)
+      values[name] = std::move(value);
+    else
       viewer->say_status(kFailed, name + ": a value is one line");
-      continue;
-    }
+  }
+  // Answered when all are done; what could not be set has its old value then.
+  struct Answer {
+    std::vector<std::string> names;
+    std::map<std::string, std::string> set;
+    std::size_t open = 0;
+  };
+  auto answer = std::make_shared<Answer>();
+  answer->open = values.size();
+  auto reply = [this, answer, weak = std::weak_ptr(viewer), id = string_of(request, "id")] {
+    const auto still = weak.lock();
+    if (still && !id.empty()) still->say(catalog_.parameter_values(answer->names, id, answer->set));
+  };
+  if (values.empty()) return reply();
+  for (const auto& [name, value] : values) {
+    answer->names.push_back(name);
     graph_->command("set " + name + "=" + value,
-                    [weak = std::weak_ptr(viewer), name](const std::vector<std::string>& rows) {
-                      const auto still = weak.lock();
-                      if (still && (rows.empty() || rows.front() != "ok"))
+                    [answer, reply, weak = std::weak_ptr(viewer), name = name,
+                     value = value](const std::vector<std::string>& rows) {
+                      const bool is_set = !rows.empty() && rows.front() == "ok";
+                      if (is_set) answer->set[name] = value;
+                      if (const auto still = weak.lock(); still && !is_set)
                         still->say_status(kFailed, rows.empty() ? name : rows.front());
+                      if (--answer->open == 0) reply();
                     });
   }
-  // The values as they are once that is done; the state brings those that have changed.
-  if (const auto id = string_of(request, "id"); !id.empty())
-    graph_->command(
-        "describe " +
-            (names.empty() ? std::string() : names.front().substr(0, names.front().find('.'))),
-        [this, weak = std::weak_ptr(viewer), names, id](const std::vector<std::string>&) {
-          if (const auto still = weak.lock()) still->say(catalog_.parameter_values(names, id));
-        });
 }
 
 void Bridge::take_graph(const hc::Message& message) {
-  const std::string_view text(reinterpret_cast<const char*>(message.elements.data()),
+  const std::string_view line(reinterpret_cast<const char*>(message.elements.data()),
                               message.elements.size());
-  if (message.header.src == hc::kStateSource) return apply(catalog_.take_state(text));
+  if (message.header.src == hc::kStateSource) return apply(catalog_.take_state(line));
   if (message.header.src != hc::kLogSource) return;
   const std::int64_t time = message.header.time != 0 ? message.header.time : clock_.wall();
   const Channel& log = catalog_.log();
-  publish(log.id, log_payload(encoder_, time, text.substr(0, text.find('\0'))));
+  publish(log.id, log_payload(encoder_, time, line.substr(0, line.find('\0'))));
 }
 
 void Bridge::apply(const Catalog::Changes& changes) {
@@ -300,17 +304,20 @@ void Bridge::publish(std::uint32_t channel, const Payload& payload) {
 
 void Bridge::move(const hc::ros::Joint& joint) {
   joints_[joint.child] = joint;
-  const bool is_wanted = std::ranges::any_of(
-      viewers_, [&](const auto& viewer) { return viewer->is_subscribed(catalog_.frames().id); });
-  if (is_wanted)
+  if (is_subscribed(catalog_.frames().id))
     publish(catalog_.frames().id, {joint.time, bytes_of(encoder_.encode(std::span(&joint, 1)))});
 }
 
-void Bridge::publish_frames(Viewer& viewer) {
+void Bridge::publish_frames() {
+  if (joints_.empty() || !is_subscribed(catalog_.frames().id)) return;
   std::vector<hc::ros::Joint> all;
   for (const auto& [child, joint] : joints_) all.push_back(joint);
-  if (!all.empty())
-    viewer.offer(catalog_.frames().id, {clock_.wall(), bytes_of(encoder_.encode(all))});
+  publish(catalog_.frames().id, {clock_.wall(), bytes_of(encoder_.encode(all))});
+}
+
+bool Bridge::is_subscribed(std::uint32_t channel) const {
+  return std::ranges::any_of(viewers_,
+                             [&](const auto& viewer) { return viewer->is_subscribed(channel); });
 }
 
 void Bridge::remove(const Viewer* viewer) {
@@ -322,16 +329,14 @@ void Bridge::tick() {
   const std::int64_t now = clock_.wall();
   const bool reports = now >= reported_ + kSecond || now < reported_;
   if (reports) reported_ = now;
-  for (const auto& viewer : viewers_) {
-    viewer->say_time(now);
-    if (!reports) continue;
-    viewer->report_dropped();
-    publish_frames(*viewer);
-  }
-  std::erase_if(publishers_, [&](const auto& each) {
-    return std::ranges::none_of(
-        viewers_, [&](const auto& viewer) { return viewer->is_subscribed(each.first); });
-  });
+  for (const auto& viewer : viewers_) viewer->say_time(now);
+  std::erase_if(publishers_, [&](const auto& each) { return !is_subscribed(each.first); });
+  if (!reports) return;
+  publish_frames();
+  for (const auto& [channel, publisher] : publishers_)
+    for (const auto dropped = publisher->take_dropped(); const auto& viewer : viewers_)
+      viewer->count_dropped(channel, dropped);
+  for (const auto& viewer : viewers_) viewer->report_dropped();
 }
 
 void Bridge::close() {

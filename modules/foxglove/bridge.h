@@ -16,9 +16,9 @@
 #include <web/access.h>
 #include <web/graph_client.h>
 #include <web/server.h>
-#include <nlohmann/json_fwd.hpp>
 
 #include "catalog.h"
+#include "json.h"
 #include "publisher.h"
 #include "viewer.h"
 
@@ -44,16 +44,17 @@ class Bridge final : public hc::web::Site {
   void close();
 
  private:
-  void take_text(Viewer& viewer, std::string_view text);
-  void subscribe(Viewer& viewer, const nlohmann::json& request);
-  void unsubscribe(Viewer& viewer, const nlohmann::json& request);
-  void get_parameters(Viewer& viewer, const nlohmann::json& request);
-  void set_parameters(const std::shared_ptr<Viewer>& viewer, const nlohmann::json& request);
+  void take_text(const std::shared_ptr<Viewer>& viewer, std::string_view line);
+  void subscribe(Viewer& viewer, const Json& request);
+  void unsubscribe(Viewer& viewer, const Json& request);
+  void get_parameters(Viewer& viewer, const Json& request);
+  void set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request);
 
   void take_graph(const hc::Message& message);
   void apply(const Catalog::Changes& changes);
   void publish(std::uint32_t channel, const Payload& payload);
-  void publish_frames(Viewer& viewer);
+  void publish_frames();
+  [[nodiscard]] bool is_subscribed(std::uint32_t channel) const;
   void remove(const Viewer* viewer);
   void tick();
 

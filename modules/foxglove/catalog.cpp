@@ -9,8 +9,6 @@
 
 namespace {
 
-using Json = nlohmann::json;
-
 std::string topic_of(std::string port) {
   std::ranges::replace(port, '.', '/');
   return "/" + port;
@@ -56,7 +54,6 @@ Catalog::Changes Catalog::take_state(std::string_view state) {
   Changes changes;
   const Json json = Json::parse(state, nullptr, false);
   if (!json.is_object() || !json.contains("modules") || !json.contains("links")) return changes;
-  name_ = string_of(json, "graph");
   std::set<std::string> there;
   for (const Json& each : json["modules"]) {
     const std::string module = string_of(each, "name"), program = string_of(each, "program");
@@ -64,7 +61,7 @@ Catalog::Changes Catalog::take_state(std::string_view state) {
     const auto known = modules_.find(module);
     if (known == modules_.end() || known->second.program != program) {
       if (known != modules_.end()) remove_outputs(module, changes);
-      modules_[module] = {program, {}, false};
+      modules_[module] = {program, {}};
       changes.unknown.push_back(module);
     }
     if (each.contains("parameters")) set_parameters(module, each["parameters"], changes);
@@ -99,7 +96,6 @@ Catalog::Changes Catalog::describe(const std::string& module, std::string_view d
   if (known == modules_.end() || !parsed) return changes;
   remove_outputs(module, changes);
   known->second.description = std::move(*parsed);
-  known->second.is_described = true;
   publish_outputs(module, changes);
   for (const auto& parameter : known->second.description.parameters) {
     auto& state = parameters_[module + "." + parameter.name] = parameter;
@@ -153,41 +149,46 @@ std::string Catalog::advertise(const std::vector<Channel>& channels) {
                     {"schemaEncoding", "ros2msg"},
                     {"schema", schema.text}});
   }
-  return Json{{"op", "advertise"}, {"channels", std::move(list)}}.dump();
+  return text(Json{{"op", "advertise"}, {"channels", std::move(list)}});
 }
 
 std::string Catalog::unadvertise(const std::vector<Channel>& channels) {
   Json list = Json::array();
   for (const auto& channel : channels) list.push_back(channel.id);
-  return Json{{"op", "unadvertise"}, {"channelIds", std::move(list)}}.dump();
+  return text(Json{{"op", "unadvertise"}, {"channelIds", std::move(list)}});
 }
 
 std::string Catalog::connection_graph() const {
-  return Json{{"op", "connectionGraphUpdate"},
-              {"publishedTopics", list_of(published_, "publisherIds")},
-              {"subscribedTopics", list_of(taken_, "subscriberIds")},
-              {"advertisedServices", Json::array()},
-              {"removedTopics", Json::array()},
-              {"removedServices", Json::array()}}
-      .dump();
+  return text(Json{{"op", "connectionGraphUpdate"},
+                   {"publishedTopics", list_of(published_, "publisherIds")},
+                   {"subscribedTopics", list_of(taken_, "subscriberIds")},
+                   {"advertisedServices", Json::array()},
+                   {"removedTopics", Json::array()},
+                   {"removedServices", Json::array()}});
 }
 
-std::string Catalog::parameter_values(const std::vector<std::string>& names,
-                                      const std::string& id) const {
+std::string Catalog::parameter_values(const std::vector<std::string>& names, const std::string& id,
+                                      const std::map<std::string, std::string>& set) const {
   Json list = Json::array();
-  auto add = [&](const std::string& name, const hc::ParameterState& parameter) {
+  for (const auto& name : std::set<std::string>(names.begin(), names.end())) {
+    const auto found = parameters_.find(name);
+    if (found == parameters_.end()) continue;
+    hc::ParameterState parameter = found->second;
+    if (const auto value = set.find(name); value != set.end())
+      static_cast<void>(parameter.set(value->second));
     Json each = {{"name", name}, {"value", value_of(parameter)}};
     const bool is_number = std::holds_alternative<std::int64_t>(parameter.value) ||
                            std::holds_alternative<double>(parameter.value);
     if (is_number) each["type"] = "float64";
     list.push_back(std::move(each));
-  };
-  if (names.empty())
-    for (const auto& [name, parameter] : parameters_) add(name, parameter);
-  for (const auto& name : names)
-    if (const auto found = parameters_.find(name); found != parameters_.end())
-      add(name, found->second);
+  }
   Json values = {{"op", "parameterValues"}, {"parameters", std::move(list)}};
   if (!id.empty()) values["id"] = id;
-  return values.dump();
+  return text(values);
+}
+
+std::vector<std::string> Catalog::parameter_names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, parameter] : parameters_) names.push_back(name);
+  return names;
 }

@@ -12,8 +12,8 @@
 
 #include <hc/base/parameter.h>
 #include <hc/contract/description.h>
-#include <nlohmann/json.hpp>
 
+#include "json.h"
 #include "publisher.h"
 
 class Catalog {
@@ -32,7 +32,6 @@ class Catalog {
   /// Takes in what `--describe` of a module printed; nothing where it is no description.
   Changes describe(const std::string& module, std::string_view description);
 
-  [[nodiscard]] const std::string& graph_name() const { return name_; }
   /// By id.
   [[nodiscard]] const std::map<std::uint32_t, Channel>& channels() const { return channels_; }
 
@@ -41,9 +40,13 @@ class Catalog {
   [[nodiscard]] static std::string unadvertise(const std::vector<Channel>& channels);
   /// {"op":"connectionGraphUpdate",…}, whole.
   [[nodiscard]] std::string connection_graph() const;
-  /// {"op":"parameterValues",…} of those named that there are; all where none is named.
-  [[nodiscard]] std::string parameter_values(const std::vector<std::string>& names,
-                                             const std::string& id) const;
+  /// {"op":"parameterValues",…} of those named that there are, each once.
+  /// @param set  values as text that count instead of those that are known, by name.
+  [[nodiscard]] std::string parameter_values(
+      const std::vector<std::string>& names, const std::string& id,
+      const std::map<std::string, std::string>& set = {}) const;
+  /// The names of all parameters.
+  [[nodiscard]] std::vector<std::string> parameter_names() const;
   /// Whether there is a parameter MODULE.NAME.
   [[nodiscard]] bool has_parameter(const std::string& name) const {
     return parameters_.contains(name);
@@ -58,16 +61,14 @@ class Catalog {
   struct Known {
     std::string program;
     hc::Description description;
-    bool is_described = false;
   };
   using Names = std::map<std::string, std::vector<std::string>>;  // of modules, by topic
 
   void publish_outputs(const std::string& module, Changes& changes);
   void remove_outputs(const std::string& module, Changes& changes);
-  void set_parameters(const std::string& module, const nlohmann::json& values, Changes& changes);
+  void set_parameters(const std::string& module, const Json& values, Changes& changes);
 
   const bool jpeg_;
-  std::string name_;
   std::uint32_t next_ = kFrames + 1;
   std::map<std::uint32_t, Channel> channels_;
   std::map<std::string, Known> modules_;

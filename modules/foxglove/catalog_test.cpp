@@ -4,11 +4,8 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* kState = R"({"graph":"g","modules":[
   {"name":"eyes","program":"camera","parameters":{"rate":"5"}},
@@ -66,7 +63,7 @@ TEST(Catalog, parameters_are_numbers_and_change) {
   Catalog catalog(false);
   catalog.take_state(kState);
   catalog.describe("eyes", camera());
-  auto values = Json::parse(catalog.parameter_values({}, "x"));
+  auto values = Json::parse(catalog.parameter_values(catalog.parameter_names(), "x"));
   EXPECT_EQ(values["id"], "x");
   ASSERT_EQ(values["parameters"].size(), 1u);
   EXPECT_EQ(values["parameters"][0],
@@ -75,6 +72,17 @@ TEST(Catalog, parameters_are_numbers_and_change) {
   other.replace(other.find("\"5\""), 3, "\"7\"");
   EXPECT_EQ(catalog.take_state(other).parameters, (std::vector<std::string>{"eyes.rate"}));
   EXPECT_TRUE(catalog.take_state(other).parameters.empty());
+}
+
+TEST(Catalog, values_that_were_just_set_count) {
+  Catalog catalog(false);
+  catalog.take_state(kState);
+  catalog.describe("eyes", camera());
+  const auto values = Json::parse(
+      catalog.parameter_values({"eyes.rate", "eyes.rate", "eyes.none"}, "", {{"eyes.rate", "8"}}));
+  ASSERT_EQ(values["parameters"].size(), 1u);
+  EXPECT_EQ(values["parameters"][0]["value"], 8.0);
+  EXPECT_EQ(Json::parse(catalog.parameter_values({}, "x"))["parameters"].size(), 0u);
 }
 
 TEST(Catalog, the_graph_says_who_publishes_and_takes) {

@@ -36,7 +36,10 @@ void Publisher::call(std::function<void(const Hears&)> what) const {
 }
 
 void Publisher::take(const hc::Message& message) {
-  if (shared_->waiting >= kMaxWaiting) return;
+  if (shared_->waiting >= kMaxWaiting) {
+    ++shared_->dropped;
+    return;
+  }
   auto bytes = encode(message);
   if (!bytes) {
     // A message that is not as its port says; the same words once.
@@ -46,10 +49,10 @@ void Publisher::take(const hc::Message& message) {
   }
   const std::int64_t time =
       message.header.time != 0 ? message.header.time : hc::SystemClock().wall();
-  ++shared_->waiting;
+  shared_->waiting += (*bytes)->size();
   call([payload = Payload{time, std::move(*bytes)},
         &waiting = shared_->waiting](const Hears& hears) {
-    --waiting;
+    waiting -= payload.bytes->size();
     hears.message(payload);
   });
 }

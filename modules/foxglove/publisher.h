@@ -45,9 +45,12 @@ class Publisher {
   Publisher(hc::RunningGraph graph, Channel channel, std::map<std::int32_t, std::string> frames,
             hc::web::Post post, Hears hears);
 
+  /// How many messages were dropped since the last call, as the server's thread was busy.
+  std::uint64_t take_dropped() { return shared_->dropped.exchange(0); }
+
  private:
-  /// Of what waits for the server's thread; more is dropped. [message]
-  static constexpr int kMaxWaiting = 32;
+  /// What waits for the server's thread at most, but for one message of any size. [byte]
+  static constexpr std::size_t kMaxWaiting = std::size_t{32} << 20;
 
   // On the observer's thread.
   void take(const hc::Message& message);
@@ -58,10 +61,11 @@ class Publisher {
   const hc::web::Post post_;
   hc::ros::Encoder encoder_;
   std::string failed_;  // why the last message could not be encoded
-  /// What the server's thread calls, if it is still there then; and how many calls wait.
+  /// What the server's thread calls, if it is still there then; and what waits for it.
   struct Shared {
     Hears hears;
-    std::atomic<int> waiting{0};
+    std::atomic<std::size_t> waiting{0};  // [byte]
+    std::atomic<std::uint64_t> dropped{0};
   };
   std::shared_ptr<Shared> shared_;
   hc::web::Observer observer_;  // last: its thread uses the above

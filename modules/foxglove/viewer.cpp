@@ -5,11 +5,9 @@
 #include <cstring>
 #include <utility>
 
-#include <nlohmann/json.hpp>
+#include "json.h"
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::size_t kMaxQueued = std::size_t{8} << 20, kMaxMessages = 1024;  // [byte], 1
 constexpr std::size_t kLarge = 65536;     // of these the newest alone waits [byte]
@@ -48,10 +46,10 @@ void Viewer::say_time(std::int64_t time) {
     socket_->send(std::make_shared<const std::string>(), binary(kTime, time));
 }
 
-void Viewer::say_status(int level, const std::string& text, const std::string& id) {
-  Json status = {{"op", "status"}, {"level", level}, {"message", text}};
+void Viewer::say_status(int level, const std::string& words, const std::string& id) {
+  Json status = {{"op", "status"}, {"level", level}, {"message", words}};
   if (!id.empty()) status["id"] = id;
-  say(status.dump());
+  say(text(status));
 }
 
 bool Viewer::subscribe(std::uint32_t subscription, const Channel& channel) {
@@ -80,6 +78,11 @@ void Viewer::forget(std::uint32_t channel) {
     queued_ -= each.payload.bytes->size();
     return true;
   });
+}
+
+void Viewer::count_dropped(std::uint32_t channel, std::uint64_t messages) {
+  const auto found = dropped_.find(channel);
+  if (found != dropped_.end()) found->second.messages += messages;
 }
 
 void Viewer::drop(std::deque<Outgoing>::iterator which) {

@@ -30,7 +30,7 @@ class Viewer {
   void say_time(std::int64_t time);
   /// A warning or an error, level 1 or 2, in the viewer's list of problems; it replaces one of the
   /// same id, where that is given.
-  void say_status(int level, const std::string& text, const std::string& id = {});
+  void say_status(int level, const std::string& words, const std::string& id = {});
 
   /// @returns  false: there is a subscription of that number, or of that channel, or too many.
   bool subscribe(std::uint32_t subscription, const Channel& channel);
@@ -44,6 +44,8 @@ class Viewer {
   /// Sends a message soon, if it subscribes to that channel. What waits is bounded: of a large one
   /// only the newest, and of all the newest 1024 and 8 MiB.
   void offer(std::uint32_t channel, const Payload& payload);
+  /// Counts messages of a channel that were dropped before they were offered.
+  void count_dropped(std::uint32_t channel, std::uint64_t messages);
   /// Says what has been dropped since the last time.
   void report_dropped();
 

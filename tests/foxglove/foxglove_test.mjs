@@ -253,6 +253,10 @@ test("parameters go both ways, and only for who may drive", async () => {
   client.client.getParameters(["blob.min_area"], "again");
   const kept = await until("values", () => client.parameters.find(({ id }) => id === "again"));
   assert.equal(kept.parameters[0].value, 75);
+  // The answer has the new value, and of what there is not nothing.
+  client.client.setParameters([{ name: "blob.min_area", value: 80 }, { name: "a.b", value: 1 }], "now");
+  const now = await until("the answer", () => client.parameters.find(({ id }) => id === "now"));
+  assert.deepEqual(now.parameters, [{ name: "blob.min_area", value: 80, type: "float64" }]);
   await Promise.all([client.close(), other.close()]);
 });
 
@@ -313,6 +317,12 @@ test("what is hostile is answered or cut off, and the others go on", async () =>
   await hostile((socket) => socket.send("{"), /no JSON object/);
   await hostile((socket) => socket.send("[".repeat(60_000)), /no JSON object/);
   await hostile((socket) => socket.send('{"op":7}'), /"" is not done here/);
+  for (let length = 90; length < 104; ++length) // cut in the middle of a letter
+    await hostile((socket) => socket.send(`{"op":"${"x".repeat(length)}ééé"}`), /is not done here/);
+  await hostile(
+    (socket) => socket.send(`{"op":"subscribe","subscriptions":["${"x".repeat(97)}éé"]}`),
+    /no such channel/,
+  );
   await hostile((socket) => socket.send('{"op":"advertise","channels":[]}'), /"advertise" is not/);
   await hostile((socket) => socket.send(Buffer.from([1, 0, 0, 0, 0])), /nothing can be published/);
   for (const subscription of ['{"id":-1,"channelId":3}', '{"id":1,"channelId":4000000000}', "3", "null",
