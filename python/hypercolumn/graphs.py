@@ -2,6 +2,7 @@
 """Graphs that run on this host: attached to, or started."""
 
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -10,14 +11,14 @@ import tempfile
 import threading
 import time
 from types import SimpleNamespace, TracebackType
-from typing import Any, Dict, Iterator, List, Optional, Type, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Type, Union
 
 from hypercolumn import _hypercolumn
 from hypercolumn._hypercolumn import Message, RunningGraph, Stream
 from hypercolumn.errors import Error
 
 _SILENCE = 5.0  # seconds after which a graph that says nothing may be stopped
-_REPORT = 2.0  # seconds within which a module tells a new value
+_REPORT = 2.0  # seconds within which a module reports a new value
 _STATE_LIMIT = 16 << 20  # bytes
 
 
@@ -25,24 +26,41 @@ def _text_of(value: Union[bool, int, float, str]) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+_TYPES: Dict[str, Callable[[str], Any]] = {
+    "bool": lambda text: text == "true",
+    "integer": int,
+    "number": float,
+    "string": str,
+}
+
+
+def _is_same(value: Any, other: Any) -> bool:
+    both_nan = isinstance(value, float) and math.isnan(value) and math.isnan(float(other))
+    return bool(both_nan or value == other)
+
+
 class Parameters:
     """The parameters of a running graph by MODULE.PARAMETER: what they are, and to be set."""
 
     def __init__(self, graph: "Graph") -> None:
         self._graph = graph
+        self._types: Dict[str, Dict[str, str]] = {}  # of parameters, by program
 
     def as_dict(self) -> Dict[str, Any]:
-        """All of them now, numbers as numbers."""
+        """All of them now, each of the type that its module has declared."""
         found = {}
         for module in self._graph.modules.values():
             for name, text in module.parameters.items():
-                try:
-                    value = json.loads(text)
-                except ValueError:
-                    value = text
-                is_plain = isinstance(value, (bool, int, float))
-                found["%s.%s" % (module.name, name)] = value if is_plain else text
+                found["%s.%s" % (module.name, name)] = self._value(module, name, text)
         return found
+
+    def _value(self, module: SimpleNamespace, name: str, text: str) -> Any:
+        if module.program not in self._types:
+            description = json.loads(self._graph.command("describe " + module.name)[0])
+            self._types[module.program] = {
+                each["name"]: each["type"] for each in description["parameters"]
+            }
+        return _TYPES[self._types[module.program].get(name, "string")](text)
 
     def __getitem__(self, name: str) -> Any:
         values = self.as_dict()
@@ -51,9 +69,17 @@ class Parameters:
         return values[name]
 
     def __setitem__(self, name: str, value: Union[bool, int, float, str]) -> None:
-        self._graph.command("set %s=%s" % (name, _text_of(value)))
-        end = time.monotonic() + _REPORT  # until its module has said so, if it runs
-        while self.as_dict().get(name) != value and time.monotonic() < end:
+        """Sets it, and returns when its module has reported that. Errors: those of the command
+        `set`; Closed, where the module does not report it within 2 s."""
+        text = _text_of(value)
+        self._graph.command("set %s=%s" % (name, text))
+        module, _, parameter = name.partition(".")
+        wanted = self._value(self._graph.modules[module], parameter, text)
+        end = time.monotonic() + _REPORT
+        while not _is_same(wanted, self[name]):
+            if time.monotonic() >= end:
+                what = "%s=%s was sent, and is not confirmed after %g s: " % (name, text, _REPORT)
+                raise Error("Closed: " + what + "the module is stopped or busy", "Closed")
             time.sleep(0.02)
 
     def __iter__(self) -> Iterator[str]:
@@ -122,7 +148,10 @@ class Graph:
         with Stream(self._running.state_uri, _STATE_LIMIT) as stream:
             end = time.monotonic() + _SILENCE
             while time.monotonic() < end:
-                message = stream.take(_SILENCE)
+                try:
+                    message = stream.take(_SILENCE)
+                except StopIteration:
+                    raise Error("Closed: %r has ended" % self._running, "Closed") from None
                 if message is not None and message.src == 1:
                     state: Dict[str, Any] = json.loads(message.text)
                     return state

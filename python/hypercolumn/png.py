@@ -28,7 +28,7 @@ def png(message: Any) -> Optional[bytes]:
             struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
         )
 
-    colour = 2 if message.components == 3 else 0
+    colour = {1: 0, 3: 2, 4: 6}[message.components]  # grey, RGB, RGBA
     header = struct.pack(">IIBBBBB", message.width, message.height, 8, colour, 0, 0, 0)
     data = zlib.compress(filtered.tobytes(), 1)
     return (

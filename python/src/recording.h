@@ -9,7 +9,7 @@
 
 namespace python {
 
-/// Opens what a URI names, a recording in MCAP too where this build has them. Errors: Invalid,
+/// Opens what a URI names, a recording in MCAP too. Errors: Invalid,
 /// those of hc::open_source().
 hc::Result<std::unique_ptr<hc::Source>> open_any(const std::string& text,
                                                  const hc::LinkOptions& options);

@@ -5,6 +5,7 @@
 import os
 import signal
 import unittest
+from types import SimpleNamespace
 
 import numpy
 
@@ -18,6 +19,8 @@ module = hc.Module("darken", "Darkens images.")
 image = module.input("image", hc.image(), "an image")
 dark = module.output("dark", hc.image(), "the same, darker")
 shift = module.parameter("shift", 1, "", "how much", min=0, max=7)
+module.parameter("title", "2.5", "", "any text")
+module.parameter("gain", 1.0, "", "any number")
 
 @module.on(image)
 def darken(message):
@@ -80,6 +83,32 @@ class Graphs(Package):
                 graph.parameters["darken.shift"] = 8
             with self.assertRaises(KeyError):
                 graph.parameters["darken.no"]
+
+    def test_parameters_are_of_their_types(self):
+        with hc.start(self.graph) as graph:
+            parameters = graph.parameters
+            for value in ("5", "true", "text"):
+                parameters["darken.title"] = value
+                self.assertEqual(parameters["darken.title"], value)
+            for value in ("3", 4):
+                parameters["darken.shift"] = value
+                self.assertEqual(parameters["darken.shift"], int(value))
+            parameters["darken.gain"] = 2
+            self.assertIsInstance(parameters["darken.gain"], float)
+            self.assertEqual(parameters["darken.gain"], 2.0)
+            os.kill(graph.modules["darken"].pid, signal.SIGSTOP)
+            with self.assertRaisesRegex(hc.Error, "darken.shift=5 was sent") as caught:
+                parameters["darken.shift"] = 5
+            self.assertEqual(caught.exception.code, "Closed")
+            os.kill(graph.modules["darken"].pid, signal.SIGCONT)
+
+    def test_a_graph_that_ends_meanwhile_is_an_error(self):
+        self.write("ended.mtp", b"")
+        uri = "file:" + self.path("ended.mtp")
+        graph = hc.Graph(SimpleNamespace(name="g", process=1, state_uri=uri))
+        with self.assertRaises(hc.Error) as caught:
+            graph.modules
+        self.assertEqual(caught.exception.code, "Closed")
 
     def test_a_port_is_read_without_disturbing(self):
         with hc.start(self.graph) as graph:

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Modules written in Python: what they say of themselves, what they send, how they end."""
 
+import gc
 import pathlib
 import signal
 import unittest
+import weakref
 
 import numpy
 
@@ -306,22 +308,26 @@ uses = [
         text = """
 import gc
 import hypercolumn as hc
-gc.collect()
-timer = hc.Module("gone", "Is gone.").after(1)(print)
-rate = hc.Module("gone", "Is gone, too.").parameter("rate", 2.0, "Hz", "a rate")
-gc.collect()
-timer.restart()
-timer.stop()
 
 module = hc.Module("frames", "Has dropped its frames.")
 module.frames()
 gc.collect()
-module.after(0.1)(lambda: module.log(str(rate.value)) or exit(0))
+module.on_end(lambda: module.log("end"))
 module.run()
 """
-        uri = "unix-listen:@" + self.link()[4:]
-        self.run_module(text, "--in frames=" + uri)
-        self.assertEqual(self.err, "frames: 2.0\n")
+        pose = b"1 1 0 0 8 5 70190 2001 0 4 4\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+        self.run_module(text, "--in frames=/dev/stdin", pose)
+        self.assertIn("frames: end", self.err)
+        for make in (
+            lambda module: module.after(1)(print),
+            lambda module: module.parameter("rate", 2.0, "Hz", "a rate"),
+        ):
+            module = hc.Module("m", "a module")
+            made, owner = make(module), weakref.ref(module)
+            del module
+            gc.collect()
+            self.assertIsNotNone(owner())
+            del made
 
     def test_the_frames_of_a_module_are_the_same(self):
         module = hc.Module("m", "a module")
