@@ -31,8 +31,9 @@ struct MetadataRecord {
 
 class File {
  public:
-  /// Creates a file; one that is there is overwritten. Errors: System.
-  static Result<File> create(const std::string& path);
+  /// Creates a file. Errors: System.
+  /// @param replaces  one that is there; otherwise that is an error.
+  static Result<File> create(const std::string& path, bool replaces);
 
   // Errors of all: System. The file is what it was before then, and can be closed.
 

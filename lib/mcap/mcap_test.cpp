@@ -355,6 +355,29 @@ TEST(Mcap, ARecordingIsSplitAndItsOldestFilesAreRemoved) {
     EXPECT_EQ(messages[messages.size() - 1 - i], encode(image(kCount - 1 - static_cast<int>(i))));
 }
 
+TEST(Mcap, NumberedFilesOfBeforeStay) {
+  Folder folder;
+  std::ofstream(folder / "x_0007.mcap") << "kept";
+  std::ofstream(folder / "x_copy.mcap") << "kept";
+  RecorderOptions options;
+  options.file = folder / "x.mcap";
+  options.last = std::chrono::seconds(10);
+  for (int run = 0; run < 2; ++run) {
+    auto recorder = std::move(*Recorder::make(options));
+    const auto stream = recorder->add_stream("eye.left");
+    ASSERT_TRUE(recorder->record(stream, image(run), 1));
+    const auto saved = recorder->save();
+    ASSERT_TRUE(saved) << saved.error().text();
+    EXPECT_EQ(*saved, folder / ("x_000" + std::to_string(8 + run) + ".mcap"));
+  }
+  EXPECT_EQ(bytes_of(folder / "x_0007.mcap"), "kept");
+  EXPECT_EQ(play(folder / "x_0008.mcap").messages, std::vector{encode(image(0))});
+  options.last = {};
+  options.split = 50000;
+  ASSERT_TRUE((*Recorder::make(options))->close());
+  EXPECT_TRUE(fs::exists(folder / "x_0010.mcap"));
+}
+
 TEST(Mcap, WhatWasLastIsSaved) {
   Folder folder;
   RecorderOptions options;

@@ -3,11 +3,44 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <filesystem>
 
 #include <hc/base/format.h>
 
 namespace hc::mcap {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `kept_0001.mcap` of `kept.mcap`.
+std::string numbered(const std::string& file, std::uint64_t number) {
+  fs::path path(file);
+  const auto stem = path.stem().string(), ending = path.extension().string();
+  return path.replace_filename(hc::format("{}_{:04}{}", stem, number, ending)).string();
+}
+
+/// The highest number that a file beside has; 0: there is none.
+std::uint64_t highest_number(const std::string& file) {
+  const fs::path path(file);
+  const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const std::string begin = path.stem().string() + "_";
+  std::uint32_t highest = 0;
+  std::error_code failed;
+  fs::directory_iterator each(folder, failed);
+  for (; !failed && each != fs::directory_iterator(); each.increment(failed)) {
+    const std::string stem = each->path().stem().string();
+    if (!stem.starts_with(begin) || each->path().extension() != path.extension()) continue;
+    std::uint32_t number = 0;
+    const char* end = stem.data() + stem.size();
+    const auto read = std::from_chars(stem.data() + begin.size(), end, number);
+    if (read.ec == std::errc() && read.ptr == end) highest = std::max(highest, number);
+  }
+  return highest;
+}
+
+}  // namespace
 
 Result<Storage> Storage::make(const StorageOptions& options) {
   if (options.keep > 0 && options.split == 0)
@@ -21,15 +54,10 @@ Result<Storage> Storage::make(const StorageOptions& options) {
 }
 
 /// One file has the name that was given; of several each has a number.
-std::string Storage::next_name() const {
-  if (options_.split == 0 && options_.last.count() == 0) return options_.file;
-  std::filesystem::path path(options_.file);
-  const auto stem = path.stem().string(), ending = path.extension().string();
-  return path.replace_filename(hc::format("{}_{:04}{}", stem, number_ + 1, ending)).string();
-}
-
 Status Storage::begin_file() {
-  auto file = File::create(next_name());
+  if (is_numbered()) number_ = std::max(number_, highest_number(options_.file));
+  auto file = is_numbered() ? File::create(numbered(options_.file, number_ + 1), false)
+                            : File::create(options_.file, true);
   if (!file) return file.error();
   ++number_;
   file_ = std::move(*file);
@@ -38,7 +66,7 @@ Status Storage::begin_file() {
     if (done) done = file_->add(schema);
   for (const auto& channel : channels_)
     if (done) done = file_->add(channel);
-  for (const auto& metadata : metadata_)
+  for (const auto& [name, metadata] : metadata_)
     if (done) done = file_->add(metadata);
   for (const auto& chunk : each_)
     if (done) done = file_->add(chunk);
@@ -49,7 +77,6 @@ Status Storage::end_file() {
   if (!file_) return {};
   auto closed = file_->close();
   lost_ += file_->lost();
-  bytes_ += file_->size();
   done_.push_back({file_->path(), file_->size()});
   file_.reset();
   return closed;
@@ -75,8 +102,9 @@ Status Storage::add(ChannelRecord channel) {
 }
 
 Status Storage::add(MetadataRecord metadata) {
-  metadata_.push_back(std::move(metadata));
-  return file_ ? file_->add(metadata_.back()) : Status();
+  auto& newest = metadata_[metadata.name];
+  newest = std::move(metadata);
+  return file_ ? file_->add(newest) : Status();
 }
 
 Status Storage::add(PackedChunk chunk, bool in_each) {
@@ -104,8 +132,8 @@ Status Storage::add(PackedChunk chunk, bool in_each) {
 }
 
 Result<std::string> Storage::save() {
-  const std::string name = next_name();
   auto done = begin_file();
+  const std::string name = file_ ? file_->path() : "";
   for (const auto& chunk : memory_)
     if (done) done = file_->add(chunk);
   if (auto ended = end_file(); done) done = ended;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@
 namespace hc::mcap {
 
 struct StorageOptions {
-  std::string file;         ///< "kept.mcap"; of several, "kept_0001.mcap" and so on
+  /// "kept.mcap"; of several, "kept_0001.mcap" and so on, behind those that are there.
+  std::string file;
   std::uint64_t split = 0;  ///< a new file begins when one has so many bytes; 0: one file
   std::uint64_t keep = 0;   ///< of all files together, the oldest are removed; 0: all [byte]
   /// Of the messages before now; more than 0: in memory, and each save() writes a file.
@@ -44,13 +46,10 @@ class Storage {
 
   /// What goes wrong while a file is closed has taken so many messages out of it again.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
-  /// Files, and bytes in them.
-  [[nodiscard]] std::uint64_t files() const { return number_; }
-  [[nodiscard]] std::uint64_t bytes() const { return bytes_ + (file_ ? file_->size() : 0); }
 
  private:
   explicit Storage(StorageOptions options) : options_(std::move(options)) {}
-  [[nodiscard]] std::string next_name() const;
+  [[nodiscard]] bool is_numbered() const { return options_.split > 0 || options_.last.count() > 0; }
   Status begin_file();
   Status end_file();
   void remove_old();
@@ -63,12 +62,13 @@ class Storage {
   StorageOptions options_;
   std::vector<SchemaRecord> schemas_;
   std::vector<ChannelRecord> channels_;
-  std::vector<MetadataRecord> metadata_;
+  std::map<std::string, MetadataRecord> metadata_;  // the newest of each name
   std::vector<PackedChunk> each_;  // chunks that are in each file
   std::optional<File> file_;
   std::deque<Done> done_;
   std::deque<PackedChunk> memory_;
-  std::uint64_t in_memory_ = 0, number_ = 0, lost_ = 0, bytes_ = 0;
+  std::uint64_t in_memory_ = 0, lost_ = 0;
+  std::uint64_t number_ = 0;  // of the last file
 };
 
 }  // namespace hc::mcap
