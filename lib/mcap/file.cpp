@@ -56,8 +56,8 @@ void write_chunk_index(RecordWriter& out, const ChunkInfo& chunk) {
 
 Result<File> File::create(const std::string& path, bool replaces) {
   constexpr mode_t kMode = 0666;
-  internal::Descriptor descriptor(::open(
-      path.c_str(), O_WRONLY | O_CREAT | (replaces ? O_TRUNC : O_EXCL) | O_CLOEXEC, kMode));
+  internal::Descriptor descriptor(
+      ::open(path.c_str(), O_WRONLY | O_CREAT | (replaces ? O_TRUNC : O_EXCL) | O_CLOEXEC, kMode));
   if (!descriptor) return internal::system_error("open", path);
   File file(path, std::move(descriptor));
   RecordWriter out;

@@ -203,7 +203,7 @@ Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions
           if (other_id == id || (beside != other.metadata.end() && beside->second == channel.topic))
             channels.insert(other_id);
         }
-    reader->select(*summary, std::move(channels));
+    reader->select(std::move(channels));
   }
   // What the summary says of schemas and channels holds wherever they are first declared.
   reader->found.schemas = summary->schemas;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -282,8 +283,59 @@ TEST(Mcap, RecordsThatNoChunkHasAreNotKept) {
   ASSERT_TRUE(end) << end.error().text();
   EXPECT_FALSE(*end);
   EXPECT_EQ(reader->position(), out.bytes.size() - kRecordHead - 4);
-  EXPECT_TRUE(reader->found.chunks.empty());
-  EXPECT_TRUE(reader->found.metadata.empty());
+  EXPECT_EQ(reader->found.chunks, 0U);
+  EXPECT_EQ(reader->found.metadata, 0U);
+}
+
+TEST(Mcap, ALongRecordingOfTinyChunksIsRead) {
+  Folder folder;
+  constexpr int kCount = 500;
+  auto recorder = recorder_of(folder / "x.mcap", 1);
+  const auto stream = recorder->add_stream("eye.left");
+  for (int i = 0; i < kCount; ++i) ASSERT_TRUE(recorder->record(stream, image(i, 1), i + 1));
+  ASSERT_TRUE(recorder->close());
+  ReaderLimits limits;
+  limits.summary_bytes = 10000;  // far less than the index of the chunks
+  auto reader = Reader::open(folder / "x.mcap", limits);
+  ASSERT_TRUE(reader);
+  auto summary = reader->summary();
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_EQ(summary->chunks, kCount);
+  const std::string whole = bytes_of(folder / "x.mcap");
+  std::ofstream(folder / "cut.mcap", std::ios::binary) << whole.substr(0, whole.size() / 2);
+  reader = Reader::open(folder / "cut.mcap", limits);
+  summary = reader->summary();
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_FALSE(summary->is_whole);
+  EXPECT_GT(summary->chunks, 100U);
+}
+
+TEST(Mcap, AChunkWhoseIndexIsCutOffIsReadForAStream) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap", 1 << 20);
+  const auto left = recorder->add_stream("eye.left"), right = recorder->add_stream("eye.right");
+  ASSERT_TRUE(recorder->record(left, image(1), 1));
+  ASSERT_TRUE(recorder->record(right, image(2), 2));
+  ASSERT_TRUE(recorder->close());
+  std::string cut = bytes_of(folder / "x.mcap");
+  std::size_t at = kMagic.size();
+  int indexes = 0;
+  while (indexes < 2) {  // those of the left eye
+    indexes += static_cast<Opcode>(cut[at]) == Opcode::MessageIndex ? 1 : 0;
+    std::uint64_t length = 0;
+    std::memcpy(&length, cut.data() + at + 1, sizeof length);
+    at += kRecordHead + length;
+  }
+  cut.resize(at);
+  std::ofstream(folder / "cut.mcap", std::ios::binary) << cut;
+  const auto played = play(folder / "cut.mcap?stream=eye.right");
+  EXPECT_EQ(played.messages, std::vector{encode(image(2))});
+}
+
+TEST(Mcap, APipeIsRefusedAtOnce) {
+  Folder folder;
+  ASSERT_EQ(::mkfifo((folder / "x.mcap").c_str(), 0600), 0);
+  EXPECT_EQ(play(folder / "x.mcap").error->code, Code::Unsupported);
 }
 
 TEST(Mcap, AFullDiskEndsTheRecordingWithAValidFile) {

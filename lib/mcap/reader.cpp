@@ -48,7 +48,7 @@ Error Reader::truncated(std::uint64_t at) const {
 }
 
 Result<Reader> Reader::open(const std::string& path, const ReaderLimits& limits) {
-  internal::Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  internal::Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!descriptor) return internal::system_error("open", path);
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0) return internal::system_error("fstat", path);
@@ -129,21 +129,17 @@ Status Reader::take(Opcode opcode, std::span<const std::byte> content, Summary& 
     summary.end = reader.number<std::uint64_t>();
     summary.counts = read_map(reader.list());
   } else if (opcode == Opcode::ChunkIndex) {
-    ChunkInfo chunk;
-    chunk.begin = reader.number<std::uint64_t>();
-    chunk.end = reader.number<std::uint64_t>();
-    chunk.offset = reader.number<std::uint64_t>();
-    chunk.length = reader.number<std::uint64_t>();
-    chunk.index_offsets = read_map(reader.list());
-    chunk.index_length = reader.number<std::uint64_t>();
-    chunk.compression = reader.string();
-    chunk.compressed = reader.number<std::uint64_t>();
-    chunk.plain = reader.number<std::uint64_t>();
-    summary.chunks.push_back(std::move(chunk));
+    reader.take(32);  // times and place
+    reader.list();
+    reader.take(8);
+    reader.string();
+    reader.take(8);
+    summary.plain += reader.number<std::uint64_t>();
+    ++summary.chunks;
   } else if (opcode == Opcode::MetadataIndex) {
-    const auto offset = reader.number<std::uint64_t>();
-    reader.number<std::uint64_t>();
-    summary.metadata.emplace_back(reader.string(), offset);
+    reader.take(16);
+    const auto name = reader.string();
+    if (summary.metadata++ == 0) summary.first_metadata = name;
   }
   if (!reader.is_good()) return damaged("a record is shorter than what it holds", at);
   return {};
@@ -183,28 +179,29 @@ Result<bool> Reader::read_end(Summary& summary) {
   const std::uint64_t footer_at = size_ - tail;
   if (begin < kMagic.size() || begin > footer_at)
     return damaged("the summary begins outside of the file", footer_at);
-  auto bytes = read(begin, footer_at - begin, limits_.summary_bytes);
-  if (!bytes) return bytes.error();
-  if (crc != 0) {
-    const auto head = std::span(*end).first(kRecordHead + 2 * sizeof(std::uint64_t));
-    if (crc32(head, crc32(*bytes)) != crc) return damaged("the summary's CRC is wrong", begin);
+  // Record by record: of a recording of days it is long.
+  std::uint32_t found_crc = 0;
+  for (std::uint64_t at = begin; at < footer_at;) {
+    auto place = record_at(at);
+    if (!place) return place.error();
+    if (place->end() > footer_at) return damaged("a record of the summary is cut short", at);
+    auto bytes = read(at, place->end() - at, limits_.summary_bytes);
+    if (!bytes) return bytes.error();
+    found_crc = crc32(*bytes, found_crc);
+    const auto content = std::span(*bytes).subspan(kRecordHead);
+    if (auto taken = take(place->opcode, content, summary, at); !taken) return taken.error();
+    at = place->end();
   }
-  for (std::span<const std::byte> rest(*bytes); !rest.empty();) {
-    RecordReader reader(rest);
-    const std::uint64_t at = footer_at - rest.size();
-    const auto kind = static_cast<Opcode>(reader.number<std::uint8_t>());
-    const auto content = reader.take(reader.number<std::uint64_t>());
-    if (!reader.is_good()) return damaged("a record of the summary is cut short", at);
-    if (auto taken = take(kind, content, summary, at); !taken) return taken.error();
-    rest = rest.last(reader.left());
-  }
+  const auto head = std::span(*end).first(kRecordHead + 2 * sizeof(std::uint64_t));
+  if (crc != 0 && crc32(head, found_crc) != crc)
+    return damaged("the summary's CRC is wrong", begin);
   summary.is_whole = true;
   return true;
 }
 
 /// What a summary would say, as far as it can be known without the contents of chunks.
 Result<Summary> Reader::go_through() {
-  constexpr std::uint64_t kChunkHead = 64, kIndexHead = 6, kEntry = 16;
+  constexpr std::uint64_t kChunkHead = 64, kIndexHead = 6, kEntry = 16, kMaxName = 4096;
   Summary summary;
   for (std::uint64_t at = kMagic.size();;) {
     auto place = record_at(at);
@@ -219,8 +216,8 @@ Result<Summary> Reader::go_through() {
     const bool is_metadata = place->opcode == Opcode::Metadata;
     const bool is_other = place->opcode == Opcode::Schema || place->opcode == Opcode::Channel ||
                           place->opcode == Opcode::Header;
-    const std::uint64_t wanted = is_other      ? place->length
-                                 : is_metadata ? std::min<std::uint64_t>(place->length, 4096)
+    const std::uint64_t wanted = is_other                 ? place->length
+                                 : is_metadata            ? std::min(place->length, kMaxName)
                                  : is_chunk || is_message ? std::min(place->length, kChunkHead)
                                  : is_index               ? std::min(place->length, kIndexHead)
                                                           : 0;
@@ -230,27 +227,17 @@ Result<Summary> Reader::go_through() {
     if (is_other) {
       if (auto taken = take(place->opcode, *content, summary, at); !taken) return taken.error();
     } else if (is_metadata) {
-      kept_ += kChunkHead;
-      summary.metadata.emplace_back(reader.string(), at);
+      const auto name = reader.string();
+      if (summary.metadata++ == 0) summary.first_metadata = name;
     } else if (is_chunk) {
-      ChunkInfo chunk;
-      chunk.begin = reader.number<std::uint64_t>();
-      chunk.end = reader.number<std::uint64_t>();
-      chunk.plain = reader.number<std::uint64_t>();
-      reader.number<std::uint32_t>();
-      chunk.compression = reader.string();
-      chunk.compressed = reader.number<std::uint64_t>();
-      chunk.offset = at;
-      chunk.length = kRecordHead + place->length;
+      const auto first = reader.number<std::uint64_t>(), last = reader.number<std::uint64_t>();
+      summary.plain += reader.number<std::uint64_t>();
       if (!reader.is_good()) return damaged("a chunk is shorter than its head", at);
-      kept_ += sizeof(ChunkInfo);
-      add_time(summary, chunk.begin, chunk.end);
-      summary.chunks.push_back(std::move(chunk));
-    } else if (is_index && !summary.chunks.empty()) {
+      add_time(summary, first, last);
+      ++summary.chunks;
+    } else if (is_index && summary.chunks > 0) {
       const auto channel = reader.number<std::uint16_t>();
       const std::uint64_t count = reader.number<std::uint32_t>() / kEntry;
-      kept_ += kChunkHead;
-      summary.chunks.back().index_offsets[channel] = at;
       summary.counts[channel] += count;
       summary.messages += count;
     } else if (is_message) {
@@ -259,32 +246,22 @@ Result<Summary> Reader::go_through() {
       ++summary.messages;
       add_time(summary, message.log_time, message.log_time);
     }
-    if (kept_ > limits_.summary_bytes)
-      return Error{Code::TooLarge, "MCAP: a summary of more than " +
-                                       std::to_string(limits_.summary_bytes) + " bytes"};
     at = place->end();
   }
 }
 
-Result<Words> Reader::metadata(std::uint64_t offset) {
-  auto place = record_at(offset);
-  if (!place) return place.error();
-  if (place->opcode != Opcode::Metadata) return damaged("there are no metadata", offset);
-  auto content = read(place->content, place->length, limits_.summary_bytes);
-  if (!content) return content.error();
-  RecordReader reader(*content);
-  reader.string();
-  auto words = reader.words();
-  if (!reader.is_good()) return damaged("metadata are cut short", offset);
-  return words;
-}
-
-void Reader::select(const Summary& summary, std::set<std::uint16_t> channels) {
-  auto is_wanted = [&](const auto& each) { return channels.contains(each.first); };
-  for (const auto& chunk : summary.chunks)
-    if (!chunk.index_offsets.empty() && std::ranges::none_of(chunk.index_offsets, is_wanted))
-      passed_over_.insert(chunk.offset);
-  selected_ = std::move(channels);
+Result<bool> Reader::is_skipped(const RecordPlace& chunk) {
+  if (!selected_) return false;
+  for (std::uint64_t at = chunk.end();;) {
+    auto place = record_at(at);
+    // Where the file ends here, there may have been more.
+    if (!place) return place.error().code == Code::Truncated ? Result<bool>(false) : place.error();
+    if (place->opcode != Opcode::MessageIndex) return at > chunk.end();
+    auto channel = read(place->content, sizeof(std::uint16_t), sizeof(std::uint16_t));
+    if (!channel) return channel.error();
+    if (selected_->contains(RecordReader(*channel).number<std::uint16_t>())) return false;
+    at = place->end();
+  }
 }
 
 Status Reader::open_chunk(const RecordPlace& place) {
@@ -338,7 +315,9 @@ Result<std::optional<StoredMessage>> Reader::next() {
       return std::optional<StoredMessage>();
     at_ = place->end();
     if (place->opcode == Opcode::Chunk) {
-      if (passed_over_.contains(begin)) continue;
+      auto skipped = is_skipped(*place);
+      if (!skipped) return skipped.error();
+      if (*skipped) continue;
       if (auto opened = open_chunk(*place); !opened) return opened.error();
     } else if (place->opcode == Opcode::Message) {
       auto content = read(place->content, place->length, limits_.chunk_bytes);

@@ -22,7 +22,7 @@ namespace hc::mcap {
 
 struct ReaderLimits {
   std::uint64_t chunk_bytes = std::uint64_t{512} << 20;   ///< of a chunk or message, plain
-  std::uint64_t summary_bytes = std::uint64_t{64} << 20;  ///< of what stands outside of chunks
+  std::uint64_t summary_bytes = std::uint64_t{64} << 20;  ///< of schemas and channels
 };
 
 /// What a file says of itself.
@@ -33,9 +33,10 @@ struct Summary {
   std::map<std::uint16_t, std::uint64_t> counts;  ///< of messages, by channel
   std::uint64_t messages = 0;
   std::uint64_t begin = 0, end = 0;  ///< log times [ns since the Unix epoch]
-  std::vector<ChunkInfo> chunks;
-  /// Where metadata stand: name and offset of the record.
-  std::vector<std::pair<std::string, std::uint64_t>> metadata;
+  std::uint64_t chunks = 0;          ///< how many
+  std::uint64_t plain = 0;           ///< what they hold, expanded [byte]
+  std::uint64_t metadata = 0;        ///< how many records
+  std::string first_metadata;        ///< name of one
   bool is_whole = false;  ///< the file has its end; otherwise all this was found by going through
 };
 
@@ -55,11 +56,9 @@ class Reader {
   /// Errors: Malformed, TooLarge, System. Cost: without a summary, a look at each record's head.
   Result<Summary> summary();
 
-  /// The words of a metadata record, by its offset. Errors: Malformed, TooLarge, System.
-  Result<Words> metadata(std::uint64_t offset);
-
-  /// Reads these channels alone: chunks without any are passed over where the summary says so.
-  void select(const Summary& summary, std::set<std::uint16_t> channels);
+  /// Reads these channels alone: chunks without any are skipped where the whole index behind them
+  /// says so.
+  void select(std::set<std::uint16_t> channels) { selected_ = std::move(channels); }
 
   /// The next message in the order of the file; nothing at its end. Schemas and channels that came
   /// before it are in `found`.
@@ -96,6 +95,8 @@ class Reader {
   Status take(Opcode opcode, std::span<const std::byte> content, Summary& summary,
               std::uint64_t at);
   Result<bool> read_end(Summary& summary);
+  /// Whether the indexes behind a chunk, up to the next record, say that nothing selected is in it.
+  Result<bool> is_skipped(const RecordPlace& chunk);
   Result<Summary> go_through();
   Result<std::optional<StoredMessage>> next_of_chunk();
   Status open_chunk(const RecordPlace& place);
@@ -105,9 +106,8 @@ class Reader {
   std::uint64_t size_ = 0;
   ReaderLimits limits_;
   std::uint64_t at_ = 8;    // behind the magic
-  std::uint64_t kept_ = 0;  // of schemas, channels and metadata [byte]
+  std::uint64_t kept_ = 0;  // of schemas and channels [byte]
   std::optional<std::set<std::uint16_t>> selected_;
-  std::set<std::uint64_t> passed_over_;  // offsets of chunks
   std::shared_ptr<const std::vector<std::byte>> chunk_;
   std::uint64_t chunk_begin_ = 0;  // in the file
   std::size_t chunk_at_ = 0;

@@ -63,7 +63,7 @@ class Storage {
   std::vector<SchemaRecord> schemas_;
   std::vector<ChannelRecord> channels_;
   std::map<std::string, MetadataRecord> metadata_;  // the newest of each name
-  std::vector<PackedChunk> each_;  // chunks that are in each file
+  std::vector<PackedChunk> each_;                   // chunks that are in each file
   std::optional<File> file_;
   std::deque<Done> done_;
   std::deque<PackedChunk> memory_;

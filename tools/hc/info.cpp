@@ -81,7 +81,7 @@ void print_recording(const hc::Uri& uri) {
   const auto summary = value_or_fail(reader.summary(), uri.rest);
   const double seconds = static_cast<double>(summary.end - summary.begin) * 1e-9;
   std::string text = hc::format("{:<32} {:>9} {:>8}  {}\n", "stream", "messages", "rate", "type");
-  std::uint64_t messages = 0, plain = 0;
+  std::uint64_t messages = 0;
   auto add = [&](const std::string& name, std::uint64_t count, const std::string& type) {
     text += hc::format(
         "{:<32} {:>9} {:>8}  {}\n", name, count,
@@ -100,14 +100,13 @@ void print_recording(const hc::Uri& uri) {
     add(channel.topic, count == summary.counts.end() ? 0 : count->second,
         schema == summary.schemas.end() ? channel.encoding : schema->second.name);
   }
-  for (const auto& chunk : summary.chunks) plain += chunk.plain;
   text += hc::format("{} message{}, {} in {} chunk{} of {}, {:.3f} s\n", messages,
                      messages == 1 ? "" : "s", bytes_in_words(static_cast<double>(reader.size())),
-                     summary.chunks.size(), summary.chunks.size() == 1 ? "" : "s",
-                     bytes_in_words(static_cast<double>(plain)), seconds);
-  if (!summary.metadata.empty())
-    text += hc::format("{} records of metadata, such as {}\n", summary.metadata.size(),
-                       summary.metadata.front().first);
+                     summary.chunks, summary.chunks == 1 ? "" : "s",
+                     bytes_in_words(static_cast<double>(summary.plain)), seconds);
+  if (summary.metadata > 0)
+    text += hc::format("{} records of metadata, such as {}\n", summary.metadata,
+                       summary.first_metadata);
   print(text);
   if (!summary.is_whole)
     throw Failure(uri.rest, {hc::Code::Truncated,
