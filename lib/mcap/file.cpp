@@ -60,7 +60,9 @@ Result<File> File::create(const std::string& path, bool replaces) {
       ::open(path.c_str(), O_WRONLY | O_CREAT | (replaces ? O_TRUNC : O_EXCL) | O_CLOEXEC, kMode));
   if (!descriptor) return internal::system_error("open", path);
   File file(path, std::move(descriptor));
+  constexpr std::size_t kHeader = 64;
   RecordWriter out;
+  out.bytes.reserve(kHeader);
   out.append(std::as_bytes(std::span(kMagic)));
   out.begin(Opcode::Header);
   out.string("ros2");
