@@ -66,7 +66,7 @@ PackedChunk ChunkPacker::pack(const ChunkBuilder& chunk) {
     out.end();
   }
   info.index_length = out.bytes.size() - info.length;
-  return {std::move(out.bytes), std::move(info)};
+  return {std::move(out.bytes), std::move(info), chunk.messages};
 }
 
 Result<std::vector<std::byte>> unpack_chunk(std::span<const std::byte> content,

@@ -31,6 +31,9 @@ struct MessageRecord {
 /// Messages that are not in a file yet.
 class ChunkBuilder {
  public:
+  /// Messages of MTP in it, each of which is one or more of the file's; whoever adds them counts.
+  std::uint64_t messages = 0;
+
   /// Adds a message; its data in pieces.
   void add(const MessageRecord& message, std::span<const std::span<const std::byte>> data);
 
@@ -61,6 +64,7 @@ struct ChunkInfo {
 struct PackedChunk {
   std::vector<std::byte> bytes;
   ChunkInfo info;
+  std::uint64_t messages = 0;  ///< as ChunkBuilder has it
 };
 
 /// Compresses chunks, one after the other.

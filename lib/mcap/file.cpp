@@ -124,9 +124,12 @@ Status File::add(const PackedChunk& chunk) {
   ChunkInfo info = chunk.info;
   info.offset = size_;
   for (auto& [channel, offset] : info.index_offsets) offset += size_;
-  auto written = write(chunk.bytes);
-  if (written) chunks_.push_back(std::move(info));
-  return written;
+  if (auto written = write(chunk.bytes); !written) return written;
+  chunks_.push_back({info.offset, info.begin, info.end, chunk.messages, chunk_index_.bytes.size(),
+                     counts_.size()});
+  write_chunk_index(chunk_index_, info);
+  counts_.insert(counts_.end(), info.counts.begin(), info.counts.end());
+  return {};
 }
 
 std::vector<std::byte> File::summary() const {
@@ -156,10 +159,10 @@ std::vector<std::byte> File::summary() const {
   for (const auto& chunk : chunks_) {
     first = &chunk == chunks_.data() ? chunk.begin : std::min(first, chunk.begin);
     last = std::max(last, chunk.end);
-    for (const auto& [channel, count] : chunk.counts) {
-      counts[channel] += count;
-      messages += count;
-    }
+  }
+  for (const auto& [channel, count] : counts_) {
+    counts[channel] += count;
+    messages += count;
   }
   out.begin(Opcode::Statistics);
   out.number(messages);
@@ -173,7 +176,7 @@ std::vector<std::byte> File::summary() const {
   write_map(out, counts);
   out.end();
   end_group(Opcode::Statistics);
-  for (const auto& chunk : chunks_) write_chunk_index(out, chunk);
+  out.append(chunk_index_.bytes);
   end_group(Opcode::ChunkIndex);
   for (const auto& [metadata, offset] : metadata_) {
     out.begin(Opcode::MetadataIndex);
@@ -208,9 +211,11 @@ Status File::close() {
   const Status first = write(summary());
   Status written = first;
   while (!written && !chunks_.empty()) {
-    const ChunkInfo last = chunks_.back();
+    const ChunkPlace last = chunks_.back();
     chunks_.pop_back();
-    for (const auto& [channel, count] : last.counts) lost_ += count;
+    chunk_index_.bytes.resize(last.index);
+    counts_.resize(last.counts);
+    lost_ += last.messages;
     size_ = last.offset;
     // What was written behind it goes too.
     auto is_gone = [&](const auto& placed) { return placed.offset >= size_; };

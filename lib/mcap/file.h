@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/base/result.h>
@@ -47,7 +48,7 @@ class File {
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Messages that close() has taken out again.
+  /// Messages (PackedChunk::messages) that close() has taken out again.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:
@@ -61,6 +62,11 @@ class File {
     std::string name;
     std::uint64_t length = 0;
   };
+  /// A chunk of the file, and where what the summary says of it begins.
+  struct ChunkPlace {
+    std::uint64_t offset = 0, begin = 0, end = 0, messages = 0;
+    std::size_t index = 0, counts = 0;
+  };
 
   File(std::string path, internal::Descriptor descriptor)
       : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
@@ -73,7 +79,9 @@ class File {
   std::vector<Placed<SchemaRecord>> schemas_;
   std::vector<Placed<ChannelRecord>> channels_;
   std::vector<Placed<MetadataPlace>> metadata_;
-  std::vector<ChunkInfo> chunks_;
+  std::vector<ChunkPlace> chunks_;
+  RecordWriter chunk_index_;  // of all chunks, as the summary has it
+  std::vector<std::pair<std::uint16_t, std::uint64_t>> counts_;  // by channel, chunk after chunk
 };
 
 }  // namespace hc::mcap

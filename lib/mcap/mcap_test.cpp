@@ -359,9 +359,11 @@ TEST(Mcap, AFullDiskEndsTheRecordingWithAValidFile) {
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().detail.find("File too large"), std::string::npos);
   EXPECT_EQ(closed.error().detail, status.error().detail);
+  EXPECT_EQ(recorder->messages(), all.size());
   const auto played = play(folder / "x.mcap");
   EXPECT_FALSE(played.error) << played.error->text();
   ASSERT_GT(played.messages.size(), 70U);
+  EXPECT_EQ(played.messages.size() + recorder->lost(), all.size());
   for (std::size_t i = 0; i < played.messages.size(); ++i) ASSERT_EQ(played.messages[i], all[i]);
   auto reader = Reader::open(folder / "x.mcap");
   EXPECT_TRUE(reader->summary()->is_whole);

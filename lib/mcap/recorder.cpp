@@ -149,6 +149,7 @@ Status Recorder::record(std::size_t number, const Message& message, std::int64_t
   }
   add(channel(stream, ros::Type::Matrix), sequence, time, published,
       matrix_encoder_.encode_matrix(message, offset));
+  ++chunk_.messages;
   if (stream.moves) {
     if (const auto pose = ros::pose_of(message)) {
       ros::Joint& joint = *stream.moves;
@@ -260,7 +261,7 @@ Status Recorder::close() {
     thread_.join();
     auto closed = storage_.close();
     if (status_ && !closed) status_ = closed;
-    lost_ = storage_.lost();
+    lost_ = discarded_ + storage_.lost();
   }
   return status_;
 }
@@ -282,8 +283,9 @@ void Recorder::work() {
       lock.lock();
       if (saved) saved_ = std::move(saved);
       if (!done) status_ = done;
-    } else if (job.saves) {
-      saved_ = status_.error();
+    } else {
+      if (job.chunk) discarded_ += job.chunk->messages;
+      if (job.saves) saved_ = status_.error();
     }
     waiting_ -= size;
     changed_.notify_all();
@@ -298,7 +300,9 @@ Status Recorder::perform(Job& job, ChunkPacker& packer) {
     if (done) done = storage_.add(std::move(each));
   for (auto& metadata : job.metadata)
     if (done) done = storage_.add(std::move(metadata));
-  if (done && job.chunk) done = storage_.add(packer.pack(*job.chunk), job.in_each);
+  if (!job.chunk) return done;
+  if (done) return storage_.add(packer.pack(*job.chunk), job.in_each);
+  discarded_ += job.chunk->messages;
   return done;
 }
 

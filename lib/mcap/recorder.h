@@ -72,10 +72,11 @@ class Recorder {
   /// Writes all, and ends the file. Errors: System; also what went wrong before.
   Status close();
 
+  /// Messages that record() was given.
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   /// Bytes of the messages as they came. [byte]
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  /// Messages that were recorded, and taken out again for want of room; after close().
+  /// Those of them that are in no file, for want of room; after close().
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:
@@ -126,7 +127,8 @@ class Recorder {
   std::uint32_t others_ = 0;  // messages of log and joints
   bool is_closed_ = false;
 
-  Storage storage_;  // of the thread, until it has ended
+  Storage storage_;              // of the thread, until it has ended
+  std::uint64_t discarded_ = 0;  // messages of chunks after a failure; of the thread too
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Job> jobs_;

@@ -114,6 +114,7 @@ Status Storage::add(PackedChunk chunk, bool in_each) {
   }
   if (file_) {
     auto added = file_->add(chunk);
+    if (!added) lost_ += chunk.messages;
     if (!added || options_.split == 0 || file_->size() < options_.split) return added;
     if (auto ended = end_file(); !ended) return ended;
     if (options_.keep > 0) remove_old();

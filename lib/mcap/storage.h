@@ -44,7 +44,7 @@ class Storage {
   Result<std::string> save();
   Status close();
 
-  /// What goes wrong while a file is closed has taken so many messages out of it again.
+  /// Messages of MTP that could not be written, or were taken out again while a file was closed.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:

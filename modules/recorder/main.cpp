@@ -164,8 +164,9 @@ int main(int argc, char** argv) {
   module.on_end([&] {
     story.reset();
     if (!has_failed) fail_once(recorder->close());
-    std::string text = hc::format("result: {} message{} in {}", recorder->messages() - unrecorded,
-                                  recorder->messages() == 1 ? "" : "s", path);
+    const std::uint64_t recorded = recorder->messages() - recorder->lost();
+    std::string text =
+        hc::format("result: {} message{} in {}", recorded, recorded == 1 ? "" : "s", path);
     if (has_failed) text += hc::format(", {} not recorded", unrecorded + recorder->lost());
     module.log(text);
   });
