@@ -41,7 +41,7 @@ class Run : public ::testing::Test {
 
   /// A plan as if it had been loaded from `files_`.
   LoadedGraph loaded(const Plan& plan) const {
-    LoadedGraph loaded{{}, plan, {}};
+    LoadedGraph loaded{{}, plan, {}, {}};
     loaded.graph.files = files_;
     for (const auto& module : plan.modules) {
       loaded.graph.modules.emplace_back().name = module.name;
