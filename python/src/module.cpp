@@ -64,10 +64,10 @@ struct Handler {
   Function function;
   std::vector<std::shared_ptr<Keeper>> keepers;
 
-  Handler(Program& program_, const py::object& function_, const std::vector<PyInput>& inputs)
-      : program(&program_), function(hold(function_)) {
+  Handler(Program& owner, const py::object& callee, const std::vector<PyInput>& inputs)
+      : program(&owner), function(hold(callee)) {
     for (const auto& input : inputs)
-      keepers.push_back(std::make_shared<Keeper>(Keeper{input.name, function_.ptr(), {}, false}));
+      keepers.push_back(std::make_shared<Keeper>(Keeper{input.name, callee.ptr(), {}, false}));
   }
 
   /// Hands messages to the function, one of each input.
