@@ -27,7 +27,7 @@ ALLOWED = {
     "room": {"base", "graphics"},
     "sound": {"base"},
     "web": {"base", "os", "mtp", "link", "observe"},
-    "ros": {"base", "mtp", "contract"},
+    "ros": {"base", "mtp", "contract", "compress", "frames"},
     "mcap": {"base", "os", "mtp", "link", "ros"},
     "tls": {"base", "os", "link"},
     "drivers": {"base"},

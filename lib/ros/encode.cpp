@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <hc/compress/compress.h>
 #include <hc/mtp/coords.h>
 
 namespace hc::ros {
@@ -247,6 +248,17 @@ Result<Pieces> Encoder::encode(Type type, const Message& message) {
   }
 }
 
+Result<Pieces> Encoder::encode_any(Type type, const Message& message) {
+  const bool is_jpeg = message.header.info.encoding == Encoding::Jpeg;
+  if (type == Type::Matrix || (type == Type::CompressedImage && is_jpeg))
+    return encode(type, message);
+  auto made = expand(message);
+  if (made && type == Type::CompressedImage) made = compress(*made, Encoding::Jpeg);
+  if (!made) return made.error();
+  made_ = std::move(*made);
+  return encode(type, made_);
+}
+
 Result<Pieces> Encoder::encode_image(const Message& message) {
   const Header& header = message.header;
   const bool is_image =
@@ -325,20 +337,30 @@ Result<Pieces> Encoder::encode_twist(const Message& message) {
 
 Result<Pieces> Encoder::encode_joints(const Message& message) {
   const Header& header = message.header;
-  if (header.info.type != MatrixType::Rotation) return unfit(Type::JointState, message);
-  JointState joints{stamp_of(*this, message, 0), {}, {}, {}, {}};
+  const bool is_table = header.info.type == MatrixType::Table && !joints.empty() &&
+                        header.row_numbers() == joints.size() && header.height >= 1 &&
+                        header.height <= 3;
+  if (header.info.type != MatrixType::Rotation && !is_table)
+    return unfit(Type::JointState, message);
+  JointState state{stamp_of(*this, message, 0), {}, {}, {}, {}};
   const auto n = numbers_of(message);
+  if (is_table) {
+    state.name = joints;
+    std::vector<double>* const rows[] = {&state.position, &state.velocity, &state.effort};
+    for (std::size_t i = 0; i < n.size(); ++i) rows[i / joints.size()]->push_back(n[i]);
+    return writer_.write(state);
+  }
   const std::size_t step = header.info.components;
   for (std::size_t i = 0; i < n.size() / step; ++i) {
     const std::string number = i == 0 ? "" : "_" + std::to_string(i);
     for (std::size_t k = 0; k < 3; ++k) {
       constexpr const char* kNames[] = {"roll", "tilt", "pan"};
-      joints.name.push_back(kNames[k] + number);
-      joints.position.push_back(n[i * step + k]);
-      if (step > 3) joints.velocity.push_back(n[i * step + 3 + k]);
+      state.name.push_back(kNames[k] + number);
+      state.position.push_back(n[i * step + k]);
+      if (step > 3) state.velocity.push_back(n[i * step + 3 + k]);
     }
   }
-  return writer_.write(joints);
+  return writer_.write(state);
 }
 
 Result<Pieces> Encoder::encode_camera(const Message& message) {
@@ -396,9 +418,9 @@ Result<Pieces> Encoder::encode_sound(const Message& message) {
                                 header.info.components});
 }
 
-Pieces Encoder::encode(std::span<const Joint> joints) {
+Pieces Encoder::encode(std::span<const Joint> list) {
   TfMessage message;
-  for (const auto& [parent, child, t, r, time] : joints)
+  for (const auto& [parent, child, t, r, time] : list)
     message.transforms.push_back(
         {{time_of(time), parent}, child, {{t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}}});
   return writer_.write(message);

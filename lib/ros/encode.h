@@ -61,6 +61,9 @@ class Encoder {
   std::map<std::int32_t, std::string> frames;
   /// Size of the images that a CameraInfo is of; 0: unknown. [px]
   std::uint32_t camera_width = 0, camera_height = 0;
+  /// Names of the joints that are the columns of a table which is to be a JointState: rows of
+  /// positions, velocities and efforts, as far as there are.
+  std::vector<std::string> joints;
 
   /// A message as one of `type`. Images, points and so on are `body`, where they were.
   ///
@@ -68,8 +71,14 @@ class Encoder {
   /// Cost: no copy of large elements but those of sound that is not of i16.
   Result<Pieces> encode(Type type, const Message& message);
 
+  /// The same of a message in any encoding: expanded where it is compressed, and made JPEG where it
+  /// is to be a CompressedImage; a Matrix has it as it came.
+  ///
+  /// Errors: as encode(), expand() and compress().
+  Result<Pieces> encode_any(Type type, const Message& message);
+
   /// A tf2_msgs/msg/TFMessage of joints.
-  Pieces encode(std::span<const Joint> joints);
+  Pieces encode(std::span<const Joint> list);
 
   /// A line of a log, a rcl_interfaces/msg/Log.
   /// @param time  [ns since the Unix epoch]
@@ -93,6 +102,7 @@ class Encoder {
   Result<Pieces> encode_sound(const Message& message);
 
   CdrWriter writer_;
+  Message made_;                    // expanded or compressed
   std::string text_;                // of several rows
   std::vector<std::byte> samples_;  // of sound in another scalar
 };

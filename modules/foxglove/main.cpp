@@ -6,11 +6,11 @@
 
 #include <frames/default_head.h>
 #include <hc/module/module.h>
+#include <ros/joints.h>
 #include <web/event.h>
 #include <web/listening.h>
 
 #include "bridge.h"
-#include "joints.h"
 
 namespace web = hc::web;
 
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
                                  {.fixed = true});
 
   web::Inbox inbox;
-  std::optional<GraphJoints> joints;
+  std::optional<hc::ros::GraphJoints> joints;
   std::optional<web::Access> access;
   std::unique_ptr<web::Server> server;
   std::unique_ptr<Bridge> bridge;
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
       throw hc::ModuleError(
           "HC_GRAPH does not name a running graph, NAME.PID; run this module in a graph, or add it "
           "to one: hc graph add foxglove foxglove");
-    joints = hc::value_or_end(GraphJoints::read(*frames));
+    joints = hc::value_or_end(hc::ros::GraphJoints::read(*frames));
     auto opened =
         hc::value_or_end(web::open_server({*listen, static_cast<int>(*port), *tls, *hosts}, log));
     server = std::move(opened.server);

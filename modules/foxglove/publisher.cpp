@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <hc/base/clock.h>
-#include <hc/compress/compress.h>
 
 namespace web = hc::web;
 
@@ -58,18 +57,7 @@ void Publisher::take(const hc::Message& message) {
 }
 
 hc::Result<web::Bytes> Publisher::encode(const hc::Message& message) {
-  using hc::ros::Type;
-  const bool is_jpeg = message.header.info.encoding == hc::Encoding::Jpeg;
-  auto made = hc::Result<hc::Message>(message);
-  if (channel_.type == Type::CompressedImage && !is_jpeg) {
-    made = hc::expand(message);
-    if (made) made = hc::compress(*made, hc::Encoding::Jpeg);
-  } else if (channel_.type != Type::CompressedImage && channel_.type != Type::Matrix) {
-    made = hc::expand(message);
-  }
-  if (!made) return made.error();
-  if (channel_.type == Type::Matrix) return bytes_of(encoder_.encode_matrix(*made));
-  const auto pieces = encoder_.encode(channel_.type, *made);
+  const auto pieces = encoder_.encode_any(channel_.type, message);
   if (!pieces) return pieces.error();
   return bytes_of(*pieces);
 }

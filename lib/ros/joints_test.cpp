@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "joints.h"
+#include <ros/joints.h>
 
 #include <gtest/gtest.h>
 #include <hc/module/kind.h>
 
+namespace hc::ros {
 namespace {
 
 constexpr const char* kFrames =
@@ -46,3 +47,4 @@ TEST(GraphJoints, what_is_no_frames_is_refused) {
 }
 
 }  // namespace
+}  // namespace hc::ros

@@ -12,15 +12,19 @@
 #include <hc/mtp/message.h>
 #include <ros/encode.h>
 
+namespace hc::ros {
+
 struct GraphJoints {
   hc::frames::GraphFrames frames;
   std::map<std::int32_t, std::string> names;  ///< of frames, by their number
-  std::vector<hc::ros::Joint> fixed;          ///< those that do not move
+  std::vector<Joint> fixed;                   ///< those that do not move
 
   /// @param text  of a module's parameter `frames` (spec/graph.md, G31).
   /// Errors: as frames::read_frames().
-  static hc::Result<GraphJoints> read(const std::string& text);
+  static Result<GraphJoints> read(const std::string& text);
 
   /// The joint that a pose moves. Errors: as frames::GraphFrames::mover_of() and rigid_of().
-  [[nodiscard]] hc::Result<hc::ros::Joint> joint_of(const hc::Message& pose) const;
+  [[nodiscard]] Result<Joint> joint_of(const Message& pose) const;
 };
+
+}  // namespace hc::ros

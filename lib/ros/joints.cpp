@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "joints.h"
+#include <ros/joints.h>
 
 #include <algorithm>
 #include <sstream>
@@ -7,10 +7,10 @@
 
 #include <frames/messages.h>
 
+namespace hc::ros {
 namespace {
 
-hc::ros::Joint joint(std::string parent, std::string child, const Eigen::Isometry3d& T,
-                     std::int64_t time) {
+Joint joint(std::string parent, std::string child, const Eigen::Isometry3d& T, std::int64_t time) {
   const hc::frames::Pose pose(T);
   return {std::move(parent),
           std::move(child),
@@ -21,7 +21,7 @@ hc::ros::Joint joint(std::string parent, std::string child, const Eigen::Isometr
 
 }  // namespace
 
-hc::Result<GraphJoints> GraphJoints::read(const std::string& text) {
+Result<GraphJoints> GraphJoints::read(const std::string& text) {
   auto frames = hc::frames::read_frames(text);
   if (!frames) return frames.error();
   GraphJoints joints{std::move(*frames), {}, {}};
@@ -42,10 +42,12 @@ hc::Result<GraphJoints> GraphJoints::read(const std::string& text) {
   return joints;
 }
 
-hc::Result<hc::ros::Joint> GraphJoints::joint_of(const hc::Message& pose) const {
+Result<Joint> GraphJoints::joint_of(const Message& pose) const {
   auto mover = frames.mover_of(pose.header.src, pose.header.coord);
   if (!mover) return mover.error();
-  auto T = hc::rigid_of(pose);
+  auto T = rigid_of(pose);
   if (!T) return T.error();
   return joint((*mover)->parent, (*mover)->child, *T, pose.header.time);
 }
+
+}  // namespace hc::ros
