@@ -14,6 +14,7 @@ pkg_check_modules(apriltag REQUIRED IMPORTED_TARGET apriltag)
 pkg_check_modules(vpx REQUIRED IMPORTED_TARGET vpx)
 pkg_check_modules(qrencode REQUIRED IMPORTED_TARGET libqrencode)
 find_package(OpenSSL REQUIRED)
+find_package(CycloneDDS REQUIRED)
 find_path(HC_BOOST boost/beast.hpp REQUIRED) # header files alone
 find_program(HC_NPM npm REQUIRED)
 find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// Talks to ROS 2: outputs of the graph as topics, topics as outputs here; without ROS installed.
+#include <atomic>
+#include <charconv>
+#include <cstdlib>
+#include <functional>
+#include <list>
+#include <map>
+#include <optional>
+
+#include <frames/default_head.h>
+#include <hc/compress/compress.h>
+#include <hc/module/module.h>
+#include <hc/observe/running.h>
+#include <ros/decode.h>
+#include <ros/joints.h>
+#include <web/event.h>
+
+#include "mapping.h"
+#include "names.h"
+#include "participant.h"
+#include "publication.h"
+
+namespace {
+
+std::string environment(const char* name, const char* otherwise) {
+  const char* value = std::getenv(name);
+  return value == nullptr || *value == '\0' ? otherwise : value;
+}
+
+/// The domain of a parameter below 0 is that of ROS_DOMAIN_ID.
+std::uint32_t domain_of(std::int64_t parameter) {
+  if (parameter >= 0) return static_cast<std::uint32_t>(parameter);
+  const std::string text = environment("ROS_DOMAIN_ID", "0");
+  std::uint32_t domain = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw hc::ModuleError(
+        hc::Error{hc::Code::Invalid, "ROS_DOMAIN_ID is \"" + text + "\", not a number"});
+  return domain;
+}
+
+/// A topic that is subscribed, and where its messages go.
+struct Subscription {
+  Subscribed subscribed;
+  hc::PortType port;
+  std::function<void(hc::Message)> send;
+  RateLimit limit;
+  Reader reader;
+};
+
+/// The frames as /tf and /tf_static.
+struct Frames {
+  double rate = 0;
+  Writer moving, fixed;
+  hc::ros::Encoder encoder;
+  std::map<std::string, RateLimit> limits;  // by child
+};
+
+/// The outputs of this module, by name.
+class Outputs {
+ public:
+  template <typename K>
+  void add(hc::Module& module, const std::string& name, const K& kind, const std::string& doc) {
+    auto output = module.output(name, kind, doc);
+    sends_[name] = {kind.type, [output](hc::Message message) mutable {
+                      output.send(hc::MessageOf<K>{std::move(message)});
+                    }};
+  }
+  struct Send {
+    hc::PortType port;
+    std::function<void(hc::Message)> send;
+  };
+  [[nodiscard]] const Send& at(const std::string& name) const { return sends_.at(name); }
+
+ private:
+  std::map<std::string, Send> sends_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here."};
+  auto poses =
+      module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");
+  Outputs outputs;
+  outputs.add(module, "image", hc::rgb_image<std::uint8_t>(), "of Image or CompressedImage");
+  outputs.add(module, "grey", hc::intensity_image<std::uint8_t>(), "of Image or CompressedImage");
+  outputs.add(module, "depth", hc::intensity_image<float>(), "of Image [m], 0 unknown");
+  auto points = hc::position<float>();
+  points.type.info.encoding = hc::Encoding::Binary;  // there are many
+  outputs.add(module, "points", points, "of PointCloud2");
+  outputs.add(module, "camera", hc::table<double>().of(5, 1),
+              "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
+  outputs.add(module, "pose", hc::transformation<double>(4, 4), "of PoseStamped or TFMessage");
+  outputs.add(module, "twist", hc::table<double>().of(6, 1), "of Twist: linear, angular");
+  outputs.add(module, "joints", hc::table<double>(),
+              "of JointState: a row of positions, then of velocities and efforts");
+  outputs.add(module, "text", hc::string(), "of String");
+  outputs.add(module, "numbers", hc::table<double>(), "of Float64MultiArray");
+  const auto publish = module.parameter(
+      "publish", "", "", "outputs as topics: MODULE.PORT=/topic[:TYPE] [rate=HZ], …; frames=/tf",
+      {.fixed = true});
+  const auto subscribe = module.parameter(
+      "subscribe", "", "", "topics as outputs: /topic[:TYPE]=OUTPUT [rate=HZ], …", {.fixed = true});
+  const auto node =
+      module.parameter("node", "hypercolumn", "", "name among the nodes of ROS", {.fixed = true});
+  const auto domain = module.parameter("domain", -1, "", "of DDS; -1: ROS_DOMAIN_ID, else 0",
+                                       {.min = -1, .max = 232, .fixed = true});
+  const auto range = module.parameter(
+      "range", "", "", "whom it talks to; empty: ROS_AUTOMATIC_DISCOVERY_RANGE, else LOCALHOST",
+      {.choices = {"", "LOCALHOST", "SUBNET", "OFF"}, .fixed = true});
+  const auto distro = module.parameter(
+      "distro", "", "", "the release of ROS, which differs for humble; empty: ROS_DISTRO",
+      {.fixed = true});
+  const auto frames = module.parameter("frames", std::string(hc::frames::kDefaultHead), "",
+                                       "coordinate systems, by `hc run`; else of the default head",
+                                       {.fixed = true});
+
+  // From other threads; what they say again and again waits in bounds.
+  hc::web::Inbox inbox;
+  std::atomic<int> waiting{0};
+  const auto log = [&](const std::string& kind, const std::string& line) {
+    constexpr int kMostWaiting = 1000;
+    if (waiting >= kMostWaiting) return;
+    ++waiting;
+    inbox.put([&, kind, line] {
+      --waiting;
+      module.log_once(kind, line);
+    });
+  };
+  const std::function<void(std::string_view)> warn = [&](std::string_view line) {
+    log("warnings of Cyclone DDS", "Cyclone DDS: " + std::string(line));
+  };
+  hc::web::Event arrived;
+  const std::function<void()> wake = [&] { arrived.set(); };
+
+  std::optional<hc::ros::GraphJoints> joints;
+  std::unique_ptr<Participant> participant;
+  std::list<Subscription> subscriptions;
+  std::list<Publication> publications;
+  std::optional<Frames> tf;
+
+  const auto open_frames = [&](const Published& published) {
+    tf.emplace();
+    tf->rate = published.rate;
+    tf->moving = hc::value_or_end(participant->write(published.topic, hc::ros::Type::TfMessage,
+                                                     qos_of(published, hc::ros::Type::TfMessage)));
+    tf->fixed =
+        hc::value_or_end(participant->write(published.topic + "_static", hc::ros::Type::TfMessage,
+                                            {.transient_local = true, .depth = 1}));
+    if (joints->fixed.empty()) return;
+    if (auto written = tf->fixed.write(tf->encoder.encode(joints->fixed)); !written)
+      module.log(published.topic + "_static: " + written.error().detail);
+  };
+  module.on_start([&] {
+    const auto published = hc::value_or_end(parse_publish(*publish));
+    const auto subscribed = hc::value_or_end(parse_subscribe(*subscribe));
+    if (published.empty() && subscribed.empty())
+      throw hc::ModuleError(
+          hc::Error{hc::Code::Invalid,
+                    "neither publish nor subscribe says a topic: publish=eyes.left=/left"});
+    if (!is_node(*node))
+      throw hc::ModuleError(hc::Error{
+          hc::Code::Invalid, "node: \"" + *node + "\" is not of letters, digits and _ alone"});
+    joints = hc::value_or_end(hc::ros::GraphJoints::read(*frames));
+    const std::string release = distro->empty() ? environment("ROS_DISTRO", "") : *distro;
+    participant = hc::value_or_end(Participant::open(
+        {domain_of(*domain),
+         range->empty() ? environment("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST") : *range, *node,
+         release == "humble"},
+        warn));
+    for (const auto& each : subscribed) {
+      const bool is_sensor = is_sensor_data(each.type);
+      const Qos qos{each.reliable.value_or(!is_sensor), false, is_sensor ? 5 : 10};
+      const auto& [port, send] = outputs.at(each.output);
+      subscriptions.push_back(
+          {each, port, send, RateLimit(each.rate),
+           hc::value_or_end(participant->read(each.topic, each.type, qos, wake))});
+    }
+    const auto graph = hc::parse_running(environment("HC_GRAPH", ""));
+    for (const auto& each : published) {
+      if (each.port == "frames") {
+        open_frames(each);
+        continue;
+      }
+      if (!graph)
+        throw hc::ModuleError(
+            "HC_GRAPH does not name a running graph, NAME.PID, whose outputs could be published; "
+            "run this module in a graph, or add it to one: hc graph add ros2 ros2");
+      publications.emplace_back(*graph, each, joints->names, *participant, log);
+    }
+    arrived.set();
+  });
+  module.keep_running();
+  module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });
+
+  const auto take = [&](Subscription& to, const hc::Result<std::span<const std::byte>>& bytes) {
+    const auto& subscribed = to.subscribed;
+    if (!to.limit.passes(module.monotonic().count())) return;
+    auto message = bytes ? hc::ros::decode(subscribed.type, *bytes, to.port, subscribed.choice)
+                         : hc::Result<hc::Message>(bytes.error());
+    if (message && !message->plain()) message = hc::expand(*message);
+    if (!message)
+      return module.log_once(
+          "refused of " + subscribed.topic,
+          subscribed.topic + ": refused; others are counted: " + message.error().detail);
+    if (message->header.time == 0) message->header.time = module.now();
+    message->header.coord = subscribed.coord;
+    to.send(std::move(*message));
+  };
+  module.on_readable([&] { return arrived.descriptor(); },
+                     [&] {
+                       arrived.clear();
+                       for (auto& each : subscriptions)
+                         each.reader.take([&](const auto& bytes) { take(each, bytes); });
+                     });
+  module.on(poses, [&](const auto& pose) {
+    if (!tf) return;
+    const auto joint = joints->joint_of(pose);
+    if (!joint) return module.log_once("pose", joint.error().detail);
+    auto& limit = tf->limits.try_emplace(joint->child, tf->rate).first->second;
+    if (!limit.passes(module.monotonic().count())) return;
+    const auto written = tf->moving.write(tf->encoder.encode(std::span(&*joint, 1)));
+    if (!written) module.log_once("frames not written", "frames: " + written.error().detail);
+  });
+  const int status = module.run(argc, argv);
+  publications.clear();
+  subscriptions.clear();
+  tf.reset();
+  participant.reset();
+  return status;
+}

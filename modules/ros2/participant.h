@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// This module among the nodes of ROS 2: a participant of DDS with writers and readers, by Cyclone.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <dds/dds.h>
+#include <hc/base/result.h>
+#include <ros/cdr.h>
+#include <ros/schema.h>
+
+struct ddsi_sertype;
+
+struct Qos {
+  bool reliable = true;
+  bool transient_local = false;  ///< late readers get what was last
+  std::int32_t depth = 10;       ///< of the newest that are kept
+};
+
+/// An entity of DDS, deleted with it.
+class Entity {
+ public:
+  Entity() = default;
+  explicit Entity(dds_entity_t handle) : handle_(handle) {}
+  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+  Entity& operator=(Entity&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Entity() {
+    if (handle_ > 0) dds_delete(handle_);
+  }
+  [[nodiscard]] dds_entity_t handle() const { return handle_; }
+
+ private:
+  dds_entity_t handle_ = 0;
+};
+
+/// Writes a topic, from one thread at a time. Ends before its participant.
+class Writer {
+ public:
+  /// Errors: System (a reader takes them too slowly: the message is dropped after 0.1 s).
+  hc::Status write(const hc::ros::Pieces& pieces);
+
+ private:
+  friend class Participant;
+  Entity topic_, writer_;
+  const ddsi_sertype* type_ = nullptr;
+};
+
+/// Reads a topic. Ends before its participant.
+class Reader {
+ public:
+  /// A message: its bytes, valid within the call; or why there are none.
+  using Take = std::function<void(const hc::Result<std::span<const std::byte>>&)>;
+
+  /// Takes what is there, as many as are kept at most.
+  void take(const Take& take);
+
+ private:
+  friend class Participant;
+  Entity topic_, reader_;
+  std::int32_t depth_ = 0;
+};
+
+class Participant {
+ public:
+  struct Options {
+    std::uint32_t domain = 0;
+    /// As ROS_AUTOMATIC_DISCOVERY_RANGE: LOCALHOST, by loopback alone; SUBNET, SYSTEM_DEFAULT; OFF.
+    std::string range = "LOCALHOST";
+    std::string node = "hypercolumn";
+    bool is_humble = false;  ///< as ROS 2 before Iron: longer ids, no hashes of types
+  };
+
+  /// @param log  gets what Cyclone DDS warns of, from any thread; outlives the participant.
+  /// Errors: Invalid (no such range or domain), System.
+  static hc::Result<std::unique_ptr<Participant>> open(
+      const Options& options, const std::function<void(std::string_view)>& log);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  /// From any thread. Errors: System.
+  hc::Result<Writer> write(const std::string& topic, hc::ros::Type type, const Qos& qos);
+  /// @param arrived  called on a thread of Cyclone's when there is something to take; outlives the
+  ///   participant.
+  /// Errors: System.
+  hc::Result<Reader> read(const std::string& topic, hc::ros::Type type, const Qos& qos,
+                          const std::function<void()>& arrived);
+
+ private:
+  Participant() = default;
+  hc::Result<Writer> open_writer(const std::string& topic, const std::string& type,
+                                 std::string_view hash, const Qos& qos);
+  /// Says to ROS which node this is, and what it writes and reads.
+  hc::Status announce();
+
+  Options options_;
+  Entity domain_, participant_;
+  Writer discovery_;
+  std::mutex mutex_;  // for the lists
+  std::vector<dds_guid_t> writers_, readers_;
+};
+
+/// The configuration of Cyclone DDS for a range; empty: there is none of that name.
+std::string configuration(std::string_view range);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// An output of the graph as a topic of ROS.
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <hc/observe/running.h>
+#include <ros/encode.h>
+#include <web/observer.h>
+
+#include "mapping.h"
+#include "participant.h"
+
+/// What a topic that is published is like to its readers.
+Qos qos_of(const Published& published, hc::ros::Type type);
+
+class Publication {
+ public:
+  /// Called on another thread: a problem, by its kind.
+  using Log = std::function<void(const std::string& kind, const std::string& line)>;
+
+  /// @param frames  their names by number, for frame_ids.
+  /// @param participant, log  outlive it.
+  Publication(hc::RunningGraph graph, Published published,
+              std::map<std::int32_t, std::string> frames, Participant& participant, Log log);
+
+ private:
+  // On the observer's thread.
+  void open();
+  void take(const hc::Message& message);
+
+  const hc::RunningGraph graph_;
+  const Published published_;
+  Participant& participant_;
+  const Log log_;
+  hc::ros::Encoder encoder_;
+  RateLimit limit_;
+  hc::ros::Type type_ = hc::ros::Type::Float64MultiArray;
+  std::optional<Writer> writer_;
+  hc::web::Observer observer_;  // last: its thread uses the above
+};
