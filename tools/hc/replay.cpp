@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 
 #include <hc/base/clock.h>
@@ -33,7 +34,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
-using Handled = std::map<std::string, std::set<Key>>;              // by input
+using What = hc::TraceEvent::What;
+
+constexpr const char* kFocus = "focus";
+constexpr std::size_t kStepsAtOnce = 1000;  // in a message
 
 struct ReplayOptions {
   std::string recording, out;
@@ -107,33 +111,84 @@ class Settings {
   std::map<std::string, double> values_;
 };
 
-/// What a module handled, by what it told while it was recorded; nothing where that is not known.
-std::optional<Handled> read_handled(const fs::path& file) {
+/// All that a module told of its messages while it was recorded; nothing where that is not known.
+std::vector<hc::TraceEvent> read_events(const fs::path& file) {
   std::error_code missing;
-  if (!fs::exists(file, missing)) return std::nullopt;
-  Handled handled;
+  if (!fs::exists(file, missing)) return {};
+  std::vector<hc::TraceEvent> events;
   auto source = open_file_source(file, kDefaultLimit);
   hc::Message message;
   while (receive(*source, message, file))
-    for (const auto& event : hc::read_trace(message)) {
-      if (event.what == hc::TraceEvent::What::Lost) return std::nullopt;
-      if (event.what == hc::TraceEvent::What::Began)
-        handled[event.port].insert({event.src, event.seq, event.time});
+    for (auto& event : hc::read_trace(message)) {
+      if (event.what == What::Lost) return {};
+      events.push_back(std::move(event));
     }
-  return handled;
+  return events;
 }
 
-/// Writes the messages that were handled into a file.
-void write_handled(const fs::path& from, const std::set<Key>& handled, const fs::path& to) {
+/// The clock at an event: its moment, or the time of its own that a message has which was sent
+/// then, as this is when the module looked at its clock.
+std::int64_t clock_at(const std::vector<hc::TraceEvent>& events, std::size_t at) {
+  const auto& event = events[at];
+  const bool is_handler = event.what == What::Began;
+  for (auto next = is_handler ? at + 1 : at; next < events.size(); ++next) {
+    const auto& other = events[next];
+    if (other.what == What::Ended || (other.what == What::Began && !is_handler)) break;
+    if (other.what == What::Sent && other.time >= event.moment && other.time <= other.moment)
+      return other.time;
+  }
+  return event.moment;
+}
+
+/// What the module is to do again: the beginning, of which it hears the moment alone, and what it
+/// began.
+std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) {
+  std::vector<hc::TraceEvent> steps;
+  auto last = events.size();
+  while (last > 0 && events[last - 1].what != What::Ended) --last;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const bool is_focus = events[i].what == What::Took && events[i].port == kFocus;
+    if (i == 0) steps.push_back({What::Took, "", 0, 0, 0, clock_at(events, i)});
+    if (!is_focus && events[i].what != What::Began) continue;
+    if (i >= last) break;  // it was stopped in this one
+    auto& step = steps.emplace_back(events[i]);
+    step.what = What::Began;
+    if (!is_focus) step.moment = clock_at(events, i);
+  }
+  return steps;
+}
+
+/// Writes the messages of a link that were handled into a file, and drops the steps whose message
+/// is not in the recording.
+void write_handled(const fs::path& from, const std::string& port, std::int32_t number,
+                   std::vector<hc::TraceEvent>& steps, const fs::path& to) {
+  const auto is_of_link = [&](const auto& step) {
+    return step.port == port && step.number == number;
+  };
+  std::set<Key> handled, found;
+  for (const auto& step : steps)
+    if (is_of_link(step)) handled.insert({step.src, step.seq, step.time});
   auto source = open_file_source(from, kDefaultLimit);
   auto sink = open_file_sink(to);
   hc::Message message;
   while (receive(*source, message, from)) {
     const auto& header = message.header;
-    if (handled.contains({header.src, header.seq, header.time}) && !send(*sink, message, to))
-      return;
+    const Key key{header.src, header.seq, header.time};
+    if (handled.contains(key) && found.insert(key).second && !send(*sink, message, to)) return;
   }
   if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
+  std::erase_if(steps, [&](const auto& step) {
+    return is_of_link(step) && !found.contains({step.src, step.seq, step.time});
+  });
+}
+
+void write_steps(const std::vector<hc::TraceEvent>& steps, const fs::path& file) {
+  auto sink = open_file_sink(file);
+  for (std::size_t i = 0; i < steps.size(); i += kStepsAtOnce) {
+    const auto some = std::span(steps).subspan(i, std::min(kStepsAtOnce, steps.size() - i));
+    if (!send(*sink, hc::make_trace(some), file)) return;
+  }
+  if (auto closed = sink->close(); !closed) throw Failure(file.string(), closed.error());
 }
 
 class Replay {
@@ -246,35 +301,31 @@ class Replay {
     return "";
   }
 
-  /// The file that an input reads: of what was recorded, what the module handled.
-  std::string input_file(const hc::PlannedModule& module, const hc::PlannedEnd& end,
-                         const std::optional<Handled>& handled) {
-    const auto writer = writer_of(module, end);
-    const auto port = handled ? handled->find(end.port) : Handled::const_iterator();
-    // The focus is no input that is told of.
-    if (!handled || end.port == "focus") return recorded(writer);
-    const fs::path file = folder_.path() / (module.name + "." + end.port + "." + writer + ".in");
-    write_handled(recorded(writer), port == handled->end() ? std::set<Key>() : port->second, file);
-    return file;
-  }
-
   std::vector<std::string> command_of(const hc::PlannedModule& module) {
     std::vector<std::string> words = {module.program};
     words.insert(words.end(), module.options.begin(), module.options.end());
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
-    words.insert(words.end(), {"--clock", "messages"});
-    const auto handled = read_handled(recorded(module.name + "." + hc::kTracePort));
+    auto steps = steps_of(read_events(recorded(module.name + "." + hc::kTracePort)));
+    const bool is_known = !steps.empty();
+    std::map<std::string, std::int32_t> links;  // of each port so far
     for (const auto& end : module.ends) {
-      std::string link = end.port + "=file:";
-      if (end.is_input)
-        link += input_file(module, end, handled);
-      else if (is_of_recording(end))
-        link += folder_.path() / (module.name + "." + end.port + ".mtp");
-      else
+      fs::path file = folder_.path() / (module.name + "." + end.port + ".mtp");
+      if (end.is_input && !is_known) {
+        file = recorded(writer_of(module, end));
+      } else if (end.is_input) {
+        const auto number = links[end.port]++;
+        file = folder_.path() / hc::format("{}.{}.{}.in", module.name, end.port, number);
+        write_handled(recorded(writer_of(module, end)), end.port, number, steps, file);
+      } else if (!is_of_recording(end)) {
         continue;
+      }
+      const std::string link = end.port + "=file:" + file.string();
       words.insert(words.end(), {end.is_input ? "--in" : "--out", link});
       if (!end.route.empty()) words.insert(words.end(), {"--route", link + " " + end.route});
     }
+    const fs::path clock = folder_.path() / (module.name + ".clock");
+    if (is_known) write_steps(steps, clock);
+    words.insert(words.end(), {"--clock", is_known ? "file:" + clock.string() : "messages"});
     return words;
   }
 

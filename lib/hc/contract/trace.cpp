@@ -37,7 +37,8 @@ std::optional<TraceEvent> parse_event(std::string_view row) {
   if (event.port == "-") event.port.clear();
   const bool is_whole = take_number(row, event.src) && take_number(row, event.seq) &&
                         take_number(row, event.time) && take_number(row, event.moment);
-  return is_whole && row.empty() ? std::optional(event) : std::nullopt;
+  const bool is_numbered = row.empty() || take_number(row, event.number);
+  return is_whole && is_numbered && row.empty() ? std::optional(event) : std::nullopt;
 }
 
 }  // namespace
@@ -50,6 +51,7 @@ Message make_trace(std::span<const TraceEvent> events) {
     row.append(" ").append(event.port.empty() ? "-" : event.port);
     for (const std::int64_t number : {std::int64_t{event.src}, event.seq, event.time, event.moment})
       row.append(" ").append(std::to_string(number));
+    if (event.number != 0) row.append(" ").append(std::to_string(event.number));
   }
   return make_rows(rows);
 }

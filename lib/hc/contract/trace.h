@@ -30,10 +30,15 @@ struct TraceEvent {
   std::int64_t seq = 0;     ///< as in its header
   std::int64_t time = 0;    ///< as in its header [ns]
   std::int64_t moment = 0;  ///< wall clock, which goes on as the monotonic one does [ns]
+  /// Which of the port's links; with an empty port, which timer (those of after() last), or
+  /// kGenerator.
+  std::int32_t number = 0;
+  static constexpr std::int32_t kGenerator = -1;
   bool operator==(const TraceEvent&) const = default;
 };
 
-/// A string with a row "took PORT SRC SEQ TIME MOMENT" for each; for an empty port "-".
+/// A string with a row "took PORT SRC SEQ TIME MOMENT" for each, and the number where it is not 0;
+/// for an empty port "-".
 Message make_trace(std::span<const TraceEvent> events);
 /// Malformed rows are ignored.
 std::vector<TraceEvent> read_trace(const Message& message);

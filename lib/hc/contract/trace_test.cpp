@@ -12,19 +12,20 @@ using What = TraceEvent::What;
 
 TEST(Trace, IsReadAsItWasWritten) {
   const std::vector<TraceEvent> events = {{What::Took, "image", 3, 7, 1000, 2000},
-                                          {What::Began, "", 0, 0, 0, 2001},
+                                          {What::Began, "", 0, 0, 0, 2001, 2},
                                           {What::Ended, "", 0, 0, 0, 2002},
                                           {What::Sent, "target", 4, 8, -1000, 2003},
                                           {What::Lost, "", 0, 12, 0, 2004}};
   const Message message = make_trace(events);
   EXPECT_EQ(rows_of(message)[0], "took image 3 7 1000 2000");
-  EXPECT_EQ(rows_of(message)[1], "began - 0 0 0 2001");
+  EXPECT_EQ(rows_of(message)[1], "began - 0 0 0 2001 2");
   EXPECT_EQ(read_trace(message), events);
 }
 
 TEST(Trace, MalformedRowsAreIgnored) {
   const std::vector<std::string> rows = {"took image 3 7 1000",
-                                         "took image 3 7 1000 2000 1",
+                                         "took image 3 7 1000 2000 1 2",
+                                         "took image 3 7 1000 2000 x",
                                          "jumped image 3 7 1000 2000",
                                          "took image 3 7.5 1000 2000",
                                          "took image 3000000000 7 1 2",

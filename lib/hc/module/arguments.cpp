@@ -121,12 +121,13 @@ class Parser {
     return {};
   }
   Status clock(const std::string& value) {
-    if (value != "machine" && value != "messages")
-      return invalid("--clock is machine or messages, not \"" + value + "\"");
-    arguments_.by_messages = value == "messages";
+    const bool is_trace = value.find(':') != std::string::npos;
+    if (value != "machine" && value != "messages" && !is_trace)
+      return invalid("--clock is machine, messages or the URI of a trace, not \"" + value + "\"");
+    arguments_.by_messages = value != "machine";
     if (arguments_.by_messages && module_.inputs().empty())
       return invalid("--clock messages needs inputs, and this module has none");
-    return {};
+    return is_trace ? read_uri(value, arguments_.clock) : Status();
   }
   Status manage(const std::string& value) { return read_uri(value, arguments_.manage); }
   Status control(const std::string& value) { return read_uri(value, arguments_.control); }
@@ -229,7 +230,9 @@ constexpr std::array<Option, 16> kOptions = {{
      "which messages a link takes, by their dst (to=21,-5 or to=*), and who is at its other end "
      "(peer=NAME), to whom nothing is sent back; may be repeated",
      &Parser::route},
-    {"--clock", "NAME", "clock: machine, or messages: the times of the messages (default machine)",
+    {"--clock", "NAME",
+     "clock: machine; messages: the times of the messages; or the URI of a trace that it wrote: it "
+     "does the same at the same moments (default machine)",
      &Parser::clock, Option::Inputs},
     {"--manage", "URI", "link to send reports to", &Parser::manage},
     {"--control", "URI", "link to take commands from", &Parser::control},

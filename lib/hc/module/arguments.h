@@ -25,7 +25,8 @@ struct Arguments {
   std::vector<Uri> trace_links;                       ///< --out trace=URI
   std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
   Focus focus;                                        ///< --mode, --modes
-  bool by_messages = false;                           ///< --clock messages
+  bool by_messages = false;                           ///< --clock messages, or a trace
+  std::optional<Uri> clock;                           ///< --clock URI: of a trace
   std::optional<Uri> manage;                          ///< --manage
   std::optional<Uri> control;                         ///< --control
   Limits limits;                                      ///< --limit

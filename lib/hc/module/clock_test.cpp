@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <hc/contract/trace.h>
 #include <hc/module/arguments.h>
 #include <hc/module/running_module_test.h>
 
@@ -44,8 +45,9 @@ class ByMessages : public RunningModule {
     EXPECT_EQ(module.monotonic().count(), module.now());
     return " at " + std::to_string((module.now() - kFirst) / kMillisecond);
   }
+  /// @param input  with a word behind it: by another link.
   void feed(const std::string& input, const std::vector<Message>& messages) {
-    words.insert(words.end(), {"--in", input + "=" + uri(input)});
+    words.insert(words.end(), {"--in", input.substr(0, input.find(' ')) + "=" + uri(input)});
     auto sink = sink_of(uri(input));
     for (const auto& message : messages) ASSERT_TRUE(sink->send(message));
     ASSERT_TRUE(sink->close());
@@ -150,6 +152,53 @@ TEST_F(ByMessages, AFocusExpiresInTheirTime) {
   EXPECT_EQ(run(), Log({"a 1 at 1", "a 201 at 201", "a 303 at 303"}));
 }
 
+TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
+  using enum TraceEvent::What;
+  auto moment = [](std::int64_t milliseconds) { return at(milliseconds).header.time; };
+  auto focus = table({4});
+  feed("a", {at(1, 4), at(2, 4)});
+  feed("a again", {at(3, 4)});
+  feed("focus", {focus});
+  module.every(1s, [&] { log.push_back("timer" + now()); });
+  module.every(1s, [&] { log.push_back("other timer" + now()); });
+  auto timeout = module.after(1s, [&] { log.push_back("timeout" + now()); });
+  module.on_start([&] { log.push_back("start" + now()); });
+  const std::vector<TraceEvent> events = {
+      {Took, "", 0, 0, 0, moment(5)},          {Began, "", 0, 0, 0, moment(6), 1},
+      {Began, "focus", 0, 0, 0, moment(10)},   {Began, "a", 0, 0, 0, moment(11), 1},
+      {Began, "", 0, 0, 0, moment(12), 2},     {Began, "a", 0, 0, 0, moment(13)},
+      {Began, "", 0, 0, 0, moment(14), 0},     {Began, "", 0, 0, 0, moment(15), 7},
+      {Began, "a", 0, 0, 0, moment(10 + 201)},
+  };
+  auto trace = sink_of(uri("clock"));
+  ASSERT_TRUE(trace->send(make_trace(events)));
+  ASSERT_TRUE(trace->close());
+  words[1] = uri("clock");
+  words.insert(words.end(), {"--exclusive", "a"});
+  // The last one was out of focus by then.
+  EXPECT_EQ(run(), Log({"start at 5", "other timer at 6", "a 3 at 11", "timeout at 12", "a 1 at 13",
+                        "timer at 14"}));
+}
+
+TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHearsOfTheFocus) {
+  feed("focus", {table({4})});
+  const std::vector<TraceEvent> events = {
+      {TraceEvent::What::Began, "", 0, 0, 0, at(3).header.time, TraceEvent::kGenerator},
+      {TraceEvent::What::Began, "focus", 0, 0, 0, at(4).header.time},
+      {TraceEvent::What::Began, "", 0, 0, 0, at(9).header.time, TraceEvent::kGenerator},
+      {TraceEvent::What::Began, "", 0, 0, 0, at(12).header.time, TraceEvent::kGenerator}};
+  auto trace = sink_of(uri("clock"));
+  ASSERT_TRUE(trace->send(make_trace(events)));
+  ASSERT_TRUE(trace->close());
+  words[1] = uri("clock");
+  module.generate([&] {
+    module.keep_rate(1);
+    log.push_back("look in " + std::to_string(module.focus()) + now());
+    return log.size() < 2;
+  });
+  EXPECT_EQ(run(), Log({"look in 4 at 4", "look in 4 at 1004"}));
+}
+
 TEST_F(ByMessages, WhoIsBehindIsWaitedFor) {
   reports_ = source_of(uri("reports"));
   auto ahead = sink_of(uri("a")), behind = sink_of(uri("b"));
@@ -174,7 +223,8 @@ TEST_F(ByMessages, AClockThatThereIsNotIsRefused) {
     auto arguments = internal::parse_arguments(wrong, {"--clock", clock});
     return arguments ? "" : arguments.error().text();
   };
-  EXPECT_EQ(refused(module, "sun"), "Invalid: --clock is machine or messages, not \"sun\"");
+  EXPECT_EQ(refused(module, "sun"),
+            "Invalid: --clock is machine, messages or the URI of a trace, not \"sun\"");
   EXPECT_EQ(refused(module, "machine"), "");
   Module source{"source", "Has no inputs."};
   EXPECT_EQ(refused(source, "messages"),

@@ -13,6 +13,7 @@ namespace hc {
 namespace {
 
 using internal::Inlet;
+using internal::kNoPort;
 using internal::LinkedSink;
 using internal::Stopped;
 
@@ -21,7 +22,6 @@ constexpr const char* kSetsKept = "4";      // by links whose newest complete se
 /// A line about a link waits for so long: at the end of a graph it tells nothing.
 constexpr std::chrono::milliseconds kLineDelay{200};
 constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
-const std::string kNoPort;
 
 /// Ends the module: cleanly if it is to stop, else with the name of what failed.
 [[noreturn]] void fail(const std::string& who, const Error& error) {
@@ -60,6 +60,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   open_inputs(arguments);
   for (const auto& uri : arguments.focus_links) open_focus(uri);
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
+  if (arguments.clock) read_moments(*arguments.clock);
   module_.loop_ = this;
 }
 
@@ -145,8 +146,10 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
   link.is_latest = is_latest;
   for (auto* input : link.inputs)
     if (input->together != nullptr) input->together->matcher.begin(input->place);
-  for (const auto& each : sources_)
+  for (const auto& each : sources_) {
     if (each.is_same(link)) link.route = each.route;
+    if (each.inputs == link.inputs) ++link.number;
+  }
   sources_.push_back(std::move(link));
   join_renewed();
   choose_policies();
@@ -175,6 +178,7 @@ bool Module::Loop::join_renewed() {
     }
     renewed->past += link->past;
     renewed->ignored += link->ignored;
+    renewed->number = link->number;
     link = sources_.erase(link);
     any = true;
   }
@@ -203,6 +207,11 @@ void Module::Loop::run() {
     if (stop_requested()) throw Stopped();
     // What was waited for comes first.
     now_ = module_.clock_.monotonic();
+    if (moments_) {
+      if (!repeat_next()) break;
+      serve();
+      continue;
+    }
     receive_focus();
     const bool any = module_.message_time_ ? take_earliest() : take_each();
     end_unneeded();
@@ -212,9 +221,10 @@ void Module::Loop::run() {
     read_watched();
     if (any) continue;
     if (is_generators_turn()) {
-      note(TraceEvent::What::Began, kNoPort, {});
-      if (!generate()) break;
-      note(TraceEvent::What::Ended, kNoPort, {});
+      note(TraceEvent::What::Began, kNoPort, {}, TraceEvent::kGenerator);
+      const bool goes_on = generate();
+      note(TraceEvent::What::Ended, kNoPort, {}, TraceEvent::kGenerator);
+      if (!goes_on) break;
     } else if (all_ended()) {
       break;
     } else {
@@ -255,23 +265,26 @@ bool Module::Loop::all_ended() const {
 }
 
 void Module::Loop::fire_timers() {
+  std::int32_t number = -1;
   for (auto& timer : module_.timers_) {
+    ++number;
     const auto due = timer.due();
     if (due > time()) continue;
-    note(TraceEvent::What::Began, kNoPort, {});
+    note(TraceEvent::What::Began, kNoPort, {}, number);
     timer.handler();
-    note(TraceEvent::What::Ended, kNoPort, {});
+    note(TraceEvent::What::Ended, kNoPort, {}, number);
     now_ = module_.clock_.monotonic();
     timer.last = std::max(due, time() - timer.period());
   }
   // A handler may add some. NOLINTNEXTLINE(modernize-loop-convert)
   for (std::size_t i = 0; i < module_.timeouts_.size(); ++i) {
     const auto timeout = module_.timeouts_[i];
+    ++number;
     if (!timeout->due || *timeout->due > time()) continue;
     timeout->due.reset();
-    note(TraceEvent::What::Began, kNoPort, {});
+    note(TraceEvent::What::Began, kNoPort, {}, number);
     timeout->handler();
-    note(TraceEvent::What::Ended, kNoPort, {});
+    note(TraceEvent::What::Ended, kNoPort, {}, number);
   }
 }
 
@@ -411,7 +424,7 @@ void Module::Loop::deliver(Inlet& link, Message& message) {
         std::any_of(input->types.begin(), input->types.end(),
                     [&](const PortType& type) { return fits(message.header, type); });
     if (!fits_any) continue;
-    note(TraceEvent::What::Took, input->name, message.header);
+    note(TraceEvent::What::Took, input->name, message.header, link.number);
     if (!input->handler) return;
     if (!module_.focus_.admits(input->is_exclusive, message.header.mode)) {
       ++link.ignored;
@@ -449,9 +462,9 @@ void Module::Loop::call(const internal::InputState& input, Inlet& link, Message&
     input.handler(message);
   } else {
     const Header header = message.header;  // a handler may move the message away
-    note(TraceEvent::What::Began, input.name, header);
+    note(TraceEvent::What::Began, input.name, header, link.number);
     input.handler(message);
-    note(TraceEvent::What::Ended, input.name, header);
+    note(TraceEvent::What::Ended, input.name, header, link.number);
   }
   module_.handled_ = {};
 }
@@ -491,6 +504,8 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
 void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
   if (module_.message_time_) {
     has_generated_ = false;
+    while (moments_ && !moments_->empty() && moments_->front().port == internal::kFocusPort)
+      repeat_next();
     return pass_to(std::max(time(), due()));
   }
   for (now_ = module_.clock_.monotonic(); now_ < due(); now_ = module_.clock_.monotonic()) {

@@ -19,6 +19,9 @@ namespace hc {
 
 namespace internal {
 
+/// What a trace calls the focus, and what no message causes.
+inline const std::string kFocusPort = "focus", kNoPort;
+
 /// Thrown to end a module cleanly: nobody reads it any more, or it was asked to stop.
 struct Stopped {};
 
@@ -30,6 +33,7 @@ struct Inlet {
   std::optional<Message> head =
       {};                          ///< with --clock messages: taken, and to be handled in its time
   Route route = {};                ///< who is at the other end
+  std::int32_t number = 0;         ///< of the links of its port
   bool is_latest = false;          ///< keep=latest, of an input that is taken together with others
   Traffic past = {};               ///< of sources that have ended
   std::uint64_t ignored = 0;       ///< messages that no handler got: another mode has the focus
@@ -68,9 +72,10 @@ struct Module::Loop {
   /// @param blocked  the link whose reader the module waits for; null: none.
   void report_state(const internal::LinkedSink* blocked = nullptr);
   /// Notes a moment in the way of a message, while the module is traced.
-  void note(TraceEvent::What what, const std::string& port, const Header& header) {
+  void note(TraceEvent::What what, const std::string& port, const Header& header,
+            std::int32_t number = 0) {
     if (trace_ != nullptr) [[unlikely]]
-      trace_->note(what, port, header);
+      trace_->note(what, port, header, number);
   }
 
  private:
@@ -115,6 +120,9 @@ struct Module::Loop {
   bool take_earliest();
   bool has_heads();
   [[nodiscard]] internal::Inlet* earliest();
+  void read_moments(const Uri& uri);
+  bool repeat_next();
+  void repeat_without_message(std::int32_t number);
   void pass_to(MonotonicTime time) { module_.message_time_ = time.count(); }
 
   // loop_control.cpp
@@ -160,7 +168,8 @@ struct Module::Loop {
     return module_.message_time_ ? MonotonicTime(*module_.message_time_) : now_;
   }
 
-  MonotonicTime now_{0};      // of the machine, at the last look at the clock
+  std::optional<std::deque<TraceEvent>> moments_;  // with --clock URI: to be repeated
+  MonotonicTime now_{0};                           // of the machine, at the last look at the clock
   std::int64_t to_wall_ = 0;  // from monotonic to wall clock, at the last report [ns]
   MonotonicTime reported_{0}, attended_{0};
   // With --clock messages: whether the generator is called next; has been since the last message,

@@ -66,6 +66,7 @@ void Module::Loop::set_focus(const Message& message) {
   auto& focus = module_.focus_;
   const auto modes = message.view<std::int32_t>();
   if (!modes || modes->empty()) return;
+  note(TraceEvent::What::Took, internal::kFocusPort, message.header);
   focus.received = time();
   if (std::exchange(focus.current, modes->at(0, 0)) != focus.current) report_state();
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A module's loop by the clock of its messages (--clock messages): the messages of all links in the
 // order of their times, and what is due between them. What the module does is then a matter of what
-// it is fed with, not of how fast it is fed.
+// it is fed with, not of how fast it is fed. With the trace of an earlier run as the clock, it does
+// the same at the same moments.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -45,8 +46,9 @@ internal::Inlet* Module::Loop::earliest() {
   return first;
 }
 
-/// The clock begins with the first message that has a time.
+/// The clock begins with the trace, or the first message that has a time.
 void Module::Loop::begin_clock() {
+  if (moments_ && !moments_->empty()) return pass_to(MonotonicTime(moments_->front().moment));
   while (!has_heads()) {
     if (stop_requested()) throw Stopped();
     wait(true, MonotonicTime::max());
@@ -103,6 +105,60 @@ bool Module::Loop::is_generators_turn() const {
 bool Module::Loop::generate() {
   has_generated_ = true;
   return module_.generate_();
+}
+
+/// Reads what the module is to do again: what it began, and when.
+void Module::Loop::read_moments(const Uri& uri) {
+  const auto source = open(uri, "clock");
+  moments_.emplace();
+  Message message;
+  while (true) {
+    const auto any = receive(*source, message);
+    if (!any) throw ModuleError(Error{any.error().code, uri.text() + ": " + any.error().detail});
+    if (!*any) return;
+    for (auto& event : read_trace(message)) moments_->push_back(std::move(event));
+  }
+}
+
+/// Does what the module did next, at that moment; false when there is no more.
+bool Module::Loop::repeat_next() {
+  if (moments_->empty()) return false;
+  if (!has_heads()) {
+    wait(true, MonotonicTime::max());
+    return true;
+  }
+  const TraceEvent event = std::move(moments_->front());
+  moments_->pop_front();
+  if (event.what != TraceEvent::What::Began) return true;
+  pass_to(std::max(time(), MonotonicTime(event.moment)));
+  expire_focus();
+  if (event.port.empty()) {
+    repeat_without_message(event.number);
+    return true;
+  }
+  for (auto* links : {&focus_, &sources_})
+    for (auto& link : *links) {
+      const auto& port = link.inputs.empty() ? internal::kFocusPort : link.inputs.front()->name;
+      if (!link.head || link.number != event.number || port != event.port) continue;
+      Message message = *std::exchange(link.head, std::nullopt);
+      handle(link, message);
+      return true;
+    }
+  return true;
+}
+
+/// Calls a timer, a time-out or the generator; a module that was changed may have fewer.
+void Module::Loop::repeat_without_message(std::int32_t number) {
+  const auto index = static_cast<std::size_t>(number), timers = module_.timers_.size();
+  if (number == TraceEvent::kGenerator) {
+    if (module_.generate_ && !generate()) moments_->clear();
+  } else if (index < timers) {
+    module_.timers_[index].handler();
+  } else if (index - timers < module_.timeouts_.size()) {
+    const auto timeout = module_.timeouts_[index - timers];
+    timeout->due.reset();
+    timeout->handler();
+  }
 }
 
 }  // namespace hc

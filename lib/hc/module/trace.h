@@ -25,9 +25,10 @@ struct Trace {
   std::int64_t lost = 0;
   MonotonicTime sent{0};
 
-  void note(TraceEvent::What what, const std::string& port, const Header& header) {
+  void note(TraceEvent::What what, const std::string& port, const Header& header,
+            std::int32_t number) {
     if (events.size() < kMost)
-      events.push_back({what, port, header.src, header.seq, header.time, clock.wall()});
+      events.push_back({what, port, header.src, header.seq, header.time, clock.wall(), number});
     else
       ++lost;
   }
