@@ -23,7 +23,7 @@ const types = new Map(
 const stamp = { sec: 1763683200, nanosec: 123456789 };
 const header = (frame_id) => ({ stamp, frame_id });
 const bytes = (...list) => Uint8Array.from(list);
-const upTo = (count) => Array.from({ length: count }, (_, i) => i + 1);
+const below = (count) => Array.from({ length: count }, (_, i) => i + 1);
 const field = (name, i) => ({ name, offset: 4 * i, datatype: 7, count: 1 });
 const joint = {
   header: header("robot"),
@@ -38,12 +38,12 @@ const values = {
     encoding: "rgb8",
     is_bigendian: 0,
     step: 9,
-    data: bytes(...upTo(18)),
+    data: bytes(...below(18)),
   },
   "sensor_msgs/msg/CompressedImage": {
     header: header("right_eye"),
     format: "jpeg",
-    data: bytes(...upTo(18)),
+    data: bytes(...below(18)),
   },
   "sensor_msgs/msg/PointCloud2": {
     header: header("left_eye"),
@@ -53,7 +53,7 @@ const values = {
     is_bigendian: false,
     point_step: 24,
     row_step: 48,
-    data: new Uint8Array(Float32Array.from(upTo(24)).buffer),
+    data: new Uint8Array(Float32Array.from(below(24)).buffer),
     is_dense: false,
   },
   "sensor_msgs/msg/CameraInfo": {
@@ -88,7 +88,7 @@ const values = {
   "std_msgs/msg/String": { data: "\u0001\u0002\u0003\u0004\u0005" },
   "foxglove_msgs/msg/RawAudio": {
     timestamp: stamp,
-    data: new Uint8Array(Int16Array.from(upTo(6)).buffer),
+    data: new Uint8Array(Int16Array.from(below(6)).buffer),
     format: "pcm-s16",
     sample_rate: 16000,
     number_of_channels: 2,
@@ -131,7 +131,7 @@ for (const [name, List] of Object.entries(arrays))
       ],
       data_offset: 0,
     },
-    data: List.from(upTo(12).map(name.endsWith("64") && !name.startsWith("F") ? BigInt : Number)),
+    data: List.from(below(12).map(name.endsWith("64") && !name.startsWith("F") ? BigInt : Number)),
   };
 
 /** Plain values, so that typed arrays of any base are compared by what they hold. */
