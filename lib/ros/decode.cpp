@@ -15,10 +15,8 @@
 namespace hc::ros {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-
 std::int64_t nanoseconds(const Time& time) {
-  return time.sec * kSecond + time.nanosec;
+  return time.sec * std::int64_t{1'000'000'000} + time.nanosec;
 }
 
 Error malformed(std::string why) {

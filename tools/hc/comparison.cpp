@@ -84,7 +84,7 @@ class Reader {
   std::int64_t time_ = 0;
 };
 
-struct Held {
+struct KeptMessage {
   hc::Message message;
   bool is_matched = false;
 };
@@ -129,7 +129,7 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
                    const Tolerance& tolerance) {
   Comparison result;
   Reader kept(recorded), again(replayed);
-  std::multimap<std::int64_t, Held> held;  // of the replay, by time
+  std::multimap<std::int64_t, KeptMessage> held;  // of the replay, by time
   bool has_more = true;
   std::optional<std::int64_t> begin;
   auto note = [&](const hc::Header& header, std::int64_t time, const std::string& what) {
@@ -137,7 +137,7 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
       result.first = hc::format("seq {}, {:.3f} s after the first: {}", header.seq,
                                 static_cast<double>(time - begin.value_or(time)) * 1e-9, what);
   };
-  auto drop_until = [&](std::multimap<std::int64_t, Held>::iterator end) {
+  auto drop_until = [&](std::multimap<std::int64_t, KeptMessage>::iterator end) {
     for (auto each = held.begin(); each != end; each = held.erase(each)) {
       if (each->second.is_matched) continue;
       ++result.extra;
@@ -154,14 +154,14 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
       has_more = other.has_value();
       if (!has_more) break;
       ++result.replayed;
-      held.emplace(other->first, Held{std::move(other->second)});
+      held.emplace(other->first, KeptMessage{std::move(other->second)});
     }
     drop_until(held.lower_bound(time - tolerance.time - kDisorder));
     const auto first = held.lower_bound(time - tolerance.time);
     const auto end = held.upper_bound(time + tolerance.time);
     bool is_found = false;
     std::string what;
-    Held* nearest = nullptr;
+    KeptMessage* nearest = nullptr;
     std::int64_t distance = 0;
     for (auto each = first; each != end; ++each) {
       auto& candidate = each->second;
@@ -191,7 +191,7 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
   }
   while (auto other = again.take()) {
     ++result.replayed;
-    held.emplace(other->first, Held{std::move(other->second)});
+    held.emplace(other->first, KeptMessage{std::move(other->second)});
     drop_until(held.lower_bound(std::prev(held.end())->first - kDisorder));
   }
   drop_until(held.end());

@@ -108,7 +108,7 @@ std::uint64_t bytes_of(const std::string& option, const std::string& text) {
 }
 
 /// Set by SIGUSR1: what is kept of the last time is to be saved.
-volatile std::sig_atomic_t save_requested = 0;
+volatile std::sig_atomic_t save_asked = 0;
 
 /// A recording in MCAP, a stream for each link.
 class Recording : public Output {
@@ -131,7 +131,7 @@ class Recording : public Output {
                          std::filesystem::is_regular_file(uri->rest, missing));
     }
     if (options.last == 0) return;
-    std::signal(SIGUSR1, [](int) { save_requested = 1; });
+    std::signal(SIGUSR1, [](int) { save_asked = 1; });
     if (::isatty(STDIN_FILENO) == 1 && std::ranges::find(options.links, "-") == options.links.end())
       has_keys_ = true;
     say(hc::format("hc record: keeps the last {} s; {}SIGUSR1 to {} saves them", options.last,
@@ -160,7 +160,7 @@ class Recording : public Output {
     std::array<char, 256> line{};
     const bool is_pressed =
         has_keys_ && ::poll(&keys, 1, 0) > 0 && ::read(STDIN_FILENO, line.data(), line.size()) > 0;
-    if (is_pressed || std::exchange(save_requested, 0) != 0) save();
+    if (is_pressed || std::exchange(save_asked, 0) != 0) save();
   }
   [[nodiscard]] std::chrono::milliseconds period() const override {
     constexpr std::chrono::milliseconds kPeriod{200};
