@@ -85,22 +85,21 @@ int main(int argc, char** argv) {
   std::vector<hc::Input<hc::AnyKind>> inputs;
   for (const auto& [input, name] : names)
     inputs.push_back(module.input(input, hc::anything(), "recorded as " + name));
-  hc::ParameterOptions fixed;
-  fixed.fixed = true;
-  auto file = module.parameter("file", "recording.mcap", "", "output file", fixed);
-  auto streams =
-      module.parameter("streams", "", "", "inputs and names of their streams, INPUT=NAME …", fixed);
-  auto split = module.parameter("split", "0", "",
-                                "a new file begins after so many bytes (1G); 0: never", fixed);
-  auto keep = module.parameter("keep", "0", "",
-                               "of all files, the oldest are removed (10G); 0: all stay", fixed);
+  auto file = module.parameter("file", "recording.mcap", "", "output file", {.fixed = true});
+  auto streams = module.parameter(
+      "streams", "", "", "inputs and names of their streams, INPUT=NAME …", {.fixed = true});
+  auto split = module.parameter(
+      "split", "0", "", "a new file begins after so many bytes (1G); 0: never", {.fixed = true});
+  auto keep = module.parameter(
+      "keep", "0", "", "of all files, the oldest are removed (10G); 0: all stay", {.fixed = true});
   auto last = module.parameter(
       "last", 0.0, "s",
       "keep the last seconds in memory, and write them on SIGUSR1, or when `when` says so; 0: off",
-      fixed);
-  auto when = module.parameter(
-      "when", "", "", "MODULE.PORT: saves when its first number becomes other than 0", fixed);
-  auto frames = module.parameter("frames", "", "", "frames of the graph, as text", fixed);
+      {.fixed = true});
+  auto when = module.parameter("when", "", "",
+                               "MODULE.PORT: saves when its first number becomes other than 0",
+                               {.fixed = true});
+  auto frames = module.parameter("frames", "", "", "frames of the graph, as text", {.fixed = true});
 
   std::unique_ptr<hc::mcap::Recorder> recorder;
   std::unique_ptr<Story> story;
