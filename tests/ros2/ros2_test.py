@@ -11,10 +11,19 @@ import json
 import os
 import pathlib
 import re
+import shlex
 import signal
 import subprocess
 import sys
 import unittest
+
+# Peers of others use all interfaces, and the graph only loopback: here there is nothing else.
+ALONE = ["unshare", "--map-root-user", "--net", "sh", "-c"]
+if os.environ.pop("HC_ALONE", None) is None:
+    if subprocess.run([*ALONE, "ip link set lo up"], stderr=-3, check=False).returncode == 0:
+        os.environ["HC_ALONE"] = "1"
+        command = shlex.join([sys.executable, *sys.argv])
+        os.execvp(ALONE[0], [*ALONE, "ip link set lo up && exec " + command])
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "pipes"))
 
