@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a module that is traced tells of its messages over its output `trace` (spec/module.md): rows
+// What a traced module reports of its messages over its output `trace` (spec/module.md): rows
 // of text, written and read here alone. Pure.
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct TraceEvent {
   std::int32_t src = 0;     ///< with seq and time that of the message
   std::int64_t seq = 0;     ///< as in its header
   std::int64_t time = 0;    ///< as in its header [ns]
-  std::int64_t moment = 0;  ///< wall clock, which goes on as the monotonic one does [ns]
+  std::int64_t moment = 0;  ///< wall clock, advanced by the monotonic one [ns]
   /// Which of the port's links; with an empty port, which timer (those of after() last), or
   /// kGenerator.
   std::int32_t number = 0;

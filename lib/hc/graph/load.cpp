@@ -102,7 +102,7 @@ void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   if (!listen.empty()) obey("set " + page + ".listen=" + listen);
 }
 
-/// Has each module that can tell of its messages do so, into FOLDER/MODULE.trace.mtp.
+/// Records the trace of each module that has one, into FOLDER/MODULE.trace.mtp.
 void record_traces(Plan& plan, const std::string& folder) {
   for (auto& module : plan.modules)
     if (!module.control_uri.empty())

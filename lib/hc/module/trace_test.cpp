@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a module tells of its messages while it is traced.
+// What a module reports of its messages while it is traced.
 #include <hc/contract/trace.h>
 #include <hc/module/running_module_test.h>
 
