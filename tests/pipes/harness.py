@@ -77,7 +77,7 @@ class Pipes(unittest.TestCase):
     def shell(self, command, status=0, data=b""):
         process = self.start(command, stdin=-1)
         out, err = process.communicate(data, timeout=WATCHDOG)
-        self.assertEqual(process.returncode, status, (command, out[-500:], err[-2000:]))
+        self.assertEqual(process.returncode, status, (command, out[-3000:], err[-3000:]))
         self.err = err.decode()
         return out.decode(errors="replace")
 

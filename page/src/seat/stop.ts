@@ -9,24 +9,32 @@ const twice = 600;
 /** Puts the stop button into the header, and a red bar above all while the robot is stopped. */
 export function addStop(shell: Shell): void {
   const { server } = shell;
-  const send = async (command: string): Promise<void> => {
+  const say = (error: unknown): void =>
+    shell.say(error instanceof Error ? error.message : String(error));
+  let pending = false; // pressed, and not answered
+  const stop = async (): Promise<void> => {
+    pending = true;
     try {
-      await server.command(command);
+      await server.command("estop");
+      pending = false;
     } catch (error) {
-      shell.say(error instanceof Error ? error.message : String(error));
+      pending = server.connection.status !== "open";
+      say(pending ? "There is no connection to the server: the stop is sent when there is one." : error);
     }
   };
-  const stop = (): void => void send("estop");
+  server.onConnection(({ status }) => {
+    if (status === "open" && pending) void stop();
+  });
   const button = h(
     "button",
-    { class: "stop", title: "Stop the robot (Escape twice)", onclick: stop },
+    { class: "stop", title: "Stop the robot (Escape twice)", onclick: () => void stop() },
     "Stop",
   );
 
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
   const clear = h(
     "button",
-    { class: "stop-clear", disabled: true, onclick: () => void send("estop clear") },
+    { class: "stop-clear", disabled: true, onclick: () => void server.command("estop clear").catch(say) },
     "Let it move",
   );
   confirm.addEventListener("change", () => {
@@ -53,7 +61,7 @@ export function addStop(shell: Shell): void {
   let last = -Infinity;
   document.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || event.repeat) return;
-    if (event.timeStamp - last < twice) stop();
+    if (event.timeStamp - last < twice) void stop();
     last = event.timeStamp;
   });
 
