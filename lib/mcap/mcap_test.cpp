@@ -12,6 +12,8 @@
 #include <hc/mtp/codec.h>
 #include <mcap/link.h>
 #include <mcap/recorder.h>
+#include <ros/cdr.h>
+#include <ros/messages.h>
 
 namespace hc::mcap {
 namespace {
@@ -407,6 +409,45 @@ TEST(Mcap, ARecordingIsSplitAndItsOldestFilesAreRemoved) {
   }
   for (std::size_t i = 0; i < messages.size(); ++i)
     EXPECT_EQ(messages[messages.size() - 1 - i], encode(image(kCount - 1 - static_cast<int>(i))));
+}
+
+/// A `transformation` along x, from a neck of address 11.
+Message pose(std::int32_t coord, double x) {
+  auto draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Binary}, 4, 4);
+  draft.header.src = 11;
+  draft.header.coord = coord;
+  draft.header.time = 1'763'683'200'000'000'000 + coord;
+  const std::array<double, 16> T = {1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  std::ranges::copy(T, draft.view<double>().numbers().begin());
+  return std::move(draft).finish();
+}
+
+TEST(Mcap, EachJointThatAnOutputMovesIsOnTf) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap");
+  ASSERT_TRUE(recorder->set_frames(
+      "head 3 robot neck.pose 11; left_eye 4 head neck.pose 11; cup 200 head 1 2 3 0 0 0 1", 1));
+  const auto stream = recorder->add_stream("neck.pose");
+  const auto other = recorder->add_stream("arm.pose");
+  ASSERT_TRUE(recorder->record(stream, pose(2003, 0.5), 1));
+  ASSERT_TRUE(recorder->record(stream, pose(3004, 0.25), 2));
+  ASSERT_TRUE(recorder->record(stream, pose(7, 9), 3));    // of no joint
+  ASSERT_TRUE(recorder->record(other, pose(2003, 9), 4));  // moves none
+  ASSERT_TRUE(recorder->close());
+  auto reader = Reader::open(folder / "x.mcap");
+  ASSERT_TRUE(reader);
+  std::vector<std::string> joints;
+  for (auto message = reader->next(); message && *message; message = reader->next()) {
+    if (reader->found.channels.at((*message)->record.channel).topic != "/tf") continue;
+    const auto tf = ros::CdrReader::read<ros::TfMessage>((*message)->data);
+    ASSERT_TRUE(tf) << tf.error().detail;
+    for (const auto& each : tf->transforms)
+      joints.push_back(each.header.frame_id + " " + each.child_frame_id + " " +
+                       std::to_string(each.transform.position.x) + " " +
+                       std::to_string(each.header.stamp.nanosec));
+  }
+  EXPECT_EQ(joints,
+            (std::vector<std::string>{"robot head 0.500000 2003", "head left_eye 0.250000 3004"}));
 }
 
 TEST(Mcap, NumberedFilesOfBeforeStay) {

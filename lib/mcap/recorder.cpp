@@ -2,7 +2,6 @@
 #include <mcap/recorder.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include <hc/mtp/coords.h>
 
@@ -34,22 +33,6 @@ std::string topic_of(std::string_view name) {
   return topic == "/" ? "/stream" : topic;
 }
 
-std::vector<std::string_view> split(std::string_view text, std::string_view separator) {
-  std::vector<std::string_view> parts;
-  while (!text.empty()) {
-    const auto part = text.substr(0, text.find(separator));
-    text.remove_prefix(std::min(text.size(), part.size() + separator.size()));
-    if (!part.empty()) parts.push_back(part);
-  }
-  return parts;
-}
-
-template <typename T>
-bool read_number(std::string_view text, T& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Recorder>> Recorder::make(const RecorderOptions& options) {
@@ -78,7 +61,7 @@ std::size_t Recorder::add_stream(std::string_view name) {
   stream.topic = topic;
   for (int i = 2; is_taken(stream.topic); ++i) stream.topic = topic + "_" + std::to_string(i);
   stream.name = name;
-  if (const auto found = movers_.find(name); found != movers_.end()) stream.moves = found->second;
+  stream.moves_frames = joints_.are_moved_by(name);
   streams_.push_back(std::move(stream));
   return streams_.size() - 1;
 }
@@ -150,14 +133,10 @@ Status Recorder::record(std::size_t number, const Message& message, std::int64_t
   add(channel(stream, ros::Type::Matrix), sequence, time, published,
       matrix_encoder_.encode_matrix(message, offset));
   ++chunk_.messages;
-  if (stream.moves) {
-    if (const auto pose = ros::pose_of(message)) {
-      ros::Joint& joint = *stream.moves;
-      const auto& [p, q] = *pose;
-      joint.translation = {p.x, p.y, p.z};
-      joint.rotation = {q.x, q.y, q.z, q.w};
-      joint.time = published;
-      add_other(kFrames, ros::Type::TfMessage, time, encoder_.encode(std::span(&joint, 1)));
+  if (stream.moves_frames) {
+    if (auto joint = joints_.joint_of(message)) {
+      joint->time = published;
+      add_other(kFrames, ros::Type::TfMessage, time, encoder_.encode(std::span(&*joint, 1)));
     }
   }
   return hand_on_if_due();
@@ -176,28 +155,14 @@ Status Recorder::log(std::int64_t time, Severity severity, std::string_view name
   return hand_on_if_due();
 }
 
-Status Recorder::set_frames(std::string_view text, std::int64_t time) {
-  std::vector<ros::Joint> fixed;
-  for (const auto entry : split(text, "; ")) {
-    const auto words = split(entry, " ");
-    std::int32_t coord = 0;
-    constexpr std::size_t kFixed = 10, kMoved = 5;  // G31
-    if ((words.size() != kFixed && words.size() != kMoved) || !read_number(words[1], coord))
-      return Error{Code::Malformed, "frames: " + std::string(entry)};
-    ros::Joint joint{std::string(words[2]), std::string(words[0]), {}, {0, 0, 0, 1}, time};
-    if (coord != 0) encoder_.frames[coord] = joint.child;
-    if (words.size() == kMoved) {
-      movers_[std::string(words[3])] = joint;
-      continue;
-    }
-    bool is_good = true;
-    for (std::size_t i = 0; i < 3; ++i) is_good &= read_number(words[3 + i], joint.translation[i]);
-    for (std::size_t i = 0; i < 4; ++i) is_good &= read_number(words[6 + i], joint.rotation[i]);
-    if (!is_good) return Error{Code::Malformed, "frames: " + std::string(entry)};
-    fixed.push_back(std::move(joint));
-  }
-  if (fixed.empty()) return {};
-  add_other(kStaticFrames, ros::Type::TfMessage, time, encoder_.encode(fixed));
+Status Recorder::set_frames(const std::string& text, std::int64_t time) {
+  auto joints = ros::GraphJoints::read(text);
+  if (!joints) return joints.error();
+  joints_ = std::move(*joints);
+  encoder_.frames = joints_.names;
+  for (auto& joint : joints_.fixed) joint.time = time;
+  if (joints_.fixed.empty()) return {};
+  add_other(kStaticFrames, ros::Type::TfMessage, time, encoder_.encode(joints_.fixed));
   return hand_on(true);
 }
 

@@ -22,6 +22,7 @@
 #include <mcap/chunk.h>
 #include <mcap/storage.h>
 #include <ros/encode.h>
+#include <ros/joints.h>
 
 namespace hc::mcap {
 
@@ -57,10 +58,10 @@ class Recorder {
   Status metadata(std::string name, Words words);
 
   /// The frames of the graph as text (spec/graph.md, G31): joints that never move are recorded on
-  /// /tf_static, in each file, and those that streams move on /tf. Before the first message.
+  /// /tf_static, in each file, and those that streams move on /tf. Before the first stream.
   /// @param time  now [ns since the Unix epoch].
-  /// Errors: Malformed.
-  Status set_frames(std::string_view text, std::int64_t time);
+  /// Errors: as ros::GraphJoints::read().
+  Status set_frames(const std::string& text, std::int64_t time);
 
   /// To be called now and then: hands on a chunk that has been gathered for long enough.
   Status poll();
@@ -86,7 +87,7 @@ class Recorder {
     std::uint16_t matrix = 0;       // channel; 0: none yet
     bool has_topic = false;         // taken by a channel
     std::map<ros::Type, std::uint16_t> channels;
-    std::optional<ros::Joint> moves;  // a joint of the frames
+    bool moves_frames = false;  // its messages are poses of these
   };
   /// What the thread is to do.
   struct Job {
@@ -116,8 +117,8 @@ class Recorder {
   RecorderOptions options_;
   ros::Encoder encoder_, matrix_encoder_;
   std::vector<Stream> streams_;
-  std::map<std::string, ros::Joint, std::less<>> movers_;  // by the names of streams
-  std::vector<std::uint16_t> schemas_;                     // by type: its number, 0: none yet
+  ros::GraphJoints joints_;
+  std::vector<std::uint16_t> schemas_;  // by type: its number, 0: none yet
   std::uint16_t last_schema_ = 0, last_channel_ = 0;
   std::map<std::string, std::uint16_t> topics_;
   Job next_;  // schemas and channels that are to stand before the next chunk

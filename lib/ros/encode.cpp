@@ -133,22 +133,18 @@ Pieces write_array(CdrWriter& writer, const Message& message) {
                                     {message.elements}});
 }
 
+/// Origin and rotation of a matrix of 4 × 4, row by row.
+Pose pose_of(std::span<const double> n) {
+  Eigen::Matrix3d rotation;
+  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
+  return {{n[3], n[7], n[11]}, to_quaternion(Eigen::Quaterniond(rotation).normalized())};
+}
+
 }  // namespace
 
 Time time_of(std::int64_t nanoseconds) {
   return {static_cast<std::int32_t>(nanoseconds / kSecond),
           static_cast<std::uint32_t>(nanoseconds % kSecond)};
-}
-
-std::optional<Pose> pose_of(const Message& message) {
-  const Header& header = message.header;
-  if (header.info.type != MatrixType::Transformation || header.width != 4 || header.height != 4 ||
-      !message.plain())
-    return std::nullopt;
-  const auto n = numbers_of(message);
-  Eigen::Matrix3d rotation;
-  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
-  return Pose{{n[3], n[7], n[11]}, to_quaternion(Eigen::Quaterniond(rotation).normalized())};
 }
 
 std::optional<Type> type_for(const PortType& port) {
@@ -312,7 +308,7 @@ Result<Pieces> Encoder::encode_pose(const Message& message) {
   auto& [position, orientation] = pose.pose;
   if (is_matrix) {
     pose.header.frame_id = frame_id(header.coord / 1000);
-    pose.pose = *pose_of(message);
+    pose.pose = pose_of(n);
   } else if (header.info.type == MatrixType::Position) {
     position = {n[0], n[1], n[2]};
   } else if (header.info.type == MatrixType::Rotation) {

@@ -107,9 +107,6 @@ class Encoder {
   std::vector<std::byte> samples_;  // of sound in another scalar
 };
 
-/// Origin and rotation of a `transformation` of 4 × 4; nothing where the message is none.
-std::optional<Pose> pose_of(const Message& message);
-
 /// Seconds and nanoseconds of a time [ns since the Unix epoch], which ends in 2038 there.
 Time time_of(std::int64_t nanoseconds);
 

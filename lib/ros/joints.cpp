@@ -42,6 +42,11 @@ Result<GraphJoints> GraphJoints::read(const std::string& text) {
   return joints;
 }
 
+bool GraphJoints::are_moved_by(std::string_view output) const {
+  return std::ranges::any_of(frames.movers,
+                             [&](const auto& mover) { return mover.output == output; });
+}
+
 Result<Joint> GraphJoints::joint_of(const Message& pose) const {
   auto mover = frames.mover_of(pose.header.src, pose.header.coord);
   if (!mover) return mover.error();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <frames/graph_frames.h>
@@ -22,6 +23,9 @@ struct GraphJoints {
   /// @param text  of a module's parameter `frames` (spec/graph.md, G31).
   /// Errors: as frames::read_frames().
   static Result<GraphJoints> read(const std::string& text);
+
+  /// Whether there are joints that poses of an output move, "MODULE.PORT".
+  [[nodiscard]] bool are_moved_by(std::string_view output) const;
 
   /// The joint that a pose moves. Errors: as frames::GraphFrames::mover_of() and rigid_of().
   [[nodiscard]] Result<Joint> joint_of(const Message& pose) const;

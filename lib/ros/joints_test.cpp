@@ -19,6 +19,8 @@ TEST(GraphJoints, are_fixed_or_moved) {
   EXPECT_EQ(joints->fixed[1].child, "cup");
   EXPECT_EQ(joints->fixed[1].translation, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(joints->fixed[1].rotation, (std::array<double, 4>{0, 0, 1, 0}));
+  EXPECT_TRUE(joints->are_moved_by("neck.pose"));
+  EXPECT_FALSE(joints->are_moved_by("neck.position"));
 }
 
 TEST(GraphJoints, a_pose_moves_the_one_that_it_is_of) {
