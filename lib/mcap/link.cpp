@@ -28,6 +28,15 @@ std::string stream_name(const ChannelRecord& channel) {
   return name != channel.metadata.end() ? name->second : channel.topic;
 }
 
+/// The channels that are beside one of MTP, by the topic of that.
+std::multimap<std::string_view, std::uint16_t> channels_beside(const Summary& summary) {
+  std::multimap<std::string_view, std::uint16_t> channels;
+  for (const auto& [id, channel] : summary.channels)
+    if (const auto beside = channel.metadata.find(kBeside); beside != channel.metadata.end())
+      channels.emplace(beside->second, id);
+  return channels;
+}
+
 class RecordingSource : public Source {
  public:
   RecordingSource(Reader reader, const Limits& limits)
@@ -65,7 +74,7 @@ class RecordingSource : public Source {
  private:
   /// Keeps what the next message of a topic may need; of one chunk, since that is its memory.
   void keep(const std::string& topic, StoredMessage stored) {
-    std::erase_if(beside_, [&](const auto& each) { return each.second.owner != stored.owner; });
+    if (!beside_.empty() && beside_.begin()->second.owner != stored.owner) beside_.clear();
     beside_[topic] = std::move(stored);
   }
 
@@ -154,20 +163,22 @@ std::optional<Uri> recording_uri(std::string_view text) {
 
 std::vector<StreamInfo> streams(const Summary& summary) {
   std::vector<StreamInfo> all;
+  auto besides = channels_beside(summary);
   for (const auto& [id, channel] : summary.channels) {
     if (!is_matrix(summary, channel)) continue;
     StreamInfo stream{stream_name(channel), "", "", {channel.topic}, 0};
     if (const auto count = summary.counts.find(id); count != summary.counts.end())
       stream.messages = count->second;
-    for (const auto& [other_id, other] : summary.channels) {
-      const auto beside = other.metadata.find(kBeside);
+    const auto [begin, end] = besides.equal_range(channel.topic);
+    for (auto beside = begin; beside != end; ++beside) {
+      const auto& other = summary.channels.at(beside->second);
       const auto schema = summary.schemas.find(other.schema);
-      if (beside == other.metadata.end() || beside->second != channel.topic) continue;
       stream.topics.push_back(other.topic);
       if (!stream.topic.empty()) continue;
       stream.topic = other.topic;
       if (schema != summary.schemas.end()) stream.type = schema->second.name;
     }
+    besides.erase(begin, end);  // others of this topic would only repeat them
     all.push_back(std::move(stream));
   }
   std::ranges::sort(all, {}, &StreamInfo::name);
@@ -196,13 +207,14 @@ Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions
       return Error{Code::NotFound, uri.rest + ": no stream \"" + std::string(wanted) + "\"" +
                                        suggestion(wanted, names)};
     std::set<std::uint16_t> channels;
-    for (const auto& [id, channel] : summary->channels)
-      if (is_matrix(*summary, channel) && stream_name(channel) == wanted)
-        for (const auto& [other_id, other] : summary->channels) {
-          const auto beside = other.metadata.find(kBeside);
-          if (other_id == id || (beside != other.metadata.end() && beside->second == channel.topic))
-            channels.insert(other_id);
-        }
+    auto besides = channels_beside(*summary);
+    for (const auto& [id, channel] : summary->channels) {
+      if (!is_matrix(*summary, channel) || stream_name(channel) != wanted) continue;
+      channels.insert(id);
+      const auto [begin, end] = besides.equal_range(channel.topic);
+      for (auto beside = begin; beside != end; ++beside) channels.insert(beside->second);
+      besides.erase(begin, end);
+    }
     reader->select(std::move(channels));
   }
   // What the summary says of schemas and channels holds wherever they are first declared.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 
 #include <hc/mtp/codec.h>
 #include <mcap/link.h>
@@ -338,6 +339,50 @@ TEST(Mcap, APipeIsRefusedAtOnce) {
   Folder folder;
   ASSERT_EQ(::mkfifo((folder / "x.mcap").c_str(), 0600), 0);
   EXPECT_EQ(play(folder / "x.mcap").error->code, Code::Unsupported);
+}
+
+TEST(Mcap, StreamsNeverShareATopic) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap");
+  std::vector<std::string> all;
+  int number = 0;
+  for (const char* name : {"a", "a.mtp", "a.mtp.mtp", "a", "b.mtp", "b", "tf", "b.compressed"}) {
+    const auto stream = recorder->add_stream(name);
+    ASSERT_TRUE(recorder->record(stream, image(++number), 1));
+    all.push_back(encode(image(number)));
+  }
+  ASSERT_TRUE(recorder->close());
+  EXPECT_EQ(play(folder / "x.mcap").messages, all);
+  EXPECT_EQ(play(folder / "x.mcap?stream=a.mtp").messages, std::vector{all[1]});
+  EXPECT_EQ(play(folder / "x.mcap?stream=b").messages, std::vector{all[5]});
+  auto reader = Reader::open(folder / "x.mcap");
+  std::set<std::string> topics;
+  const auto summary = reader->summary();
+  for (const auto& [id, channel] : summary->channels) topics.insert(channel.topic);
+  EXPECT_EQ(topics.size(), summary->channels.size());
+}
+
+TEST(Mcap, StreamsThatHaveNoRoomInAFileAreRefused) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap", 1 << 20);
+  const auto message = image(0, 1);
+  Status status;
+  std::size_t recorded = 0;
+  for (; recorded < 40000; ++recorded) {
+    status = recorder->record(recorder->add_stream("s" + std::to_string(recorded)), message, 1);
+    if (!status) break;
+  }
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, Code::TooLarge);
+  EXPECT_TRUE(recorder->record(0, message, 2));
+  ASSERT_TRUE(recorder->close());
+  EXPECT_EQ(recorder->lost(), 1U);
+  EXPECT_EQ(recorder->messages(), recorded + 2);
+  const auto played = play(folder / "x.mcap");
+  EXPECT_FALSE(played.error) << played.error->text();
+  EXPECT_EQ(played.messages.size(), recorded + 1);
+  EXPECT_EQ(play(folder / "x.mcap?stream=s0").messages.size(), 2U);
+  EXPECT_EQ(streams(*Reader::open(folder / "x.mcap")->summary()).size(), recorded);
 }
 
 TEST(Mcap, AFullDiskEndsTheRecordingWithAValidFile) {

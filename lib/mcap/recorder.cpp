@@ -8,6 +8,9 @@
 namespace hc::mcap {
 namespace {
 
+/// Channels have numbers of 16 bits. A message takes up to three new ones: of its stream's two
+/// topics, and /tf; /tf_static and /rosout are two more.
+constexpr std::uint16_t kMostChannels = 65535 - 5;
 constexpr std::string_view kStaticFrames = "/tf_static", kFrames = "/tf", kLog = "/rosout";
 
 /// What rosbag2 wants to know of a topic: reliable, and volatile (2) or kept for who comes late
@@ -43,6 +46,7 @@ Result<std::unique_ptr<Recorder>> Recorder::make(const RecorderOptions& options)
 
 Recorder::Recorder(const RecorderOptions& options, Storage storage)
     : options_(options),
+      topics_{std::string(kFrames), std::string(kStaticFrames), std::string(kLog)},
       schemas_(ros::schemas().size()),
       storage_(std::move(storage)),
       thread_([this] { work(); }) {}
@@ -53,17 +57,18 @@ Recorder::~Recorder() {
 
 std::size_t Recorder::add_stream(std::string_view name) {
   Stream stream;
-  const std::string topic = topic_of(name);
-  auto is_taken = [&](const std::string& each) {
-    return each == kFrames || each == kStaticFrames || each == kLog ||
-           std::ranges::any_of(streams_, [&](const auto& other) { return other.topic == each; });
-  };
-  stream.topic = topic;
-  for (int i = 2; is_taken(stream.topic); ++i) stream.topic = topic + "_" + std::to_string(i);
   stream.name = name;
+  stream.topic = take_topic(topic_of(name));
+  stream.matrix_topic = take_topic(stream.topic + "/mtp");
   stream.moves_frames = joints_.are_moved_by(name);
   streams_.push_back(std::move(stream));
   return streams_.size() - 1;
+}
+
+std::string Recorder::take_topic(const std::string& wanted) {
+  std::string topic = wanted;
+  for (int i = 2; !topics_.insert(topic).second; ++i) topic = wanted + "_" + std::to_string(i);
+  return topic;
 }
 
 std::uint16_t Recorder::channel(const std::string& topic, ros::Type type, Words metadata) {
@@ -83,15 +88,15 @@ std::uint16_t Recorder::channel(Stream& stream, ros::Type type) {
   if (number != 0) return number;
   if (stream.matrix == 0)
     stream.matrix =
-        channel(stream.topic + "/mtp", ros::Type::Matrix, {{"hypercolumn.stream", stream.name}});
+        channel(stream.matrix_topic, ros::Type::Matrix, {{"hypercolumn.stream", stream.name}});
   // A topic has one type. What comes beside the first is rare: an image that is compressed.
-  std::string topic = stream.topic;
   if (type == ros::Type::Matrix) return number = stream.matrix;
-  if (stream.has_topic)
-    topic += type == ros::Type::CompressedImage ? "/compressed"
-                                                : "/as_" + std::to_string(static_cast<int>(type));
-  stream.has_topic = true;
-  return number = channel(topic, type, {{"hypercolumn.mtp", stream.topic + "/mtp"}});
+  std::string topic = stream.topic;
+  if (std::exchange(stream.has_topic, true))
+    topic = take_topic(topic + (type == ros::Type::CompressedImage
+                                    ? "/compressed"
+                                    : "/as_" + std::to_string(static_cast<int>(type))));
+  return number = channel(topic, type, {{"hypercolumn.mtp", stream.matrix_topic}});
 }
 
 void Recorder::add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time,
@@ -122,6 +127,13 @@ Status Recorder::record(std::size_t number, const Message& message, std::int64_t
     if (!stream.type) stream.type = type;
     type = stream.type;
   }
+  const bool has_channels = stream.matrix != 0 && (!type || stream.channels.contains(*type));
+  if (!has_channels && last_channel_ >= kMostChannels) {
+    ++lost_;
+    return Error{Code::TooLarge,
+                 "MCAP: a file has room for " + std::to_string(kMostChannels) +
+                     " topics, two for each stream; record fewer streams in one file"};
+  }
   std::uint32_t offset = 0;
   if (type) {
     if (auto data = encoder_.encode(*type, message)) {
@@ -144,7 +156,7 @@ Status Recorder::record(std::size_t number, const Message& message, std::int64_t
 
 void Recorder::add_other(std::string_view topic, ros::Type type, std::int64_t time,
                          const ros::Pieces& data) {
-  auto& number = topics_[std::string(topic)];
+  auto& number = other_channels_[std::string(topic)];
   if (number == 0) number = channel(std::string(topic), type, {});
   add(number, ++others_, time, time, data);
 }
@@ -226,7 +238,7 @@ Status Recorder::close() {
     thread_.join();
     auto closed = storage_.close();
     if (status_ && !closed) status_ = closed;
-    lost_ = discarded_ + storage_.lost();
+    lost_ += discarded_ + storage_.lost();
   }
   return status_;
 }

@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -51,6 +52,7 @@ class Recorder {
   /// @param time  when it came [ns since the Unix epoch].
   ///
   /// Errors: System (the disk); nothing is recorded any more, and each later call gives the same.
+  /// TooLarge (there are too many streams for a file); messages of the others are recorded.
   Status record(std::size_t stream, const Message& message, std::int64_t time);
 
   /// A line of a log, on the topic /rosout.
@@ -77,12 +79,12 @@ class Recorder {
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   /// Bytes of the messages as they came. [byte]
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  /// Those of them that are in no file, for want of room; after close().
+  /// Those of them that are in no file; after close().
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:
   struct Stream {
-    std::string name, topic;
+    std::string name, topic, matrix_topic;
     std::optional<ros::Type> type;  // of its first message, fixed from then on
     std::uint16_t matrix = 0;       // channel; 0: none yet
     bool has_topic = false;         // taken by a channel
@@ -99,6 +101,8 @@ class Recorder {
   };
 
   Recorder(const RecorderOptions& options, Storage storage);
+  /// A topic that no other channel has: the wanted one, or that with a number behind it.
+  std::string take_topic(const std::string& wanted);
   std::uint16_t channel(const std::string& topic, ros::Type type, Words metadata);
   /// The channel of a stream for messages of a type.
   std::uint16_t channel(Stream& stream, ros::Type type);
@@ -118,9 +122,10 @@ class Recorder {
   ros::Encoder encoder_, matrix_encoder_;
   std::vector<Stream> streams_;
   ros::GraphJoints joints_;
+  std::set<std::string> topics_;        // that are taken
   std::vector<std::uint16_t> schemas_;  // by type: its number, 0: none yet
   std::uint16_t last_schema_ = 0, last_channel_ = 0;
-  std::map<std::string, std::uint16_t> topics_;
+  std::map<std::string, std::uint16_t> other_channels_;  // of log and joints, by topic
   Job next_;  // schemas and channels that are to stand before the next chunk
   ChunkBuilder chunk_;
   std::chrono::steady_clock::time_point chunk_begun_;
