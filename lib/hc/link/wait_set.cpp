@@ -21,8 +21,8 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::chrono::microseconds kSpinAlone{2};   // until a reader that spins lets others run
-constexpr std::size_t kSpinLooks = 32;               // at sources, between two looks at the clock
+constexpr std::chrono::microseconds kSpinAlone{1};   // until a reader that spins lets others run
+constexpr std::size_t kSpinLooks = 16;               // at sources, between two looks at the clock
 constexpr std::chrono::milliseconds kPollPeriod{1};  // of descriptors, while spinning
 /// Spinning pays only where the next message comes soon: not after a wait longer than this many
 /// times the spin. A module with a camera at 30 Hz would burn 20 µs an image for nothing.
