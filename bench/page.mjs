@@ -2,7 +2,6 @@
 // The page on the simulated head: node page.mjs. Rates and ages of both eyes' images, motion to photon
 // and its parts from a push of the stick and from a turn of a person's head, how soon a killed module
 // is red, the server's load; then what 20 pages, five of them stopped, cost the head. Minutes.
-import { constants, setPriority } from "node:os";
 import { Graph, openBrowser, watchdog } from "../tests/page/harness.mjs";
 import { countDrawn, memory, quantile, row, ticks, wait } from "./page_measure.mjs";
 
@@ -44,8 +43,7 @@ const inFocus = (page, task) =>
   page.locator(".seat-who", { hasText: `Task in focus: ${task}` }).waitFor({ timeout: watchdog });
 
 const graph = new Graph("head.toml", "--set", "head_eyes.ball=absent", "--quiet");
-const browser = await openBrowser();
-let crowd; // the browser of many pages
+const browser = await openBrowser({ webgl: false });
 try {
   const url = await graph.url();
   const origin = new URL(url).origin;
@@ -130,29 +128,38 @@ try {
   }
   await page.close();
 
-  // Pages of other machines take no processor time of the head's: here they yield to it.
-  setPriority(constants.priority.PRIORITY_LOW);
-  crowd = await openBrowser();
-  const viewers = await crowd.newContext({ viewport: { width: 1000, height: 700 } });
-  const others = [];
-  await (await viewers.newPage()).goto(await graph.url());
-  for (let i = 0; i < pages; ++i) {
-    const one = await viewers.newPage();
-    await one.goto(`${origin}/#stream,port=head_eyes.left;graph`);
-    others.push(one);
-  }
+  // Of pages on other machines the head's has the connections, and not the drawing.
+  const others = await context.newPage();
+  await others.goto(`${origin}/#graph,show=tables`);
+  await others.evaluate(
+    ([pages, stopped]) => {
+      window.received = 0;
+      const open = (path, isStopped) => {
+        const socket = new WebSocket(location.origin.replace("http", "ws") + path);
+        socket.onmessage = ({ data }) => {
+          if (isStopped || typeof data === "string") return; // who is stopped answers nothing
+          window.received += path.startsWith("/streams");
+          if (path.startsWith("/streams")) socket.send("ok");
+        };
+      };
+      for (let i = 0; i < pages; ++i) {
+        open("/graph", i < stopped);
+        open("/streams/head_eyes.left?as=vp8&width=480", i < stopped);
+        open("/streams/head_eyes.right?as=vp8&width=480", i < stopped);
+      }
+    },
+    [pages, stopped],
+  );
   await wait(3000);
-  // Those that are stopped neither read nor answer.
-  for (const one of others.slice(0, stopped)) {
-    const session = await viewers.newCDPSession(one);
-    await session.send("Debugger.enable");
-    await session.send("Debugger.pause");
-  }
-  print(`${pages} pages, ${stopped} of them stopped`, await measure(graph, "head_eyes.left"));
+  const before = await others.evaluate(() => window.received);
+  const crowd = await measure(graph, "head_eyes.left");
+  const received = (await others.evaluate(() => window.received)) - before;
+  print(`${pages} pages, ${stopped} of them stopped`, crowd);
 
   console.log(
     `\nDrawn of both eyes: ${eyes.drawn.toFixed(1)} images/s in a page, ` +
-      `${seat.drawn.toFixed(1)} in the seat.\n`,
+      `${seat.drawn.toFixed(1)} in the seat; the ${pages - stopped} others get ` +
+      `${(received / seconds / (pages - stopped)).toFixed(1)} each.\n`,
   );
   for (const [what, all] of [
     ["push of the stick", pushed],
@@ -176,6 +183,5 @@ try {
   console.log(`A killed module is red after ${red[0]} ms (median), ${red[1]} ms at most.`);
 } finally {
   await browser.close();
-  await crowd?.close();
   await graph.end();
 }

@@ -2,7 +2,6 @@
 // The page open for long under load: node page_soak.mjs [SECONDS]. The simulated head runs, and a
 // page shows both eyes, the graph, depth, a plot and the scene. Each minute a row: the page's heap
 // after a collection, memory of the browser and of the server; at the end how far these drifted.
-// As root, `setpriv --bounding-set=-sys_nice nice -n 19` has it yield to others on the machine.
 import { Graph, openBrowser } from "../tests/page/harness.mjs";
 import { countDrawn, memory, row, wait } from "./page_measure.mjs";
 

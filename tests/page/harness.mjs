@@ -88,16 +88,14 @@ export class Graph {
   }
 }
 
-export function openBrowser() {
+/** Debian's Chromium. WebGL is drawn by software, which costs much time. */
+export function openBrowser({ webgl = true } = {}) {
+  const drawing = webgl
+    ? ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    : ["--disable-gpu"];
   return chromium.launch({
     executablePath: "/usr/bin/chromium",
-    // WebGL by software; no sandbox, since tests may run as root.
-    args: [
-      "--no-sandbox",
-      "--use-gl=angle",
-      "--use-angle=swiftshader",
-      "--enable-unsafe-swiftshader",
-    ],
+    args: ["--no-sandbox", ...drawing], // tests may run as root
   });
 }
 
