@@ -120,7 +120,7 @@ class CdrWriter {
   }
   template <internal::HasMembers T>
   void put(const T& message) {
-    std::apply([this](const auto&... member) { (put(member), ...); }, T::members(message));
+    std::apply([this](const auto&... member) { (this->put(member), ...); }, T::members(message));
   }
 
   std::vector<std::byte> buffer_;
@@ -210,7 +210,7 @@ class CdrReader {
   }
   template <internal::HasMembers T>
   void get(T& message) {
-    std::apply([this](auto&... member) { (get(member), ...); }, T::members(message));
+    std::apply([this](auto&... member) { (this->get(member), ...); }, T::members(message));
   }
 
   std::span<const std::byte>

@@ -14,22 +14,23 @@ OPTIONS = " --graph g.toml --check"
 
 
 class Replay(Pipes):
-    def record(self, text=graph("0:1 2:end")):
+    def record(self, text=graph("0:1 2:end"), kept="kept"):
         self.write("g.toml", "version = 1\n" + text)
-        self.shell("hc run g.toml --quiet --record kept")
+        self.shell("hc run g.toml --quiet --record " + kept)
 
     def test_the_same_modules_send_the_same(self):
-        self.record()
-        out = self.shell("hc replay kept" + OPTIONS)
-        self.assertEqual(
-            re.sub("[0-9]+ messages", "N messages", out).splitlines(),
-            [
-                "source: not run: a sensor: the recording stands for it",
-                "first.out: N messages, the same",
-                "second.out: N messages, the same",
-                "last: not run: none of its outputs was recorded",
-            ],
-        )
+        for kept in ("kept", "kept.mcap"):
+            self.record(kept=kept)
+            out = self.shell("hc replay " + kept + OPTIONS)
+            self.assertEqual(
+                re.sub("[0-9]+ messages", "N messages", out).splitlines(),
+                [
+                    "source: not run: a sensor: the recording stands for it",
+                    "first.out: N messages, the same",
+                    "second.out: N messages, the same",
+                    "last: not run: none of its outputs was recorded",
+                ],
+            )
 
     def test_a_module_that_sends_something_else_is_named(self):
         self.record()
@@ -53,6 +54,17 @@ class Replay(Pipes):
         self.shell("hc replay kept --tolerance nosuch=1" + changed, 2)
         self.assertIn('no module or recorded output "nosuch"', self.err)
 
+    def test_a_difference_from_one_file_is_named(self):
+        text = graph("0:1 2:end").replace("rate = 2", "rate = 20")
+        latest = 'inputs.in = { from = "source.command", keep = "latest" }'
+        self.record(text.replace('inputs.in = "source.command"', latest), "kept.mcap")
+        # Messages that `first` did not handle, as it was too slow, are in the recording.
+        self.shell("hc replay kept.mcap" + OPTIONS)
+        out = self.shell("hc replay kept.mcap --set second.factor=1.5" + OPTIONS, 1)
+        self.assertRegex(
+            out, r"\nfirst.out: (\d+) messages, the same\nDIFFERS second.out: \1 messages"
+        )
+
     def test_what_is_missing_is_counted(self):
         self.record()
         count = len(self.read("kept/second.out.mtp").splitlines()) // 2
@@ -71,20 +83,22 @@ class Replay(Pipes):
         self.assertRegex(out, "DIFFERS first.out: [0-9]+ messages, [0-9]+ more; first: ")
         self.assertRegex(out, "\nsecond.out: [0-9]+ messages, the same\n")
 
-    def replay_task(self, task, settings, options, outputs):
+    def replay_task(self, task, settings, options, outputs, kept="kept"):
         """Records a task of the head and replays it, without its device."""
         graph = str(ROOT / "graphs" / ("score_%s.toml" % task))
         graph += "".join(" --set " + setting for setting in settings)
-        self.shell("hc run --record kept --quiet " + graph)
-        eyes = "sound" if task in ("point", "telepresence") else "left"
-        first = read_messages(self.path("kept/head_eyes.%s.mtp" % eyes))[0]
+        self.shell("hc run --record %s --quiet %s" % (kept, graph))
+        eyes = "head_eyes." + ("sound" if task in ("point", "telepresence") else "left")
+        stream = kept + ("?stream=%s" if kept.endswith(".mcap") else "/%s.mtp") % eyes
+        self.shell("hc cat --raw --count 1 '%s' >first.mtp" % stream)
+        first = read_messages(self.path("first.mtp"))[0]
         out = self.shell(
-            "hc replay kept --check --graph %s --set head_eyes.start=%d --except head_neck"
-            " --share head_eyes=0.9 %s" % (graph, first.time, options)
+            "hc replay %s --check --graph %s --set head_eyes.start=%d --except head_neck"
+            " --share head_eyes=0.9 %s" % (kept, graph, first.time, options)
         )
         for output in outputs:
             self.assertRegex("\n" + out, "\n%s: [0-9]+ messages, the same\n" % output)
-        self.assertIn("\nhead_eyes.%s: " % eyes, out)
+        self.assertIn("\n%s: " % eyes, out)
         return out
 
     def test_track(self):
@@ -94,6 +108,15 @@ class Replay(Pipes):
             ["track_score.duration=2"],
             "--time-tolerance track=0.001 --tolerance track=0.0001",
             outputs.split(),
+        )
+
+    def test_track_in_one_file(self):
+        self.replay_task(
+            "track",
+            ["track_score.duration=2", "head_eyes.rate=10"],
+            "--time-tolerance track=0.001 --tolerance track=0.0001",
+            "workspace.focus left_ball.target right_ball.target track.bid track.command".split(),
+            "kept.mcap",
         )
 
     def test_read(self):
@@ -140,7 +163,9 @@ class Replay(Pipes):
     def test_what_cannot_be_replayed_is_said(self):
         self.record()
         self.shell("hc replay nosuch" + OPTIONS, 1)
-        self.assertIn("nosuch is not a folder that hc run --record wrote", self.err)
+        self.assertIn("nosuch: No such file or directory", self.err)
+        self.shell("hc replay nosuch.mcap" + OPTIONS, 1)
+        self.assertIn("open(nosuch.mcap): No such file or directory", self.err)
         self.shell("rm kept/source.command.mtp")
         self.assertIn(
             "first: not run: source.command is not in the recording",

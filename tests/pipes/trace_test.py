@@ -142,19 +142,24 @@ class Tracing(Graphs):
 
     def test_a_recording_is_traced(self):
         self.write_graph(graph("0:1 4:end"))
-        self.shell("hc run g.toml --quiet --record kept")
-        traced = json.loads(self.shell("hc trace last.in --json --recording kept"))
-        self.assertGreaterEqual(traced["messages"], 3)
-        path = traced["paths"][0]
-        self.assertEqual(
-            [step["module"] for step in path["steps"]], ["source", "first", "second", "last"]
-        )
-        self.assertGreaterEqual(path["age"][0], 0.3)
+        for kept in ("kept", "kept.mcap"):
+            self.shell("hc run g.toml --quiet --record " + kept)
+            traced = json.loads(self.shell("hc trace last.in --json --recording " + kept))
+            self.assertGreaterEqual(traced["messages"], 3)
+            path = traced["paths"][0]
+            self.assertEqual(
+                [step["module"] for step in path["steps"]], ["source", "first", "second", "last"]
+            )
+            self.assertGreaterEqual(path["age"][0], 0.3)
         self.assertRegex(self.shell("hc cat kept/last.trace.mtp"), "took in [0-9]+ [0-9]+ [0-9]+ ")
         self.shell("hc trace nosuch.in --recording kept", 1)
         self.assertIn("nosuch tells nothing of its messages", self.err)
         self.shell("mkdir empty; hc trace last.in --recording empty", 1)
-        self.assertIn("hc run --record FOLDER writes them", self.err)
+        self.assertIn("hc run --record writes them", self.err)
+        # What a recorder that was killed has left is traced as far as it is whole.
+        whole = self.read_bytes("kept.mcap")
+        self.write("cut.mcap", whole[: len(whole) * 3 // 4])
+        self.shell("hc trace first.in --json --recording cut.mcap")
 
 
 if __name__ == "__main__":

@@ -27,6 +27,7 @@
 #include "common.h"
 #include "comparison.h"
 #include "graph.h"
+#include "graph_recording.h"
 #include "verbs.h"
 
 namespace tool {
@@ -111,18 +112,22 @@ class Settings {
   std::map<std::string, double> values_;
 };
 
-/// All that a module told of its messages while it was recorded; nothing where that is not known.
-std::vector<hc::TraceEvent> read_events(const fs::path& file) {
-  std::error_code missing;
-  if (!fs::exists(file, missing)) return {};
+/// All that a module told of its messages while it was recorded; nothing where that is not known,
+/// or not all: events or messages of them were dropped, or the module was restarted.
+std::vector<hc::TraceEvent> read_events(const GraphRecording& recording,
+                                        const std::string& module) {
+  const auto output = module + "." + hc::kTracePort;
+  if (!recording.has(output)) return {};
   std::vector<hc::TraceEvent> events;
-  auto source = open_file_source(file, kDefaultLimit);
+  auto source = recording.open(output);
   hc::Message message;
-  while (receive(*source, message, file))
+  for (std::int64_t seq = 0; recording.receive(*source, message, output); ++seq) {
+    if (message.header.seq != seq) return {};
     for (auto& event : hc::read_trace(message)) {
       if (event.what == What::Lost) return {};
       events.push_back(std::move(event));
     }
+  }
   return events;
 }
 
@@ -158,25 +163,33 @@ std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) 
   return steps;
 }
 
+/// Writes the messages of a recorded output into a file, those that `is_wanted` of their headers.
+template <typename IsWanted>
+void write_messages(const GraphRecording& recording, const std::string& output, const fs::path& to,
+                    const IsWanted& is_wanted) {
+  auto source = recording.open(output);
+  auto sink = open_file_sink(to);
+  hc::Message message;
+  while (recording.receive(*source, message, output))
+    if (is_wanted(message.header) && !send(*sink, message, to)) return;
+  if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
+}
+
 /// Writes the messages of a link that were handled into a file, and drops the steps whose message
 /// is not in the recording.
-void write_handled(const fs::path& from, const std::string& port, std::int32_t number,
-                   std::vector<hc::TraceEvent>& steps, const fs::path& to) {
+void write_handled(const GraphRecording& recording, const std::string& output,
+                   const std::string& port, std::int32_t number, std::vector<hc::TraceEvent>& steps,
+                   const fs::path& to) {
   const auto is_of_link = [&](const auto& step) {
     return step.port == port && step.number == number;
   };
   std::set<Key> handled, found;
   for (const auto& step : steps)
     if (is_of_link(step)) handled.insert({step.src, step.seq, step.time});
-  auto source = open_file_source(from, kDefaultLimit);
-  auto sink = open_file_sink(to);
-  hc::Message message;
-  while (receive(*source, message, from)) {
-    const auto& header = message.header;
+  write_messages(recording, output, to, [&](const hc::Header& header) {
     const Key key{header.src, header.seq, header.time};
-    if (handled.contains(key) && found.insert(key).second && !send(*sink, message, to)) return;
-  }
-  if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
+    return handled.contains(key) && found.insert(key).second;
+  });
   std::erase_if(steps, [&](const auto& step) {
     return is_of_link(step) && !found.contains({step.src, step.seq, step.time});
   });
@@ -195,6 +208,7 @@ class Replay {
  public:
   explicit Replay(const ReplayOptions& options)
       : options_(options),
+        recording_(options.recording),
         plan_(load(options)),
         folder_(options.out),
         numbers_("--tolerance", options.numbers, 0),
@@ -236,12 +250,8 @@ class Replay {
 
  private:
   static hc::Plan load(const ReplayOptions& options) {
-    std::error_code missing;
-    if (!fs::is_directory(options.recording, missing))
-      throw Failure(
-          {hc::Code::NotFound, options.recording + " is not a folder that hc run --record wrote"});
     auto graph = options.graph;
-    graph.record = options.recording;
+    graph.record = options.recording;  // ends of what was recorded; nothing is written there
     return load_plan("replay", graph);
   }
 
@@ -252,13 +262,6 @@ class Replay {
     return words;
   }
 
-  [[nodiscard]] fs::path recorded(const std::string& output) const {
-    return fs::path(options_.recording) / (output + ".mtp");
-  }
-  [[nodiscard]] bool is_recorded(const std::string& output) const {
-    std::error_code missing;
-    return fs::exists(recorded(output), missing);
-  }
   [[nodiscard]] bool is_of_recording(const hc::PlannedEnd& end) const {
     return !end.is_input && end.port != hc::kTracePort &&
            end.uri.starts_with("file:" + options_.recording + "/");
@@ -267,7 +270,7 @@ class Replay {
   [[nodiscard]] std::vector<std::string> recorded_outputs(const hc::PlannedModule& module) const {
     std::set<std::string> outputs;
     for (const auto& end : module.ends)
-      if (is_of_recording(end) && is_recorded(module.name + "." + end.port))
+      if (is_of_recording(end) && recording_.has(module.name + "." + end.port))
         outputs.insert(end.port);
     return {outputs.begin(), outputs.end()};
   }
@@ -293,7 +296,7 @@ class Replay {
       has_inputs = true;
       const auto writer = writer_of(module, end);
       if (writer.find(':') != std::string::npos) return writer + " was outside";
-      if (!is_recorded(writer)) return writer + " is not in the recording";
+      if (!recording_.has(writer)) return writer + " is not in the recording";
     }
     if (!has_inputs) return "a sensor: the recording stands for it";
     if (recorded_outputs(module).empty()) return "none of its outputs was recorded";
@@ -305,17 +308,19 @@ class Replay {
     std::vector<std::string> words = {module.program};
     words.insert(words.end(), module.options.begin(), module.options.end());
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
-    auto steps = steps_of(read_events(recorded(module.name + "." + hc::kTracePort)));
+    auto steps = steps_of(read_events(recording_, module.name));
     const bool is_known = !steps.empty();
     std::map<std::string, std::int32_t> links;  // of each port so far
     for (const auto& end : module.ends) {
       fs::path file = folder_.path() / (module.name + "." + end.port + ".mtp");
-      if (end.is_input && !is_known) {
-        file = recorded(writer_of(module, end));
-      } else if (end.is_input) {
+      if (end.is_input) {
         const auto number = links[end.port]++;
+        const auto writer = writer_of(module, end);
         file = folder_.path() / hc::format("{}.{}.{}.in", module.name, end.port, number);
-        write_handled(recorded(writer_of(module, end)), end.port, number, steps, file);
+        if (is_known)
+          write_handled(recording_, writer, end.port, number, steps, file);
+        else
+          write_messages(recording_, writer, file, [](const hc::Header&) { return true; });
       } else if (!is_of_recording(end)) {
         continue;
       }
@@ -368,18 +373,22 @@ class Replay {
   }
 
   bool compare_output(const std::string& output) {
-    auto reader = [](const fs::path& file) {
-      auto source = std::shared_ptr<hc::Source>(open_file_source(file, kDefaultLimit));
-      return [source, file](hc::Message& message) {
-        if (!receive(*source, message, file)) return false;
-        message = value_or_fail(hc::expand(message), file.string());
-        return true;
-      };
+    const std::string again = folder_.path() / (output + ".mtp");
+    const auto source = recording_.open(output), made = open_file_source(again, kDefaultLimit);
+    auto expand = [](hc::Message& message, const std::string& place) {
+      message = value_or_fail(hc::expand(message), place);
+      return true;
+    };
+    auto recorded = [&](hc::Message& message) {
+      return recording_.receive(*source, message, output) &&
+             expand(message, recording_.place_of(output));
+    };
+    auto replayed = [&](hc::Message& message) {
+      return receive(*made, message, again) && expand(message, again);
     };
     const Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)).count(),
                               shares_.of(output)};
-    const auto result =
-        compare(reader(recorded(output)), reader(folder_.path() / (output + ".mtp")), tolerance);
+    const auto result = compare(recorded, replayed, tolerance);
     const bool is_same = result.is_same(tolerance);
     print(hc::format("{}{}: {}\n", is_same ? "" : "DIFFERS ", output, result.text()));
     return is_same;
@@ -388,6 +397,7 @@ class Replay {
   static constexpr std::size_t kMostSaid = 16 << 10;
 
   const ReplayOptions& options_;
+  const GraphRecording recording_;
   hc::Plan plan_;
   Folder folder_;
   Settings numbers_, times_, shares_;
@@ -403,7 +413,7 @@ void add_replay(CLI::App& app) {
   auto many = [&](const char* name, std::vector<std::string>& words, const char* doc) {
     verb->add_option(name, words, doc)->allow_extra_args(false);
   };
-  verb->add_option("recording", options->recording, "folder that hc run --record wrote")
+  verb->add_option("recording", options->recording, "folder or .mcap that hc run --record wrote")
       ->required();
   verb->add_option("--graph", options->graph.file, "the graph file that was run")
       ->required()

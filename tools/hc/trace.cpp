@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <set>
 
@@ -17,6 +16,7 @@
 
 #include "common.h"
 #include "graph.h"
+#include "graph_recording.h"
 #include "observer.h"
 #include "trace_paths.h"
 #include "verbs.h"
@@ -24,12 +24,11 @@
 namespace tool {
 namespace {
 
-namespace fs = std::filesystem;
 using MonotonicClock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostEvents = 5'000'000;
-constexpr std::size_t kShown = 6;  // paths
-constexpr std::string_view kSuffix = ".trace.mtp";
+constexpr std::size_t kShown = 6;               // paths
+constexpr std::string_view kSuffix = ".trace";  // of an output
 
 struct TraceOptions {
   std::string port, of, recording, perfetto;
@@ -144,20 +143,18 @@ Collected collect(const TraceOptions& options) {
 
 Collected read_recording(const TraceOptions& options) {
   Collected collected;
-  std::error_code failed;
-  for (const auto& entry : fs::directory_iterator(options.recording, failed)) {
-    const std::string name = entry.path().filename();
-    if (!name.ends_with(kSuffix)) continue;
-    const auto module = name.substr(0, name.size() - kSuffix.size());
+  const GraphRecording recording(options.recording);
+  for (const auto& output : recording.outputs()) {
+    if (!output.ends_with(kSuffix)) continue;
+    const auto module = module_of(output);
     collected.traced.events[module];
-    auto source = open_file_source(entry.path(), kDefaultLimit);
+    const auto source = recording.open(output);
     hc::Message message;
-    while (receive(*source, message, entry.path())) collected.add(module, message);
+    while (recording.receive(*source, message, output)) collected.add(module, message);
   }
-  if (failed) throw Failure({hc::Code::NotFound, options.recording + ": " + failed.message()});
   if (collected.traced.events.empty())
     throw Failure({hc::Code::NotFound, options.recording + " has no MODULE" + std::string(kSuffix) +
-                                           "; hc run --record FOLDER writes them"});
+                                           "; hc run --record writes them"});
   if (!options.graph.file.empty())
     for (const auto& link : load_plan("trace", options.graph).links)
       collected.traced.links.emplace_back(link.from, link.to);
@@ -294,7 +291,7 @@ void add_trace(CLI::App& app) {
   verb->add_option("--duration", options->duration, "of the trace of a running graph [s]")
       ->check(CLI::Range(0.1, 3600.0));
   verb->add_option("--recording", options->recording,
-                   "folder that hc run --record wrote, in place of a running graph");
+                   "folder or .mcap that hc run --record wrote, in place of a running graph");
   verb->add_option("--graph", options->graph.file,
                    "graph file of the recording, for modules that take no commands")
       ->transform(find_graph);

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <hc/contract/trace.h>
+
 namespace hc {
 namespace {
 
@@ -237,6 +239,18 @@ const PortDescription& focus_input() {
   static const PortDescription kFocus{
       "focus", "", {{{MatrixType::Table, 1, Scalar::I32, Encoding::Text}, 1, 1, 0}}};
   return kFocus;
+}
+
+const PortDescription& trace_output() {
+  static const PortDescription kTrace{
+      kTracePort, "", {{{MatrixType::String, 1, Scalar::U8, Encoding::Binary}, 0, 0, 0}}};
+  return kTrace;
+}
+
+const PortDescription* find_output(const Description& description, std::string_view port) {
+  const PortDescription* found = find_named(description.outputs, port);
+  const bool is_implicit = description.control && port == trace_output().name;
+  return found == nullptr && is_implicit ? &trace_output() : found;
 }
 
 const PortDescription* find_input(const Description& description, std::string_view port) {

@@ -64,6 +64,12 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
 /// The input of every module that knows --control, which it does not list: the mode in focus.
 const PortDescription& focus_input();
 
+/// The output of every module that knows --control, which it does not list: its trace.
+const PortDescription& trace_output();
+
+/// An output; the implicit `trace` too. Null where there is none.
+const PortDescription* find_output(const Description& description, std::string_view port);
+
 /// An input; the implicit `focus` too. Null where there is none.
 const PortDescription* find_input(const Description& description, std::string_view port);
 

@@ -44,9 +44,11 @@ TEST(Description, PortsAndParametersAreEnough) {
   EXPECT_TRUE(parsed->knows("unix"));
   EXPECT_FALSE(parsed->knows("shm"));
   EXPECT_EQ(find_input(*parsed, "focus"), nullptr);
+  EXPECT_EQ(find_output(*parsed, "trace"), nullptr);
   parsed->control = true;
   ASSERT_NE(find_input(*parsed, "focus"), nullptr);
   EXPECT_EQ(in_words(find_input(*parsed, "focus")->types), "table 1 x 1 of 1 x i32");
+  EXPECT_EQ(find_output(*parsed, "trace"), &trace_output());
 }
 
 TEST(Description, WhatIsNoneIsRefused) {

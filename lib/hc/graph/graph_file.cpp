@@ -6,6 +6,7 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/contract/description.h>
+#include <hc/contract/trace.h>
 #include <hc/graph/file/tables.h>
 
 namespace hc {
@@ -186,7 +187,8 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
 namespace {
 
 /// What is recorded of a graph, and where it is named first.
-std::map<std::pair<std::string, std::string>, Place> recorded_outputs(const Graph& graph) {
+std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
+    const Graph& graph, const std::vector<std::string>& traced) {
   std::map<std::pair<std::string, std::string>, Place> outputs;
   for (const auto& link : graph.links)
     if (link.from.uri.empty())
@@ -197,13 +199,17 @@ std::map<std::pair<std::string, std::string>, Place> recorded_outputs(const Grap
     if (frame.moved_by)
       outputs.emplace(std::pair(frame.moved_by->value.module, frame.moved_by->value.port),
                       frame.moved_by->place);
+  for (const auto& module : graph.modules)
+    if (std::ranges::find(traced, module.name) != traced.end())
+      outputs.emplace(std::pair(module.name, kTracePort), module.place);
   return outputs;
 }
 
 }  // namespace
 
-void record_outputs(Graph& graph, const std::string& folder) {
-  for (const auto& [output, place] : recorded_outputs(graph)) {
+void record_outputs(Graph& graph, const std::vector<std::string>& traced,
+                    const std::string& folder) {
+  for (const auto& [output, place] : recorded_outputs(graph, traced)) {
     GraphLink link;
     link.from = {output.first, output.second, ""};
     link.to.uri = "file:" + folder + "/" + link.from.text() + ".mtp";
@@ -212,7 +218,8 @@ void record_outputs(Graph& graph, const std::string& folder) {
   }
 }
 
-std::vector<std::string> add_recorder(Graph& graph, const std::string& program,
+std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
+                                      const std::string& program,
                                       const std::map<std::string, std::string>& parameters) {
   constexpr const char* kKept = "1024";  // messages, while the recorder waits for the disk
   GraphModule recorder;
@@ -222,7 +229,7 @@ std::vector<std::string> add_recorder(Graph& graph, const std::string& program,
   for (const auto& [name, value] : parameters) recorder.parameters[name] = {value, {}};
   std::vector<std::string> inputs;
   std::string streams;
-  for (const auto& [output, place] : recorded_outputs(graph)) {
+  for (const auto& [output, place] : recorded_outputs(graph, traced)) {
     GraphLink link;
     link.from = {output.first, output.second, ""};
     link.to = {recorder.name, "stream_" + std::to_string(inputs.size()), ""};

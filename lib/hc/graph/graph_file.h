@@ -140,12 +140,15 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
                   const ReadFile& read_file = {});
 
 /// Records every linked output, and the focus, in a file each: FOLDER/MODULE.PORT.mtp.
-void record_outputs(Graph& graph, const std::string& folder);
+/// @param traced  modules whose output `trace` is recorded too.
+void record_outputs(Graph& graph, const std::vector<std::string>& traced,
+                    const std::string& folder);
 
 /// The same in one file of MCAP: adds a module `recorder`, which makes no other wait.
 /// @param parameters  of it.
 /// @returns  its inputs, one for each output, which `--describe` of its program does not say.
-std::vector<std::string> add_recorder(Graph& graph, const std::string& program,
+std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
+                                      const std::string& program,
                                       const std::map<std::string, std::string>& parameters);
 
 /// Sets a parameter, from "MODULE.PARAMETER=VALUE".

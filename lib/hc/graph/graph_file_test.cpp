@@ -244,11 +244,13 @@ from = "a.out"
 from = "tcp:7000"
 )");
   ASSERT_TRUE(graph) << graph.error().detail;
-  record_outputs(*graph, "kept");
-  ASSERT_EQ(graph->links.size(), 5U);
+  record_outputs(*graph, {"b"}, "kept");
+  ASSERT_EQ(graph->links.size(), 6U);
   EXPECT_EQ(graph->links[3].from.text() + " " + graph->links[3].to.text(),
             "a.out file:kept/a.out.mtp");
   EXPECT_EQ(graph->links[4].from.text() + " " + graph->links[4].to.text(),
+            "b.trace file:kept/b.trace.mtp");
+  EXPECT_EQ(graph->links[5].from.text() + " " + graph->links[5].to.text(),
             "w.focus file:kept/w.focus.mtp");
 }
 

@@ -102,12 +102,17 @@ void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   if (!listen.empty()) obey("set " + page + ".listen=" + listen);
 }
 
-/// Records the trace of each module that has one, into FOLDER/MODULE.trace.mtp.
-void record_traces(Plan& plan, const std::string& folder) {
-  for (auto& module : plan.modules)
-    if (!module.control_uri.empty())
-      module.ends.push_back({false, kTracePort,
-                             "file:" + folder + "/" + module.name + "." + kTracePort + ".mtp", ""});
+/// The modules that have an output `trace` of their messages.
+std::vector<std::string> traced_modules(const Graph& graph, const Describe& describe) {
+  std::vector<std::string> traced;
+  for (const auto& module : graph.modules) {
+    if (module.program.value.empty()) continue;
+    const auto text = describe(module.program.value);
+    const auto description = text ? parse_description(*text) : std::nullopt;
+    if (description && find_output(*description, kTracePort) == &trace_output())
+      traced.push_back(module.name);
+  }
+  return traced;
 }
 
 /// A description with inputs of anything.
@@ -143,13 +148,8 @@ class FileLoader : public GraphLoader {
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
     find_programs(graph, problems);
     LoadedGraph loaded{graph, {}, {}, {}};
-    if (!options_.record.empty()) record_outputs(graph, options_.record);
-    std::vector<std::string> recorded;
     const std::string recorder = options_.recorder.empty() ? "" : find_program("recorder");
-    if (!options_.recorder.empty()) {
-      recorded = add_recorder(graph, recorder, options_.recorder);
-      loaded.recorder = graph.modules.back().name;
-    }
+    std::vector<std::string> recorded;
     std::map<std::string, Result<std::string>> described;  // also those that failed
     auto describe = [&](const std::string& program) -> Result<std::string> {
       auto known = described.find(program);
@@ -159,9 +159,14 @@ class FileLoader : public GraphLoader {
         return with_inputs(*known->second, recorded);
       return known->second;
     };
+    if (!options_.record.empty())
+      record_outputs(graph, traced_modules(graph, describe), options_.record);
+    if (!options_.recorder.empty()) {
+      recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
+      loaded.recorder = graph.modules.back().name;
+    }
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? internal::hold_port : HoldPort());
-    if (!options_.record.empty()) record_traces(plan, options_.record);
     loaded.problems = problems.lines();
     if (problems.empty()) loaded.plan = std::move(plan);
     return loaded;

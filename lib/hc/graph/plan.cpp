@@ -142,7 +142,8 @@ const PortDescription* find_port(Planning& planning, const Place& place, const G
   const Description* description = planning.description_of(module);
   if (description == nullptr) return nullptr;
   const auto& ports = is_input ? description->inputs : description->outputs;
-  const auto* found = is_input ? find_input(*description, port.port) : find_named(ports, port.port);
+  const auto* found =
+      is_input ? find_input(*description, port.port) : find_output(*description, port.port);
   if (found == nullptr) add_no_port(planning, place, port, is_input ? "input" : "output", ports);
   return found;
 }

@@ -110,8 +110,7 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   options.awaits_reader = [this, sender = link.get()](bool awaits) {
     report_state(awaits ? sender : nullptr);
   };
-  // What only observes has no part in what the module does.
-  if (const auto* commands = management_.commands(); commands != nullptr && port != kTracePort)
+  if (const auto* commands = management_.commands(); commands != nullptr)
     options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
   auto sink = open_sink(uri, options);
   if (!sink) fail(name_of(uri.text(), port), sink.error());

@@ -171,9 +171,7 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   auto uri = link->uri.text();
   if (link->is_trace) {
     if (trace_ == nullptr) return unknown_link();
-    auto unlinked = unlink_output(trace_->output, uri);
-    if (trace_->output.links.empty()) trace_.reset();
-    return unlinked;
+    return unlink_output(trace_->output, uri);
   }
   if (!is_input) return unlink_output(*module_.outputs_[link->port], uri);
   report_counters();  // the last of this link
@@ -279,9 +277,10 @@ void Module::Loop::report_links() {
 }
 
 void Module::Loop::report_trace() {
-  const auto* trace = trace_.get();
-  if (trace != nullptr && !trace->events.empty() &&
-      (trace->events.size() >= internal::Trace::kMany || now_ - trace->sent >= kReportPeriod))
+  if (trace_ == nullptr) return;
+  if (trace_->output.links.empty()) return trace_.reset();
+  if (!trace_->events.empty() &&
+      (trace_->events.size() >= internal::Trace::kMany || now_ - trace_->sent >= kReportPeriod))
     trace_->flush();
 }
 

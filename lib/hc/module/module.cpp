@@ -91,22 +91,6 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
   }
 }
 
-void internal::Trace::flush() {
-  sent = clock.monotonic();
-  if (lost > 0) events.push_back({TraceEvent::What::Lost, "", 0, lost, 0, clock.wall()});
-  lost = 0;
-  if (events.empty()) return;
-  Message message = make_trace(events);
-  message.header.seq = output.seq++;
-  message.header.time = events.front().moment;
-  events.clear();
-  for (auto& link : output.links) {
-    if (link->sink == nullptr || link->sink->send(message)) continue;
-    link->traffic = link->sink->traffic();
-    link->sink.reset();
-  }
-}
-
 void Module::handle(internal::TogetherState& together) {
   if (together.set.empty()) return;
   const auto set = std::exchange(together.set, {});
@@ -220,6 +204,23 @@ bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
 }
 
 }  // namespace
+
+void internal::Trace::flush() {
+  sent = clock.monotonic();
+  if (lost > 0) events.push_back({TraceEvent::What::Lost, "", 0, lost, 0, clock.wall()});
+  lost = 0;
+  if (events.empty()) return;
+  Message message = make_trace(events);
+  message.header.seq = output.seq++;
+  message.header.time = events.front().moment;
+  events.clear();
+  send_to_each(output, [&](LinkedSink& link) {
+    if (link.sink->send(message)) return true;
+    link.traffic = link.sink->traffic();
+    link.sink.reset();
+    return false;
+  });
+}
 
 void internal::send(OutputState& output, Message message) {
   Module& module = *output.module;

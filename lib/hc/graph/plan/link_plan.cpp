@@ -144,7 +144,7 @@ class LinkPlanner {
       return given->second.value;
     if (!link.from.uri.empty() || link.to.uri.starts_with("file:")) return "all";
     const Description& description = *planning_.description_of(link.from.module);
-    const auto& types = find_named(description.outputs, link.from.port)->types;
+    const auto& types = find_output(description, link.from.port)->types;
     bool is_image = !types.empty() && (types.front().info.type == MatrixType::RgbImage ||
                                        types.front().info.type == MatrixType::IntensityImage);
     return is_image ? "latest" : "all";

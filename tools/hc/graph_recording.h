@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What `hc run --record` wrote of a graph: a folder of MODULE.PORT.mtp, or one file of MCAP.
+
+#include <memory>
+#include <set>
+#include <string>
+
+#include <hc/link/link.h>
+
+namespace tool {
+
+class GraphRecording {
+ public:
+  /// @param place  a folder, or a file whose name ends in ".mcap". Fails where there is none.
+  explicit GraphRecording(std::string place);
+
+  /// "MODULE.PORT", with the traces of modules.
+  [[nodiscard]] const std::set<std::string>& outputs() const { return outputs_; }
+  [[nodiscard]] bool has(const std::string& output) const { return outputs_.contains(output); }
+
+  /// The messages of an output that it has.
+  [[nodiscard]] std::unique_ptr<hc::Source> open(const std::string& output) const;
+  /// Takes the next of these; false at their end, or when we are asked to stop. Where who wrote the
+  /// recording was killed, that is the end of what is whole.
+  bool receive(hc::Source& source, hc::Message& message, const std::string& output) const;
+
+  /// Where an output's messages are, for a person.
+  [[nodiscard]] std::string place_of(const std::string& output) const;
+
+ private:
+  std::string place_;
+  bool is_mcap_;
+  std::set<std::string> outputs_;
+};
+
+}  // namespace tool
