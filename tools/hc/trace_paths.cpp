@@ -45,6 +45,8 @@ struct Module {
   std::vector<Visit> visits;                                // as taken
   std::vector<std::pair<std::int64_t, std::int64_t>> busy;  // apart, in their order
   std::multimap<std::int64_t, const Visit*> at_time;        // by the message's
+  /// Those of messages that have a time, by input, in the order in which they were handled.
+  std::map<std::string, std::vector<const Visit*>> handled;
 
   /// How long of a period a handler was running.
   [[nodiscard]] std::int64_t busy_within(std::int64_t begin, std::int64_t end) const {
@@ -78,7 +80,13 @@ Module read_module(const std::vector<hc::TraceEvent>& events) {
       if (depth == 0 && begin != 0) module.busy.emplace_back(begin, event.moment);
     }
   }
-  for (const auto& visit : module.visits) module.at_time.emplace(std::get<2>(visit.key), &visit);
+  for (const auto& visit : module.visits) {
+    const auto time = std::get<2>(visit.key);
+    module.at_time.emplace(time, &visit);
+    if (visit.began && time != 0) module.handled[visit.port].push_back(&visit);
+  }
+  for (auto& [port, visits] : module.handled)
+    std::ranges::stable_sort(visits, {}, [](const Visit* visit) { return *visit->began; });
   return module;
 }
 
@@ -101,10 +109,12 @@ class PathFinder {
     const std::string at = port.substr(std::min(port.size(), name.size() + 1));
     const auto module = modules_.find(name);
     if (module == modules_.end()) return {};
+    next_ = 1;
     for (const auto& visit : module->second.visits)
       if (visit.port == at && std::get<2>(visit.key) != 0)
         collect([&] { arrive(name, visit); }, visit.took, std::get<2>(visit.key));
     if (!found_.empty()) return std::move(found_);
+    next_ = 0;
     for (const auto& [time, sendings] : sent_at_time_)
       for (const auto& sending : sendings)
         if (time != 0 && sending.module == name && sending.port == at)
@@ -236,7 +246,7 @@ class PathFinder {
     for (auto each = begin; each != end; ++each)
       if (each->second->began && *each->second->began <= sending.moment)
         inputs[each->second->port] = each->second;
-    const bool renews = inputs.empty() && back_.size() <= 1;
+    const bool renews = inputs.empty() && back_.size() == next_;
     if (renews) inputs = last_handled(module, sending.moment);
     const auto before_this = found_.size();
     follow(sending, inputs, renews);
@@ -248,10 +258,12 @@ class PathFinder {
   static std::map<std::string, const Visit*> last_handled(const Module& module,
                                                           std::int64_t moment) {
     std::map<std::string, const Visit*> inputs;
-    for (const auto& visit : module.visits)
-      if (visit.began && *visit.began <= moment && *visit.began > moment - kHeld &&
-          std::get<2>(visit.key) != 0)
-        inputs[visit.port] = &visit;
+    for (const auto& [port, visits] : module.handled) {
+      const auto later = std::ranges::upper_bound(visits, moment, {},
+                                                  [](const Visit* visit) { return *visit->began; });
+      if (later == visits.begin()) continue;
+      if (const Visit* last = *std::prev(later); *last->began > moment - kHeld) inputs[port] = last;
+    }
     return inputs;
   }
 
@@ -285,6 +297,7 @@ class PathFinder {
   std::map<std::int64_t, std::vector<Sending>> sent_at_time_;
   std::vector<MessagePath> found_;
   std::vector<Step> back_;
+  std::size_t next_ = 0;  // steps behind the module that may have renewed the time
   bool is_critical_ = true;
   std::int64_t end_ = 0, age_ = 0;
   std::size_t first_ = 0;  // path of this message

@@ -51,10 +51,11 @@ struct MessagePath {
 /// far as they are known whole. At most `kMostPaths` of one message.
 ///
 /// An output's message is derived from the last messages of the same time that its module took
-/// before (R43); where there is none, it begins there. Only the module next to the port may have
-/// renewed the time, as controllers do: then the path goes on at the messages that it handled last
-/// within a second, and the one that was sensed first is critical. Where the port is an input, what
-/// its module does with the message after taking it is the last step, and no part of its age.
+/// before (R43); where there is none, it begins there. Only the module that sends what the port
+/// takes, or whose output the port is, may have renewed the time, as controllers do: then the path
+/// goes on at the messages that it handled last within a second, and the one that was sensed first
+/// is critical. Where the port is an input, what its module does with the message after taking it
+/// is the last step, and no part of its age.
 std::vector<MessagePath> find_paths(const Traced& traced, const std::string& port);
 inline constexpr std::size_t kMostPaths = 64;
 

@@ -162,6 +162,41 @@ TEST_F(Chain, ASensorBehindTheNextModuleBegins) {
   EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 10/10/10, gaze.target 10/0/0");
 }
 
+TEST_F(Chain, ASensorThatFeedsTheModuleOfAnOutputBegins) {
+  of("eye").took("gaze", 9, 5).handled("gaze", 9, 5, 6);
+  traced.events["neck"] = {{What::Sent, "pose", 9, 5, kSeen, kSeen + 1}};
+  traced.events["eye"].push_back({What::Sent, "left", 1, 1, 2000, 2100});
+  traced.events["blob"] = {{What::Took, "image", 1, 1, 2000, 2110},
+                           {What::Began, "image", 1, 1, 2000, 2120},
+                           {What::Sent, "target", 2, 1, 2000, 2130}};
+  const auto paths = find_paths(traced, "blob.target");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 10/10/10");
+}
+
+TEST_F(Chain, OfANewTimeTheLastMessageAtEachInputCountsForASecond) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  auto& events = traced.events["gaze"];
+  auto handle = [&](const std::string& port, int seq, std::int64_t at) {
+    events.push_back({What::Took, port, 1, seq, at, at});
+    events.push_back({What::Began, port, 1, seq, at, at});
+    events.push_back({What::Ended, port, 1, seq, at, at});
+  };
+  handle("old", 1, kSecond);
+  handle("new", 2, 2 * kSecond - 100);
+  handle("new", 3, 2 * kSecond);
+  const auto sent = 2 * kSecond + 1;
+  events.push_back({What::Sent, "command", 2, 0, sent, sent});
+  handle("new", 4, 2 * kSecond + 2);
+  traced.events["eye"] = {{What::Sent, "out", 1, 1, kSecond, kSecond},
+                          {What::Sent, "out", 1, 2, 2 * kSecond - 100, 2 * kSecond - 100},
+                          {What::Sent, "out", 1, 3, 2 * kSecond, 2 * kSecond},
+                          {What::Sent, "out", 1, 4, 2 * kSecond + 2, 2 * kSecond + 2}};
+  const auto paths = find_paths(traced, "gaze.command");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(words(paths[0]), "eye.out 0/0/0, gaze: new → command 0/1/0");
+}
+
 TEST_F(Chain, GoesThroughARouterThatForwards) {
   of("joystick").sent("stick", 1, 10);
   of("router").took("in", 1, 15).began("in", 1, 16).sent("out", 1, 18).ended("in", 1, 19);
