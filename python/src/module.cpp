@@ -18,6 +18,8 @@ namespace {
 
 using Input = hc::Input<hc::AnyKind>;
 constexpr std::size_t kMostTogether = 8;
+/// Messages up to this size may come so fast that to take the GIL for each would count. [byte]
+constexpr std::size_t kQuick = 4096;
 
 struct PyInput {
   std::string name;
@@ -73,7 +75,8 @@ struct Handler {
   /// Hands messages to the function, one of each input.
   template <std::size_t... kIndex, typename... Messages>
   void operator()(std::index_sequence<kIndex...>, Messages&&... messages) const {
-    const Program::Inside inside(*program);
+    const bool is_quick = (... && (messages.elements.size() <= kQuick));
+    const Program::Inside inside(*program, is_quick);
     const std::array<py::object, sizeof...(Messages)> objects{py::reinterpret_steal<py::object>(
         wrap(std::forward<Messages>(messages), keepers[kIndex]))...};
     for (const auto& each : objects)

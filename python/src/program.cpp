@@ -33,15 +33,14 @@ int Program::run(const std::vector<std::string>& words) {
   int status = 0;
   is_running_ = true;
   thread_ = std::this_thread::get_id();
-  thread_state_ = PyEval_SaveThread();
+  release();
   std::exception_ptr thrown;
   try {
     status = module_.run(static_cast<int>(copies.size()), pointers.data());
   } catch (...) {
     thrown = std::current_exception();
   }
-  PyEval_RestoreThread(thread_state_);
-  thread_state_ = nullptr;
+  acquire();
   is_running_ = false;
   failure_ = nullptr;
   if (thrown) std::rethrow_exception(thrown);

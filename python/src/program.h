@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <frames/module_frames.h>
@@ -23,7 +24,9 @@ Function hold(const py::object& function);
 
 class Program {
  public:
-  Program(std::string name, std::string summary) : module_(std::move(name), std::move(summary)) {}
+  Program(std::string name, std::string summary) : module_(std::move(name), std::move(summary)) {
+    module_.before_waiting([this] { release(); });
+  }
 
   /// Of the thread that runs the module alone, while it runs; raised on another one.
   void check_thread() const {
@@ -66,15 +69,20 @@ class Program {
   /// What runs in the loop with the GIL, as a handler does.
   class Inside {
    public:
-    explicit Inside(Program& program) : program_(program) {
-      PyEval_RestoreThread(program_.thread_state_);
+    /// @param keeps  keeps the GIL until the module waits, or does something else than to call
+    ///               handlers: a next one that is called at once need not take it again.
+    explicit Inside(Program& program, bool keeps = false) : program_(program), keeps_(keeps) {
+      program_.acquire();
     }
-    ~Inside() { program_.thread_state_ = PyEval_SaveThread(); }
+    ~Inside() {
+      if (!keeps_) program_.release();
+    }
     Inside(const Inside&) = delete;
     Inside& operator=(const Inside&) = delete;
 
    private:
     Program& program_;
+    bool keeps_;
   };
 
   /// Does, without the GIL, what a handler asks of the module and may wait, such as sending. What
@@ -84,25 +92,30 @@ class Program {
     check_thread();
     if (!is_running_)
       raise({hc::Code::Invalid, std::string(name) + " is for the handlers of a module that runs"});
-    PyThreadState* outer = PyEval_SaveThread();
-    std::swap(thread_state_, outer);
+    release();
     try {
       work();
     } catch (...) {
       failure_ = std::current_exception();
     }
-    std::swap(thread_state_, outer);
-    PyEval_RestoreThread(outer);
+    acquire();
     if (failure_ != nullptr) raise_failure();
   }
 
  private:
+  /// Takes the GIL for the thread that runs, and gives it back; nothing where that is done.
+  void acquire() {
+    if (thread_state_ != nullptr) PyEval_RestoreThread(std::exchange(thread_state_, nullptr));
+  }
+  void release() {
+    if (thread_state_ == nullptr) thread_state_ = PyEval_SaveThread();
+  }
   [[noreturn]] static void refuse_thread();
   [[noreturn]] void raise_failure();
 
   hc::Module module_;
   std::optional<hc::ModuleFrames> frames_;  // which the module's handlers use: as long as it
-  PyThreadState* thread_state_ = nullptr;   // of the thread that runs, while it has not the GIL
+  PyThreadState* thread_state_ = nullptr;   // of the thread that runs; null: it has the GIL
   std::thread::id thread_;
   bool is_running_ = false;
   std::exception_ptr failure_;  // went through Python, and ends the module where it comes out

@@ -5,6 +5,7 @@
 import gc
 import pathlib
 import signal
+import subprocess
 import unittest
 import weakref
 
@@ -466,6 +467,34 @@ module.run()
 """
         self.run_module(text, "--in unix-listen:@" + self.link()[4:])
         self.assertEqual(self.err, "free: free\n")
+
+    def test_the_interpreter_is_free_after_a_message_and_between_many(self):
+        text = """
+import collections, os, signal, threading
+import hypercolumn as hc
+module = hc.Module("free", "Has another thread run beside a handler that is no Python code.")
+numbers = module.input("numbers", hc.table(), "numbers")
+kept = collections.deque(maxlen=1)
+module.on(numbers)(kept.append)
+
+def other():
+    while not kept:
+        pass
+    module.log("free")
+    os.kill(os.getpid(), signal.SIGTERM)
+
+@module.on_start
+def begin():
+    threading.Thread(target=other, daemon=True).start()
+
+module.run()
+"""
+        program = self.write_module("module", text)
+        for source in "cat message; cat", 'yes "$(cat message)"':
+            with self.subTest(source):
+                self.write("message", IN)
+                process = self.start("(%s) | exec %s" % (source, program), stdin=subprocess.PIPE)
+                self.assertEqual(process.stderr.readline(), b"free: free\n")
 
 
 if __name__ == "__main__":

@@ -494,6 +494,7 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   auto timeout = std::chrono::nanoseconds(-1);
   if (until != MonotonicTime::max()) timeout = std::max(until - now_, std::chrono::nanoseconds(0));
   auto& waits = for_messages ? waits_ : pauses_;
+  if (module_.before_waiting_) module_.before_waiting_();
   auto ready = waits.wait(waited_for_, watched_, timeout);
   if (!ready) fail("wait", ready.error());
   if (management_.commands() != nullptr && waits.was_woken_by(*management_.commands()))
@@ -515,6 +516,7 @@ void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
 }
 
 void Module::Loop::close() {
+  if (module_.before_waiting_) module_.before_waiting_();
   log_dropped();
   if (trace_ != nullptr) trace_->flush();
   const LinkedSink* failed = nullptr;

@@ -49,6 +49,7 @@ void Module::Loop::serve() {
   const bool reports = management_.is_heard() && now_ - reported_ >= kReportPeriod;
   if (now_ - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
   attended_ = now_;
+  if (module_.before_waiting_) module_.before_waiting_();
   for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);
   report();

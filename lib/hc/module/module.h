@@ -219,6 +219,10 @@ class Module {
     watches_.push_back({std::move(descriptor), std::move(handler)});
   }
 
+  /// Calls a function before the module waits or closes its links, and every 10 ms while messages
+  /// come: for who keeps a lock from one handler to the next, to release it.
+  void before_waiting(std::function<void()> handler) { before_waiting_ = std::move(handler); }
+
   /// For generators: waits until the next period of a rate begins, counted from the first call.
   /// A module that is asked to stop ends here. @param rate [Hz]
   void keep_rate(double rate);
@@ -321,7 +325,7 @@ class Module {
   std::vector<std::shared_ptr<internal::OutputState>> outputs_;
   std::vector<std::shared_ptr<ParameterState>> parameters_;
   std::vector<std::unique_ptr<internal::TogetherState>> together_;
-  std::function<void()> start_, end_;
+  std::function<void()> start_, end_, before_waiting_;
   std::function<bool()> generate_;
   bool finishes_ = false;
   std::vector<Timer> timers_;
