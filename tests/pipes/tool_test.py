@@ -148,6 +148,11 @@ class Tool(Pipes):
     def test_shipped_graphs_are_found_by_name(self):
         for name in ("depth", "depth.toml"):
             self.assertIn("no problems found", self.shell("hc check " + name))
+        self.write("mine.toml", 'version = 1\n[graphs.own]\nfile = "depth.toml"\n')
+        self.assertIn("no problems found", self.shell("hc check mine.toml"))
+        self.write("depth.toml", "version = 1\n[modules.none]\n")  # the nearer one
+        self.shell("hc check mine.toml", 2)
+        self.assertIn("depth.toml:2: ", self.err)
         self.shell("hc check depht.toml", 1)
         self.assertIn("depht.toml: cannot be read", self.err)
 

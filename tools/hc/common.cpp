@@ -32,11 +32,6 @@ hc::Uri parse(const std::string& uri) {
   return parsed;
 }
 
-/// Where graphs that came with hc are; in a folder that it is built in, a link.
-fs::path graph_folder() {
-  return module_folder().parent_path().parent_path() / "share" / "hypercolumn" / "graphs";
-}
-
 /// Text to the person; it does not matter whether it arrives.
 void write_error(const std::string& text) {
   static_cast<void>(hc::write_all(STDERR_FILENO, text));
@@ -119,7 +114,7 @@ void say(std::string_view line) {
 std::string find_graph(const std::string& name) {
   std::error_code missing;
   if (name.find('/') != std::string::npos || fs::exists(name, missing)) return name;
-  const fs::path folder = graph_folder();
+  const fs::path folder = hc::graph_folder();
   for (const char* suffix : {"", ".toml"})
     if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);
   return name;
@@ -128,7 +123,7 @@ std::string find_graph(const std::string& name) {
 std::vector<std::string> shipped_graphs() {
   std::set<std::string> names;
   std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(graph_folder(), missing))
+  for (const auto& entry : fs::directory_iterator(hc::graph_folder(), missing))
     if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
   return {names.begin(), names.end()};
 }

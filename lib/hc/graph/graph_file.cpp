@@ -8,6 +8,7 @@
 #include <hc/contract/description.h>
 #include <hc/contract/trace.h>
 #include <hc/graph/file/tables.h>
+#include <hc/graph/programs.h>
 
 namespace hc {
 namespace {
@@ -126,7 +127,12 @@ class GraphReader {
   }
 
   static std::string path_of(const std::string& from, const std::string& file) {
-    return (std::filesystem::path(from).parent_path() / file).lexically_normal().string();
+    namespace fs = std::filesystem;
+    std::error_code missing;
+    const auto path = (fs::path(from).parent_path() / file).lexically_normal();
+    const auto shipped = graph_folder() / file;
+    const bool is_name = file.find('/') == std::string::npos;
+    return is_name && !fs::exists(path, missing) && fs::exists(shipped, missing) ? shipped : path;
   }
 
   std::optional<std::string> read_included(const std::string& from,

@@ -36,6 +36,10 @@ fs::path module_folder() {
   return self.parent_path().parent_path() / "libexec" / "hypercolumn";
 }
 
+fs::path graph_folder() {
+  return module_folder().parent_path().parent_path() / "share" / "hypercolumn" / "graphs";
+}
+
 std::vector<std::string> module_names() {
   std::vector<std::string> names;
   std::error_code missing;

@@ -16,6 +16,9 @@ std::filesystem::path module_folder();
 /// The names of all modules in that folder.
 std::vector<std::string> module_names();
 
+/// The folder of the graphs that came with this program; where it was built, a link.
+std::filesystem::path graph_folder();
+
 /// A program by its path, or by its name in module_folder() or PATH; empty when there is none.
 std::string find_program(const std::string& name);
 

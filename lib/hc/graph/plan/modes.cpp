@@ -115,7 +115,9 @@ class Modes {
       else if (!planned.exclusive.insert(input.value).second)
         continue;
       else if (module.workspace.empty() && !has_wrong_workspace())
-        problems_.add(input.place, "exclusive inputs require a [workspace] table");
+        problems_.add(input.place,
+                      "exclusive inputs require a [workspace] table: add it with module = "
+                      "\"workspace\", and [modules.workspace]; or set exclusive = []");
       planned.add_option("--exclusive", input.value);
     }
   }

@@ -79,7 +79,9 @@ TEST(Modes, ErrorsNameTheLineAndWhatWouldBeRight) {
                   "[modes]\na = 1\nb = 1\n"),
             "g.toml:9: modes a and b have the same number");
   EXPECT_EQ(wrong("[modules.actor]\nexclusive = [\"command\"]\n"),
-            "g.toml:3: exclusive inputs require a [workspace] table");
+            "g.toml:3: exclusive inputs require a [workspace] table: add it with module = "
+            "\"workspace\", and [modules.workspace]; or set exclusive = []");
+  EXPECT_TRUE(plan("[modules.actor]\nexclusive = []\n"));
   EXPECT_EQ(wrong("[modules.workspace]\n[modules.actor]\nexclusive = [\"comand\"]\n"
                   "[workspace]\nmodule = \"workspace\"\n"),
             "g.toml:4: module actor has no input \"comand\", did you mean \"command\"?");
