@@ -23,6 +23,14 @@ _Value = TypeVar("_Value", bool, int, float, str)
 _Array = numpy.ndarray[Any, Any]
 _Frame = Union[str, int]
 
+class _Context:  # what a with ends
+    def __exit__(
+        self,
+        kind: Optional[Type[BaseException]],
+        error: Optional[BaseException],
+        trace: Optional[TracebackType],
+    ) -> None: ...
+
 class Message:
     @property
     def array(self) -> _Array: ...
@@ -72,14 +80,8 @@ class Input:
     @property
     def name(self) -> str: ...
 
-class Loan:
+class Loan(_Context):
     def __enter__(self) -> _Array: ...
-    def __exit__(
-        self,
-        kind: Optional[Type[BaseException]],
-        error: Optional[BaseException],
-        trace: Optional[TracebackType],
-    ) -> None: ...
 
 class Output:
     @property
@@ -169,19 +171,13 @@ class Module:
     @property
     def instance(self) -> str: ...
 
-class Stream:
+class Stream(_Context):
     def __init__(self, uri: str, limit: Optional[int] = None) -> None: ...
     def __iter__(self) -> Iterator[Message]: ...
     def __next__(self) -> Message: ...
     def take(self, seconds: Optional[float] = None) -> Optional[Message]: ...
     def close(self) -> None: ...
     def __enter__(self) -> Stream: ...
-    def __exit__(
-        self,
-        kind: Optional[Type[BaseException]],
-        error: Optional[BaseException],
-        trace: Optional[TracebackType],
-    ) -> None: ...
 
 class RunningGraph:
     @property

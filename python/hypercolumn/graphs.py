@@ -17,6 +17,7 @@ from hypercolumn import _hypercolumn
 from hypercolumn._hypercolumn import Message, RunningGraph, Stream
 from hypercolumn.errors import Error
 
+_LOOK = 0.25  # seconds after which who waits for a message looks whether the graph has ended
 _SILENCE = 5.0  # seconds after which a graph that says nothing may be stopped
 _REPORT = 2.0  # seconds within which a module reports a new value
 _STATE_LIMIT = 16 << 20  # bytes
@@ -100,6 +101,10 @@ class Port:
         self._graph, self.name = graph, name
 
     def __iter__(self) -> Iterator[Message]:
+        return self._messages(math.inf)
+
+    def _messages(self, end: float) -> Iterator[Message]:
+        """Messages until the graph ends; after a time by time.monotonic() no more."""
         observation = _hypercolumn.observe(self._graph, self.name)
         ended = threading.Event()  # the graph has, or the loop
         thread = threading.Thread(target=_renew, args=(observation, ended), daemon=True)
@@ -107,10 +112,10 @@ class Port:
         try:
             with Stream(observation.uri) as stream:
                 while True:
-                    message = stream.take(0.25)
+                    message = stream.take(max(0.0, min(_LOOK, end - time.monotonic())))
                     if message is not None:
                         yield message
-                    elif ended.is_set():
+                    elif ended.is_set() or time.monotonic() >= end:
                         return
         except StopIteration:
             return
@@ -118,10 +123,13 @@ class Port:
             ended.set()
             thread.join()
 
-    def read(self) -> Message:
-        """The next message."""
-        for message in self:
+    def read(self, seconds: float = math.inf) -> Message:
+        """The next message; an error, Closed, after so many seconds without one."""
+        end = time.monotonic() + seconds
+        for message in self._messages(end):
             return message
+        if time.monotonic() >= end:
+            raise Error("Closed: %s: no message in %g s" % (self.name, seconds), "Closed")
         raise Error("Closed: the graph has ended", "Closed")
 
     def __repr__(self) -> str:

@@ -2,6 +2,7 @@
 #include "python.h"
 
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 
@@ -41,6 +42,18 @@ void set_error_text(const std::string& text) {
     if (text.starts_with(std::string(hc::name(code)) + ": "))
       return set_error(text, hc::name(code));
   set_error(text, "");
+}
+
+std::string Line::file_name() const {
+  return std::filesystem::path(py::str(file).cast<std::string>()).filename().string();
+}
+
+std::optional<Line> current_line() {
+  PyFrameObject* frame = PyEval_GetFrame();  // borrowed
+  if (frame == nullptr) return std::nullopt;
+  const auto code =
+      py::reinterpret_steal<py::object>(reinterpret_cast<PyObject*>(PyFrame_GetCode(frame)));
+  return Line{code.attr("co_filename"), PyFrame_GetLineNumber(frame)};
 }
 
 void set_current_exception() noexcept try {

@@ -2,7 +2,6 @@
 #include "message.h"
 
 #include <pybind11/numpy.h>
-#include <structmember.h>
 
 #include <algorithm>
 #include <array>
@@ -46,32 +45,25 @@ void note_line(PyMessage& self) {
 /// Warns that too many messages are kept. What a warning raises is raised where it was given.
 bool warn_kept(Keeper& keeper) {
   keeper.has_warned = true;
-  py::object file = py::str("<unknown>");
-  int line = 0;
+  Line line{py::str("<unknown>")};
   auto noted = std::find_if(keeper.kept.begin(), keeper.kept.end(), [](PyObject* each) {
     return reinterpret_cast<PyMessage*>(each)->code != nullptr;
   });
   if (noted != keeper.kept.end()) {
     const auto& first = *reinterpret_cast<PyMessage*>(*noted);
-    file = py::reinterpret_borrow<py::object>(first.code->co_filename);
-    line = first.line;
+    line = {py::handle(reinterpret_cast<PyObject*>(first.code)).attr("co_filename"), first.line};
   } else if (keeper.handler != nullptr && PyObject_HasAttrString(keeper.handler, "__code__")) {
     const auto code = py::handle(keeper.handler).attr("__code__");
-    file = code.attr("co_filename");
-    line = code.attr("co_firstlineno").cast<int>();
-  } else if (PyFrameObject* frame = PyEval_GetFrame();
-             keeper.handler == nullptr && frame != nullptr) {
-    auto code =
-        py::reinterpret_steal<py::object>(reinterpret_cast<PyObject*>(PyFrame_GetCode(frame)));
-    file = code.attr("co_filename");
-    line = PyFrame_GetLineNumber(frame);
+    line = {code.attr("co_filename"), code.attr("co_firstlineno").cast<int>()};
+  } else if (keeper.handler == nullptr) {
+    line = current_line().value_or(line);
   }
   const std::string text = hc::format(
       "{} messages of {} are kept in the memory of their publisher; while it is so, further ones "
       "are copied. To keep numbers, keep a copy: message.array.copy()",
       keeper.kept.size(), keeper.name);
-  return PyErr_WarnExplicitObject(PyExc_RuntimeWarning, py::str(text).ptr(), file.ptr(), line,
-                                  nullptr, nullptr) == 0;
+  return PyErr_WarnExplicitObject(PyExc_RuntimeWarning, py::str(text).ptr(), line.file.ptr(),
+                                  line.number, nullptr, nullptr) == 0;
 }
 
 hc::Message with_own_elements(const hc::Message& message) {

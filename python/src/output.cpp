@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 
 #include "kind.h"
@@ -162,8 +163,11 @@ hc::Message message_of_array(const PyOutput& self, PyObject* object) {
 hc::Message message_of(const PyOutput& self, PyObject* object) {
   if (const hc::Message* message = message_in(object)) return *message;
   if (PyList_CheckExact(object) != 0 || PyTuple_CheckExact(object) != 0) {
-    auto numbers = message_of_numbers(self, PySequence_Fast_ITEMS(object),
-                                      static_cast<std::size_t>(PySequence_Fast_GET_SIZE(object)));
+    // What makes a number of an object may change a list.
+    const auto tuple = py::reinterpret_steal<py::object>(PySequence_Tuple(object));
+    if (!tuple) throw py::error_already_set();
+    auto numbers = message_of_numbers(self, PySequence_Fast_ITEMS(tuple.ptr()),
+                                      static_cast<std::size_t>(PyTuple_GET_SIZE(tuple.ptr())));
     if (numbers) return std::move(*numbers);
   }
   if (PyFloat_CheckExact(object) != 0 || PyLong_CheckExact(object) != 0)
@@ -202,14 +206,33 @@ struct Fields {
   }
 };
 
-void send_message(const PyOutput& self, hc::Message message) {
-  const hc::Header& header = message.header;
+void check_for(const PyOutput& self, const hc::Header& header) {
   const hc::PortType& type = self.state->type();
   if (!hc::fits(header, type)) {
     auto error = hc::misfit(header, type);
     raise({error.code, self.state->name + ": " + error.detail});
   }
   raise_if_failed(hc::check(header));
+}
+
+/// What `make` gives. An error in it says the line of Python too: it ends a module without a
+/// traceback.
+template <typename Make>
+hc::Message with_line(const Make& make) {
+  try {
+    return make();
+  } catch (py::error_already_set& error) {
+    const auto line = current_line();
+    if (!line || !error.matches(error_type())) throw;
+    const auto code = py::str(error.value().attr("code")).cast<std::string>();
+    set_error(hc::format("{} ({}, line {})", py::str(error.value()).cast<std::string>(),
+                         line->file_name(), line->number),
+              code);
+  }
+  throw py::error_already_set();
+}
+
+void send_message(const PyOutput& self, hc::Message message) {
   self.program->work("send()", [&] { hc::internal::send(*self.state, std::move(message)); });
 }
 
@@ -219,9 +242,12 @@ PyObject* send(PyObject* object, PyObject* const* arguments, Py_ssize_t count, P
   for (Py_ssize_t i = 0; names != nullptr && i < PyTuple_GET_SIZE(names); ++i)
     fields.take(PyTuple_GET_ITEM(names, i), arguments[count + i]);
   auto& self = output_of(object);
-  hc::Message message = message_of(self, arguments[0]);
-  fields.set(message.header);
-  send_message(self, std::move(message));
+  send_message(self, with_line([&] {
+                 hc::Message message = message_of(self, arguments[0]);
+                 fields.set(message.header);
+                 check_for(self, message.header);
+                 return message;
+               }));
   Py_RETURN_NONE;
 }
 
@@ -260,12 +286,15 @@ Loan loan(const py::object& self, std::optional<std::int32_t> height,
           std::optional<std::int32_t> width, const py::kwargs& given) {
   const auto& output = output_of(self.ptr());
   const auto& type = output.state->type();
-  hc::Message message =
-      make_message(output, height.value_or(type.height), width.value_or(type.width));
   Fields fields{"loan()"};
   for (const auto& [name, value] : given) fields.take(name.ptr(), value.ptr());
-  fields.set(message.header);
-  return {self, std::move(message)};
+  return {self, with_line([&] {
+            hc::Message message =
+                make_message(output, height.value_or(type.height), width.value_or(type.width));
+            fields.set(message.header);
+            check_for(output, message.header);
+            return message;
+          })};
 }
 
 void end_output(PyObject* self) {

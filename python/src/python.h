@@ -5,6 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -61,6 +62,17 @@ constexpr auto guarded = Guard<kFunction>::call;
 /// hypercolumn.Error and hypercolumn.Stopped, from hypercolumn/errors.py.
 PyObject* error_type();
 PyObject* stopped_type();
+
+/// A line of Python.
+struct Line {
+  py::object file;
+  int number = 0;
+
+  /// The file's name without its folder.
+  [[nodiscard]] std::string file_name() const;
+};
+/// The line that called; nothing where none did.
+std::optional<Line> current_line();
 
 /// Whether the interpreter has a signal to handle, which then raised: Ctrl-C while waiting.
 inline void check_signals() {

@@ -18,6 +18,7 @@ import hypercolumn as hc
 module = hc.Module("darken", "Darkens images.")
 image = module.input("image", hc.image(), "an image")
 dark = module.output("dark", hc.image(), "the same, darker")
+never = module.output("never", hc.image(), "nothing")
 shift = module.parameter("shift", 1, "", "how much", min=0, max=7)
 module.parameter("title", "2.5", "", "any text")
 module.parameter("gain", 1.0, "", "any number")
@@ -121,6 +122,13 @@ class Graphs(Package):
             self.assertEqual(seen, sorted(set(seen)))
             with self.assertRaisesRegex(hc.Error, "no"):
                 graph["darken.no"].read()
+
+    def test_reading_ends_after_a_time(self):
+        with hc.start(self.graph) as graph:
+            self.assertEqual(graph["darken.dark"].read(60).array.shape, (60, 80, 3))
+            with self.assertRaisesRegex(hc.Error, "darken.never: no message in 0.1 s") as caught:
+                graph["darken.never"].read(0.1)
+            self.assertEqual(caught.exception.code, "Closed")
 
     def test_reading_ends_with_the_graph(self):
         with hc.start(self.graph) as graph:

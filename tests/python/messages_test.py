@@ -105,6 +105,22 @@ for use in (message.copy, lambda: message.text, lambda: message.numbers):
         (chosen,) = hc.read(path, "src_5")
         self.assertEqual(chosen.src, 5)
 
+    def test_a_stream_of_a_folder(self):
+        self.shell("mkdir kept empty; for i in 1 2; do hc send $i >kept/m.out_$i.mtp; done")
+        (message,) = hc.read(self.path("kept"), "m.out_2")
+        self.assertEqual(message.numbers, (2,))
+        for folder, stream, text, code in (
+            ("kept", "", "is a folder; say which stream: it has m.out_1, m.out_2", "Invalid"),
+            ("kept", "m.out", "no stream m.out; it has m.out_1, m.out_2", "NotFound"),
+            ("empty", "", "it has none", "Invalid"),
+        ):
+            with self.subTest(text), self.assertRaisesRegex(hc.Error, text) as caught:
+                hc.read(self.path(folder), stream)
+            self.assertEqual(caught.exception.code, code)
+        os.remove(self.path("kept/m.out_1.mtp"))
+        (message,) = hc.read(self.path("kept"))  # the only one
+        self.assertEqual(message.numbers, (2,))
+
     def test_errors_are_those_of_the_commands(self):
         self.write("bad.mtp", b"1 1 0 0 8 0 120190 0 0 2 1\n1 x\n")
         with self.assertRaises(hc.Error) as caught:

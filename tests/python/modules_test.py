@@ -152,10 +152,23 @@ class Sent(Modules):
                 self.assertEqual(len(lines), 1, self.err)
                 self.assertIn(text, lines[0])
                 self.assertTrue(lines[0].startswith("echo: "), lines)
+                self.assertTrue(lines[0].endswith(" (module, line 10)"), lines)
         for body in ("out.send()", "out.send(1, 2)", "out.send(1, tme=2)"):
             with self.subTest(body):
                 self.echo("table()", body, status=1)
                 self.assertIn("Traceback", self.err)
+
+    def test_a_list_that_changes_meanwhile_is_sent_as_it_was(self):
+        body = """
+    class Number:
+        def __float__(self):
+            numbers.clear()
+            return 2.0
+    numbers = [1.0, Number(), *map(float, range(3, 1000))]
+    out.send(numbers)
+"""
+        out = self.echo("table()", body)
+        self.assertEqual(out.splitlines()[1], " ".join(map(str, range(1, 1000))))
 
     def test_a_loan_is_sent_at_its_end_and_dropped_by_an_exception(self):
         body = """
