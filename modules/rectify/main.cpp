@@ -24,9 +24,10 @@ int main(int argc, char** argv) {
       module.output("left", image.in(Coord::kLeftRectified), "rectified image of the left eye");
   auto right_rectified =
       module.output("right", image.in(Coord::kRightRectified), "rectified image of the right eye");
-  auto intrinsics = module.output("intrinsics", hc::table<double>().of(5, 1).in(Coord::kLeftRectified),
-                                  "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
-                                  "the first image and then once a second");
+  auto intrinsics =
+      module.output("intrinsics", hc::table<double>().of(5, 1).in(Coord::kLeftRectified),
+                    "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
+                    "the first image and then once a second");
   auto cameras = module.output(
       "cameras", hc::transformation<double>(4, 4),
       "with the intrinsics: T_head_left_eye as calibrated (coord 3004), and from the left camera "
