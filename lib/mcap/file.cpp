@@ -10,7 +10,7 @@
 namespace hc::mcap {
 namespace {
 
-void write_schema(RecordWriter& out, const SchemaRecord& schema) {
+void write_record(RecordWriter& out, const SchemaRecord& schema) {
   out.begin(Opcode::Schema);
   out.number(schema.id);
   out.string(schema.name);
@@ -19,7 +19,7 @@ void write_schema(RecordWriter& out, const SchemaRecord& schema) {
   out.end();
 }
 
-void write_channel(RecordWriter& out, const ChannelRecord& channel) {
+void write_record(RecordWriter& out, const ChannelRecord& channel) {
   out.begin(Opcode::Channel);
   out.number(channel.id);
   out.number(channel.schema);
@@ -90,22 +90,22 @@ Status File::write(std::span<const std::byte> bytes) {
   return {};
 }
 
-Status File::add(const SchemaRecord& schema) {
+template <typename T>
+Status File::add_record(const T& record, std::vector<Placed<T>>& placed) {
   RecordWriter out;
-  write_schema(out, schema);
+  write_record(out, record);
   const std::uint64_t offset = size_;
   auto written = write(out.bytes);
-  if (written) schemas_.push_back({schema, offset});
+  if (written) placed.push_back({record, offset});
   return written;
 }
 
+Status File::add(const SchemaRecord& schema) {
+  return add_record(schema, schemas_);
+}
+
 Status File::add(const ChannelRecord& channel) {
-  RecordWriter out;
-  write_channel(out, channel);
-  const std::uint64_t offset = size_;
-  auto written = write(out.bytes);
-  if (written) channels_.push_back({channel, offset});
-  return written;
+  return add_record(channel, channels_);
 }
 
 Status File::add(const MetadataRecord& metadata) {
@@ -149,9 +149,9 @@ std::vector<std::byte> File::summary() const {
     if (size_ + out.bytes.size() > at)
       groups.push_back({opcode, at, size_ + out.bytes.size() - at});
   };
-  for (const auto& schema : schemas_) write_schema(out, schema.record);
+  for (const auto& schema : schemas_) write_record(out, schema.record);
   end_group(Opcode::Schema);
-  for (const auto& channel : channels_) write_channel(out, channel.record);
+  for (const auto& channel : channels_) write_record(out, channel.record);
   end_group(Opcode::Channel);
 
   std::map<std::uint16_t, std::uint64_t> counts;

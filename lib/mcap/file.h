@@ -71,6 +71,9 @@ class File {
   File(std::string path, internal::Descriptor descriptor)
       : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
   Status write(std::span<const std::byte> bytes);
+  /// Writes a record that the summary repeats, and notes it.
+  template <typename T>
+  Status add_record(const T& record, std::vector<Placed<T>>& placed);
   [[nodiscard]] std::vector<std::byte> summary() const;
 
   std::string path_;

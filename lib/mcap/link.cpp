@@ -61,6 +61,7 @@ class RecordingSource : public Source {
       auto made = rebuild(**stored, channel->second.topic);
       if (!made) return made.error();
       message = std::move(*made);
+      stream_ = stream_name(channel->second);
       ++traffic_.messages;
       traffic_.bytes = reader_.position();
       return Got::Message;
@@ -70,6 +71,7 @@ class RecordingSource : public Source {
   [[nodiscard]] int descriptor() const override { return reader_.descriptor(); }
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
   Status resume() override { return {}; }
+  [[nodiscard]] std::string_view stream() const { return stream_; }
 
  private:
   /// Keeps what the next message of a topic may need; of one chunk, since that is its memory.
@@ -116,6 +118,7 @@ class RecordingSource : public Source {
   Reader reader_;
   Limits limits_;
   Traffic traffic_;
+  std::string stream_;                           // of the last message
   std::map<std::string, StoredMessage> beside_;  // the last, by the topic of MTP
 };
 
@@ -221,6 +224,11 @@ Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions
   reader->found.schemas = summary->schemas;
   reader->found.channels = summary->channels;
   return std::unique_ptr<Source>(new RecordingSource(std::move(*reader), options.limits));
+}
+
+std::string_view stream_of(const Source& source) {
+  const auto* recording = dynamic_cast<const RecordingSource*>(&source);
+  return recording != nullptr ? recording->stream() : std::string_view();
 }
 
 Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions&) {

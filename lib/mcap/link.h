@@ -35,6 +35,10 @@ std::vector<StreamInfo> streams(const Summary& summary);
 /// Unsupported (no messages of MTP in it), System.
 Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions& options = {});
 
+/// The stream of the message that such a source gave last; empty: it is another source, or has
+/// given none.
+std::string_view stream_of(const Source& source);
+
 /// A recording that is made of what is sent; a stream for each src. Errors: Invalid, System.
 Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions& options = {});
 

@@ -495,6 +495,20 @@ TEST(Mcap, EachJointThatAnOutputMovesIsOnTf) {
             (std::vector<std::string>{"robot head 0.500000 2003", "head left_eye 0.250000 3004"}));
 }
 
+TEST(Mcap, TheLastMetadataOfANameIsFound) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap");
+  ASSERT_TRUE(recorder->metadata("a", {{"x", "1"}}));
+  ASSERT_TRUE(recorder->record(recorder->add_stream("eye"), image(1), 1));
+  ASSERT_TRUE(recorder->metadata("b", {{"x", "2"}}));
+  ASSERT_TRUE(recorder->metadata("a", {{"x", "3"}}));
+  ASSERT_TRUE(recorder->close());
+  auto reader = Reader::open(folder / "x.mcap");
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(**reader->metadata("a"), (Words{{"x", "3"}}));
+  EXPECT_EQ(*reader->metadata("c"), std::nullopt);
+}
+
 TEST(Mcap, NumberedFilesOfBeforeStay) {
   Folder folder;
   std::ofstream(folder / "x_0007.mcap") << "kept";

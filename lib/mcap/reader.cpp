@@ -250,6 +250,24 @@ Result<Summary> Reader::go_through() {
   }
 }
 
+Result<std::optional<Words>> Reader::metadata(std::string_view name) {
+  std::optional<Words> found_words;
+  for (std::uint64_t at = kMagic.size();;) {
+    auto place = record_at(at);
+    if (!place && place.error().code != Code::Truncated) return place.error();
+    if (!place || place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer)
+      return found_words;
+    at = place->end();
+    if (place->opcode != Opcode::Metadata) continue;
+    auto content = read(place->content, place->length, limits_.summary_bytes);
+    if (!content) return content.error();
+    RecordReader reader(*content);
+    if (reader.string() != name) continue;
+    found_words = reader.words();
+    if (!reader.is_good()) return damaged("a record is shorter than what it holds", place->content);
+  }
+}
+
 Result<bool> Reader::is_skipped(const RecordPlace& chunk) {
   if (!selected_) return false;
   for (std::uint64_t at = chunk.end();;) {

@@ -11,6 +11,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <hc/base/result.h>
@@ -55,6 +56,10 @@ class Reader {
   /// Reads the summary; of a file that has none, what goes before.
   /// Errors: Malformed, TooLarge, System. Cost: without a summary, a look at each record's head.
   Result<Summary> summary();
+
+  /// The last metadata of a name; nothing where there is none. Cost: as of a file without a
+  /// summary. Errors: Malformed, TooLarge, System.
+  Result<std::optional<Words>> metadata(std::string_view name);
 
   /// Reads these channels alone: chunks without any are skipped where the whole index behind them
   /// says so.

@@ -161,9 +161,8 @@ void Recorder::add_other(std::string_view topic, ros::Type type, std::int64_t ti
   add(number, ++others_, time, time, data);
 }
 
-Status Recorder::log(std::int64_t time, Severity severity, std::string_view name,
-                     std::string_view line) {
-  add_other(kLog, ros::Type::Log, time, encoder_.encode(time, severity, name, line));
+Status Recorder::log(std::int64_t time, std::string_view line) {
+  add_other(kLog, ros::Type::Log, time, encoder_.encode_log(time, line));
   return hand_on_if_due();
 }
 

@@ -18,7 +18,6 @@
 #include <thread>
 #include <vector>
 
-#include <hc/base/log.h>
 #include <hc/mtp/message.h>
 #include <mcap/chunk.h>
 #include <mcap/storage.h>
@@ -55,8 +54,8 @@ class Recorder {
   /// TooLarge (there are too many streams for a file); messages of the others are recorded.
   Status record(std::size_t stream, const Message& message, std::int64_t time);
 
-  /// A line of a log, on the topic /rosout.
-  Status log(std::int64_t time, Severity severity, std::string_view name, std::string_view line);
+  /// A line of the graph's log, as ros::Encoder::encode_log() takes it, on the topic /rosout.
+  Status log(std::int64_t time, std::string_view line);
   Status metadata(std::string name, Words words);
 
   /// The frames of the graph as text (spec/graph.md, G31): joints that never move are recorded on

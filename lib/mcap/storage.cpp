@@ -42,6 +42,19 @@ std::uint64_t highest_number(const std::string& file) {
 
 }  // namespace
 
+Result<std::uint64_t> parse_bytes(std::string_view text) {
+  std::uint64_t number = 0;
+  if (text.empty()) return number;
+  const char* end = text.data() + text.size();
+  const auto [stop, status] = std::from_chars(text.data(), end, number);
+  const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  const int shift = unit.empty() ? 0 : unit == "K" ? 10 : unit == "M" ? 20 : unit == "G" ? 30 : -1;
+  if (status != std::errc() || shift < 0 || number > std::uint64_t{1} << (63 - shift))
+    return Error{Code::Invalid,
+                 hc::format("\"{}\" is no number of bytes, such as 1G (of K, M and G)", text)};
+  return number << shift;
+}
+
 Result<Storage> Storage::make(const StorageOptions& options) {
   if (options.keep > 0 && options.split == 0)
     return Error{Code::Invalid, "to keep so much, a recording has to be split into files"};

@@ -8,9 +8,9 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include <hc/base/log.h>
 #include <hc/base/result.h>
 #include <mcap/file.h>
 
@@ -25,6 +25,10 @@ struct StorageOptions {
   std::chrono::nanoseconds last{0};
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< of what is kept for `last` [byte]
 };
+
+/// A number of bytes with K, M or G (of 1024) behind it, or nothing; of an empty text 0.
+/// Errors: Invalid.
+Result<std::uint64_t> parse_bytes(std::string_view text);
 
 /// Keeps chunks. Schemas, channels, metadata and what is marked as such are in each of its files.
 class Storage {

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <hc/compress/compress.h>
+#include <hc/contract/description.h>
 #include <hc/mtp/coords.h>
 
 namespace hc::ros {
@@ -422,14 +423,18 @@ Pieces Encoder::encode(std::span<const Joint> list) {
   return writer_.write(message);
 }
 
-Pieces Encoder::encode(std::int64_t time, Severity severity, std::string_view name,
-                       std::string_view line) {
+Pieces Encoder::encode_log(std::int64_t time, std::string_view line) {
   Log log;
   log.stamp = time_of(time);
-  log.level = severity == Severity::Error     ? Log::kError
-              : severity == Severity::Warning ? Log::kWarning
-                                              : Log::kInfo;
-  log.name = name;
+  log.name = "graph";
+  const auto colon = line.find(": ");
+  if (colon != std::string_view::npos && is_name(line.substr(0, colon))) {
+    log.name = line.substr(0, colon);
+    line.remove_prefix(colon + 2);
+  }
+  const bool is_error = line.starts_with("error: ") || line.starts_with("failed with status ") ||
+                        line.starts_with("killed by signal ");
+  log.level = is_error ? Log::kError : line.starts_with("warning: ") ? Log::kWarning : Log::kInfo;
   log.msg = line;
   return writer_.write(log);
 }

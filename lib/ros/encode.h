@@ -15,7 +15,6 @@
 #include <string_view>
 #include <vector>
 
-#include <hc/base/log.h>
 #include <hc/contract/port_type.h>
 #include <hc/mtp/message.h>
 #include <ros/messages.h>
@@ -80,9 +79,11 @@ class Encoder {
   /// A tf2_msgs/msg/TFMessage of joints.
   Pieces encode(std::span<const Joint> list);
 
-  /// A line of a log, a rcl_interfaces/msg/Log.
+  /// A line of a graph's log as a rcl_interfaces/msg/Log: "MODULE: TEXT", or a text of the graph
+  /// itself. A text that begins with "warning: " is a warning; with "error: ", or as what ends a
+  /// module ("failed with status 1"), an error.
   /// @param time  [ns since the Unix epoch]
-  Pieces encode(std::int64_t time, Severity severity, std::string_view name, std::string_view line);
+  Pieces encode_log(std::int64_t time, std::string_view line);
 
   /// An MTP message whole (`offset` 0), or what its other form lacks, whose bytes from `offset` on
   /// are its elements.

@@ -52,6 +52,22 @@ TEST(Encode, AnImageIsNotCopied) {
   EXPECT_EQ(read.header.stamp.nanosec, 123'456'789U);
 }
 
+TEST(Encode, ALineOfTheLogHasTheNameAndSeverityThatItBeginsWith) {
+  Encoder encoder;
+  auto words = [&](std::string_view line) {
+    const auto bytes = bytes_of(encoder.encode_log(1, line));
+    const auto log = *CdrReader::read<Log>(bytes);
+    return std::to_string(log.level) + " " + std::string(log.name) + " " + std::string(log.msg);
+  };
+  EXPECT_EQ(words("eyes: no error is near"), "20 eyes no error is near");
+  EXPECT_EQ(words("eyes: warning: it is dark"), "30 eyes warning: it is dark");
+  EXPECT_EQ(words("eyes: error: no device"), "40 eyes error: no device");
+  EXPECT_EQ(words("eyes: failed with status 1; restarting in 1 s"),
+            "40 eyes failed with status 1; restarting in 1 s");
+  EXPECT_EQ(words("Two words: and more"), "20 graph Two words: and more");
+  EXPECT_EQ(words("eyes"), "20 graph eyes");
+}
+
 TEST(Encode, PixelsHaveTheNamesOfRos) {
   auto encoding = [](const Message& message) {
     return become<Image>(message, Type::Image).encoding;

@@ -75,20 +75,6 @@ std::string text_of(const Json& value) {
   return value.dump();
 }
 
-/// "MODULE: warning: …" is a warning of the module.
-Payload log_payload(hc::ros::Encoder& encoder, std::int64_t time, std::string_view line) {
-  std::string_view name = "graph", text = line;
-  const auto colon = line.find(": ");
-  if (colon != std::string_view::npos && hc::is_name(line.substr(0, colon))) {
-    name = line.substr(0, colon);
-    text = line.substr(colon + 2);
-  }
-  auto severity = hc::Severity::Info;
-  if (text.starts_with("warning: ")) severity = hc::Severity::Warning;
-  if (text.starts_with("error: ")) severity = hc::Severity::Error;
-  return {time, bytes_of(encoder.encode(time, severity, name, text))};
-}
-
 }  // namespace
 
 Bridge::Bridge(Options options, web::Access& access, web::Server& server)
@@ -277,7 +263,7 @@ void Bridge::take_graph(const hc::Message& message) {
   if (message.header.src != hc::kLogSource) return;
   const std::int64_t time = message.header.time != 0 ? message.header.time : clock_.wall();
   const Channel& log = catalog_.log();
-  publish(log.id, log_payload(encoder_, time, line.substr(0, line.find('\0'))));
+  publish(log.id, {time, bytes_of(encoder_.encode_log(time, line.substr(0, line.find('\0'))))});
 }
 
 void Bridge::apply(const Catalog::Changes& changes) {

@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <limits>
 
 #include <sys/signalfd.h>
 
@@ -12,11 +11,11 @@
 #include <hc/module/module.h>
 #include <hc/os/descriptor.h>
 
-#include "story.h"
+#include "graph_metadata.h"
 
 namespace {
 
-constexpr std::string_view kStreams = "--streams=";
+constexpr std::string_view kStreams = "--streams";
 
 struct StreamName {
   std::string input, name;
@@ -29,6 +28,12 @@ std::vector<StreamName> stream_names(int argc, char** argv) {
     std::string_view words(argv[i]);
     if (!words.starts_with(kStreams)) continue;
     words.remove_prefix(kStreams.size());
+    if (words.empty() && i + 1 < argc)
+      words = argv[++i];
+    else if (words.starts_with('='))
+      words.remove_prefix(1);
+    else
+      continue;
     while (!words.empty()) {
       const auto word = words.substr(0, words.find(' '));
       words.remove_prefix(std::min(words.size(), word.size() + 1));
@@ -41,21 +46,11 @@ std::vector<StreamName> stream_names(int argc, char** argv) {
   return names;
 }
 
-/// A number of bytes with K, M or G (of 1024) behind it.
-std::uint64_t bytes_of(const std::string& name, const std::string& text) {
-  std::size_t used = 0;
-  std::uint64_t number = 0;
-  try {
-    number = std::stoull(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  const std::string unit = text.substr(used);
-  const int shift = unit.empty() ? 0 : unit == "K" ? 10 : unit == "M" ? 20 : unit == "G" ? 30 : -1;
-  if (used == 0 || shift < 0 || text.front() == '-')
-    throw hc::ModuleError(hc::Error{
-        hc::Code::Invalid, name + " is a number of bytes with K, M or G, not \"" + text + "\""});
-  return number << shift;
+std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
+  const auto bytes = hc::mcap::parse_bytes(text);
+  if (!bytes)
+    throw hc::ModuleError(hc::Error{bytes.error().code, parameter + ": " + bytes.error().detail});
+  return *bytes;
 }
 
 /// A file that is not there yet: the module may have been restarted.
@@ -102,7 +97,7 @@ int main(int argc, char** argv) {
   auto frames = module.parameter("frames", "", "", "frames of the graph, as text", {.fixed = true});
 
   std::unique_ptr<hc::mcap::Recorder> recorder;
-  std::unique_ptr<Story> story;
+  std::unique_ptr<GraphMetadata> metadata;
   std::string path;
   bool has_failed = false, was_set = false;
   std::uint64_t unrecorded = 0;
@@ -131,7 +126,7 @@ int main(int argc, char** argv) {
     if (auto named = recorder->set_frames(*frames, module.now()); !named)
       throw hc::ModuleError(named.error());
     for (const auto& [input, name] : names) recorder->add_stream(name);
-    story = Story::listen(std::getenv("HC_GRAPH"));
+    metadata = GraphMetadata::observe(std::getenv("HC_GRAPH"));
   });
   for (std::size_t i = 0; i < inputs.size(); ++i)
     module.on_raw(inputs[i], [&, i](const hc::Message& message) {
@@ -153,15 +148,16 @@ int main(int argc, char** argv) {
                        signalfd_siginfo info{};
                        while (::read(signals.get(), &info, sizeof info) > 0) save();
                      });
-  module.on_readable([&] { return story != nullptr && !has_failed ? story->descriptor() : -1; },
-                     [&] { story->tell(*recorder, module.now()); });
+  module.on_readable(
+      [&] { return metadata != nullptr && !has_failed ? metadata->descriptor() : -1; },
+      [&] { metadata->record(*recorder, module.now()); });
   module.every(std::chrono::milliseconds(250), [&] {
-    if (story != nullptr && !has_failed) story->tell(*recorder, module.now());
+    if (metadata != nullptr && !has_failed) metadata->record(*recorder, module.now());
     if (!has_failed) fail_once(recorder->poll());
   });
   module.finish_when_stopped();
   module.on_end([&] {
-    story.reset();
+    metadata.reset();
     if (!has_failed) fail_once(recorder->close());
     const std::uint64_t recorded = recorder->messages() - recorder->lost();
     std::string text =

@@ -97,7 +97,7 @@ const values = {
     stamp,
     level: 30,
     name: "eyes",
-    msg: "it is dark",
+    msg: "warning: it is dark",
     file: "",
     function: "",
     line: 0,

@@ -9,6 +9,7 @@ import pathlib
 import random
 import re
 import resource
+import shlex
 import signal
 import struct
 import subprocess
@@ -75,6 +76,12 @@ class Recordings(Pipes):
         self.shell("hc record x.mcap nothing.mtp --in 'x.mcap?stream=l'", 1)
         self.assertIn('no stream "l"', self.err)
 
+    def test_streams_of_the_recorder_are_one_word_or_two(self):
+        for equals in ("=", " "):
+            self.shell("hc send 1 | hc recorder --file=x.mcap --streams%s'a=eye.left'" % equals)
+            self.assertRegex(self.shell("hc info x.mcap"), r"\neye\.left +1 ")
+            self.shell("rm x.mcap")
+
     def test_a_graph_is_recorded_into_one_file(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 30))
         out = self.shell("hc run g.toml --record x.mcap --quiet")
@@ -86,6 +93,11 @@ class Recordings(Pipes):
         ):
             self.assertRegex(out, line)
         self.assertEqual(self.seqs("x.mcap?stream=camera.left"), list(range(30)))
+        # A copy has the same streams.
+        self.shell("hc record x.mcap copy.mcap")
+        self.assertEqual(self.seqs("copy.mcap?stream=camera.left"), list(range(30)))
+        rows = r"(?m)^(\S+\.\S+) +(\d+) "
+        self.assertEqual(re.findall(rows, self.shell("hc info copy.mcap")), re.findall(rows, out))
         # Any module takes it, and the result is the recorded one.
         self.shell("hc cat --raw 'x.mcap?stream=camera.left' | hc brightness | hc cat --json >a")
         strip = "sed 's/.*\"elements\"//'"
@@ -140,6 +152,41 @@ class Recordings(Pipes):
         seqs = self.seqs("x.mcap?stream=camera.left")  # status 0: the file is whole
         self.assertTrue(seqs)
         self.assertEqual(seqs, list(range(len(seqs))))
+
+    def on_a_small_disk(self, command):
+        """The status of a command in a shell for which the folder `disk` is a disk of 2 MB; what is on
+        it then is in the folder `kept`."""
+        own = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
+        mount = "mount -t tmpfs -o size=2m none disk"
+        os.makedirs(self.path("disk"))
+        if subprocess.run(own + [mount], cwd=self.folder.name, stderr=-1, check=False).returncode:
+            self.skipTest("no mount namespaces, in which a small disk would be made")
+        text = "%s && { %s; status=$?; cp -r disk kept; exit $status; }" % (mount, command)
+        process = self.start("exec " + shlex.join(own + [text]))
+        out, err = process.communicate(timeout=WATCHDOG)
+        self.out, self.err = out.decode(), err.decode()
+        return process.returncode
+
+    def test_hc_record_on_a_disk_of_2_mb(self):
+        self.noise(400)
+        self.assertEqual(self.on_a_small_disk("hc record noise.mtp disk/x.mcap"), 1, self.err)
+        self.assertIn("No space left on device; what was recorded before is whole", self.err)
+        self.assertEqual(self.err.count("\n"), 1, self.err)
+        seqs = self.seqs("kept/x.mcap")  # status 0: the file is whole
+        self.assertEqual(seqs, list(range(len(seqs))))
+        self.assertIn(" in ", self.shell("hc info kept/x.mcap"))
+
+    def test_a_graph_on_a_disk_of_2_mb(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 100))
+        run = "hc run g.toml --record disk/x.mcap --set camera.width=640 --set camera.height=480"
+        self.assertEqual(self.on_a_small_disk(run), 0, self.err)
+        self.assertEqual(self.err.count("error: recording ended"), 1, self.err)
+        self.assertIn("No space left on device", self.err)
+        said = re.search(r"recorder: (\d+) messages in disk/x\.mcap, (\d+) not recorded", self.out)
+        self.assertEqual(int(said[1]), len(self.seqs("kept/x.mcap")))
+        self.assertGreater(int(said[2]), 0)
+        # The robot went on: the last image is there, and all brightnesses.
+        self.assertIn("100 messages", self.shell("hc info mean.mtp"))
 
     def test_hc_record_says_that_the_disk_is_full(self):
         self.noise(1600)
@@ -275,6 +322,10 @@ class Recordings(Pipes):
             self.assertEqual(self.err.count("\n"), 1)
         self.shell("hc send 1 | hc record y.mtp --split 1G", 2)
         self.shell("hc send 1 | hc record y.mcap --split x", 2)
+        self.assertIn('--split: "x" is no number of bytes, such as 1G', self.err)
+        self.shell("hc send 1 | hc record y.mcap --split 99999999999G", 2)
+        self.shell("hc send 1 | hc recorder --split x", 2)
+        self.assertIn('split: "x" is no number of bytes', self.err)
         self.shell("hc send 1 | hc record y.mcap --keep 1G", 2)
 
 

@@ -21,7 +21,9 @@ class Replay(Pipes):
     def test_the_same_modules_send_the_same(self):
         for kept in ("kept", "kept.mcap"):
             self.record(kept=kept)
-            out = self.shell("hc replay " + kept + OPTIONS)
+            # A file of MCAP says which graph was run.
+            options = OPTIONS if kept == "kept" else " --check"
+            out = self.shell("hc replay " + kept + options)
             self.assertEqual(
                 re.sub("[0-9]+ messages", "N messages", out).splitlines(),
                 [
@@ -166,6 +168,8 @@ class Replay(Pipes):
         self.assertIn("nosuch: No such file or directory", self.err)
         self.shell("hc replay nosuch.mcap" + OPTIONS, 1)
         self.assertIn("open(nosuch.mcap): No such file or directory", self.err)
+        self.shell("hc replay kept --check", 2)
+        self.assertIn("give --graph FILE: kept does not say which graph was run", self.err)
         self.shell("rm kept/source.command.mtp")
         self.assertIn(
             "first: not run: source.command is not in the recording",

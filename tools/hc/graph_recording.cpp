@@ -44,6 +44,14 @@ std::string GraphRecording::place_of(const std::string& output) const {
                   : (fs::path(place_) / (output + std::string(kEnding))).string();
 }
 
+std::string GraphRecording::graph_file() const {
+  if (!is_mcap_) return "";
+  auto reader = value_or_fail(hc::mcap::Reader::open(place_), place_);
+  const auto words = value_or_fail(reader.metadata("hypercolumn.graph"), place_);
+  const auto file = words ? words->find("file") : hc::mcap::Words::const_iterator();
+  return words && file != words->end() ? file->second : "";
+}
+
 std::unique_ptr<hc::Source> GraphRecording::open(const std::string& output) const {
   if (!is_mcap_) return open_file_source(place_of(output), kDefaultLimit);
   hc::LinkOptions options;

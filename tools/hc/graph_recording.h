@@ -25,6 +25,9 @@ class GraphRecording {
   /// recording was killed, that is the end of what is whole.
   bool receive(hc::Source& source, hc::Message& message, const std::string& output) const;
 
+  /// The graph file that was run, which a file of MCAP names; empty: it names none.
+  [[nodiscard]] std::string graph_file() const;
+
   /// Where an output's messages are, for a person.
   [[nodiscard]] std::string place_of(const std::string& output) const;
 

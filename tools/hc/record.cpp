@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <hc/base/format.h>
@@ -67,7 +67,8 @@ void take_words(const std::string& source, const std::string& file, RecordOption
 class Output {
  public:
   virtual ~Output() = default;
-  virtual void write(std::size_t link, const hc::Message& message) = 0;
+  /// @param stream  of a recording that the link is; empty: it is none.
+  virtual void write(std::size_t link, std::string_view stream, const hc::Message& message) = 0;
   virtual void poll() {}
   /// How often poll() is to be called.
   [[nodiscard]] virtual std::chrono::milliseconds period() const {
@@ -81,7 +82,7 @@ class Output {
 class MessageFile : public Output {
  public:
   explicit MessageFile(const std::string& file) : file_(file), sink_(open_file_sink(file)) {}
-  void write(std::size_t, const hc::Message& message) override {
+  void write(std::size_t, std::string_view, const hc::Message& message) override {
     if (auto sent = sink_->send(message); !sent) throw Failure(file_, sent.error());
   }
   [[nodiscard]] hc::Traffic traffic() const override { return sink_->traffic(); }
@@ -94,36 +95,22 @@ class MessageFile : public Output {
   std::unique_ptr<hc::Sink> sink_;
 };
 
-/// A number of bytes with K, M or G (of 1024) behind it; 0 where there is no text.
-std::uint64_t bytes_of(const std::string& option, const std::string& text) {
-  if (text.empty()) return 0;
-  std::uint64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, status] = std::from_chars(text.data(), end, number);
-  const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
-  const int shift = unit.empty() ? 0 : unit == "K" ? 10 : unit == "M" ? 20 : unit == "G" ? 30 : -1;
-  if (status != std::errc() || shift < 0)
-    throw Failure({hc::Code::Invalid, option + " is a number of bytes with K, M or G"});
-  return number << shift;
-}
-
 /// Set by SIGUSR1: what is kept of the last time is to be saved.
 volatile std::sig_atomic_t save_asked = 0;
 
-/// A recording in MCAP, a stream for each link.
+/// A recording in MCAP: a stream for each link, or those that a link has.
 class Recording : public Output {
  public:
   explicit Recording(const RecordOptions& options) : options_(options) {
     hc::mcap::RecorderOptions recorder;
     recorder.file = options.file;
-    recorder.split = bytes_of("--split", options.split);
-    recorder.keep = bytes_of("--keep", options.keep);
+    recorder.split = value_or_fail(hc::mcap::parse_bytes(options.split), "--split");
+    recorder.keep = value_or_fail(hc::mcap::parse_bytes(options.keep), "--keep");
     recorder.last = std::chrono::duration_cast<std::chrono::nanoseconds>(
         std::chrono::duration<double>(options.last));
     std::signal(SIGXFSZ, SIG_IGN);
     recorder_ = value_or_fail(hc::mcap::Recorder::make(recorder), options.file);
     for (const auto& link : options.links) {
-      recorder_->add_stream(stream_of(link));
       // What was recorded before keeps its time.
       const auto uri = hc::parse_uri(link);
       std::error_code missing;
@@ -138,13 +125,16 @@ class Recording : public Output {
                    has_keys_ ? "Enter or " : "", ::getpid()));
   }
 
-  void write(std::size_t link, const hc::Message& message) override {
+  void write(std::size_t link, std::string_view stream, const hc::Message& message) override {
     const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(
                          std::chrono::system_clock::now().time_since_epoch())
                          .count();
     auto& time = times_[link];
     time = !is_file_[link] ? now : message.header.time != 0 ? message.header.time : time;
-    check(recorder_->record(link, message, time));
+    auto& number = streams_[{link, std::string(stream)}];
+    if (!number)
+      number = recorder_->add_stream(stream.empty() ? stream_of(options_.links[link]) : stream);
+    check(recorder_->record(*number, message, time));
     if (options_.when != options_.links[link]) return;
     const bool is_set = message.plain() && !message.elements.empty() &&
                         hc::visit_scalar(message.header.info.scalar, [&](auto zero) {
@@ -197,6 +187,7 @@ class Recording : public Output {
   std::unique_ptr<hc::mcap::Recorder> recorder_;
   std::vector<bool> is_file_;
   std::map<std::size_t, std::int64_t> times_;  // of the last message of a link
+  std::map<std::pair<std::size_t, std::string>, std::optional<std::size_t>> streams_;
   bool has_keys_ = false, was_set_ = false;
 };
 
@@ -237,7 +228,7 @@ void run(const RecordOptions& options) {
       }
       if (got != hc::Got::Message) continue;
       any = true;
-      output->write(number, message);
+      output->write(number, hc::mcap::stream_of(*source), message);
       const auto traffic = output->traffic();
       progress.show(-1, hc::format("{} messages, {}", traffic.messages,
                                    bytes_in_words(static_cast<double>(traffic.bytes))));

@@ -209,7 +209,7 @@ class Replay {
   explicit Replay(const ReplayOptions& options)
       : options_(options),
         recording_(options.recording),
-        plan_(load(options)),
+        plan_(load()),
         folder_(options.out),
         numbers_("--tolerance", options.numbers, 0),
         times_("--time-tolerance", options.times, 0),
@@ -249,9 +249,13 @@ class Replay {
   }
 
  private:
-  static hc::Plan load(const ReplayOptions& options) {
-    auto graph = options.graph;
-    graph.record = options.recording;  // ends of what was recorded; nothing is written there
+  [[nodiscard]] hc::Plan load() const {
+    auto graph = options_.graph;
+    if (graph.file.empty()) graph.file = recording_.graph_file();
+    if (graph.file.empty())
+      throw Failure({hc::Code::Invalid, "give --graph FILE: " + options_.recording +
+                                            " does not say which graph was run"});
+    graph.record = options_.recording;  // ends of what was recorded; nothing is written there
     return load_plan("replay", graph);
   }
 
@@ -415,8 +419,8 @@ void add_replay(CLI::App& app) {
   };
   verb->add_option("recording", options->recording, "folder or .mcap that hc run --record wrote")
       ->required();
-  verb->add_option("--graph", options->graph.file, "the graph file that was run")
-      ->required()
+  verb->add_option("--graph", options->graph.file,
+                   "the graph file that was run (default: the one that a .mcap names)")
       ->transform(find_graph);
   many("--set", options->graph.settings, "MODULE.PARAMETER=VALUE, as given to hc run");
   verb->add_flag("--check", options->check, "compare; status 1 where something differs");

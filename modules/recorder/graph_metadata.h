@@ -14,27 +14,27 @@
 #include <hc/observe/running.h>
 #include <mcap/recorder.h>
 
-/// Listens to the graph that one is a module of.
-class Story {
+/// Observes the graph that one is a module of.
+class GraphMetadata {
  public:
   /// Null where there is no such graph.
-  static std::unique_ptr<Story> listen(const char* graph);
-  ~Story();
+  static std::unique_ptr<GraphMetadata> observe(const char* graph);
+  ~GraphMetadata();
 
-  /// Readable when tell() has something to do.
+  /// Readable when record() has something to do.
   [[nodiscard]] int descriptor() const { return source_ != nullptr ? source_->descriptor() : -1; }
-  /// Records what has been said since.
-  void tell(hc::mcap::Recorder& recorder, std::int64_t now);
+  /// Records what is new: log lines, and metadata that has changed.
+  void record(hc::mcap::Recorder& recorder, std::int64_t now);
 
  private:
-  explicit Story(hc::RunningGraph graph) : graph_(std::move(graph)) {}
-  void tell_state(hc::mcap::Recorder& recorder, std::string_view json);
+  explicit GraphMetadata(hc::RunningGraph graph) : graph_(std::move(graph)) {}
+  void record_state(hc::mcap::Recorder& recorder, std::string_view json);
   void ask_modules(const std::vector<std::string>& names);
 
   hc::RunningGraph graph_;
   std::unique_ptr<hc::Source> source_;
-  std::map<std::string, hc::mcap::Words> told_;  // metadata, by name
-  std::thread asker_;                            // for descriptions
+  std::map<std::string, hc::mcap::Words> recorded_;  // the newest metadata, by name
+  std::thread asker_;                                // for descriptions
   std::mutex mutex_;
   std::vector<std::pair<std::string, std::string>> answers_;  // modules and their descriptions
   std::atomic<bool> is_ending_{false};
