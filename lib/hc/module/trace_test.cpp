@@ -1,7 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a module reports of its messages while it is traced.
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <new>
+
 #include <hc/contract/trace.h>
 #include <hc/module/running_module_test.h>
+
+namespace {
+thread_local std::int64_t allocations = 0;  // of this thread
+}  // namespace
+
+// Not inlined: compilers then take malloc() and free() for no pair of these.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size); memory != nullptr) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
 
 namespace hc {
 namespace {
@@ -124,6 +147,91 @@ TEST_F(RunningModule, GoesOnWhenNobodyReadsItsTrace) {
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(taken, 2);
+}
+
+/// A clock that stands still, and counts who looks at it.
+class CountingClock final : public Clock {
+ public:
+  [[nodiscard]] MonotonicTime monotonic() const override { return MonotonicTime(kBegin); }
+  [[nodiscard]] std::int64_t wall() const override {
+    ++looks;
+    return kBegin.count();
+  }
+  mutable std::int64_t looks = 0;
+
+ private:
+  static constexpr std::chrono::nanoseconds kBegin{std::chrono::hours(1)};
+};
+
+/// What the handling of 1000 messages takes.
+struct Effort {
+  std::int64_t allocations = 0, looks = 0;
+  std::uintmax_t traced = 0;  // written over the link for the trace [byte]
+};
+
+class TracedEffort : public RunningModule {
+ protected:
+  /// @param commands  are obeyed before the first message.
+  Effort measure(const std::vector<std::string>& more, const std::vector<std::string>& commands) {
+    CountingClock clock;
+    Module module{"double", "Doubles.", clock};
+    auto in = module.input("in", table<double>(), "");
+    auto out = module.output("out", table<double>(), "");
+    Effort begin, end;
+    int handled = 0;
+    module.on(in, [&](const Doubles& message) {
+      ++handled;
+      if (handled == kBegin) begin = {allocations, clock.looks, 0};
+      if (handled == kEnd) end = {allocations, clock.looks, 0};
+      out.send(table({2 * message.numbers()[0]}));
+    });
+    std::filesystem::remove(trace_);
+    std::vector<std::string> words = {"--in=file:" + in_, "--out=out=file:" + out_};
+    words.insert(words.end(), more.begin(), more.end());
+    control_ = sink_of(uri("control"));
+    reports_ = source_of(uri("reports"));
+    for (const auto& command : commands) EXPECT_TRUE(tell(*control_, command));
+    words.insert(words.end(), {"--manage=" + uri("reports"), "--control=" + uri("control")});
+    start(module, words);
+    Message message;
+    while (*receive(*reports_, message)) {
+    }
+    EXPECT_EQ(join(), 0);
+    control_.reset();
+    reports_.reset();
+    EXPECT_EQ(handled, kEnd + 1);
+    return {end.allocations - begin.allocations, end.looks - begin.looks,
+            std::filesystem::exists(trace_) ? std::filesystem::file_size(trace_) : 0};
+  }
+
+  void SetUp() override {
+    auto sink = sink_of("file:" + in_);
+    for (int i = 0; i < kEnd + 1; ++i) ASSERT_TRUE(sink->send(at(table({1.0}), 1000, i)));
+    ASSERT_TRUE(sink->close());
+  }
+  void TearDown() override {
+    for (const auto& file : {in_, out_, trace_}) std::filesystem::remove(file);
+  }
+
+  static constexpr int kBegin = 1000, kEnd = 2000;
+  const std::string in_ = ::testing::TempDir() + "in_" + std::to_string(::getpid()) + ".mtp",
+                    out_ = in_ + ".out.mtp", trace_ = in_ + ".trace.mtp";
+};
+
+TEST_F(TracedEffort, IsNoneWhileTheTraceIsNotLinked) {
+  const std::string trace = "trace=file:" + trace_;
+  measure({}, {});  // what is allocated once
+  const auto never = measure({}, {});
+  const auto before = measure({}, {"link out " + trace, "unlink out " + trace});
+  const auto traced = measure({"--out=" + trace}, {});
+  constexpr std::int64_t kOther = 5;  // buffers that the file is read into
+  EXPECT_LE(std::abs(never.allocations - before.allocations), kOther);
+  EXPECT_EQ(never.looks, before.looks);
+  EXPECT_EQ(never.traced, 0U);
+  EXPECT_EQ(before.traced, 0U);
+  EXPECT_GT(traced.allocations, never.allocations + 10 * kOther);
+  EXPECT_GE(traced.looks, never.looks + 3 * 1000);
+  EXPECT_GT(traced.traced, 0U);
 }
 
 }  // namespace
