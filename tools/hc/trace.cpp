@@ -57,10 +57,6 @@ struct Collected {
 
 using Links = std::vector<std::pair<std::string, std::string>>;
 
-std::string module_of(const std::string& port) {
-  return port.substr(0, port.find('.'));
-}
-
 /// A module, and all from which its messages may be derived.
 std::set<std::string> upstream_of(const std::string& module, const Links& links) {
   std::set<std::string> found = {module};

@@ -23,10 +23,6 @@ Key key_of(const hc::TraceEvent& event) {
   return {event.src, event.seq, event.time};
 }
 
-std::string module_of(const std::string& port) {
-  return port.substr(0, port.find('.'));
-}
-
 /// A message at an input. [ns]
 struct Visit {
   std::string port;
@@ -305,6 +301,10 @@ class PathFinder {
 };
 
 }  // namespace
+
+std::string module_of(const std::string& port) {
+  return port.substr(0, port.find('.'));
+}
 
 std::string Step::text() const {
   if (in.empty()) return out.empty() ? module : module + "." + out;

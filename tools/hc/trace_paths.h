@@ -38,6 +38,9 @@ struct Step {
   [[nodiscard]] std::string text() const;
 };
 
+/// The module of "MODULE.PORT".
+std::string module_of(const std::string& port);
+
 /// How a message came to be at the port that was asked for.
 struct MessagePath {
   std::vector<Step> steps;  ///< first the step where it began
