@@ -329,7 +329,8 @@ std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths) {
     ways[way].push_back(&path);
   }
   std::vector<PathSummary> summaries;
-  for (const auto& [way, same] : ways) {
+  for (const auto& way : ways) {
+    const auto& same = way.second;
     auto& summary = summaries.emplace_back();
     summary.steps = same.front()->steps;
     summary.messages = same.size();
