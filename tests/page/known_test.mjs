@@ -34,7 +34,10 @@ async function drawn(selector) {
     if (!canvas || canvas.width < 2) return false;
     const copy = document.createElement("canvas").getContext("2d");
     copy.drawImage(canvas, canvas.width / 4, canvas.height / 4, 1, 1, 0, 0, 1, 1);
-    return copy.getImageData(0, 0, 1, 1).data.slice(0, 3).some((value) => value > 0);
+    return copy
+      .getImageData(0, 0, 1, 1)
+      .data.slice(0, 3)
+      .some((value) => value > 0);
   }, selector);
 }
 

@@ -19,7 +19,11 @@ export function addStop(shell: Shell): void {
       pending = false;
     } catch (error) {
       pending = server.connection.status !== "open";
-      say(pending ? "There is no connection to the server: the stop is sent when there is one." : error);
+      say(
+        pending
+          ? "There is no connection to the server: the stop is sent when there is one."
+          : error,
+      );
     }
   };
   server.onConnection(({ status }) => {
@@ -34,7 +38,11 @@ export function addStop(shell: Shell): void {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
   const clear = h(
     "button",
-    { class: "stop-clear", disabled: true, onclick: () => void server.command("estop clear").catch(say) },
+    {
+      class: "stop-clear",
+      disabled: true,
+      onclick: () => void server.command("estop clear").catch(say),
+    },
     "Let it move",
   );
   confirm.addEventListener("change", () => {
