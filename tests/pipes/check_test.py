@@ -153,7 +153,7 @@ class Check(Pipes):
         self.write("relay", "#!/bin/sh\necho one >&2\necho no numpy here >&2\nexit 3\n", 0o755)
         self.write("g.toml", 'version = 1\n[modules.a]\nprogram = "./relay"\n')
         self.shell("hc check g.toml", 2)
-        self.assertIn("relay --describe failed with status 3: no numpy here\n", self.err)
+        self.assertIn("relay --describe failed with status 3: no numpy here; ", self.err)
         self.write("relay", "#!/bin/sh\nexit 3\n", 0o755)
         self.shell("hc check g.toml", 2)
         self.assertIn("status 3; how a program describes itself is in spec/module.md", self.err)

@@ -109,10 +109,10 @@ Result<std::string> describe_program(const std::string& program, int stop) {
   // Run once more for why: one stream of a process is captured.
   const auto said = run_describe(program, Process::Capture::Errors, stop);
   const auto line = said ? last_line(said->text) : "";
-  const std::string help = "how a program describes itself is in spec/module.md";
   return Error{Code::System, program + " --describe failed with status " +
                                  std::to_string(described->status) +
-                                 (line.empty() ? "; " + help : ": " + line)};
+                                 (line.empty() ? "" : ": " + line) +
+                                 "; how a program describes itself is in spec/module.md"};
 }
 
 }  // namespace hc
