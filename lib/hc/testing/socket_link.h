@@ -204,7 +204,7 @@ TEST_P(SocketLink, AHostilePeerDisturbsNobody) {
   auto sink = sink_of(dial());
   ASSERT_EQ(::write(hostile.get(), "GET / HTTP/1.1\r\n", 16), 16);
   Message message;
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 10 || warnings.lines.empty(); ++i) {  // what was written may come later
     ASSERT_TRUE(sink->send(numbered(i, 10)));
     ASSERT_TRUE(*receive(*source, message));
     EXPECT_EQ(message.header.seq, i);
