@@ -33,7 +33,7 @@ struct MetadataRecord {
 class File {
  public:
   /// Creates a file. Errors: System.
-  /// @param replaces  one that is there; otherwise that is an error.
+  /// @param replaces  an existing file is replaced; without, it is an error.
   static Result<File> create(const std::string& path, bool replaces);
 
   // Errors of all: System. The file is what it was before then, and can be closed.

@@ -12,7 +12,7 @@
 namespace {
 
 struct BlobType : ddsi_sertype {
-  std::size_t most_bytes = 0;
+  std::size_t max_bytes = 0;
 };
 
 struct Blob : ddsi_serdata {
@@ -21,7 +21,7 @@ struct Blob : ddsi_serdata {
   }
   /// Room for a message, if it is not too large.
   bool allot(std::size_t wanted) {
-    is_too_large = wanted > static_cast<const BlobType*>(type)->most_bytes;
+    is_too_large = wanted > static_cast<const BlobType*>(type)->max_bytes;
     if (is_too_large) return false;
     size = wanted;
     bytes.resize((wanted + 3) / 4 * 4);  // they are sent in words
@@ -121,8 +121,7 @@ ddsi_sertype_ops make_type_ops() {
   ops.realloc_samples = [](void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {};
   ops.free_samples = [](const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {};
   ops.equal = [](const ddsi_sertype* a, const ddsi_sertype* b) {
-    return static_cast<const BlobType*>(a)->most_bytes ==
-           static_cast<const BlobType*>(b)->most_bytes;
+    return static_cast<const BlobType*>(a)->max_bytes == static_cast<const BlobType*>(b)->max_bytes;
   };
   ops.hash = [](const ddsi_sertype*) { return std::uint32_t{0}; };
   ops.derive_sertype = [](const ddsi_sertype* type, dds_data_representation_id_t,
@@ -137,9 +136,9 @@ const ddsi_sertype_ops kTypeOps = make_type_ops();
 
 }  // namespace
 
-ddsi_sertype* make_blob_type(const std::string& name, std::size_t most_bytes) {
+ddsi_sertype* make_blob_type(const std::string& name, std::size_t max_bytes) {
   auto type = std::make_unique<BlobType>();
-  type->most_bytes = most_bytes;
+  type->max_bytes = max_bytes;
   ddsi_sertype_init_flags(type.get(), name.c_str(), &kTypeOps, &kDataOps,
                           DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;

@@ -13,8 +13,8 @@
 #include <ros/cdr.h>
 
 /// A topic type by its DDS name, without a key and without type information.
-/// @param most_bytes  longer messages come without their bytes: is_too_large().
-ddsi_sertype* make_blob_type(const std::string& name, std::size_t most_bytes);
+/// @param max_bytes  longer messages come without their bytes: is_too_large().
+ddsi_sertype* make_blob_type(const std::string& name, std::size_t max_bytes);
 
 /// A message for dds_writecdr(), which takes it over.
 ddsi_serdata* make_blob(const ddsi_sertype& type, const hc::ros::Pieces& pieces);

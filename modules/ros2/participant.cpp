@@ -87,7 +87,7 @@ QosPointer make_qos(const Qos& qos, std::string_view hash) {
   return made;
 }
 
-std::size_t most_bytes(std::string_view type) {
+std::size_t max_bytes(std::string_view type) {
   for (const char* large : {"::Image_", "::CompressedImage_", "::PointCloud2_", "MultiArray_"})
     if (type.ends_with(large)) return kLarge;
   return kSmall;
@@ -97,7 +97,7 @@ std::size_t most_bytes(std::string_view type) {
 hc::Result<std::pair<Entity, const ddsi_sertype*>> open_topic(dds_entity_t participant,
                                                               const std::string& name,
                                                               const std::string& type) {
-  auto* sertype = make_blob_type(type, most_bytes(type));
+  auto* sertype = make_blob_type(type, max_bytes(type));
   const auto topic =
       dds_create_topic_sertype(participant, name.c_str(), &sertype, nullptr, nullptr, nullptr);
   if (topic < 0) {
