@@ -208,7 +208,7 @@ std::vector<std::byte> File::summary() const {
 }
 
 Status File::close() {
-  const Status first = write(summary());
+  Status first = write(summary());
   Status written = first;
   while (!written && !chunks_.empty()) {
     const ChunkPlace last = chunks_.back();

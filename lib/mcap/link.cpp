@@ -205,6 +205,7 @@ Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions
                                         " topics, none of them made here"};
   if (const auto wanted = uri.option("stream", ""); !wanted.empty()) {
     std::vector<std::string> names;
+    names.reserve(known.size());
     for (const auto& each : known) names.push_back(each.name);
     if (std::ranges::find(names, wanted) == names.end())
       return Error{Code::NotFound, uri.rest + ": no stream \"" + std::string(wanted) + "\"" +

@@ -44,8 +44,8 @@ Result<std::unique_ptr<Recorder>> Recorder::make(const RecorderOptions& options)
   return std::unique_ptr<Recorder>(new Recorder(options, std::move(*storage)));
 }
 
-Recorder::Recorder(const RecorderOptions& options, Storage storage)
-    : options_(options),
+Recorder::Recorder(RecorderOptions options, Storage storage)
+    : options_(std::move(options)),
       topics_{std::string(kFrames), std::string(kStaticFrames), std::string(kLog)},
       schemas_(ros::schemas().size()),
       storage_(std::move(storage)),

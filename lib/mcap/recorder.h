@@ -99,7 +99,7 @@ class Recorder {
     std::vector<MetadataRecord> metadata;
   };
 
-  Recorder(const RecorderOptions& options, Storage storage);
+  Recorder(RecorderOptions options, Storage storage);
   /// A topic that no other channel has: the wanted one, or that with a number behind it.
   std::string take_topic(const std::string& wanted);
   std::uint16_t channel(const std::string& topic, ros::Type type, Words metadata);

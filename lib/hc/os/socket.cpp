@@ -4,12 +4,16 @@
 #include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <thread>
+
+#include <hc/base/backoff.h>
 
 namespace hc::internal {
 namespace {
@@ -136,6 +140,18 @@ PeerLook look_at_peer(int socket) {
   milliseconds silent(info.tcpi_last_ack_recv);
   return {asked >= 2 && silent >= kVanishTime, true,
           std::clamp(kVanishTime - silent, kSoonest, kLatest)};
+}
+
+void await_acknowledgement(int socket, std::chrono::milliseconds longest) {
+  const auto end = std::chrono::steady_clock::now() + longest;
+  Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(50));
+  int unanswered = 0;
+  while (::ioctl(socket, SIOCOUTQ, &unanswered) == 0 && unanswered > 0 &&
+         std::chrono::steady_clock::now() < end && !look_at_peer(socket).vanished) {
+    pollfd polled{socket, 0, 0};
+    if (::poll(&polled, 1, 0) > 0 && (polled.revents & POLLERR) != 0) return;
+    std::this_thread::sleep_for(backoff.next());  // an acknowledgement is no event
+  }
 }
 
 }  // namespace hc::internal

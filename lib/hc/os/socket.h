@@ -110,6 +110,11 @@ struct PeerLook {
 /// there is nothing to look after.
 PeerLook look_at_peer(int socket);
 
+/// Waits until the peer's kernel has acknowledged all that was written, has reset the connection or
+/// has vanished.
+/// @param longest  to wait
+void await_acknowledgement(int socket, std::chrono::milliseconds longest);
+
 template <typename Handle>
 void ListeningSocket::accept_all(Handle& watch, const LogSink& log,
                                  const std::function<bool()>& has_room,

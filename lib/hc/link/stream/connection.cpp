@@ -285,8 +285,10 @@ Status Connection::close(bool patient) {
   if (!patient) give_up = clock_now();
   Status closed = failed_ ? Status(*failed_) : drain(lock, true, give_up);
   stop_watching();
-  if (connected()) writer_.close();
+  const bool is_connected = connected();
   if (!failed_) failed_ = Error{Code::Closed, "the link was closed"};
+  lock.unlock();
+  if (is_connected) writer_.close(closed ? kGrace : std::chrono::seconds(0));
   return closed;
 }
 

@@ -10,6 +10,8 @@
 #include <csignal>
 #include <ctime>
 
+#include <hc/os/socket.h>
+
 namespace hc::internal {
 namespace {
 
@@ -175,9 +177,10 @@ std::size_t StreamWriter::clear() {
   return count;
 }
 
-void StreamWriter::close() {
+void StreamWriter::close(std::chrono::milliseconds longest) {
   if (descriptor_.channel) descriptor_.channel->end();
   if (is_socket_) ::shutdown(descriptor_.get(), SHUT_WR);
+  if (descriptor_.channel) await_acknowledgement(descriptor_.get(), longest);
   descriptor_ = ConnectedSocket();
 }
 

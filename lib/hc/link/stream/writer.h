@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Writes messages to a descriptor in as few system calls as can be: small ones are gathered, large
-// ones go from where they are. Internal. Not for several threads at once; never waits.
+// ones go from where they are. Internal. Not for several threads at once; only close() waits.
 
 #include <cstddef>
 #include <cstdint>
@@ -65,7 +65,12 @@ class StreamWriter {
   /// Forgets everything; gives how many messages that were not written whole.
   std::size_t clear();
   /// Ends the stream, so that the reader finds its end, or the connection.
-  void close();
+  ///
+  /// Over a secure channel a reader says by bytes that it writes no more. Bytes that reach a closed
+  /// socket reset the connection, and what the reader's kernel has not received yet is lost; so it
+  /// is waited for.
+  /// @param longest  to wait
+  void close(std::chrono::milliseconds longest);
 
  private:
   [[nodiscard]] bool has_unsent() const {

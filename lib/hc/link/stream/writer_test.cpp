@@ -308,7 +308,7 @@ TEST_F(StreamWriterTest, APipeWithoutAReaderRaisesNoSignal) {
 TEST_F(StreamWriterTest, TheEndIsFoundBehindWhatWasWritten) {
   add_small(small_);
   EXPECT_TRUE(*writer_.write());
-  writer_.close();
+  writer_.close(std::chrono::seconds(0));
   EXPECT_EQ(writer_.descriptor(), -1);
   EXPECT_EQ(connection_.read(), small_);
   char byte = 0;
