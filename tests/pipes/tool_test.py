@@ -301,6 +301,13 @@ class Tool(Pipes):
         self.shell("hc record r.mtp two.mtp three.mtp", 2)
         self.assertIn("not expected: three.mtp", self.err)
 
+    def test_record_does_not_wait_for_messages_from_a_terminal(self):
+        # `script` runs a command with a terminal at its standard input.
+        self.assertIn(
+            "nothing to record to a.b: give a source",
+            self.shell("script -qec 'hc record a.b' /dev/null", 2),
+        )
+
     def test_a_repeated_option_takes_one_word_each(self):
         self.assertIn("no problems", self.shell("hc check --set depth.block_size=7 depth"))
 

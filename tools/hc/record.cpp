@@ -60,6 +60,11 @@ void take_words(const std::string& source, const std::string& file, RecordOption
                    hc::format("{} is a port of a running graph: give a FILE behind it to record "
                               "it, or ./{} for a file of that name",
                               options.file, options.file)});
+  if (::isatty(STDIN_FILENO) == 1)
+    throw Failure({hc::Code::Invalid,
+                   hc::format("nothing to record to {}: give a source before it (a URI, a file or "
+                              "MODULE.PORT of a running graph), or pipe messages in",
+                              options.file)});
   options.links = {"-"};
 }
 

@@ -189,6 +189,13 @@ TEST(Plan, TwoLinksCannotListenAtThePortOfOneHost) {
   EXPECT_EQ(listening("tcp-listen:192.0.2.1:7000", "tcp-listen:7000"), "");
 }
 
+TEST(Plan, TwoLinksCannotWriteToOneSharedMemory) {
+  const auto problems =
+      wrong("[modules.source]\noutputs.left = \"shm:s\"\noutputs.right = \"shm:s?keep=1\"\n");
+  EXPECT_NE(problems.find("g.toml:4: another link writes to shm:s?keep=1 too"), problems.npos)
+      << problems;
+}
+
 TEST(Plan, OutputsWithoutALinkAreKnown) {
   auto planned = plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n");
   ASSERT_TRUE(planned) << planned.error().detail;

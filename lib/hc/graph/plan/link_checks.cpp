@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include <hc/base/format.h>
 #include <hc/base/uri.h>
 #include <hc/graph/plan/planning.h>
 #include <hc/link/link.h>
@@ -79,8 +80,11 @@ class LinkCheck {
   /// The world outside; its other end is a module.
   void check_uri(const GraphLink& link, const GraphPort& outside, bool is_input) {
     const Uri uri = *parse_uri(outside.uri);
-    if (uri.scheme.ends_with("-listen") && !may_listen(uri))
-      problems_.add(link.place, "another link listens at " + outside.uri + " too");
+    // In shared memory, it is the writer whose name others find.
+    const bool is_writer = is_input && uri.scheme == "shm";
+    if ((is_writer || uri.scheme.ends_with("-listen")) && !may_listen(uri))
+      problems_.add(link.place, hc::format("another link {} {} too",
+                                           is_writer ? "writes to" : "listens at", outside.uri));
     for (const auto& [key, value] : link.policy)
       if (!uri.option(key, "").empty() && !value.value.empty())
         problems_.add(value.place, key + " is also given in " + outside.uri);
