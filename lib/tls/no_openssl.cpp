@@ -3,8 +3,8 @@
 #include <tls/key.h>
 
 extern "C" {
-extern const int hc_tls_transport;
-const int hc_tls_transport = 0;
+extern const int kHcTlsTransport;
+const int kHcTlsTransport = 0;
 }
 
 namespace hc {

@@ -7,8 +7,8 @@
 #include <tls/context.h>
 
 extern "C" {
-extern const int hc_tls_transport;
-const int hc_tls_transport = 0;
+extern const int kHcTlsTransport;
+const int kHcTlsTransport = 0;
 }
 
 namespace hc::internal {

@@ -85,7 +85,7 @@ void Viewer::count_dropped(std::uint32_t channel, std::uint64_t messages) {
   if (found != dropped_.end()) found->second.messages += messages;
 }
 
-void Viewer::drop(std::deque<Outgoing>::iterator which) {
+void Viewer::drop(const std::deque<Outgoing>::iterator& which) {
   queued_ -= which->payload.bytes->size();
   ++dropped_[which->channel].messages;
   queue_.erase(which);

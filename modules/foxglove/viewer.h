@@ -63,7 +63,7 @@ class Viewer {
     std::uint64_t messages = 0, reported = 0;
   };
 
-  void drop(std::deque<Outgoing>::iterator which);
+  void drop(const std::deque<Outgoing>::iterator& which);
   void flush();
 
   const std::shared_ptr<hc::web::WebSocket> socket_;

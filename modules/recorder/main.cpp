@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
   hc::Module module{"recorder", "Records streams into a file of MCAP, which viewers read."};
   const auto names = stream_names(argc, argv);
   std::vector<hc::Input<hc::AnyKind>> inputs;
+  inputs.reserve(names.size());
   for (const auto& [input, name] : names)
     inputs.push_back(module.input(input, hc::anything(), "recorded as " + name));
   auto file = module.parameter("file", "recording.mcap", "", "output file", {.fixed = true});

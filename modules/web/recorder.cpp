@@ -118,7 +118,7 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
                                                       const std::string& folder,
                                                       const std::string& name,
                                                       const std::vector<std::string>& ports,
-                                                      hc::LogSink log) {
+                                                      const hc::LogSink& log) {
   using hc::Code;
   if (!is_recording_name(name))
     return hc::Error{Code::Invalid, "the name of a recording is 1 to 40 letters, digits, - and _"};
@@ -133,7 +133,7 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
   if (!error && !fs::create_directory(path, error) && !error)
     return hc::Error{Code::Invalid, "there is a recording " + name + " already"};
   if (error) return hc::Error{Code::System, path + ": " + error.message()};
-  return std::unique_ptr<Recorder>(new Recorder(graph, path, name, ports, std::move(log)));
+  return std::unique_ptr<Recorder>(new Recorder(graph, path, name, ports, log));
 }
 
 /// An output and its file. What has been received is written when it is destroyed.

@@ -42,7 +42,7 @@ class Recorder {
                                                      const std::string& folder,
                                                      const std::string& name,
                                                      const std::vector<std::string>& ports,
-                                                     hc::LogSink log);
+                                                     const hc::LogSink& log);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The extension _hypercolumn, of which the package's Python files make what people use.
+#include <utility>
+
 #include <hc/module/module.h>
 
 #include "python.h"
@@ -9,7 +11,7 @@ PYBIND11_MODULE(_hypercolumn, extension) {
   py::register_exception_translator([](std::exception_ptr thrown) {
     if (!thrown) return;
     try {
-      std::rethrow_exception(thrown);
+      std::rethrow_exception(std::move(thrown));
     } catch (const hc::ModuleError& error) {
       set_error_text(error.what());
     }
