@@ -262,7 +262,7 @@ void trace(const TraceOptions& options) {
   if (!collected.traced.events.contains(module))
     throw Failure(
         {hc::Code::NotFound,
-         module + " tells nothing of its messages: it does not run, or takes no commands"});
+         module + " reports nothing of its messages: it does not run, or takes no commands"});
   const auto paths = find_paths(collected.traced, options.port);
   // Each message has at most one critical path that is whole.
   const auto messages = static_cast<std::size_t>(
