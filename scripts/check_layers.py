@@ -30,6 +30,7 @@ ALLOWED = {
     "ros": {"base", "mtp", "contract", "compress", "frames"},
     "mcap": {"base", "os", "mtp", "link", "ros"},
     "tls": {"base", "os", "link"},
+    "hosts": {"base", "os", "mtp", "contract", "link", "graph", "tls"},
     "drivers": {"base"},
     "modules": {
         "base",
@@ -68,6 +69,7 @@ ALLOWED = {
         "frames",
         "mcap",
         "tls",
+        "hosts",
     },
 }
 CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "observe", "graph"}
@@ -93,7 +95,7 @@ def layer_of(path):
 def layer_of_include(name):
     inner = name[1:-1]
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|drivers)/", inner
+        r"(frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|hosts|drivers)/", inner
     )
     return match[1] if match else None
 

@@ -38,7 +38,7 @@ Certificate certificate_for(EVP_PKEY& key) {
 
 }  // namespace
 
-Status make_key(const std::string& path) {
+Result<std::string> make_key_text() {
   ERR_clear_error();
   const Key key(EVP_EC_gen("P-256"));
   const auto certificate = key ? certificate_for(*key) : nullptr;
@@ -49,14 +49,19 @@ Status make_key(const std::string& path) {
     return openssl_error(Code::System, "no key could be made");
   char* text = nullptr;
   const auto size = BIO_get_mem_data(pem.get(), &text);
+  return std::string(text, static_cast<std::size_t>(size));
+}
 
+Status make_key(const std::string& path) {
+  const auto text = make_key_text();
+  if (!text) return text.error();
   constexpr mode_t kOwnerOnly = 0600;
   auto opened = internal::system_call("open", path, [&] {
     return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
   });
   if (!opened) return opened.error();
   const internal::Descriptor file(*opened);
-  for (std::string_view rest(text, static_cast<std::size_t>(size)); !rest.empty();) {
+  for (std::string_view rest = *text; !rest.empty();) {
     auto written = internal::system_call(
         "write", path, [&] { return ::write(file.get(), rest.data(), rest.size()); });
     if (!written) {
@@ -73,6 +78,13 @@ Result<std::string> fingerprint_of(const std::string& path) {
   if (!file) return file.error();
   const Certificate certificate(PEM_read_bio_X509(file->get(), nullptr, nullptr, nullptr));
   if (!certificate) return Error{Code::Invalid, path + ": no certificate in PEM"};
+  return fingerprint(*certificate);
+}
+
+Result<std::string> fingerprint_of_text(const std::string& pem) {
+  const File text(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
+  const Certificate certificate(PEM_read_bio_X509(text.get(), nullptr, nullptr, nullptr));
+  if (!certificate) return Error{Code::Invalid, "no certificate in PEM"};
   return fingerprint(*certificate);
 }
 

@@ -9,6 +9,9 @@
 
 namespace hc::tls {
 
+/// A new key and its certificate, in PEM. Errors: System, Unsupported (built without OpenSSL).
+Result<std::string> make_key_text();
+
 /// Writes a new key and its certificate, in PEM, to a file that only its owner can read.
 ///
 /// Errors: System (the file exists; it cannot be written), Unsupported (built without OpenSSL).
@@ -19,5 +22,7 @@ Status make_key(const std::string& path);
 ///
 /// Errors: NotFound, Invalid (no certificate in PEM), System, Unsupported (built without OpenSSL).
 Result<std::string> fingerprint_of(const std::string& path);
+/// The same of a text.
+Result<std::string> fingerprint_of_text(const std::string& pem);
 
 }  // namespace hc::tls

@@ -31,6 +31,12 @@ Result<ListeningSocket> listen_tls(const Uri&) {
 
 namespace tls {
 
+Result<std::string> make_key_text() {
+  return no_openssl();
+}
+Result<std::string> fingerprint_of_text(const std::string&) {
+  return no_openssl();
+}
 Status make_key(const std::string&) {
   return no_openssl();
 }

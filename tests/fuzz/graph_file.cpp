@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto graph = hc::parse_graph(
       text, [](const char*) { return "value"; }, problems,
       [&](const std::string&) -> hc::Result<std::string> { return std::string(text); });
-  auto ask = [](const std::string& program) -> hc::Result<std::string> {
+  auto ask = [](const std::string& program, const std::string&) -> hc::Result<std::string> {
     return describe(program);
   };
   auto plan = hc::make_plan(graph, ask, "fuzz", problems);

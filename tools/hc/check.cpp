@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc check: reports every problem of a graph, without starting it.
+// hc check: reports every problem of a graph, and what its hosts lack, without starting it.
 
 #include <hc/base/format.h>
+#include <hosts/hosts.h>
 
 #include "common.h"
+#include "examination.h"
 #include "graph.h"
 #include "verbs.h"
 
@@ -14,7 +16,15 @@ void add_check(CLI::App& app) {
   auto* verb = app.add_subcommand("check", "Check a graph file, without starting anything");
   add_graph_options(*verb, *options);
   verb->callback([options] {
-    auto plan = load_plan("check", *options);
+    const auto hosts = hc::hosts::make_hosts(HC_VERSION);
+    auto plan = load_plan("check", *options, hosts.get());
+    bool is_missing = false;
+    for (const auto& finding : diagnose(plan, *hosts)) {
+      if (finding.mark != Mark::Missing) continue;
+      say(hc::format("hc check: error: {}: {}", finding.what, finding.text));
+      is_missing = true;
+    }
+    if (is_missing) throw Failure(2);
     auto counted = [](std::size_t count, std::string_view what) {
       return hc::format("{} {}{}", count, what, count == 1 ? "" : "s");
     };

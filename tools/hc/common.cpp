@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -105,6 +106,14 @@ bool print(std::string_view text) {
   if (written) return true;
   if (written.error().code != hc::Code::Closed) throw Failure("standard output", written.error());
   return false;
+}
+
+void allow_descriptors() {
+  constexpr rlim_t kWanted = rlim_t{64} << 10;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kWanted) return;
+  limit.rlim_cur = std::min(kWanted, limit.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 void say(std::string_view line) {

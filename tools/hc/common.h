@@ -82,6 +82,11 @@ void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& 
 /// Writes to standard output; false when nobody reads any more. Any other error is a Failure.
 bool print(std::string_view text);
 
+/// Raises the limit of open descriptors, of which each module takes several: a login shell allows
+/// 1024, the system more to who asks. Not all of it: there are programs that close every number up
+/// to their limit.
+void allow_descriptors();
+
 /// One line to the person, on standard error.
 void say(std::string_view line);
 

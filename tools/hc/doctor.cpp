@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc doctor: checks this machine, and the requirements of a graph.
 #include <hc/graph/run.h>
+#include <hosts/hosts.h>
 
 #include "common.h"
-#include "diagnosis.h"
+#include "examination.h"
 #include "graph.h"
 #include "verbs.h"
 
@@ -11,14 +12,17 @@ namespace tool {
 namespace {
 
 /// A graph that is wrong has no plan, and so nothing that could be looked for.
-std::vector<Finding> examine(const hc::LoadOptions& options, Needs& needs) {
+std::vector<Finding> examine_graph(hc::LoadOptions options, Needs& needs) {
+  const auto hosts = hc::hosts::make_hosts(HC_VERSION);
+  options.hosts = hosts.get();
   auto planned = hc::make_loader(options)->load(nullptr, -1);
   if (!planned) throw Failure(planned.error());
   std::vector<Finding> findings;
   for (const auto& problem : planned->problems) findings.push_back({Mark::Wrong, "graph", problem});
   if (planned->plan) {
     findings.push_back({Mark::Ok, "graph", options.file + ": no problems found"});
-    needs = needs_of(*planned->plan);
+    needs = needs_of(part_of(*planned->plan, ""));
+    for (auto& finding : diagnose(*planned->plan, *hosts)) findings.push_back(std::move(finding));
   } else {
     findings.push_back({Mark::Note, "graph", "correct this first; the rest was not checked"});
   }
@@ -28,7 +32,7 @@ std::vector<Finding> examine(const hc::LoadOptions& options, Needs& needs) {
 void run(const hc::LoadOptions& options) {
   Needs needs;
   std::vector<Finding> findings;
-  if (!options.file.empty()) findings = examine(options, needs);
+  if (!options.file.empty()) findings = examine_graph(options, needs);
   std::vector<std::string> paths, ports;
   for (const auto& path : needs.paths) paths.push_back(path.path);
   for (const auto& port : needs.ports) ports.push_back(port.port);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include <hc/base/format.h>
+#include <hosts/hosts.h>
 
 #include "common.h"
 
@@ -33,8 +34,11 @@ hc::LoadedGraph load_graph(std::string_view verb, const std::string& file,
   throw Failure(2);
 }
 
-hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options) {
-  return std::move(*load_graph(verb, options.file, *hc::make_loader(options)).plan);
+hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options, hc::Hosts* hosts) {
+  const auto own = hosts == nullptr ? hc::hosts::make_hosts(HC_VERSION) : nullptr;
+  hc::LoadOptions with_hosts = options;
+  with_hosts.hosts = hosts == nullptr ? own.get() : hosts;
+  return std::move(*load_graph(verb, options.file, *hc::make_loader(with_hosts)).plan);
 }
 
 }  // namespace tool

@@ -72,10 +72,12 @@ std::string range_text(const nlohmann::json& parameter) {
 }
 
 /// What a module's program says of its parameters: objects by their names.
-std::map<std::string, nlohmann::json> parameters_of(const hc::ModuleState& module) {
+std::map<std::string, nlohmann::json> parameters_of(const RunningGraph& graph,
+                                                    const hc::ModuleState& module) {
   std::map<std::string, nlohmann::json> parameters;
-  auto text = value_or_fail(hc::describe_program(module.program), module.name);
-  const auto description = nlohmann::json::parse(text, nullptr, false);
+  const auto answer = command_graph(graph, {"describe " + module.name});
+  const auto description =
+      nlohmann::json::parse(answer.empty() ? "" : answer.front(), nullptr, false);
   if (!description.is_object()) return parameters;
   const bool has_control = description.value("control", false);
   for (auto parameter : description.value("parameters", nlohmann::json::array())) {
@@ -103,12 +105,12 @@ const hc::ModuleState& find_module(const hc::GraphState& state, const std::strin
 
 /// Adds a line for each parameter that is wanted: its value, and its range and default.
 /// @param what  MODULE, MODULE.PARAMETER, or empty: all.
-void add_parameters(const hc::GraphState& state, const std::string& what,
+void add_parameters(const RunningGraph& graph, const hc::GraphState& state, const std::string& what,
                     std::vector<std::array<std::string, 2>>& rows) {
   const auto dot = std::min(what.find('.'), what.size());
   const std::string wanted = dot < what.size() ? what.substr(dot + 1) : "";
   auto add = [&](const hc::ModuleState& module) {
-    const auto parameters = parameters_of(module);
+    const auto parameters = parameters_of(graph, module);
     std::vector<std::string> known;
     bool is_found = wanted.empty();
     for (const auto& [name, parameter] : parameters) {
@@ -141,8 +143,8 @@ void add_parameters(const hc::GraphState& state, const std::string& what,
 void get(const RunningGraph& graph, const std::vector<std::string>& wanted) {
   const auto state = state_of(graph);
   std::vector<std::array<std::string, 2>> rows;
-  for (const auto& what : wanted) add_parameters(state, what, rows);
-  if (wanted.empty()) add_parameters(state, "", rows);
+  for (const auto& what : wanted) add_parameters(graph, state, what, rows);
+  if (wanted.empty()) add_parameters(graph, state, "", rows);
   constexpr std::size_t kMaxColumn = 60;
   std::size_t widest = 0;
   for (const auto& row : rows) widest = std::max(widest, row[0].size());
@@ -153,12 +155,13 @@ void get(const RunningGraph& graph, const std::vector<std::string>& wanted) {
 }
 
 /// Says so where setting a parameter restarts its module.
-void say_restart(const hc::GraphState& state, const std::string& assignment) {
+void say_restart(const RunningGraph& graph, const hc::GraphState& state,
+                 const std::string& assignment) {
   const auto dot = assignment.find('.'), equals = assignment.find('=');
   if (dot == std::string::npos || equals == std::string::npos || dot > equals) return;
   const auto& module = find_module(state, assignment.substr(0, dot));
   const auto name = assignment.substr(dot + 1, equals - dot - 1);
-  const auto parameters = parameters_of(module);
+  const auto parameters = parameters_of(graph, module);
   if (auto found = parameters.find(name); found != parameters.end() && found->second.at("fixed"))
     say("hc graph: restarting " + module.name + ", since " + name + " is fixed while it runs");
 }
@@ -175,7 +178,7 @@ void change(const GraphOptions& options, const std::vector<std::string>& command
   for (const auto& command : commands) {
     if (!command.starts_with(set)) continue;
     if (!state) state = state_of(graph);
-    say_restart(*state, command.substr(set.size()));
+    say_restart(graph, *state, command.substr(set.size()));
   }
 }
 

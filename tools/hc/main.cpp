@@ -132,6 +132,7 @@ int main(int argc, char** argv) {
   tool::add_describe(app);
   tool::add_new(app);
   tool::add_key(app);
+  tool::add_agent(app);
   tool::add_manual(app);
 
   if (argc == 1) {

@@ -170,15 +170,10 @@ bool is_running_port(const std::string& text, const std::string& of) {
   const auto dot = text.find('.');
   const auto name = text.substr(0, dot), port = text.substr(dot + 1);
   try {
-    const auto state = Observer(choose_running(of)).next();
-    if (!state) return false;
-    for (const auto& module : state->modules) {
-      if (module.name != name) continue;
-      const auto described = hc::describe_program(module.program);
-      const auto description = hc::parse_description(described ? *described : "");
-      return description && (hc::find_input(*description, port) != nullptr ||
-                             hc::find_named(description->outputs, port) != nullptr);
-    }
+    const auto described = command_graph(choose_running(of), {"describe " + name});
+    const auto description = hc::parse_description(described.empty() ? "" : described.front());
+    return description && (hc::find_input(*description, port) != nullptr ||
+                           hc::find_named(description->outputs, port) != nullptr);
   } catch (const Failure&) {
     return false;  // one of several graphs may be meant, or it is another user's
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc run: runs a graph.
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <hc/base/format.h>
 #include <hc/graph/run.h>
 #include <hc/os/program.h>
+#include <hosts/hosts.h>
 
 #include "common.h"
 #include "graph.h"
@@ -105,16 +105,6 @@ void check_name(const RunOptions& options) {
   }
 }
 
-/// Each module takes several descriptors, and a login shell allows 1024; the system allows more to
-/// who asks. Not all of it: there are programs that close every number up to their limit.
-void allow_descriptors() {
-  constexpr rlim_t kWanted = rlim_t{64} << 10;
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kWanted) return;
-  limit.rlim_cur = std::min(kWanted, limit.rlim_max);
-  ::setrlimit(RLIMIT_NOFILE, &limit);
-}
-
 /// Where outputs are recorded: a folder, or a file that a module writes.
 void take_record(const RunOptions& options, hc::LoadOptions& load) {
   const auto& place = options.record;
@@ -134,6 +124,15 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
     std::filesystem::create_directories(place, failed);
     if (failed) throw Failure({hc::Code::System, place + ": " + failed.message()});
   }
+}
+
+/// A module writes a file of a folder itself, and so on its own host.
+void check_record(const hc::Plan& plan, const hc::LoadOptions& load) {
+  for (const auto& module : plan.modules)
+    if (!load.record.empty() && !module.host.empty())
+      throw Failure({hc::Code::Invalid, "--record " + load.record + ": " + module.name +
+                                            " runs on host " + module.host +
+                                            "; record into one file: --record FILE.mcap"});
 }
 
 /// A single file is written anew; numbered ones stay.
@@ -156,8 +155,11 @@ void run(const RunOptions& options) {
   hc::LoadOptions load_options = options.graph;
   take_record(options, load_options);
   load_options.holds_ports = true;
+  const auto hosts = hc::hosts::make_hosts(HC_VERSION);
+  load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
+  check_record(*graph.plan, load_options);
   remove_previous_file(options, load_options);
   StatusLine status(!options.quiet);
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
@@ -183,6 +185,7 @@ void run(const RunOptions& options) {
   run_options.name = name_of(options);
   run_options.file = options.graph.file;
   run_options.loader = loader.get();
+  run_options.hosts = hosts.get();
   auto report = hc::run_graph(std::move(graph), run_options);
   status.finish();
   if (!report) fail(status, report.error());

@@ -118,6 +118,20 @@ std::set<std::string> contributors(const hc::GraphState& state) {
   return found;
 }
 
+/// Its name, and the host that it runs on, as `hc graph add` takes them.
+std::string full_name(const hc::ModuleState& module) {
+  return module.host.empty() ? module.name : module.name + "@" + module.host;
+}
+
+/// "host robot: clock +3600.000 s ± 120µs, 250µs there and back"
+Line host_line(const hc::HostState& host) {
+  if (!host.is_connected || !host.offset || !host.error || !host.latency)
+    return {"host " + host.name + ": not connected: " + host.detail, false, true};
+  return {hc::format("host {}: clock {}{} ± {}, {} there and back", host.name,
+                     *host.offset < 0 ? "-" : "+", short_time(std::abs(*host.offset)),
+                     short_time(*host.error), short_time(*host.latency))};
+}
+
 void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
   const std::vector<Column<hc::ModuleState>> columns = {
       {"CPU", 7, [](const auto& m) { return hc::format("{:.1f}%", 100 * m.processor); }},
@@ -132,7 +146,7 @@ void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
     return is_borrowed ? "(" + state.focus_name() + ")" : module.mode;
   };
   for (const auto& module : state.modules) {
-    name = std::max(name, std::min(kMaxName, length(module.name)));
+    name = std::max(name, std::min(kMaxName, length(full_name(module))));
     mode = std::max(mode, std::min(kMaxMode, length(mode_of(module))));
   }
   lines.push_back(
@@ -143,7 +157,7 @@ void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
     if (!module.last_line.empty())
       status += hc::format(" | {} ({} ago)", module.last_line,
                            seconds_in_words(std::max(0.0, module.last_line_age)));
-    const auto text = fitted(module.name, name) + cells(columns, module) + "  " +
+    const auto text = fitted(full_name(module), name) + cells(columns, module) + "  " +
                       fitted(mode_of(module), mode) + " " + status;
     lines.push_back({text, module.in_workspace, is_in_trouble(module),
                      !module.in_focus && !is_in_trouble(module)});
@@ -246,6 +260,7 @@ std::string short_time(double seconds) {
 std::string draw(const hc::GraphState& state, const std::vector<Bid>& bids, const Screen& screen) {
   std::vector<Line> fixed = {{heading(state), true}}, lines;
   if (!bids.empty()) fixed.push_back({bids_line(bids)});
+  for (const auto& host : state.hosts) fixed.push_back(host_line(host));
   fixed.push_back({});
   add_modules(state, lines);
   sort(lines.begin() + 1, lines.end());

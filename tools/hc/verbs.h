@@ -39,6 +39,7 @@ inline void add_source(CLI::App& verb, std::string& uri, std::string& of) {
   add_of(verb, of);
 }
 
+void add_agent(CLI::App& app);
 void add_cat(CLI::App& app);
 void add_check(CLI::App& app);
 void add_describe(CLI::App& app);

@@ -38,13 +38,37 @@ class Clock {
   [[nodiscard]] virtual std::int64_t wall() const = 0;
 };
 
-/// The machine's clocks.
+namespace internal {
+
+/// The wall clock of another host, out of the monotonic clock of this one: it does not jump when
+/// the wall clock of this host is set. Set by one thread, read by any.
+class DistantWall {
+ public:
+  /// From the first call on the wall clock is the monotonic clock plus `to_wall` [ns]. What it is
+  /// off by then it makes up for at 1 ms per second, or at once where that is more than 0.1 s.
+  void set(std::int64_t to_wall, MonotonicTime now);
+  [[nodiscard]] bool is_set() const { return version_.load(std::memory_order_relaxed) != 0; }
+  [[nodiscard]] std::int64_t wall(MonotonicTime now) const;
+
+ private:
+  std::atomic<std::uint32_t> version_ = 0;  // odd while the rest changes
+  std::atomic<std::int64_t> to_wall_ = 0, behind_ = 0, since_ = 0;
+};
+
+/// The one that SystemClock goes by, where it is set (--wall_offset).
+extern DistantWall distant_wall;
+
+}  // namespace internal
+
+/// The machine's clocks; in a module on another host than `hc run`, the wall clock of that.
 class SystemClock final : public Clock {
  public:
   [[nodiscard]] MonotonicTime monotonic() const override {
     return std::chrono::steady_clock::now().time_since_epoch();
   }
   [[nodiscard]] std::int64_t wall() const override {
+    if (internal::distant_wall.is_set()) [[unlikely]]
+      return internal::distant_wall.wall(monotonic());
     return std::chrono::duration_cast<std::chrono::nanoseconds>(
                std::chrono::system_clock::now().time_since_epoch())
         .count();

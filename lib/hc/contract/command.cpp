@@ -7,7 +7,8 @@
 namespace hc {
 namespace {
 
-constexpr std::array<std::string_view, 5> kVerbs = {"set", "link", "unlink", "finish", "route"};
+constexpr std::array<std::string_view, 6> kVerbs = {"set",    "link",  "unlink",
+                                                    "finish", "route", "wall_offset"};
 
 /// The part of `text` before `mark`, which is taken off it with the mark.
 std::string_view take_until(std::string_view& text, char mark) {
@@ -34,7 +35,7 @@ std::string text(const ModuleCommand& command) {
 Result<ModuleCommand> parse_module_command(std::string_view row) {
   const Error wrong{Code::Invalid,
                     "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, "
-                    "or route PORT=URI WORDS"};
+                    "route PORT=URI WORDS, or wall_offset NANOSECONDS"};
   const auto verb = std::find(kVerbs.begin(), kVerbs.end(), take_until(row, ' '));
   if (verb == kVerbs.end() || row.empty()) return wrong;
   ModuleCommand command;

@@ -12,12 +12,13 @@ namespace hc {
 
 /// One row.
 struct ModuleCommand {
-  enum class Verb { Set, Link, Unlink, Finish, Route };
+  enum class Verb { Set, Link, Unlink, Finish, Route, WallOffset };
 
   Verb verb = Verb::Set;
   bool is_input = true;  ///< of link and unlink: an input's
-  std::string target;    ///< of set the parameter's name; else PORT=URI, as the link was given
-  std::string value;     ///< of set the value; of route its words, see --route
+  /// Of set the parameter's name; of wall_offset a number; else PORT=URI, as the link was given.
+  std::string target;
+  std::string value;  ///< of set the value; of route its words, see --route
 };
 
 /// "set NAME=VALUE", "link in PORT=URI", "route PORT=URI WORDS" …

@@ -25,7 +25,7 @@ struct Form {
 
 constexpr std::array<Form, 7> kForms = {{
     {"set", Verb::Set, 1, false, "set MODULE.PARAMETER=VALUE"},
-    {"add", Verb::Add, 2, true, "add MODULE PROGRAM [PARAMETER=VALUE ...]"},
+    {"add", Verb::Add, 2, true, "add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
     {"remove", Verb::Remove, 1, false, "remove MODULE"},
     {"restart", Verb::Restart, 1, false, "restart MODULE"},
     {"link", Verb::Link, 2, true, "link FROM TO [KEY=VALUE ...]"},
@@ -59,8 +59,15 @@ void add_no_module(const Graph& graph, const std::string& name, Problems& proble
 
 void add_module(Graph& graph, const Command& command, Problems& problems) {
   GraphModule module;
-  module.name = command.words[0];
+  module.name = command.words[0].substr(0, command.words[0].find('@'));
   module.program.value = command.words[1];
+  if (module.name != command.words[0]) {
+    module.host.value = command.words[0].substr(module.name.size() + 1);
+    const auto hosts = graph.host_names();
+    if (std::find(hosts.begin(), hosts.end(), module.host.value) == hosts.end())
+      return problems.add(
+          {}, "no host \"" + module.host.value + "\"" + suggestion(module.host.value, hosts));
+  }
   if (!is_name(module.name))
     return problems.add({}, "module name \"" + module.name + "\" is not snake_case");
   if (graph.find(module.name) != nullptr)
@@ -142,6 +149,7 @@ Result<Command> parse_command(std::string_view line) {
                            [&](const Form& each) { return each.name == words[0]; });
   if (form == kForms.end()) {
     std::vector<std::string> names;
+    names.reserve(kForms.size());
     for (const auto& each : kForms) names.emplace_back(each.name);
     return Error{Code::Invalid, "no command \"" + words[0] + "\"" + suggestion(words[0], names)};
   }

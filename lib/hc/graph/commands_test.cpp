@@ -77,7 +77,7 @@ TEST_F(CommandsTest, WhatIsWrongIsNamed) {
   for (const auto& [line, words] : std::vector<std::pair<std::string, std::string>>{
            {"", "there is no command"},
            {"ad x y", "no command \"ad\", did you mean \"add\"?"},
-           {"add x", "the command is: add MODULE PROGRAM [PARAMETER=VALUE ...]"},
+           {"add x", "the command is: add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
            {"stop now", "the command is: stop"},
            {"add X y", "module name \"X\" is not snake_case"},
            {"add view y", "module \"view\" already exists"},

@@ -39,6 +39,7 @@ class GraphReader {
                  {{"version", [](const Node&) {}},
                   {"restart", internal::read_restart(fields_, restart)},
                   {"modules", fields_.each(module)},
+                  {"hosts", internal::read_hosts(fields_, graph)},
                   {"modes", internal::read_modes(fields_, graph)},
                   {"workspace", internal::read_workspace(fields_, graph)},
                   {"frames", internal::read_frames(fields_, graph)},
@@ -93,11 +94,12 @@ class GraphReader {
 
   void include(Graph& graph, const Node& node) {
     const std::string& name = node.key;
-    Lined<std::string> file;
+    Lined<std::string> file, host;
     const Node* overrides = nullptr;
     fields_.check_name(node, "graph", name);
     fields_.read(node, "in graph " + name,
                  {{"file", fields_.text(file), true},
+                  {"host", fields_.any_text(host)},
                   {"modules", [&](const Node& modules) { overrides = &modules; }}});
     if (file.value.empty()) return;
     auto text = read_included(graph.file, file);
@@ -107,6 +109,8 @@ class GraphReader {
     }
     Graph included = internal::with_prefix(
         read(*text, problems_.add_file(path_of(graph.file, file.value))), name);
+    for (auto& module : included.modules)
+      if (module.host.place.line == 0) module.host = host;
     if (overrides != nullptr)
       fields_.each([&](const Node& module) { override_module(included, name, module); })(
           *overrides);
@@ -183,10 +187,22 @@ std::vector<std::string> Graph::module_names() const {
   return names;
 }
 
+std::vector<std::string> Graph::host_names() const {
+  std::vector<std::string> names;
+  for (const auto& host : hosts) names.push_back(host.name);
+  return names;
+}
+
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
                   const ReadFile& read_file) {
   Graph graph = GraphReader(environment, problems, read_file).read(text, 0);
   graph.files = problems.files();
+  // Any of the files may declare a host, so this is known when all have been read.
+  const auto hosts = graph.host_names();
+  for (const auto& module : graph.modules)
+    if (const auto& [host, place] = module.host;
+        !host.empty() && std::find(hosts.begin(), hosts.end(), host) == hosts.end())
+      problems.add(place, "no host " + quoted_name(host) + suggestion(host, hosts));
   return graph;
 }
 

@@ -37,10 +37,20 @@ struct Addressee {
   std::int64_t number = 0;  ///< an address
 };
 
+/// Another host, which modules run on.
+struct GraphHost {
+  std::string name;
+  std::vector<Lined<std::string>> ssh;  ///< arguments of ssh, its destination the last
+  Lined<std::string> program;           ///< `hc` there
+  Lined<std::string> address;           ///< at which other hosts reach it; empty: as ssh does
+  Place place;
+};
+
 /// A module of a graph.
 struct GraphModule {
   std::string name;            ///< snake_case
   Lined<std::string> program;  ///< a module's name, or a path
+  Lined<std::string> host;     ///< that it runs on; empty: that of `hc run`
   std::string group;           ///< the [graphs.NAME] that it is of
   std::string prefix;          ///< what inclusion has put before its name, "head_"
   std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
@@ -68,6 +78,7 @@ struct GraphLink {
   GraphPort from, to;
   /// `keep`, `rate` and so on, as in a link's URI; an empty value is wrong, and has been reported.
   std::map<std::string, Lined<std::string>> policy;
+  Lined<std::string> via;  ///< "tls" or "tcp", of one between hosts; empty: not given
   /// Whom messages are for that pass this link; nothing: as computed.
   std::optional<Lined<std::vector<std::int64_t>>> route;
   bool routes_all = false;  ///< all of them do
@@ -96,6 +107,7 @@ struct GraphFrame {
 struct Graph {
   std::string file;                ///< as it was given, for error lines
   std::vector<std::string> files;  ///< that it is made of, the first is `file`; see Place::file
+  std::vector<GraphHost> hosts;
   std::vector<GraphModule> modules;
   std::vector<GraphLink> links;
   std::vector<GraphMode> modes;
@@ -108,6 +120,7 @@ struct Graph {
   /// The module of that name; null where there is none.
   [[nodiscard]] GraphModule* find(std::string_view name);
   [[nodiscard]] std::vector<std::string> module_names() const;
+  [[nodiscard]] std::vector<std::string> host_names() const;
 };
 
 /// Looks a variable of the environment up; null where it is not set.

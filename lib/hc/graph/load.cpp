@@ -63,7 +63,7 @@ std::string why_no_program(const std::string& program, const std::string& path) 
 void find_programs(Graph& graph, Problems& problems) {
   for (auto& module : graph.modules) {
     auto& [given, place] = module.program;
-    if (given.empty()) continue;  // what is wrong has been reported
+    if (given.empty() || !module.host.value.empty()) continue;  // what is wrong has been reported
     std::string name = given;
     if (name.find('/') != std::string::npos && !name.starts_with('/'))
       name = (fs::path(problems.file(place.file)).parent_path() / name).string();
@@ -107,7 +107,7 @@ std::vector<std::string> traced_modules(const Graph& graph, const Describe& desc
   std::vector<std::string> traced;
   for (const auto& module : graph.modules) {
     if (module.program.value.empty()) continue;
-    const auto text = describe(module.program.value);
+    const auto text = describe(module.program.value, module.host.value);
     const auto description = text ? parse_description(*text) : std::nullopt;
     if (description && find_output(*description, kTracePort) == &trace_output())
       traced.push_back(module.name);
@@ -147,15 +147,23 @@ class FileLoader : public GraphLoader {
  private:
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
     find_programs(graph, problems);
+    const HostPlaces places = find_programs_elsewhere(graph, problems, stop);
     LoadedGraph loaded{graph, {}, {}, {}};
     const std::string recorder = options_.recorder.empty() ? "" : find_program("recorder");
     std::vector<std::string> recorded;
-    std::map<std::string, Result<std::string>> described;  // also those that failed
-    auto describe = [&](const std::string& program) -> Result<std::string> {
-      auto known = described.find(program);
-      if (known == described.end())
-        known = described.emplace(program, describe_once(program, stop)).first;
-      if (program == recorder && !recorder.empty() && known->second)
+    std::map<std::pair<std::string, std::string>, Result<std::string>> described;
+    auto describe = [&](const std::string& program,
+                        const std::string& host) -> Result<std::string> {
+      auto known = described.find({host, program});
+      if (known == described.end()) {  // one that failed is not tried twice
+        const auto there = host.empty() ? nullptr : options_.hosts->find(host);
+        known =
+            described
+                .emplace(std::pair(host, program), there ? there->describe_program(program, stop)
+                                                         : describe_once(program, stop))
+                .first;
+      }
+      if (program == recorder && host.empty() && !recorder.empty() && known->second)
         return with_inputs(*known->second, recorded);
       return known->second;
     };
@@ -165,11 +173,60 @@ class FileLoader : public GraphLoader {
       recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
       loaded.recorder = graph.modules.back().name;
     }
+    auto hold_port = [&](const std::string& host, bool is_for_others) {
+      const auto there = host.empty() ? nullptr : options_.hosts->find(host);
+      return there ? there->hold_port(is_for_others, stop) : internal::hold_port(is_for_others);
+    };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
-                          options_.holds_ports ? internal::hold_port : HoldPort());
+                          options_.holds_ports ? hold_port : HoldPort(), places);
     loaded.problems = problems.lines();
     if (problems.empty()) loaded.plan = std::move(plan);
     return loaded;
+  }
+
+  /// Connects to the hosts that modules run on, and has each say where its programs are. Nothing
+  /// more is said of the modules of one that cannot be reached.
+  HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, int stop) {
+    std::vector<GraphHost> wanted;
+    for (const auto& declared : graph.hosts)
+      if (!declared.ssh.empty() &&
+          std::any_of(graph.modules.begin(), graph.modules.end(),
+                      [&](const auto& module) { return module.host.value == declared.name; }))
+        wanted.push_back(declared);
+    std::map<std::string, std::shared_ptr<Host>> hosts;
+    HostPlaces places;
+    if (!wanted.empty() && options_.hosts == nullptr)
+      problems.add(wanted.front().place, "this program runs graphs on one host alone");
+    if (!wanted.empty() && options_.hosts != nullptr) {
+      const auto connected = options_.hosts->connect(wanted, stop);
+      for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const auto& name = wanted[i].name;
+        if (connected[i]) {
+          hosts[name] = *connected[i];
+          places[name] = hosts[name]->place();
+        } else {
+          problems.add(wanted[i].place, "host " + name + ": " + connected[i].error().detail);
+        }
+      }
+      places[""].fingerprint = options_.hosts->fingerprint();
+    }
+    std::map<std::pair<std::string, std::string>, Result<std::string>> found;
+    for (auto& module : graph.modules) {
+      auto& [program, place] = module.program;
+      const std::string& name = module.host.value;
+      if (name.empty() || program.empty()) continue;
+      if (!hosts.contains(name)) {
+        program.clear();
+        continue;
+      }
+      auto known = found.find({name, program});
+      if (known == found.end())
+        known =
+            found.emplace(std::pair(name, program), hosts[name]->find_program(program, stop)).first;
+      if (!known->second) problems.add(place, "host " + name + ": " + known->second.error().detail);
+      program = known->second ? *known->second : "";
+    }
+    return places;
   }
 
   Result<std::string> describe_once(const std::string& program, int stop) {

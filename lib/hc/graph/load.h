@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <hc/graph/hosts.h>
 #include <hc/graph/plan.h>
 
 namespace hc {
@@ -24,6 +25,8 @@ struct LoadOptions {
   std::map<std::string, std::string> recorder = {};
   std::string token;         ///< for make_plan()
   bool holds_ports = false;  ///< that links over TCP need, where the plan is to run
+  /// Connects to other hosts; null: a graph that has such is refused. Must outlive the loader.
+  Hosts* hosts = nullptr;
 };
 
 /// A graph that has been read and checked.

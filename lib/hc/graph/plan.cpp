@@ -28,6 +28,7 @@ class ModulePlanner {
   void plan(const Description& description) {
     planned_.name = module_.name;
     planned_.program = module_.program.value;
+    planned_.host = module_.host.value;
     planned_.group = module_.group;
     planned_.options = {"--name", module_.name};
     planned_.restart = module_.restart;
@@ -99,7 +100,7 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
   planning.names.insert(module.name);
   const std::string& program = module.program.value;
   if (program.empty()) return;
-  auto text = describe(program);
+  auto text = describe(program, module.host.value);
   if (!text)
     return planning.problems.add(module.place,
                                  "module " + module.name + ": " + text.error().detail);
@@ -186,9 +187,9 @@ std::vector<std::string> PlannedModule::command() const {
 }
 
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
-               const Plan* before, const HoldPort& hold_port) {
+               const Plan* before, const HoldPort& hold_port, const HostPlaces& places) {
   if (!graph.is_whole) return {};
-  internal::Planning planning{std::move(graph), problems, before, hold_port};
+  internal::Planning planning{std::move(graph), problems, before, hold_port, places};
   planning.plan.token = token;
   for (const auto& module : planning.graph.modules)
     internal::plan_module(planning, describe, module);

@@ -33,6 +33,7 @@ struct PlannedEnd {
 struct PlannedModule {
   std::string name;
   std::string program;                            ///< a path, or a name that PATH has
+  std::string host;                               ///< that it runs on; empty: that of `hc run`
   std::string group;                              ///< the graph that includes it; empty: none
   std::vector<std::string> options;               ///< what is said neither below nor by links
   std::map<std::string, std::string> parameters;  ///< as text
@@ -82,11 +83,28 @@ struct Plan {
   std::string frames;  ///< as text (G31), by the names of the file
 };
 
-/// Gives what `program --describe` prints.
-using Describe = std::function<Result<std::string>(const std::string& program)>;
+/// Gives what `program --describe` prints on a host (empty: that of `hc run`).
+using Describe =
+    std::function<Result<std::string>(const std::string& program, const std::string& host)>;
 
-/// Gives a link over TCP its port.
-using HoldPort = std::function<Result<std::shared_ptr<const internal::HeldPort>>()>;
+/// Gives a link over TCP its port on the host of its writer, of 127.0.0.1, or of all addresses for
+/// readers on other hosts.
+using HoldPort = std::function<Result<std::shared_ptr<const internal::HeldPort>>(
+    const std::string& host, bool is_for_others)>;
+
+/// What links to and from another host need.
+struct HostPlace {
+  std::string address;      ///< at which other hosts reach it
+  std::string runner;       ///< at which it reaches the host of `hc run`
+  std::string fingerprint;  ///< of its key, which is for this run alone
+};
+/// By name; of the host of `hc run` (empty) only the fingerprint is needed.
+using HostPlaces = std::map<std::string, HostPlace>;
+
+/// The file of the key of its host, as every module that has a link to another host finds it: a
+/// descriptor that it is started with.
+inline constexpr int kKeyDescriptor = 3;
+inline constexpr std::string_view kKeyFile = "/proc/self/fd/3";
 
 /// Checks a graph and plans it.
 ///
@@ -99,11 +117,13 @@ using HoldPort = std::function<Result<std::shared_ptr<const internal::HeldPort>>
 /// @param before  a plan of this graph whose addresses and TCP ports stay, so that modules that
 /// have not changed are planned as they were; null: there was none.
 /// @param hold_port  null: such links have port 0, and the plan cannot be run.
+/// @param places  of the hosts that modules run on.
 ///
 /// Problems: as spec/graph.md lists them; of a graph that is not whole none, as what it lacks may
 /// be what is named. Nothing more is said of a module without a program (empty), whose problem has
 /// been reported. The plan is of no use where there are problems.
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
-               const Plan* before = nullptr, const HoldPort& hold_port = {});
+               const Plan* before = nullptr, const HoldPort& hold_port = {},
+               const HostPlaces& places = {});
 
 }  // namespace hc

@@ -88,10 +88,11 @@ program = "seer"
 TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
   const std::string text = "[modules.source]\n[modules.java]\ninputs.in = \"source.left\"\n" +
                            link_text("java.out", "filter.in") + "[modules.filter]\n";
+  auto hold = [](const std::string&, bool of_all) { return internal::hold_port(of_all); };
   auto looked_at = plan(text);
   ASSERT_TRUE(looked_at) << looked_at.error().detail;
   EXPECT_EQ(looked_at->links[0].reader_uri, "tcp:127.0.0.1:0?wait=60&same_user=1");
-  auto planned = plan(text, {}, nullptr, internal::hold_port);
+  auto planned = plan(text, {}, nullptr, hold);
   ASSERT_TRUE(planned) << planned.error().detail;
   const auto& ports = planned->ports;
   ASSERT_EQ(ports.size(), 2U);
@@ -104,7 +105,7 @@ TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
   // Who listens there can do so, and the port stays that of the link in the next plan.
   sockaddr_in place{AF_INET, htons(number), {htonl(INADDR_LOOPBACK)}, {}};
   EXPECT_TRUE(internal::listen_on({&place, sizeof place}, port));
-  auto next = plan(text + "parameters.rate = 1\n", {}, &*planned, internal::hold_port);
+  auto next = plan(text + "parameters.rate = 1\n", {}, &*planned, hold);
   ASSERT_TRUE(next) << next.error().detail;
   EXPECT_EQ(next->ports, planned->ports);
   EXPECT_EQ(next->links[1].sender_uri, planned->links[1].sender_uri);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <hc/base/result.h>
+#include <hc/graph/hosts.h>
 #include <hc/graph/limits.h>
 #include <hc/graph/load.h>
 #include <hc/graph/state.h>
@@ -37,6 +38,8 @@ struct RunOptions {
   /// Loads the graph again when its files change, and plans what commands change in it, on another
   /// thread. Null: only parameters can be changed. Must outlive the run.
   GraphLoader* loader = nullptr;
+  /// Other hosts, those of the plan connected to; null: there are none. Must outlive the run.
+  Hosts* hosts = nullptr;
   SupervisionLimits limits;
 };
 

@@ -55,6 +55,7 @@ template <typename Module, typename Visit>
 void visit_module(Module& module, Visit visit) {
   visit("name", module.name);
   visit("program", module.program);
+  visit("host", module.host);
   visit("group", module.group);
   visit("pid", module.process);
   visit("status", module.status);
@@ -70,6 +71,17 @@ void visit_module(Module& module, Visit visit) {
   visit("last_line", module.last_line);
   visit("last_line_age", module.last_line_age);
   visit("parameters", module.parameters);
+}
+
+template <typename Host, typename Visit>
+void visit_host(Host& host, Visit visit) {
+  visit("name", host.name);
+  visit("connected", host.is_connected);
+  visit("detail", host.detail);
+  visit("offset", host.offset);
+  visit("error", host.error);
+  visit("drift", host.drift);
+  visit("latency", host.latency);
 }
 
 template <typename Link, typename Visit>
@@ -125,7 +137,9 @@ std::string to_json(const GraphState& state) {
   json["status"] = state.is_stopping ? "stopping" : "running";
   json["focus"] = nullptr;
   if (state.focus != 0) json["focus"] = {{"mode", state.focus_name()}, {"number", state.focus}};
-  for (const char* list : {"modules", "links"}) json[list] = Json::array();
+  for (const char* list : {"hosts", "modules", "links"}) json[list] = Json::array();
+  for (const auto& host : state.hosts)
+    visit_host(host, Writer{json["hosts"].emplace_back(Json::object())});
   for (const auto& module : state.modules)
     visit_module(module, Writer{json["modules"].emplace_back(Json::object())});
   for (const auto& link : state.links)
@@ -142,6 +156,8 @@ Result<GraphState> parse_graph_state(std::string_view text) {
     state.is_stopping = json.at("status") == "stopping";
     if (const auto& focus = json.at("focus"); !focus.is_null())
       focus.at("number").get_to(state.focus);
+    for (const auto& host : json.value("hosts", Json::array()))
+      visit_host(state.hosts.emplace_back(), Reader{host});
     for (const auto& module : json.at("modules"))
       visit_module(state.modules.emplace_back(), Reader{module});
     for (const auto& link : json.at("links")) visit_link(state.links.emplace_back(), Reader{link});

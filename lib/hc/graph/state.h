@@ -32,6 +32,7 @@ std::string_view name(ModuleStatus status);
 
 struct ModuleState {
   std::string name, program;
+  std::string host;   ///< empty: that of `hc run`
   std::string group;  ///< the included graph that it is of; empty: none
   pid_t process = 0;  ///< 0: none
   ModuleStatus status = ModuleStatus::Starting;
@@ -64,12 +65,24 @@ struct LinkState {
   bool in_workspace = false;
 };
 
+/// Another host that modules run on. Clocks are compared twice a second.
+struct HostState {
+  std::string name;
+  bool is_connected = false;
+  std::string detail;             ///< why not
+  std::optional<double> offset;   ///< its wall clock less that of the host of `hc run` [s]
+  std::optional<double> error;    ///< of that and of times that it sends, at most [s]
+  std::optional<double> drift;    ///< of its monotonic clock against the other
+  std::optional<double> latency;  ///< there and back [s]
+};
+
 struct GraphState {
   std::string name, file;
   pid_t process = 0;  ///< of the runner
   double uptime = 0;  ///< [s]
   bool is_stopping = false;
   std::int64_t focus = 0;  ///< number of the mode in focus; 0: none
+  std::vector<HostState> hosts;
   std::vector<ModuleState> modules;
   std::vector<LinkState> links;
   std::vector<std::string> workspaces;            ///< modules that arbitrate a focus

@@ -18,6 +18,7 @@ GraphState some_state() {
   ModuleState module;
   module.name = "camera";
   module.program = "camera";
+  module.host = "robot";
   module.status = ModuleStatus::GivenUp;
   module.detail = "failed with status 1";
   module.exit = 1;
@@ -25,6 +26,13 @@ GraphState some_state() {
   module.last_line_age = 2;
   module.parameters = {{"source", "a \"b\"\n"}};
   state.modules = {module};
+  HostState host;
+  host.name = "robot";
+  host.is_connected = true;
+  host.offset = 3600.5;
+  host.error = 0.25;
+  host.latency = 0.5;
+  state.hosts = {host};
   LinkState link;
   link.from = "camera.left";
   link.to = "view.image";
@@ -45,7 +53,9 @@ TEST(State, IsOneLineOfJson) {
       R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,)"
       R"("workspaces":[],"modes":{"read":2,"track":1},"addresses":{"eyes.command":21},)"
       R"("status":"running","focus":{"mode":"track","number":1},)"
-      R"("modules":[{"name":"camera","program":"camera","group":"",)"
+      R"("hosts":[{"name":"robot","connected":true,"detail":"","offset":3600.5,"error":0.25,)"
+      R"("drift":null,"latency":0.5}],)"
+      R"("modules":[{"name":"camera","program":"camera","host":"robot","group":"",)"
       R"("pid":0,"status":"given up","detail":"failed with status 1","restarts":0,"exit":1,)"
       R"("cpu":0.0,"memory":0,"mode":"","modes":[],"in_focus":true,"in_workspace":false,)"
       R"("last_line":"no device","last_line_age":2.0,)"

@@ -129,6 +129,10 @@ class Parser {
       return invalid("--clock messages needs inputs, and this module has none");
     return is_trace ? read_uri(value, arguments_.clock) : Status();
   }
+  Status wall_offset(const std::string& value) {
+    return read_number(value, arguments_.wall_offset.emplace(),
+                       "--wall_offset needs a number of nanoseconds, not \"" + value + "\"");
+  }
   Status manage(const std::string& value) { return read_uri(value, arguments_.manage); }
   Status control(const std::string& value) { return read_uri(value, arguments_.control); }
   Status describe(const std::string&) { return set_task(Arguments::Task::Describe); }
@@ -200,7 +204,7 @@ struct Option {
   enum { Always, Inputs, Outputs } needs = Always;
 };
 
-constexpr std::array<Option, 16> kOptions = {{
+constexpr std::array<Option, 17> kOptions = {{
     {"--in", "[PORT=]URI",
      "link an input, the first unless PORT is given; may be repeated; without any, inputs share "
      "standard input",
@@ -234,6 +238,9 @@ constexpr std::array<Option, 16> kOptions = {{
      "clock: machine; messages: the times of the messages; or the URI of a trace that it wrote: it "
      "does the same at the same moments (default machine)",
      &Parser::clock, Option::Inputs},
+    {"--wall_offset", "NANOSECONDS",
+     "times of its messages: so much more than the monotonic clock (default: the wall clock)",
+     &Parser::wall_offset},
     {"--manage", "URI", "link to send reports to", &Parser::manage},
     {"--control", "URI", "link to take commands from", &Parser::control},
     {"--describe", "", "print ports and parameters as one line of JSON, and end",

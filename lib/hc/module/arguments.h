@@ -27,6 +27,7 @@ struct Arguments {
   Focus focus;                                        ///< --mode, --modes
   bool by_messages = false;                           ///< --clock messages, or a trace
   std::optional<Uri> clock;                           ///< --clock URI: of a trace
+  std::optional<std::int64_t> wall_offset;            ///< --wall_offset
   std::optional<Uri> manage;                          ///< --manage
   std::optional<Uri> control;                         ///< --control
   Limits limits;                                      ///< --limit

@@ -56,8 +56,8 @@ TEST_F(RunningModule, ObeysCommands) {
                            "unlink out out=inproc:nowhere", "route out=x via=y", "jump"})
     ASSERT_TRUE(tell(*control_, line));
   const std::string commands =
-      "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, or route "
-      "PORT=URI WORDS";
+      "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, route "
+      "PORT=URI WORDS, or wall_offset NANOSECONDS";
   for (const std::string& wrong : std::initializer_list<std::string>{
            "\"set factor=-1\": parameter factor: \"-1\" is not from 0 to 10",
            "\"set factor\": " + commands, "\"set colour=1\": no parameter \"colour\"",

@@ -46,6 +46,8 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   options_.limits = arguments.limits;
   options_.stop = stop;
   module_.focus_ = arguments.focus;
+  if (arguments.wall_offset)
+    internal::distant_wall.set(*arguments.wall_offset, module_.clock_.monotonic());
   std::unique_ptr<Sink> reports;
   if (arguments.manage) {
     Uri uri = *arguments.manage;
@@ -470,7 +472,7 @@ void Module::Loop::call(const internal::InputState& input, Inlet& link, Message&
 
 /// Notes how old a message is, and how long after the one before it came.
 void Module::Loop::measure(Inlet& link, const Message& message) {
-  if (message.header.time != 0) link.ages.add(now_.count() + to_wall_ - message.header.time);
+  if (message.header.time != 0) link.ages.add(now_.count() + wall_offset_ - message.header.time);
   if (link.last_come.count() != 0) link.gaps.add((now_ - link.last_come).count());
   link.last_come = now_;
 }

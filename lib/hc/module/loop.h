@@ -170,7 +170,7 @@ struct Module::Loop {
 
   std::optional<std::deque<TraceEvent>> moments_;  // with --clock URI: to be repeated
   MonotonicTime now_{0};                           // of the machine, at the last look at the clock
-  std::int64_t to_wall_ = 0;  // from monotonic to wall clock, at the last report [ns]
+  std::int64_t wall_offset_ = 0;  // from monotonic to wall clock, at the last report [ns]
   MonotonicTime reported_{0}, attended_{0};
   // With --clock messages: whether the generator is called next; has been since the last message,
   // and keeps no rate; and whether all messages have been handled.

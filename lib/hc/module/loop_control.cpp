@@ -2,6 +2,7 @@
 // A module's loop: the commands of who runs it, and the reports to them.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <utility>
 
 #include <hc/contract/command.h>
@@ -119,6 +120,17 @@ Status Module::Loop::carry_out(const std::string& row) {
       auto route = internal::parse_route(command->value);
       if (!route) return route.error();
       set_route(command->target, *route);
+      return {};
+    }
+    case ModuleCommand::Verb::WallOffset: {
+      std::int64_t wall_offset = 0;
+      const auto& text = command->target;
+      const auto* end = text.data() + text.size();
+      const auto [stop, status] = std::from_chars(text.data(), end, wall_offset);
+      if (status != std::errc() || stop != end)
+        return Error{Code::Invalid, "wall_offset needs a number of nanoseconds"};
+      internal::distant_wall.set(wall_offset, module_.clock_.monotonic());
+      wall_offset_ = module_.clock_.wall() - module_.clock_.monotonic().count();
       return {};
     }
     case ModuleCommand::Verb::Link:
@@ -245,7 +257,7 @@ void Module::Loop::report() {
 /// Also where there is no link: that a module reports shows that it is not stuck.
 void Module::Loop::report_counters() {
   reported_ = now_;
-  to_wall_ = module_.clock_.wall() - module_.clock_.monotonic().count();
+  wall_offset_ = module_.clock_.wall() - module_.clock_.monotonic().count();
   std::vector<LinkCounters> links;
   for (auto& link : sources_) {
     auto& counters = links.emplace_back();

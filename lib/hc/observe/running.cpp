@@ -135,7 +135,8 @@ Result<Observation> Observation::make(const RunningGraph& graph, const std::stri
   if (!answer) return answer.error();
   if (!answer->is_ok || answer->rows.empty())
     return Error{Code::Invalid, answer->is_ok ? "no URI in the answer" : answer->rows.back()};
-  made.uri_ = answer->rows.front() + "?reconnect=86400";
+  const auto& uri = answer->rows.front();
+  made.uri_ = uri + (uri.find('?') == std::string::npos ? "?" : "&") + "reconnect=86400";
   auto sink = open_sink_at(graph.command_uri(), stop);
   if (!sink) return sink.error();
   made.sink_ = std::move(*sink);

@@ -72,12 +72,14 @@ Result<Descriptor> listen_on(const Address& address, const std::string& name) {
   return socket;
 }
 
-Result<std::shared_ptr<const HeldPort>> hold_port() {
+Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, std::uint16_t number) {
   sockaddr_in place{};
   place.sin_family = AF_INET;
-  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  place.sin_port = htons(number);
+  place.sin_addr.s_addr = htonl(of_all_addresses ? INADDR_ANY : INADDR_LOOPBACK);
   const Address address(&place, sizeof place);
-  auto socket = bind_socket(address, "127.0.0.1");
+  auto socket =
+      bind_socket(address, (of_all_addresses ? "0.0.0.0:" : "127.0.0.1:") + std::to_string(number));
   if (!socket) return socket.error();
   socklen_t size = sizeof place;
   auto named = system_call("getsockname", "", [&] {

@@ -75,15 +75,17 @@ constexpr std::chrono::seconds kAnswerTime{4};
 /// A socket that listens on an address; its name is for error lines.
 Result<Descriptor> listen_on(const Address& address, const std::string& name);
 
-/// A port of 127.0.0.1 that no other program is given. It is bound and nobody listens here, so that
+/// A port that no other program is given. It is bound and nobody listens here, so that
 /// one who sets SO_REUSEADDR, and knows the number, can listen there, again and again.
 struct HeldPort {
   Descriptor socket;
   std::uint16_t number = 0;
 };
 
-/// Holds a port until the last who shares it lets it go. Errors: System.
-Result<std::shared_ptr<const HeldPort>> hold_port();
+/// Holds a port until the last who shares it lets it go, of 127.0.0.1 or of all addresses.
+/// @param number  0: one that is free. Errors: System.
+Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses = false,
+                                                  std::uint16_t number = 0);
 
 /// How long a TCP peer may leave what it must answer without an answer: so one that vanishes is
 /// noticed within 4 s, with what timers are late by.

@@ -29,6 +29,7 @@ Result<GraphPort> parse_port(const std::string& text, bool may_be_uri) {
 void Fields::read(const Node& table, const std::string& where, const std::vector<Key>& keys) const {
   if (table.table() == nullptr) return add(table, quoted_name(table.key) + " must be a table");
   std::vector<std::string> known;
+  known.reserve(keys.size());
   for (const Key& key : keys) known.emplace_back(key.name);
   std::string misspelled;
   for (const Node& value : table.nodes) {
@@ -53,12 +54,19 @@ bool Fields::check_name(const Node& node, const std::string& what, std::string_v
   return false;
 }
 
-Fields::Take Fields::text(Lined<std::string>& to) const {
+Fields::Take Fields::any_text(Lined<std::string>& to) const {
   return [this, &to](const Node& value) {
     const auto* text = value.as<std::string>();
     if (text == nullptr) return add(value, quoted_name(value.key) + " must be a string");
-    if (text->empty()) add(value, quoted_name(value.key) + " is empty");
     to = {*text, value.place};
+  };
+}
+
+Fields::Take Fields::text(Lined<std::string>& to) const {
+  return [this, &to](const Node& value) {
+    any_text(to)(value);
+    if (const auto* text = value.as<std::string>(); text != nullptr && text->empty())
+      add(value, quoted_name(value.key) + " is empty");
   };
 }
 

@@ -46,6 +46,8 @@ class Fields {
   // What takes a value of that type; of another type it is a problem.
   [[nodiscard]] Take text(Lined<std::string>& to) const;
   [[nodiscard]] Take text(std::optional<Lined<std::string>>& to) const;
+  /// The same, which may be empty.
+  [[nodiscard]] Take any_text(Lined<std::string>& to) const;
   [[nodiscard]] Take texts(std::vector<Lined<std::string>>& to) const;
   [[nodiscard]] Take integer(Lined<std::int64_t>& to, std::int64_t min, std::int64_t max) const;
   [[nodiscard]] Take flag(bool& to) const;

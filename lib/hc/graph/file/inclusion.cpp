@@ -64,6 +64,14 @@ void append(Graph& graph, Graph included, Problems& problems) {
       return each.name == mode.name && each.number == mode.number;
     });
   });
+  // What the file around says of a host counts.
+  std::erase_if(included.hosts, [&](const GraphHost& host) {
+    return std::any_of(graph.hosts.begin(), graph.hosts.end(), [&](const GraphHost& each) {
+      return each.name == host.name && problems.file(each.place.file) == graph.file;
+    });
+  });
+  refuse_duplicates(graph.hosts, included.hosts, "host");
+  move_all(graph.hosts, included.hosts);
   move_all(graph.modules, included.modules);
   move_all(graph.links, included.links);
   move_all(graph.frames, included.frames);

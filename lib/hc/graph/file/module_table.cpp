@@ -32,6 +32,7 @@ class ModuleReader {
     };
     fields_.read(node, "in module " + module_.name,
                  {{"program", fields_.text(module_.program)},
+                  {"host", fields_.any_text(module_.host)},
                   {"parameters", fields_.each([&](const Node& value) { read_parameter(value); })},
                   {"inputs", links(true)},
                   {"outputs", links(false)},
@@ -88,6 +89,10 @@ class ModuleReader {
            {"rate", policy},
            {"burst", policy},
            {"memory", policy},
+           {"via", fields_.choice({"tls", "tcp"},
+                                  [&](const Node& via, std::size_t) {
+                                    link.via = {*via.as<std::string>(), via.place};
+                                  })},
            {"route", [&](const Node& route) { read_route(route, link); }}});
       check_policy(link);
       for (const Node* end : ends) add_link(*end, link, other, other);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What modules share: the tables [modes], [workspace] and [frames.NAME].
+// What modules share: the tables [hosts.NAME], [modes], [workspace] and [frames.NAME].
 #include <cmath>
 #include <numbers>
 
@@ -53,7 +53,30 @@ void read_frame(const Fields& fields, const Node& node, Graph& graph) {
   graph.frames.push_back(std::move(frame));
 }
 
+void read_host(const Fields& fields, const Node& node, Graph& graph) {
+  GraphHost host;
+  host.name = node.key;
+  host.place = node.place;
+  host.program.value = "hc";
+  fields.check_name(node, "host", node.key);
+  fields.read(node, "in host " + node.key,
+              {{"ssh", fields.texts(host.ssh), true},
+               {"hc", fields.text(host.program)},
+               {"address", fields.text(host.address)}});
+  // What ssh would take for an option is no destination.
+  const Node* ssh = node.table() == nullptr ? nullptr : node.find("ssh");
+  if (ssh != nullptr &&
+      (host.ssh.empty() || host.ssh.back().value.empty() || host.ssh.back().value.starts_with("-")))
+    fields.add(*ssh,
+               R"("ssh" must be a destination, such as "pi@robot", or a list that ends with it)");
+  graph.hosts.push_back(std::move(host));
+}
+
 }  // namespace
+
+Fields::Take read_hosts(const Fields& fields, Graph& graph) {
+  return fields.each([&](const Node& node) { read_host(fields, node, graph); });
+}
 
 Fields::Take read_modes(const Fields& fields, Graph& graph) {
   return fields.each([&](const Node& node) {

@@ -14,7 +14,8 @@ Fields::Take read_restart(const Fields& fields, Restart& to);
 /// @param name  of the module in the graph, which has it.
 void read_module(const Fields& fields, const Node& node, const std::string& name, Graph& graph);
 
-/// [modes], [workspace] and [frames.NAME]
+/// [hosts.NAME], [modes], [workspace] and [frames.NAME]
+Fields::Take read_hosts(const Fields& fields, Graph& graph);
 Fields::Take read_modes(const Fields& fields, Graph& graph);
 Fields::Take read_workspace(const Fields& fields, Graph& graph);
 Fields::Take read_frames(const Fields& fields, Graph& graph);

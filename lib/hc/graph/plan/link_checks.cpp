@@ -33,6 +33,9 @@ class LinkCheck {
     if (!right)
       problems_.add(link.place, link.from.text() + " sends " + in_words(from->types) + ", " +
                                     link.to.text() + " takes " + in_words(to->types));
+    if (!link.via.value.empty() && !planning_.is_between_hosts(link))
+      problems_.add(link.via.place, "\"via\" is for a link between hosts, and " + link.from.module +
+                                        " and " + link.to.module + " run on the same");
     const auto transport = transport_of(planning_, link);
     if (transport.empty()) {
       right = false;
@@ -62,10 +65,17 @@ class LinkCheck {
       return "module " + module + " supports " + (list.empty() ? "none" : list);
     };
     const std::string &from = link.from.module, &to = link.to.module;
+    std::string takes = "shm at both ends, or tcp-listen at " + from + " and tcp at " + to +
+                        ", or unix-listen and unix";
+    if (planning_.is_between_hosts(link)) {
+      const bool is_plain = link.via.value == "tcp";
+      const std::string scheme = is_plain ? "tcp" : "tls";
+      takes = scheme + "-listen at " + from + " and " + scheme + " at " + to;
+      if (!is_plain) takes += "; via = \"tcp\" would be neither encrypted nor authenticated";
+    }
     problems_.add(link.place, "no transport from " + link.from.text() + " to " + link.to.text() +
-                                  ": " + supported(from) + ", " + supported(to) +
-                                  "; it takes shm at both ends, or tcp-listen at " + from +
-                                  " and tcp at " + to + ", or unix-listen and unix");
+                                  ": " + supported(from) + ", " + supported(to) + "; it takes " +
+                                  takes);
   }
 
   /// Null where there is none, or where nobody knows since the module is not described.

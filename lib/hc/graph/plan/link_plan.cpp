@@ -152,12 +152,15 @@ class LinkPlanner {
 
   /// The TCP port of a link, as before; else one of its own.
   int port_of(const GraphLink& link, const std::string& name) {
-    auto& held = planning_.plan.ports[name];
+    const std::string& host = planning_.host_of(link.from.module);
+    const bool is_for_others = planning_.is_between_hosts(link);
+    const std::string key = name + (host.empty() ? "" : "@" + host) + (is_for_others ? "+" : "");
+    auto& held = planning_.plan.ports[key];
     if (planning_.before != nullptr)
-      if (auto kept = planning_.before->ports.find(name); kept != planning_.before->ports.end())
+      if (auto kept = planning_.before->ports.find(key); kept != planning_.before->ports.end())
         held = kept->second;
     if (held == nullptr && planning_.hold_port) {
-      auto port = planning_.hold_port();
+      auto port = planning_.hold_port(host, is_for_others);
       if (port)
         held = *port;
       else
@@ -168,31 +171,69 @@ class LinkPlanner {
     return held == nullptr ? 0 : held->number;
   }
 
+  /// Where the writer of a link listens, where its reader connects to, and whom each lets in.
+  struct Ends {
+    std::string writer, reader, writer_trusts = {}, reader_trusts = {};
+  };
+
+  Ends ends_of(const GraphLink& link, std::string_view transport, const std::string& name) {
+    if (transport == "shm") return {name, name};
+    if (transport == "unix") return {"@" + name, "@" + name};
+    const std::string port = ":" + std::to_string(port_of(link, name));
+    if (!planning_.is_between_hosts(link))
+      return {"127.0.0.1" + port, "127.0.0.1" + port, "&same_user=1", "&same_user=1"};
+    const std::string &from = planning_.host_of(link.from.module),
+                      &to = planning_.host_of(link.to.module);
+    // The host of `hc run` is where each of the others sees it.
+    std::string address = place_of(from.empty() ? to : from).*
+                          (from.empty() ? &HostPlace::runner : &HostPlace::address);
+    if (address.empty() && !planning_.places.empty())
+      planning_.problems.add(
+          link.place,
+          from.empty()
+              ? "host " + to + " has no address of this one that links can use: connect to it by " +
+                    "another, not a link-local one"
+              : "host " + from +
+                    " has no address that links can use: say address = \"…\" in its table");
+    const bool is_v6 = address.find(':') != std::string::npos;
+    if (is_v6) address = "[" + address + "]";
+    Ends ends{(is_v6 ? "[::]" : "0.0.0.0") + port, address + port};
+    if (transport == "tls") {
+      const std::string key = "&key=" + std::string(kKeyFile) + "&peer=";
+      ends.writer_trusts = key + place_of(to).fingerprint;
+      ends.reader_trusts = key + place_of(from).fingerprint;
+    }
+    return ends;
+  }
+
+  [[nodiscard]] HostPlace place_of(const std::string& host) const {
+    auto found = planning_.places.find(host);
+    return found == planning_.places.end() ? HostPlace{} : found->second;
+  }
+
   /// The links of an output that share memory have one sending end in common, but for those that
   /// have a bound or a route of their own, and each reader keeps its rate; every other link has a
   /// socket. Senders wait for their readers, so that it does not matter who starts first.
   PlannedLink plan_inside(std::size_t number) {
     const GraphLink& link = graph_.links[number];
     const std::string_view transport = transport_of(planning_, link);
-    const bool by_memory = transport == "shm", by_tcp = transport == "tcp";
+    const bool by_memory = transport == "shm";
     const std::string name = name_of(number), keep = keep_of(link);
-    std::string place = by_memory ? name : "@" + name;
-    if (by_tcp) place = "127.0.0.1:" + std::to_string(port_of(link, name));
+    const Ends ends = ends_of(link, transport, name);
     const std::string scheme(transport);
-    const std::string same_user = by_tcp ? "&same_user=1" : "";
     const std::string and_keep = keep == "all" ? "" : "&keep=" + keep;
     const std::string pace = options_of(link, {"rate", "burst"});
     Sender& sender = senders_[name];
     if (sender.uri.empty()) {
-      sender.uri = scheme + (by_memory ? ":" : "-listen:") + place +
-                   "?readers=" + std::to_string(sender.readers) + "&stay=1" + same_user +
+      sender.uri = scheme + (by_memory ? ":" : "-listen:") + ends.writer +
+                   "?readers=" + std::to_string(sender.readers) + "&stay=1" + ends.writer_trusts +
                    (is_common(number) ? "" : and_keep) + options_of(link, {"memory"}) +
                    (by_memory ? "" : pace);
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }
-    const std::string reader_uri = scheme + ":" + place +
-                                   (lasts(link) ? "?reconnect=86400" : "?wait=60") + same_user +
-                                   (by_memory ? and_keep + pace : "");
+    const std::string reader_uri = scheme + ":" + ends.reader +
+                                   (lasts(link) ? "?reconnect=86400" : "?wait=60") +
+                                   ends.reader_trusts + (by_memory ? and_keep + pace : "");
     add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
     return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
   }
@@ -235,6 +276,11 @@ class LinkPlanner {
 std::string_view transport_of(const Planning& planning, const GraphLink& link) {
   const Description& from = *planning.description_of(link.from.module);
   const Description& to = *planning.description_of(link.to.module);
+  if (planning.is_between_hosts(link)) {
+    const bool is_plain = link.via.value == "tcp";
+    if (is_plain) return from.knows("tcp-listen") && to.knows("tcp") ? "tcp" : "";
+    return from.knows("tls-listen") && to.knows("tls") ? "tls" : "";
+  }
   if (from.knows("shm") && to.knows("shm")) return "shm";
   if (from.knows("unix-listen") && to.knows("unix")) return "unix";
   if (from.knows("tcp-listen") && to.knows("tcp")) return "tcp";

@@ -19,6 +19,7 @@ struct Planning {
   Problems& problems;
   const Plan* before;  ///< of this graph, whose numbers stay; null: there was none
   const HoldPort& hold_port;
+  const HostPlaces& places;
   Plan plan{};
   std::map<std::string, Description> described{};  ///< by module
   std::map<std::string, std::size_t> index{};      ///< of a module in Plan::modules
@@ -46,6 +47,14 @@ struct Planning {
   [[nodiscard]] bool is_read(const GraphPort& output) const {
     return std::any_of(graph.links.begin(), graph.links.end(),
                        [&](const auto& link) { return link.from.text() == output.text(); });
+  }
+  /// Where a module runs.
+  [[nodiscard]] const std::string& host_of(const std::string& module) const {
+    return plan.modules[index.at(module)].host;
+  }
+  /// Whether a link, whose ends are both modules, goes from one host to another.
+  [[nodiscard]] bool is_between_hosts(const GraphLink& link) const {
+    return host_of(link.from.module) != host_of(link.to.module);
   }
   [[nodiscard]] PlannedModule* planned(const std::string& module) {
     auto found = index.find(module);
@@ -90,8 +99,8 @@ void check_together(Planning& planning);
 void check_bids(Planning& planning);
 void check_destinations(Planning& planning);
 
-/// What a link between two modules goes over, the first of shm, unix and tcp that both have; empty
-/// where there is none. Both are described.
+/// What a link between two modules goes over, the first of shm, unix and tcp that both have, or tls
+/// (or tcp, if that is asked for) to another host; empty where there is none. Both are described.
 std::string_view transport_of(const Planning& planning, const GraphLink& link);
 
 /// Gives each link its two ends.

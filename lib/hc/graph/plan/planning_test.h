@@ -13,7 +13,7 @@ namespace hc {
 inline const std::string kVersion = "version = 1\n";
 
 /// What some programs say of themselves.
-inline Result<std::string> describe(const std::string& program) {
+inline Result<std::string> describe(const std::string& program, const std::string& = "") {
   auto port = [](const std::string& name, const std::string& type, int coord) {
     return R"({"name":")" + name + R"(","types":[{"type":")" + type +
            R"(","components":1,"scalar":"f32","width":0,"height":0,"coord":)" +
@@ -41,6 +41,9 @@ inline Result<std::string> describe(const std::string& program) {
   };
   if (program == "java")
     return lists(module(port("in", "map", 0), port("out", "map", 0)), R"("tcp","tcp-listen")");
+  if (program == "far")
+    return lists(module(port("in", "map", 0), port("out", "map", 0)),
+                 R"("shm","tcp","tcp-listen","tls","tls-listen","unix","unix-listen")");
   if (program == "files") return lists(module(port("in", "map", 0), ""), R"("file","tcp-listen")");
   if (program == "liar") return lists(module("", ""), R"("tcp"],"control":true,"together":[)");
   if (program == "seer")
@@ -96,7 +99,8 @@ inline Result<std::string> describe(const std::string& program) {
 /// @param text  behind `version = 1`, which is its first line, as in `files`, which it may include.
 inline Result<Plan> plan(const std::string& text,
                          const std::map<std::string, std::string>& files = {},
-                         const Plan* before = nullptr, const HoldPort& hold_port = {}) {
+                         const Plan* before = nullptr, const HoldPort& hold_port = {},
+                         const HostPlaces& places = {}) {
   Problems problems("g.toml");
   auto read_file = [&](const std::string& name) -> Result<std::string> {
     auto found = files.find(name);
@@ -105,7 +109,7 @@ inline Result<Plan> plan(const std::string& text,
   };
   auto graph = parse_graph(
       kVersion + text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
-  Plan plan = make_plan(graph, describe, "t", problems, before, hold_port);
+  Plan plan = make_plan(graph, describe, "t", problems, before, hold_port, places);
   if (problems.empty()) return plan;
   std::string all;
   for (const auto& line : problems.lines()) all += (all.empty() ? "" : "\n") + line;

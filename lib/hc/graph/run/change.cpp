@@ -70,8 +70,8 @@ ModuleChange change_between(const PlannedModule& before, const PlannedModule& af
   add_settings(before, after, change);
   add_links(before, after, change);
   if (after.control_uri.empty() && !change.is_empty()) change.needs_restart = true;
-  if (before.program != after.program || before.options != after.options ||
-      before.control_uri != after.control_uri)
+  if (before.program != after.program || before.host != after.host ||
+      before.options != after.options || before.control_uri != after.control_uri)
     change.needs_restart = true;
   if (change.needs_restart) change.unlinks = change.outputs = change.inputs = {};
   return change;

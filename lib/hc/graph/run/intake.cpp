@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/graph/run/intake.h>
 
+#include <algorithm>
+#include <array>
+
 namespace hc::internal {
 
 Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri, Take take,
@@ -46,7 +49,10 @@ void Intake::take() {
 Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri) {
   auto uri = parse_uri(reader_uri);
   if (!uri) return uri.error();
-  std::erase_if(uri->options, [](const auto& option) { return option.first != "same_user"; });
+  constexpr std::array<std::string_view, 3> kWhoMay = {"same_user", "key", "peer"};
+  std::erase_if(uri->options, [&](const auto& option) {
+    return std::find(kWhoMay.begin(), kWhoMay.end(), option.first) == kWhoMay.end();
+  });
   uri->options.emplace_back("reconnect", "86400");
   if (uri->scheme == "shm") uri->options.emplace_back("keep", "latest");
   return Intake::make(loop, uri->text(), [](const Message&) {});

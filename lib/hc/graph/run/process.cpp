@@ -10,6 +10,8 @@
 #include <array>
 #include <csignal>
 
+#include <hc/graph/plan.h>
+
 namespace hc::internal {
 namespace {
 
@@ -17,26 +19,34 @@ namespace {
 /// nothing may allocate: another thread of ours may have held a lock when we forked.
 struct Start {
   char* const* arguments;
-  Process::Capture capture;
-  int output;  // for what is captured
-  int errors;  // for the errno of what fails
-  int life;    // at its end when we have gone
+  int input, output, errors;  // of the program; -1: none
+  int failure;                // for the errno of what fails
+  int life;                   // at its end when we have gone
+  int key;                    // that the program gets; -1: none
 };
 
 [[noreturn]] void fail(const Start& start) {
   int number = errno;
-  [[maybe_unused]] auto written = ::write(start.errors, &number, sizeof number);
+  [[maybe_unused]] auto written = ::write(start.failure, &number, sizeof number);
   ::_exit(kCannotExecute);
 }
 
 /// Becomes the program.
-[[noreturn]] void become(const Start& start, pid_t parent, const sigset_t& signals) {
+[[noreturn]] void become(Start start, pid_t parent, const sigset_t& signals) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(kCannotExecute);  // it died before it could be noticed
   int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  ::dup2(null, STDIN_FILENO);
-  ::dup2(start.capture == Process::Capture::Output ? start.output : null, STDOUT_FILENO);
-  ::dup2(start.capture == Process::Capture::Errors ? start.output : null, STDERR_FILENO);
+  ::dup2(start.input >= 0 ? start.input : null, STDIN_FILENO);
+  ::dup2(start.output >= 0 ? start.output : null, STDOUT_FILENO);
+  ::dup2(start.errors >= 0 ? start.errors : null, STDERR_FILENO);
+  if (start.key >= 0) {
+    // The descriptor it becomes may be the one for failures.
+    start.failure = ::fcntl(start.failure, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
+    if (start.key == kKeyDescriptor)
+      ::fcntl(start.key, F_SETFD, 0);
+    else
+      ::dup2(start.key, kKeyDescriptor);
+  }
   std::signal(SIGPIPE, SIG_DFL);
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
@@ -114,34 +124,54 @@ Result<std::array<Descriptor, 2>> make_pipe() {
 
 }  // namespace
 
-Result<Process> Process::start(const std::vector<std::string>& command, Capture capture) {
+Result<Process> Process::start(const std::vector<std::string>& command, Capture capture, int key) {
   std::vector<char*> arguments;
   arguments.reserve(command.size() + 1);
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   auto output = make_pipe();
   if (!output) return output.error();
-  auto errors = make_pipe();
-  if (!errors) return errors.error();
+  auto failure = make_pipe();
+  if (!failure) return failure.error();
   auto life = make_pipe();
   if (!life) return life.error();
+  std::array<Descriptor, 2> input, errors;
+  if (capture == Capture::Both)
+    for (auto* ends : {&input, &errors}) {
+      auto made = make_pipe();
+      if (!made) return made.error();
+      *ends = std::move(*made);
+    }
 
+  const int captured = (*output)[1].get();
+  const bool is_both = capture == Capture::Both;
+  const Start start{arguments.data(),
+                    input[0].get(),
+                    capture == Capture::Errors ? -1 : captured,
+                    is_both                      ? errors[1].get()
+                    : capture == Capture::Errors ? captured
+                                                 : -1,
+                    (*failure)[1].get(),
+                    (*life)[0].get(),
+                    key};
   pid_t child = ::fork();
   if (child < 0) return system_error("fork", command[0]);
-  if (child == 0)
-    guard({arguments.data(), capture, (*output)[1].get(), (*errors)[1].get(), (*life)[0].get()});
+  if (child == 0) guard(start);
 
   Process process;
   process.number_ = child;
   process.handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
   process.output_ = std::move((*output)[0]);
+  process.errors_ = std::move(errors[0]);
+  process.input_ = std::move(input[1]);
   process.life_ = std::move((*life)[1]);
-  ::fcntl(process.output_.get(), F_SETFL, O_NONBLOCK);
+  for (const auto* ours : {&process.output_, &process.errors_, &process.input_})
+    if (*ours) ::fcntl(ours->get(), F_SETFL, O_NONBLOCK);
   // The pipe closes by itself when exec succeeds.
-  (*errors)[1].reset();
+  (*failure)[1].reset();
   int number = 0;
   auto size =
-      system_call("read", "", [&] { return ::read((*errors)[0].get(), &number, sizeof number); });
+      system_call("read", "", [&] { return ::read((*failure)[0].get(), &number, sizeof number); });
   if (size && *size == sizeof number) return system_error("exec", command[0], number);
   if (!process.handle_) return system_error("pidfd_open", command[0]);
   return process;

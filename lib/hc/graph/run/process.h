@@ -28,13 +28,17 @@ inline constexpr int kCannotExecute = 127;
 /// A child process. It is killed, with all that it has started, when the object goes.
 class Process {
  public:
-  enum class Capture { Output, Errors };
+  enum class Capture { Output, Errors, Both };
 
   /// Starts a program; a name without a slash is looked up in PATH. Its standard input is empty;
-  /// one of its standard output and standard error comes to us, the other is dropped.
+  /// one of its standard output and standard error comes to us, the other is dropped. With Both we
+  /// have all three.
+  ///
+  /// @param key  a descriptor that it gets as kKeyDescriptor; -1: none.
   ///
   /// Errors: NotFound, System.
-  static Result<Process> start(const std::vector<std::string>& command, Capture capture);
+  static Result<Process> start(const std::vector<std::string>& command, Capture capture,
+                               int key = -1);
 
   Process(Process&&) = default;
   Process& operator=(Process&&) = default;
@@ -44,6 +48,9 @@ class Process {
   [[nodiscard]] pid_t guard_number() const { return number_; }
   /// What is captured; reading gives 0 bytes when all who could write have ended.
   [[nodiscard]] int output() const { return output_.get(); }
+  /// With Capture::Both: its standard error, and its standard input, which is ours to write.
+  [[nodiscard]] int errors() const { return errors_.get(); }
+  [[nodiscard]] int input() const { return input_.get(); }
   /// Readable when the process has ended, and all that it had started has been killed.
   [[nodiscard]] int ended() const { return handle_.get(); }
 
@@ -62,7 +69,7 @@ class Process {
 
   pid_t number_ = -1;  // of the guard, and its group
   Descriptor handle_;  // a pidfd
-  Descriptor output_;
+  Descriptor output_, errors_, input_;
   Descriptor life_;  // closed: the guard is to kill
   std::optional<int> status_;
   struct Owned {  // a moved-from process owns nothing

@@ -57,6 +57,12 @@ Status Runner::begin() {
     if (!watched) return watched.error();
     stop_ = std::move(*watched);
   }
+  if (options_.hosts != nullptr) {
+    auto watched =
+        loop_->watch(options_.hosts->descriptor(), EPOLLIN, [this](auto) { look_at_hosts(); });
+    if (!watched) return watched.error();
+    hosts_ = std::move(*watched);
+  }
   if (options_.loader != nullptr) {
     auto planning = Aside::make(*loop_);
     if (!planning) return planning.error();
@@ -113,7 +119,7 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
     }
     return !is_stopping_ && (has_writers ? is_written_to : is_read);
   };
-  return Supervised::make(*loop_, module, options_.limits, std::move(hear));
+  return Supervised::make(*loop_, module, options_.limits, std::move(hear), options_.hosts);
 }
 
 Supervised* Runner::find(const std::string& name) const {
@@ -207,6 +213,14 @@ void Runner::tick() {
   tick_ = loop_->call_at(MonotonicClock::now() + kTick, [this] { tick(); });
 }
 
+/// A host has been lost, or is there again.
+void Runner::look_at_hosts() {
+  for (const auto& line : options_.hosts->take_events()) say(line);
+  for (auto& [name, module] : modules_) module->look_at_host();
+  is_unsettled_ = true;
+  if (observation_) observation_->changed();
+}
+
 bool Runner::is_over() const {
   return leaving_.empty() && std::all_of(modules_.begin(), modules_.end(),
                                          [](const auto& entry) { return entry.second->is_over(); });
@@ -259,11 +273,25 @@ void Runner::settle_links() {
   std::erase_if(stand_ins_, [&](const auto& entry) { return !to_read.contains(entry.first); });
   for (const auto& [name, link] : to_read) {
     if (stand_ins_.contains(name)) continue;
-    auto stand_in = make_stand_in(*loop_, link->reader_uri);
+    auto stand_in = stand_in_for(at(link->to)->plan(), link->reader_uri);
     if (!stand_in) say("graph: " + link->reader_uri + ": " + stand_in.error().text());
     stand_ins_[name] = stand_in ? std::move(*stand_in) : nullptr;
   }
   end_unneeded();
+}
+
+/// What reads in the place of a module that is over, on its host.
+Result<std::shared_ptr<void>> Runner::stand_in_for(const PlannedModule& reader,
+                                                   const std::string& uri) const {
+  if (!reader.host.empty() && options_.hosts != nullptr)
+    if (auto host = options_.hosts->find(reader.host)) return host->read_in_place(uri);
+  // Modules find the key of this host at another descriptor.
+  std::string ours = uri;
+  if (const auto key = ours.find(kKeyFile); key != std::string::npos && options_.hosts != nullptr)
+    ours.replace(key, kKeyFile.size(), "/proc/self/fd/" + std::to_string(options_.hosts->key()));
+  auto intake = make_stand_in(*loop_, ours);
+  if (!intake) return intake.error();
+  return std::shared_ptr<void>(std::move(*intake));
 }
 
 /// A module all of whose readers have done their work has nothing left to do.

@@ -56,6 +56,7 @@ class Runner {
   [[nodiscard]] std::string with_link_names(std::string line) const;
 
   void tick();
+  void look_at_hosts();
   void settle();
   void settle_failures();
   void settle_links();
@@ -80,6 +81,9 @@ class Runner {
   [[nodiscard]] GraphState state() const;
   [[nodiscard]] LinkState state_of(const PlannedLink& link) const;
 
+  [[nodiscard]] Result<std::shared_ptr<void>> stand_in_for(const PlannedModule& reader,
+                                                           const std::string& uri) const;
+
   static constexpr std::size_t kMaxResults = 100;
 
   const RunOptions& options_;
@@ -100,9 +104,9 @@ class Runner {
   std::unique_ptr<FileWatch> files_;
   std::unique_ptr<Aside> planning_;
   // In the place of readers that are over; null: it failed.
-  std::map<LinkName, std::unique_ptr<Intake>> stand_ins_;
+  std::map<LinkName, std::shared_ptr<void>> stand_ins_;
   std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
-  Loop::Handle stop_, tick_;
+  Loop::Handle stop_, tick_, hosts_;
 };
 
 }  // namespace hc::internal

@@ -21,6 +21,9 @@ GraphState Runner::state() const {
   state.workspaces = {plan_.workspaces.begin(), plan_.workspaces.end()};
   state.modes = plan_.modes;
   state.addresses = plan_.addresses;
+  for (const auto& declared : graph_.hosts)
+    if (const auto host = options_.hosts == nullptr ? nullptr : options_.hosts->find(declared.name))
+      state.hosts.push_back(host->state());
   for (const auto& planned : plan_.modules) {
     const auto* module = find(planned.name);
     if (module == nullptr) continue;

@@ -6,7 +6,9 @@
 #include <csignal>
 #include <cstdio>
 
+#include <hc/base/check.h>
 #include <hc/contract/command.h>
+#include <hc/graph/run/process.h>
 #include <hc/mtp/rows.h>
 
 namespace hc::internal {
@@ -33,25 +35,29 @@ Message command_message(const std::string& command) {
 
 std::string end_in_words(int status) {
   if (status == 0) return "ended";
+  if (status == Host::kHostLost) return "lost, with the connection to its host";
   if (status == Restarts::kBadArguments) return "failed with status 2 (bad arguments)";
   if (status > kSignal) return "killed by signal " + std::to_string(status - kSignal);
   return "failed with status " + std::to_string(status);
 }
 
-Supervised::Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear)
+Supervised::Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear,
+                       Hosts* hosts)
     : loop_(loop),
       plan_(std::move(plan)),
       told_(plan_),
       limits_(limits),
       hear_(std::move(hear)),
+      hosts_(hosts),
       restarts_(plan_.restart, limits.restarts,
                 static_cast<std::uint32_t>(std::hash<std::string>()(plan_.manage_uri))),
       reports_(plan_.ends) {}
 
 Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule plan,
-                                                     const SupervisionLimits& limits, Hear hear) {
+                                                     const SupervisionLimits& limits, Hear hear,
+                                                     Hosts* hosts) {
   std::unique_ptr<Supervised> module(
-      new Supervised(loop, std::move(plan), limits, std::move(hear)));
+      new Supervised(loop, std::move(plan), limits, std::move(hear), hosts));
   auto& self = *module;
   LinkOptions options;
   options.limits.element_bytes = kMostReported;
@@ -87,6 +93,9 @@ std::vector<std::string> Supervised::catch_up() {
   for (const auto& input : finished_)
     commands.push_back(text({ModuleCommand::Verb::Finish, true, input, {}}));
   for (const auto& [port, observed] : observed_) commands.push_back(observed.command());
+  if (wall_offset_ != 0)
+    commands.push_back(
+        text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset_), {}}));
   set_told();
   return commands;
 }
@@ -107,19 +116,54 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
   hear_.changed();
 }
 
+std::shared_ptr<Host> Supervised::host() const {
+  return hosts_ == nullptr || plan_.host.empty() ? nullptr : hosts_->find(plan_.host);
+}
+
+void Supervised::look_at_host() {
+  const auto there = awaits_host_ ? host() : nullptr;
+  if (there && there->state().is_connected) start_again();
+}
+
+/// Has a module on another host go by the time here.
+void Supervised::tell_time() {
+  constexpr std::int64_t kNear = 20'000;  // [ns]
+  const auto there = control_ && process_ ? host() : nullptr;
+  if (!there || !there->state().is_connected) return;
+  const auto wall_offset = there->wall_offset();
+  if (std::abs(wall_offset - wall_offset_) < kNear) return;
+  wall_offset_ = wall_offset;
+  if (is_heard())
+    tell({text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset), {}})});
+}
+
 Status Supervised::start() {
   timer_.reset();
   wish_ = Wish::None;
+  const auto there = host();
+  HC_CHECK(there != nullptr || plan_.host.empty(), plan_.name, plan_.host);
+  awaits_host_ = there && !there->state().is_connected;
+  if (awaits_host_) {
+    change(ModuleStatus::Waiting, "host " + plan_.host + " is not connected");
+    return {};
+  }
   is_interrupted_ = awaits_cause_ = false;
   finished_.clear();
   lines_.forget();
   if (auto opened = open_control(); !opened) return opened;
   restarts_.started(now());
   ++starts_;
-  auto process = Process::start(plan_.command(), Process::Capture::Errors);
-  if (!process) return Error{process.error().code, plan_.name + ": " + process.error().detail};
-  process_.emplace(std::move(*process));
-  program_ = first_child(process_->guard_number());
+  wall_offset_ = there && control_ ? there->wall_offset() : 0;
+  if (there) {
+    PlannedModule plan = plan_;
+    if (control_) plan.add_option("--wall_offset", std::to_string(wall_offset_));
+    process_ = there->start(plan);
+    if (!process_) return Error{Code::System, plan_.name + ": it cannot be listened to"};
+  } else {
+    auto process = start_here(plan_.command(), hosts_ == nullptr ? -1 : hosts_->key());
+    if (!process) return Error{process.error().code, plan_.name + ": " + process.error().detail};
+    process_ = std::move(*process);
+  }
   told_ = plan_;
   auto said = loop_.watch(process_->output(), EPOLLIN, [this](auto) { read_lines(); });
   if (!said) return said.error();
@@ -164,7 +208,7 @@ void Supervised::restart() {
 void Supervised::ask_to_end() {
   if (!process_) {
     timer_.reset();
-    awaits_cause_ = false;
+    awaits_cause_ = awaits_host_ = false;
     change(ModuleStatus::Ended);
     hear_.ended();
     return;
@@ -237,8 +281,6 @@ void Supervised::forget_process() {
   ended_.reset();
   timer_.reset();
   process_.reset();
-  program_ = 0;
-  processes_.clear();
   usage_ = {};
   measured_ = MonotonicTime(0);
   processor_ = 0;

@@ -12,12 +12,13 @@
 #include <vector>
 
 #include <hc/base/clock.h>
+#include <hc/graph/hosts.h>
 #include <hc/graph/limits.h>
 #include <hc/graph/run/announcer.h>
 #include <hc/graph/run/change.h>
 #include <hc/graph/run/intake.h>
 #include <hc/graph/run/lines.h>
-#include <hc/graph/run/process.h>
+#include <hc/graph/run/module_process.h>
 #include <hc/graph/run/reports.h>
 #include <hc/graph/run/restarts.h>
 #include <hc/graph/state.h>
@@ -49,8 +50,10 @@ class Supervised {
   };
 
   /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
+  /// @param hosts  that it may run on; null: this one alone.
   static Result<std::unique_ptr<Supervised>> make(Loop& loop, PlannedModule plan,
-                                                  const SupervisionLimits& limits, Hear hear);
+                                                  const SupervisionLimits& limits, Hear hear,
+                                                  Hosts* hosts = nullptr);
 
   /// Starts it. Errors: NotFound, System; of later starts they are events.
   Status start();
@@ -76,10 +79,12 @@ class Supervised {
   /// Has it open an output for observers, under a name that no other link has, until it was not
   /// asked for so long.
   ///
-  /// @returns  the URI that observers read.
-  std::string observe(const std::string& port, const std::string& name);
+  /// @returns  the URI that observers read. Errors: Closed (its host is not connected).
+  Result<std::string> observe(const std::string& port, const std::string& name);
   static constexpr std::chrono::seconds kObserved{5};
 
+  /// Starts it if it waits for its host, and that is there.
+  void look_at_host();
   /// Looks whether it still reports.
   void look(MonotonicTime now);
   /// Takes stock of what its processes use.
@@ -101,7 +106,8 @@ class Supervised {
   [[nodiscard]] std::string said_of(const std::string& uri) const;
 
  private:
-  Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear);
+  Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear,
+             Hosts* hosts);
 
   /// What its process has been asked to end for.
   enum class Wish { None, End, Restart, Dismissal };
@@ -110,10 +116,14 @@ class Supervised {
     std::string text;  // PORT=URI, of the module's output
     std::string uri;   // for observers
     MonotonicTime until{0};
+    std::shared_ptr<const HeldPort> held = {};  // where it is read from another host
 
     [[nodiscard]] std::string command() const { return "link out " + text; }
   };
 
+  [[nodiscard]] std::shared_ptr<Host> host() const;
+  void tell_time();
+  Status open_observed(Observed& observed, const std::string& port, const std::string& name);
   void end_observations(MonotonicTime time);
   Status open_control();
   std::vector<std::string> catch_up();
@@ -135,6 +145,9 @@ class Supervised {
   PlannedModule told_;  // as its process has been told, which may know links by their older URIs
   SupervisionLimits limits_;
   Hear hear_;
+  Hosts* hosts_;
+  bool awaits_host_ = false;
+  std::int64_t wall_offset_ = 0;  // as its process knows it, of another host [ns]
   ModuleStatus status_ = ModuleStatus::Waiting;
   std::string detail_;
   Wish wish_ = Wish::None;
@@ -147,16 +160,14 @@ class Supervised {
   MonotonicTime said_at_{0};  // the last of them
   Reports reports_;
   MonotonicTime heard_{0};  // when this process reported last; 0: it has not
-  pid_t program_ = 0;
   Usage usage_;
   MonotonicTime measured_{0};
   double processor_ = 0;
-  std::vector<pid_t> processes_;
   std::set<std::string> finished_;            // inputs it has to finish
   std::map<std::string, Observed> observed_;  // by output
   std::unique_ptr<Intake> manage_;
   std::unique_ptr<Announcer> control_;
-  std::optional<Process> process_;
+  std::unique_ptr<ModuleProcess> process_;
   Loop::Handle said_, ended_, timer_;
 };
 

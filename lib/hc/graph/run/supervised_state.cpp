@@ -17,18 +17,41 @@ constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 
 }  // namespace
 
-std::string Supervised::observe(const std::string& port, const std::string& name) {
+Result<std::string> Supervised::observe(const std::string& port, const std::string& name) {
+  auto found = observed_.find(port);
+  if (found == observed_.end()) {
+    Observed observed;
+    if (auto opened = open_observed(observed, port, name); !opened) return opened.error();
+    found = observed_.emplace(port, std::move(observed)).first;
+    tell({found->second.command()});
+  }
+  found->second.until = now() + kObserved;
+  return found->second.uri;
+}
+
+/// Where an output is opened for observers: those of another host come with the key of this one.
+Status Supervised::open_observed(Observed& observed, const std::string& port,
+                                 const std::string& name) {
+  if (const auto there = host()) {
+    auto held = there->spare_port();
+    if (!held) return held.error();
+    observed.held = std::move(*held);
+    const auto number = ":" + std::to_string(observed.held->number);
+    const auto place = there->place();
+    const bool is_v6 = place.address.find(':') != std::string::npos;
+    observed.text = port + "=tls-listen:" + (is_v6 ? "[::]" : "0.0.0.0") + number +
+                    kObserverPolicy + "&key=" + std::string(kKeyFile) +
+                    "&peer=" + hosts_->fingerprint();
+    observed.uri = "tls:" + (is_v6 ? "[" + place.address + "]" : place.address) + number +
+                   "?key=/proc/" + std::to_string(::getpid()) + "/fd/" +
+                   std::to_string(hosts_->key()) + "&peer=" + place.fingerprint;
+    return {};
+  }
   const bool has_memory = std::any_of(plan_.ends.begin(), plan_.ends.end(),
                                       [](const auto& end) { return end.uri.starts_with("shm:"); });
-  auto [found, is_new] = observed_.try_emplace(port);
-  auto& observed = found->second;
-  if (is_new) {
-    observed.text = port + (has_memory ? "=shm:" : "=unix-listen:@") + name + kObserverPolicy;
-    observed.uri = (has_memory ? "shm:" : "unix:@") + name;
-    tell({observed.command()});
-  }
-  observed.until = now() + kObserved;
-  return observed.uri;
+  observed.text = port + (has_memory ? "=shm:" : "=unix-listen:@") + name + kObserverPolicy;
+  observed.uri = (has_memory ? "shm:" : "unix:@") + name;
+  return {};
 }
 
 void Supervised::end_observations(MonotonicTime time) {
@@ -65,12 +88,13 @@ void Supervised::take_report(const Message& message) {
 
 void Supervised::look(MonotonicTime time) {
   end_observations(time);
+  tell_time();
   if (process_ && heard_ == MonotonicTime(0)) return look_at_silent();
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const bool is_blocked = reports_.state().blocked_row != 0;
   if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
   if (!process_ || time - heard_ < limits_.stall) return;
-  const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
+  const bool is_stopped = process_->usage(false).is_stopped;
   if (is_blocked && !is_stopped) {
     if (is_stalled) hear_.event("resumed");
     const auto output = reports_.blocked_output();
@@ -86,7 +110,7 @@ void Supervised::look(MonotonicTime time) {
 void Supervised::look_at_silent() {
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   if (status_ != ModuleStatus::Running && !is_stalled) return;
-  const bool is_stopped = usage_of(descendants(process_->guard_number()), false).is_stopped;
+  const bool is_stopped = process_->usage(false).is_stopped;
   if (is_stopped == is_stalled) return;
   change(is_stopped ? ModuleStatus::Stalled : ModuleStatus::Running,
          is_stopped ? "stopped by a signal" : "");
@@ -95,9 +119,8 @@ void Supervised::look_at_silent() {
 
 void Supervised::measure(MonotonicTime time, bool with_memory) {
   if (!process_) return;
-  with_memory = with_memory || processes_.empty();
-  if (with_memory) processes_ = descendants(process_->guard_number());
-  auto usage = usage_of(processes_, with_memory);
+  with_memory = with_memory || measured_ == MonotonicTime(0);
+  auto usage = process_->usage(with_memory);
   if (!with_memory) usage.memory = usage_.memory;
   if (measured_ != MonotonicTime(0) && time > measured_)
     processor_ = std::max(0.0, std::chrono::duration<double>(usage.processor - usage_.processor) /
@@ -123,7 +146,8 @@ ModuleState Supervised::state() const {
   state.name = plan_.name;
   state.program = plan_.program;
   state.group = plan_.group;
-  state.process = program_;
+  state.host = plan_.host;
+  state.process = process_ ? process_->number() : 0;
   state.status = status_;
   state.detail = detail_;
   state.restarts = std::max(0, starts_ - 1);

@@ -1,0 +1,502 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hosts/connection.h>
+
+#include <arpa/inet.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <hc/base/format.h>
+#include <hc/os/socket.h>
+
+namespace hc::hosts {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kGreeting{20000};  // until ssh has connected and the agent has spoken
+constexpr milliseconds kAnswerTime{30000};
+constexpr milliseconds kFirstDelay{100}, kLongestDelay{5000};
+constexpr std::chrono::seconds kLasting{10};  // a connection that counts as one
+constexpr std::size_t kSpares = 4;
+constexpr std::size_t kMaxErrorText = 4096;  // [byte]
+constexpr std::size_t kUsageColumns = 5;
+
+/// A word of a command line that a shell is to take as it is, but for ~/ at its begin.
+std::string quoted(const std::string& word) {
+  std::string text = word.starts_with("~/") ? "~/'" : "'";
+  for (char c : word.substr(text.size() - 1)) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+std::vector<std::string> ssh_command(const GraphHost& host) {
+  // No terminal, no question, nothing forwarded or shared; and it notices a cut network.
+  std::vector<std::string> words = {"ssh", "-T", "-x", "-a"};
+  for (const char* option :
+       {"BatchMode=yes", "ConnectTimeout=10", "ServerAliveInterval=1", "ServerAliveCountMax=3",
+        "ClearAllForwardings=yes", "ControlMaster=no", "RemoteCommand=none", "EscapeChar=none"})
+    words.insert(words.end(), {"-o", option});
+  for (const auto& word : host.ssh) words.push_back(word.value);
+  words.push_back("exec " + quoted(host.program.value) + " agent");
+  return words;
+}
+
+/// The port in an answer; 0: there is none.
+std::uint16_t port_in(const Json& answer) {
+  const auto port = answer.find("port");
+  if (port == answer.end() || !port->is_number_unsigned()) return 0;
+  const auto number = port->get<std::uint64_t>();
+  return number <= UINT16_MAX ? static_cast<std::uint16_t>(number) : std::uint16_t{0};
+}
+
+/// An address that an agent tells; empty where links cannot use it, such as a link-local one.
+std::string address_in(const Json& hello, const char* key) {
+  const std::string text = hello.value(key, "127.0.0.1");  // ssh that connects to nothing
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  const bool is_address = ::inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
+                          ::inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
+  return is_address ? text : "";
+}
+
+Error not_connected() {
+  return {Code::Closed, "it is not connected"};
+}
+
+/// The last line of a text that is not empty, as a terminal may have it.
+std::string last_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' '))
+    text.pop_back();
+  std::string line = text.substr(text.rfind('\n') + 1);
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  return line;
+}
+
+constexpr std::string_view kHowToInstall =
+    R"(; install Hypercolumn there, or say where its hc is: hc = "PATH")";
+
+}  // namespace
+
+/// A module there, as who supervises it here has it.
+class Connection::Process final : public internal::ModuleProcess {
+ public:
+  Process(std::shared_ptr<Connection> host, std::shared_ptr<RemoteModule> module)
+      : host_(std::move(host)), module_(std::move(module)) {}
+  ~Process() override { kill(); }
+
+  [[nodiscard]] pid_t number() const override { return module_->process(); }
+  [[nodiscard]] int output() const override { return module_->output(); }
+  [[nodiscard]] int ended() const override { return module_->has_ended(); }
+  std::optional<int> poll_status() override { return module_->status(); }
+  void ask_to_end() override { tell("end"); }
+  void kill() override {
+    if (!module_->status()) tell("kill");
+  }
+  internal::Usage usage(bool) override { return module_->usage(); }
+
+ private:
+  void tell(const char* what) { host_->tell({{"what", what}, {"number", module_->number()}}); }
+
+  std::shared_ptr<Connection> host_;
+  std::shared_ptr<RemoteModule> module_;
+};
+
+// From any thread.
+
+bool Connection::is_of(const GraphHost& declared) const {
+  auto words = [](const GraphHost& host) {
+    std::vector<std::string> list = {host.program.value, host.address.value};
+    for (const auto& word : host.ssh) list.push_back(word.value);
+    return list;
+  };
+  return words(declared) == words(parts_.declared);
+}
+
+void Connection::open() {
+  worker_.post([self = shared_from_this()] { self->connect(); });
+}
+
+Status Connection::wait_until_open(int stop) {
+  const auto value = first_->wait(stop, milliseconds(-1));
+  return value ? Status() : value.error();
+}
+
+void Connection::close() {
+  worker_.post([self = shared_from_this()] {
+    self->is_closed_ = true;
+    if (self->conversation_) self->lose("closed");
+    self->again_.reset();
+    self->disconnect();
+  });
+}
+
+void Connection::tell(Json order) {
+  worker_.post([self = shared_from_this(), order = std::move(order)] {
+    if (self->conversation_) self->conversation_->say(make_order(order));
+  });
+}
+
+Result<Json> Connection::ask(Json question, int stop) {
+  auto answer = std::make_shared<Answer>();
+  worker_.post([self = shared_from_this(), answer, question = std::move(question)]() mutable {
+    auto take = [answer](Result<Json> value) { answer->give(std::move(value)); };
+    if (!self->conversation_ || !self->is_open_) return take(not_connected());
+    question["id"] = ++self->asked_;
+    self->questions_[self->asked_] = std::move(take);
+    self->conversation_->say(make_order(question));
+  });
+  return answer->wait(stop, kAnswerTime);
+}
+
+Result<std::string> Connection::ask_text(const char* what, const std::string& subject, int stop) {
+  auto answer = ask({{"what", what}, {"subject", subject}}, stop);
+  const std::pair question(std::string(what), subject);
+  const std::lock_guard lock(mutex_);
+  if (!answer) {
+    // So that the rest of the graph can be changed while this host is away.
+    const auto known = answers_.find(question);
+    const bool is_known = answer.error().code == Code::Closed && known != answers_.end();
+    return is_known ? Result<std::string>(known->second) : answer.error();
+  }
+  const auto text = answer->find("text");
+  if (text == answer->end() || !text->is_string()) return Error{Code::Malformed, "no text"};
+  return answers_[question] = text->get<std::string>();
+}
+
+Result<std::string> Connection::find_program(const std::string& name, int stop) {
+  return ask_text("find", name, stop);
+}
+
+Result<std::string> Connection::describe_program(const std::string& program, int stop) {
+  return ask_text("describe", program, stop);
+}
+
+Result<std::string> Connection::examine(const std::string& question, int stop) {
+  return ask_text("examine", question, stop);
+}
+
+std::shared_ptr<const internal::HeldPort> Connection::held(std::uint16_t number, bool of_all) {
+  worker_.post([self = shared_from_this(), number, of_all] { self->ports_[number] = of_all; });
+  return {new internal::HeldPort{internal::Descriptor(), number},
+          [host = weak_from_this()](const internal::HeldPort* port) {
+            if (auto self = host.lock()) {
+              self->worker_.post([self, number = port->number] { self->ports_.erase(number); });
+              self->tell({{"what", "release"}, {"port", port->number}});
+            }
+            delete port;
+          }};
+}
+
+Result<std::shared_ptr<const internal::HeldPort>> Connection::hold_port(bool of_all_addresses,
+                                                                        int stop) {
+  auto answer = ask({{"what", "hold"}, {"of_all", of_all_addresses}, {"port", 0}}, stop);
+  if (!answer) return answer.error();
+  const auto port = port_in(*answer);
+  if (port == 0) return Error{Code::Malformed, "no port"};
+  return held(port, of_all_addresses);
+}
+
+Result<std::shared_ptr<const internal::HeldPort>> Connection::spare_port() {
+  const std::lock_guard lock(mutex_);
+  if (spares_.empty()) return not_connected();
+  const auto number = spares_.back();
+  spares_.pop_back();
+  worker_.post([self = shared_from_this()] { self->want_spare(); });
+  return held(number, true);
+}
+
+HostPlace Connection::place() const {
+  const std::lock_guard lock(mutex_);
+  return place_;
+}
+
+HostState Connection::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+std::int64_t Connection::wall_offset() const {
+  const std::lock_guard lock(mutex_);
+  return wall_offset_;
+}
+
+std::unique_ptr<internal::ModuleProcess> Connection::start(const PlannedModule& module) {
+  const std::int64_t number = [&] {
+    const std::lock_guard lock(mutex_);
+    return ++numbered_;
+  }();
+  auto remote = RemoteModule::make(number, module.manage_uri, module.control_uri);
+  if (!remote) return nullptr;
+  const Json order = {{"what", "start"},
+                      {"number", number},
+                      {"command", module.command()},
+                      {"manage", module.manage_uri},
+                      {"control", module.control_uri}};
+  worker_.post([self = shared_from_this(), remote = *remote, order] {
+    if (!self->conversation_ || !self->is_open_) return remote->ended(kHostLost);
+    self->modules_[remote->number()] = remote;
+    self->conversation_->say(make_order(order));
+  });
+  return std::make_unique<Process>(shared_from_this(), *remote);
+}
+
+std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {
+  const std::int64_t number = [&] {
+    const std::lock_guard lock(mutex_);
+    return ++numbered_;
+  }();
+  worker_.post([self = shared_from_this(), number, reader_uri] {
+    self->readers_[number] = reader_uri;
+    if (self->conversation_)
+      self->conversation_->say(
+          make_order({{"what", "read"}, {"number", number}, {"uri", reader_uri}}));
+  });
+  // Only that it goes is of interest.
+  return {this, [host = weak_from_this(), number](void*) {
+            auto self = host.lock();
+            if (!self) return;
+            self->worker_.post([self, number] { self->readers_.erase(number); });
+            self->tell({{"what", "leave"}, {"number", number}});
+          }};
+}
+
+// On the worker's thread.
+
+void Connection::connect() {
+  disconnect();
+  is_greeted_ = is_open_ = false;
+  error_text_.clear();
+  auto ssh =
+      internal::Process::start(ssh_command(parts_.declared), internal::Process::Capture::Both);
+  if (!ssh) return lose(ssh.error().detail);
+  ssh_.emplace(std::move(*ssh));
+  auto errors = worker_.loop().watch(ssh_->errors(), EPOLLIN, [this](auto) { read_ssh_errors(); });
+  if (!errors) return lose(errors.error().detail);
+  ssh_errors_ = std::move(*errors);
+  auto conversation = Conversation::make(worker_.loop(), ssh_->output(), ssh_->input(), kGreeting,
+                                         {[this](const Message& message) { take(message); },
+                                          [this](const std::string& why) { lose(why); }});
+  if (!conversation) return lose(conversation.error().detail);
+  conversation_ = std::move(*conversation);
+}
+
+/// Keeps the last that ssh says: why it cannot connect.
+void Connection::read_ssh_errors() {
+  std::array<char, kMaxErrorText> piece;
+  const ssize_t size = ::read(ssh_->errors(), piece.data(), piece.size());
+  if (size == 0) ssh_errors_.reset();
+  if (size <= 0) return;
+  error_text_.append(piece.data(), static_cast<std::size_t>(size));
+  if (error_text_.size() > kMaxErrorText) error_text_.erase(0, error_text_.size() - kMaxErrorText);
+}
+
+void Connection::take(const Message& message) {
+  const auto received = monotonic_now();
+  const auto& header = message.header;
+  if (header.src == Order) return obey(read_order(message));
+  if (header.src == Heartbeat) return take_heartbeat(message, received);
+  if (header.src == Usage) return take_usage(message);
+  const auto found = modules_.find(header.dst);
+  if (found == modules_.end()) return;
+  if (header.src == Log) return found->second->said(message.characters());
+  if (header.src < Report) return;
+  Message report = message;
+  report.header.src -= Report;
+  report.header.dst = 0;
+  found->second->reported(report);
+}
+
+void Connection::obey(const Json& order) try {
+  if (order.is_null()) return;
+  const std::string what = order.at("what");
+  if (what == "hello") return greet(order);
+  if (what == "answer") {
+    auto found = questions_.find(order.at("id"));
+    if (found == questions_.end()) return;
+    const auto answer = std::move(found->second);
+    questions_.erase(found);
+    return answer(order.contains("error")
+                      ? Result<Json>(Error{Code::NotFound, order.at("error").get<std::string>()})
+                      : Result<Json>(order));
+  }
+  const auto found = modules_.find(order.value("number", std::int64_t{0}));
+  if (found == modules_.end()) return;
+  const auto module = found->second;
+  if (what == "started") module->started(order.at("process"));
+  if (what == "listens")
+    module->listens(worker_.loop(), [this, number = module->number()](const Message& command) {
+      Message handed_on = command;
+      handed_on.header.src = Commands;
+      handed_on.header.dst = static_cast<std::int32_t>(number);
+      if (conversation_) conversation_->say(handed_on);
+    });
+  if (what == "ended") {
+    if (order.contains("error")) module->said(order.at("error").get<std::string>() + "\n");
+    modules_.erase(found);
+    module->ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
+  }
+} catch (const Json::exception& error) {
+  lose(std::string("what it says is wrong: ") + error.what());
+}
+
+/// The agent is there, and says who it is.
+void Connection::greet(const Json& hello) {
+  is_greeted_ = true;
+  error_text_.clear();  // what ssh says to everybody
+  const std::string version = hello.value("version", "");
+  if (version != parts_.version)
+    return lose("it has hc " + version + ", and this is hc " + parts_.version +
+                ": install the same");
+  {
+    const std::lock_guard lock(mutex_);
+    place_.address = parts_.declared.address.value;
+    if (place_.address.empty()) place_.address = address_in(hello, "address");
+    place_.runner = address_in(hello, "runner");
+    place_.fingerprint = parts_.fingerprint;
+  }
+  conversation_->say(make_order({{"what", "key"}, {"key", parts_.key}}));
+  estimate_ = {};
+  there_to_wall_.reset();
+  send_heartbeat();
+}
+
+/// The first answer to a beat makes the connection: then its clock is known.
+void Connection::take_heartbeat(const Message& message, std::int64_t received) {
+  const auto moments = read_numbers(message, Moments().size());
+  if (moments.size() != Moments().size() || moments[0] == 0) return;
+  estimate_.add({moments[0], moments[1], moments[2], received});
+  const auto there = moments[3], here = monotonic_to_wall(), now = monotonic_now();
+  if (there_to_wall_ && std::abs(there - *there_to_wall_) > kClockSet)
+    parts_.log(format("host {}: its clock was set by {:.3f} s; times of its messages stay right",
+                      parts_.declared.name, static_cast<double>(there - *there_to_wall_) * 1e-9));
+  there_to_wall_ = there;
+  const bool is_new = [&] {
+    const std::lock_guard lock(mutex_);
+    wall_offset_ = here - estimate_.offset(now);
+    constexpr double kSeconds = 1e-9;
+    state_.offset = static_cast<double>(estimate_.offset(now) + there - here) * kSeconds;
+    state_.error = static_cast<double>(estimate_.error(now)) * kSeconds;
+    state_.drift = estimate_.drift();
+    state_.latency = static_cast<double>(estimate_.delay()) * kSeconds;
+    return !std::exchange(state_.is_connected, true);
+  }();
+  if (!is_new) return;
+  connected_ = Clock::now();
+  {
+    const std::lock_guard lock(mutex_);
+    state_.detail.clear();
+  }
+  is_open_ = true;
+  hold_again();
+  for (const auto& [number, uri] : readers_)
+    conversation_->say(make_order({{"what", "read"}, {"number", number}, {"uri", uri}}));
+  for (std::size_t i = 0; i < kSpares; ++i) want_spare();
+  if (std::exchange(is_first_, false)) {
+    first_->give(Json());
+  } else {
+    parts_.log("host " + parts_.declared.name + ": connected again");
+  }
+  parts_.changed();
+}
+
+/// Ports that links have stay theirs.
+void Connection::hold_again() {
+  for (const auto& [number, of_all] : ports_) {
+    const auto id = ++asked_;
+    questions_[id] = [this, number = number](const Result<Json>& answer) {
+      if (!answer)
+        parts_.log(format("host {}: port {} is lost: {}", parts_.declared.name, number,
+                          answer.error().detail));
+    };
+    conversation_->say(
+        make_order({{"what", "hold"}, {"id", id}, {"of_all", of_all}, {"port", number}}));
+  }
+}
+
+void Connection::want_spare() {
+  if (!conversation_) return;
+  const auto id = ++asked_;
+  questions_[id] = [this](const Result<Json>& answer) {
+    const auto port = answer ? port_in(*answer) : std::uint16_t{0};
+    if (port == 0) return;
+    const std::lock_guard lock(mutex_);
+    spares_.push_back(port);
+  };
+  conversation_->say(make_order({{"what", "hold"}, {"id", id}, {"of_all", true}, {"port", 0}}));
+}
+
+void Connection::take_usage(const Message& message) {
+  const auto numbers = read_numbers(message, kUsageColumns);
+  for (std::size_t i = 0; i + kUsageColumns <= numbers.size(); i += kUsageColumns) {
+    const auto found = modules_.find(numbers[i]);
+    if (found == modules_.end()) continue;
+    found->second->started(static_cast<pid_t>(numbers[i + 1]));
+    found->second->used({std::chrono::nanoseconds(numbers[i + 2]),
+                         static_cast<std::uint64_t>(numbers[i + 3]), numbers[i + 4] != 0});
+  }
+}
+
+void Connection::send_heartbeat() {
+  if (!conversation_) return;
+  const Moments moments{monotonic_now(), 0, 0, 0};
+  conversation_->say(make_numbers(Heartbeat, moments, moments.size()));
+  heartbeat_ = worker_.loop().call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
+}
+
+/// Why the connection is lost: what ssh says, and else what was noticed here.
+std::string Connection::reason_of(const std::string& noticed) const {
+  std::string said = last_line(error_text_);
+  auto is_said = [&](std::string_view words) { return said.find(words) != std::string::npos; };
+  if (!is_greeted_ && (is_said("not found") || is_said("No such file")))
+    return said + std::string(kHowToInstall);
+  if (!said.empty()) return said;
+  const bool is_noise = !is_greeted_ && noticed.starts_with(Conversation::kNoMessage);
+  return noticed +
+         (is_noise ? "; what a shell there starts with, as ~/.bashrc, must print nothing" : "");
+}
+
+/// The connection is lost, or has never been there: what ran over it is over. It is tried again
+/// unless it has never been.
+void Connection::lose(const std::string& why) {
+  if (ssh_) read_ssh_errors();
+  const std::string reason = reason_of(why);
+  bool was_connected = false;
+  {
+    const std::lock_guard lock(mutex_);
+    was_connected = std::exchange(state_.is_connected, false);
+    state_.detail = reason;
+    state_.offset = state_.error = state_.drift = state_.latency = {};
+    spares_.clear();
+  }
+  for (const auto& [number, module] : std::exchange(modules_, {})) module->ended(kHostLost);
+  for (const auto& [id, answer] : std::exchange(questions_, {})) answer(not_connected());
+  heartbeat_.reset();
+  // What calls this may be the conversation, which must not be destroyed then.
+  if (conversation_) conversation_->close();
+  again_ = worker_.loop().call_at(Clock::now(), [this] { disconnect(); });
+  if (std::exchange(is_first_, false)) {
+    is_closed_ = true;
+    return first_->give(Error{Code::Closed, reason});
+  }
+  if (is_closed_) return;
+  if (was_connected && Clock::now() - connected_ > kLasting) delay_ = {};
+  delay_ = std::clamp(2 * delay_, kFirstDelay, kLongestDelay);
+  if (was_connected)
+    parts_.log("host " + parts_.declared.name + ": lost: " + reason + "; connecting again");
+  parts_.changed();
+  again_ = worker_.loop().call_at(Clock::now(), [this] {
+    disconnect();
+    again_ = worker_.loop().call_at(Clock::now() + delay_, [this] { connect(); });
+  });
+}
+
+void Connection::disconnect() {
+  conversation_.reset();
+  ssh_errors_.reset();
+  heartbeat_.reset();
+  ssh_.reset();
+}
+
+}  // namespace hc::hosts

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hosts/conversation.h>
+
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include <hc/mtp/codec.h>
+#include <hc/mtp/rows.h>
+#include <hc/os/descriptor.h>
+
+namespace hc::hosts {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kMostInATurn = 64;  // pieces, so that a busy peer does not keep us from all else
+
+std::int64_t wall_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+std::int64_t monotonic_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
+      .count();
+}
+
+/// Two clocks cannot be read at once; of a few tries the quickest counts.
+std::int64_t monotonic_to_wall() {
+  std::int64_t best = 0, best_width = std::numeric_limits<std::int64_t>::max();
+  for (int i = 0; i < 3; ++i) {
+    const auto before = monotonic_now(), wall = wall_now(), after = monotonic_now();
+    if (after - before >= best_width) continue;
+    best_width = after - before;
+    best = wall - (before + best_width / 2);
+  }
+  return best;
+}
+
+Message make_order(const Json& order) {
+  auto message = make_rows(std::array{order.dump(-1, ' ', false, Json::error_handler_t::replace)});
+  message.header.src = Order;
+  return message;
+}
+
+Json read_order(const Message& message) {
+  const auto rows = rows_of(message);
+  if (rows.size() != 1) return nullptr;
+  auto order = Json::parse(rows.front(), nullptr, false);
+  const bool is_order = order.is_object() && order.contains("what") && order["what"].is_string();
+  return is_order ? order : Json(nullptr);
+}
+
+Message make_bytes(std::string_view bytes, std::int64_t process) {
+  Draft draft = Draft::make({MatrixType::Table, 1, Scalar::U8, Encoding::Binary}, 1,
+                            static_cast<std::int32_t>(bytes.size()));
+  std::memcpy(draft.elements().data(), bytes.data(), bytes.size());
+  draft.header.src = Log;
+  draft.header.dst = static_cast<std::int32_t>(process);
+  return std::move(draft).finish();
+}
+
+Message make_numbers(MessageKind kind, std::span<const std::int64_t> numbers, std::size_t columns) {
+  Draft draft = Draft::make(
+      {MatrixType::Table, static_cast<std::uint8_t>(columns), Scalar::I64, Encoding::Binary}, 1,
+      static_cast<std::int32_t>(numbers.size() / columns));
+  std::memcpy(draft.elements().data(), numbers.data(), draft.elements().size());
+  draft.header.src = kind;
+  return std::move(draft).finish();
+}
+
+std::vector<std::int64_t> read_numbers(const Message& message, std::size_t columns) {
+  const auto table = message.view<std::int64_t>();
+  if (!table || table->width() != 1 || table->components() != columns) return {};
+  const auto numbers = table->numbers();
+  return {numbers.begin(), numbers.end()};
+}
+
+Result<std::unique_ptr<Conversation>> Conversation::make(internal::Loop& loop, int in, int out,
+                                                         std::chrono::milliseconds patience,
+                                                         Hear hear) {
+  std::unique_ptr<Conversation> made(new Conversation(in, out, std::move(hear)));
+  auto* self = made.get();
+  self->heard_ = Clock::now();
+  self->patience_ = patience;
+  auto readable = loop.watch(in, EPOLLIN, [self](auto) { self->read(); });
+  if (!readable) return readable.error();
+  self->readable_ = std::move(*readable);
+  auto writable = loop.watch(out, 0, [self](auto) { self->write(); });
+  if (!writable) return writable.error();
+  self->writable_ = std::move(*writable);
+  self->silence_ = loop.call_at(self->heard_ + patience, [self] {
+    if (self->is_stuck_) return self->end("it does not take what it is sent");
+    const auto due = self->heard_ + self->patience_;
+    if (Clock::now() < due) return self->silence_.call_at(due);
+    self->end("no answer for " + std::to_string(self->patience_.count() / 1000) + " s");
+  });
+  return made;
+}
+
+void Conversation::say(const Message& message) {
+  if (is_over_) return;
+  waiting_ += encode(message);
+  write();
+}
+
+void Conversation::write() {
+  while (!is_over_ && !waiting_.empty()) {
+    const ssize_t size = ::write(out_, waiting_.data(), waiting_.size());
+    if (size > 0) {
+      waiting_.erase(0, static_cast<std::size_t>(size));
+    } else if (size < 0 && errno == EINTR) {
+      continue;
+    } else {
+      break;  // that it is over is found when reading; it may have said why
+    }
+  }
+  if (waiting_.size() > kTooMuch) {
+    waiting_.clear();
+    is_stuck_ = true;
+    silence_.call_at(Clock::now());
+  }
+  static_cast<void>(writable_.want(waiting_.empty() ? 0U : EPOLLOUT));
+}
+
+void Conversation::read() {
+  Message message;
+  for (int piece = 0; piece < kMostInATurn && !is_over_; ++piece) {
+    while (true) {
+      auto got = reader_.next(message);
+      if (!got) return end(std::string(kNoMessage) + ": " + got.error().detail);
+      if (!*got) break;
+      heard_ = Clock::now();
+      if (std::exchange(patience_, kSilence) != kSilence) silence_.call_at(heard_ + patience_);
+      hear_.take(message);
+      if (is_over_) return;
+    }
+    const auto space = reader_.space();
+    const ssize_t size = ::read(in_, space.data(), space.size());
+    if (size == 0) return end(std::string(kEnded));
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0 && errno == EAGAIN) return;
+    if (size < 0) return end(internal::system_error("read", "agent").detail);
+    reader_.commit(static_cast<std::size_t>(size));
+  }
+}
+
+void Conversation::close() {
+  is_over_ = true;
+  static_cast<void>(readable_.want(0));
+  static_cast<void>(writable_.want(0));
+  silence_.reset();
+}
+
+void Conversation::end(const std::string& why) {
+  if (is_over_) return;
+  close();
+  hear_.ended(why);
+}
+
+}  // namespace hc::hosts

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Reaches other hosts through ssh, where `hc agent` starts the modules of a graph.
+
+#include <memory>
+#include <string>
+
+#include <hc/graph/hosts.h>
+
+namespace hc::hosts {
+
+/// @param version  of this program, which an agent must have too.
+std::unique_ptr<Hosts> make_hosts(std::string version);
+
+}  // namespace hc::hosts

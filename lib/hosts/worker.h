@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A loop on a thread of its own. Internal.
+
+#include <sys/eventfd.h>
+
+#include <csignal>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <hc/os/descriptor.h>
+#include <hc/os/loop.h>
+
+namespace hc::hosts {
+
+/// An event that a descriptor tells of.
+class Event {
+ public:
+  Event() : descriptor_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
+  void raise() const { ::eventfd_write(descriptor_.get(), 1); }
+  void clear() const {
+    eventfd_t count = 0;
+    ::eventfd_read(descriptor_.get(), &count);
+  }
+
+ private:
+  internal::Descriptor descriptor_;
+};
+
+class Worker {
+ public:
+  /// Errors: System.
+  static Result<std::unique_ptr<Worker>> make() {
+    auto loop = internal::Loop::make();
+    if (!loop) return loop.error();
+    std::unique_ptr<Worker> worker(new Worker(std::move(*loop)));
+    auto watched = worker->loop_->watch(worker->posted_.descriptor(), EPOLLIN,
+                                        [self = worker.get()](auto) { self->do_jobs(); });
+    if (!watched) return watched.error();
+    worker->watch_ = std::move(*watched);
+    // Signals are for the program's own threads.
+    sigset_t all, before;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);
+    worker->thread_ = std::thread([self = worker.get()] {
+      while (!self->is_stopped_ && self->loop_->turn()) {
+      }
+    });
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    return worker;
+  }
+  /// Does what has been posted first.
+  ~Worker() {
+    post([this] { is_stopped_ = true; });
+    thread_.join();
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// Has something done on the thread, in the order of the calls. From any thread.
+  void post(std::function<void()> job) {
+    const std::lock_guard lock(mutex_);
+    jobs_.push_back(std::move(job));
+    posted_.raise();
+  }
+
+  /// For what is done on the thread.
+  [[nodiscard]] internal::Loop& loop() { return *loop_; }
+
+ private:
+  explicit Worker(std::unique_ptr<internal::Loop> loop) : loop_(std::move(loop)) {}
+
+  void do_jobs() {
+    posted_.clear();
+    std::vector<std::function<void()>> jobs;
+    {
+      const std::lock_guard lock(mutex_);
+      jobs.swap(jobs_);
+    }
+    for (const auto& job : jobs) job();
+  }
+
+  std::unique_ptr<internal::Loop> loop_;
+  Event posted_;
+  std::mutex mutex_;
+  std::vector<std::function<void()>> jobs_;
+  bool is_stopped_ = false;  // of the thread
+  internal::Loop::Handle watch_;
+  std::thread thread_;
+};
+
+}  // namespace hc::hosts

@@ -1,0 +1,386 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Graphs over several hosts, each a network namespace with an sshd of its own. Needs root.
+
+    hosts_test.py BUILD_FOLDER [TEST …]
+
+HC_FULL=1 kills each of agent, runner, sshd's child and module 50 times, else twice, and holds all
+to the times that doc/hosts.md promises.
+"""
+
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+from hosts import BRIGHTNESS, BUILD, CAMERA, FULL, HC, HostsTest, ROOT, WATCHDOG, wait_until
+
+TIMES = 50 if FULL else 2
+# Until a clock that was set is logged [s].
+TO_NOTICE = 1 if FULL else WATCHDOG
+
+
+class Hosts(HostsTest):
+    # What one sees.
+
+    def test_a_graph_over_two_hosts(self):
+        (host,) = self.network.add()
+        self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % "")
+        self.assertIn("no problems found", self.shell("hc check g.toml"))
+        process = self.run_graph()
+        messages = self.observe(process)
+        state = self.flows(messages)
+        self.assertEqual(state["links"][0]["transport"], "tls")
+        self.assertEqual([each["name"] for each in state["hosts"]], ["h1"])
+        camera = self.module(state, "camera")
+        self.assertEqual((camera["host"], camera["status"]), ("h1", "running"))
+        state = self.state(messages, lambda state: self.module(state, "camera")["memory"] > 0)
+        self.assertEqual(self.modules_of(host)["camera"], self.module(state, "camera")["pid"])
+        self.assertEqual(self.modules_of(host).keys(), {"camera"})
+        # As on one host: set, restart, look, read, record.
+        self.assertEqual(self.ask(process, "set camera.rate=20"), ["ok"])
+        self.state(
+            messages, lambda state: self.module(state, "camera")["parameters"]["rate"] == "20"
+        )
+        self.assertEqual(self.ask(process, "restart camera"), ["ok"])
+        self.await_lines(process, "camera: started")
+        state = self.flows(messages, state["links"][0]["messages"])
+        self.assertEqual(len(self.shell("hc cat camera.left --count 3 --raw").encode()) > 3 * 80, 1)
+        self.assertEqual(self.shell("hc cat camera.left --count 2").count("rgb_image"), 2)
+        self.assertIn("h1", self.shell("hc top --once"))
+        self.assertEqual(
+            self.ask(process, "add more@h1 brightness", "link camera.left more.image rate=10"),
+            ["ok"],
+        )
+        state = self.state(messages, lambda state: self.rate(state, "camera.left", "more.image"))
+        self.assertEqual(self.link(state, "camera.left", "more.image")["transport"], "shm")
+        self.assertEqual(self.ask(process, "remove more"), ["ok"])
+        self.stop(process)
+        self.assert_empty(host)
+
+    def test_who_reads_no_more_makes_nobody_wait(self):
+        (host,) = self.network.add()
+        for writes, reads in (("", "h1"), ("h1", "")):
+            self.write_graph(
+                self.tables(host)
+                + CAMERA % writes
+                + BRIGHTNESS % ""
+                + '[modules.once]\nprogram = "brightness"\nhost = "%s"\n' % reads
+                + 'inputs.image = { from = "camera.left", keep = "all" }\n'
+            )
+            process = self.run_graph("", "once: started")
+            messages = self.observe(process)
+            state = self.state(
+                messages, lambda state: self.rate(state, "camera.left", "once.image")
+            )
+            os.kill(self.module(state, "once")["pid"], signal.SIGTERM)
+            state = self.state(
+                messages, lambda state: self.module(state, "once")["status"] == "ended"
+            )
+            before = self.link(state, "camera.left", "brightness.image")["messages"]
+            # More than what waits on the way to a reader that takes nothing.
+            self.state(
+                messages,
+                lambda state: self.link(state, "camera.left", "brightness.image")["messages"]
+                > before + 100,
+            )
+            self.stop(process)
+            self.assert_empty(host)
+
+    def test_three_hosts_and_a_recording(self):
+        first, second, third = self.network.add(3)
+        text = self.tables(first, second, third) + CAMERA % "h1" + BRIGHTNESS % 'host = "h2"\n'
+        self.write_graph(text + BRIGHTNESS.replace("brightness]", "other]") % 'host = "h3"\n')
+        self.write_graph(
+            self.read("g.toml")
+            .replace("version = 1\n", "")
+            .replace("[modules.other]", "[modules.other]\nprogram = 'brightness'")
+        )
+        process = self.run_graph("--record all.mcap", "other: started")
+        messages = self.observe(process)
+        for link in (("camera.left", "brightness.image"), ("camera.left", "other.image")):
+            state = self.state(messages, lambda state: self.rate(state, *link))
+            self.assertEqual(self.link(state, *link)["transport"], "tls")
+            self.assertLess(self.link(state, *link)["age"][0], 60)
+        self.state(
+            messages,
+            lambda state: any(
+                each["to"].startswith("recorder.")
+                and each["from"] == "camera.left"
+                and each["messages"] > 20
+                for each in state["links"]
+            ),
+        )
+        self.refuses_who_has_no_key(first)
+        self.stop(process)
+        self.assert_empty(first, second, third)
+        self.assertRegex(self.shell("hc info all.mcap"), "camera.left")
+
+    def refuses_who_has_no_key(self, host):
+        """All ports that modules listen at speak TLS alone, and close before a byte of MTP."""
+        ports = self.ports_of(host)
+        self.assertGreaterEqual(len(ports), 2)
+        for port in ports:
+            with socket.create_connection((host.address, port), 5) as plain:
+                plain.settimeout(10)
+                plain.sendall(b"GET / HTTP/1.0\r\n\r\n")
+                try:
+                    answer = plain.recv(100)
+                except ConnectionResetError:
+                    answer = b""
+                self.assertTrue(answer == b"" or answer[0] == 0x15, answer)  # an alert
+            done = self.connect_by_tls(host, port)
+            self.assertEqual(done.stdout, b"")
+            self.assertIn(b"alert certificate required", done.stderr)
+
+    def test_the_key_of_the_previous_run_is_refused(self):
+        host, process, messages, state = self.run_two()
+        reader = self.module(state, "brightness")["pid"]
+        key = pathlib.Path("/proc/%d/fd/3" % reader).read_text()
+        self.assertIn("PRIVATE", key)
+        self.write("key.pem", key)
+        self.stop(process)
+        process = self.run_graph()
+        messages = self.observe(process)
+        self.flows(messages)
+        (port,) = self.ports_of(host)
+        with_key = "-cert {0} -key {0}".format(self.path("key.pem"))
+        done = self.connect_by_tls(host, port, with_key)
+        self.assertEqual(done.stdout, b"")
+        self.assertRegex(done.stderr, b"alert")
+        self.await_lines(process, "camera: .*: .*key")
+        self.flows(messages)
+        self.stop(process)
+        self.assert_empty(host)
+
+    def test_what_a_host_lacks_is_named_before_anything_starts(self):
+        (host,) = self.network.add()
+        wrong = CAMERA.replace("camera]", "camera]\nprogram = 'camra'")
+        camera = CAMERA.replace("aloeL", "no_such") % "h1"
+        unreachable = self.tables(host).replace(host.address, "10.9.0.99")
+        other = self.write_program(
+            "other_hc", "#!/bin/sh\nexec %s agent | sed -u s/0.1.0/9.9.9/" % HC
+        )
+        noisy = self.write_program("noisy_hc", "#!/bin/sh\necho Welcome!\nexec %s agent\n" % HC)
+        liar = self.write_program(
+            "liar_hc", "#!/bin/sh\n%s agent | sed -u 's/\"0.1.0\"/1234567/'\n" % HC
+        )
+        for text, words in (
+            (
+                self.tables(host) + wrong % "h1",
+                'g.toml:8: host h1: no program "camra", did you mean "camera"',
+            ),
+            (self.tables(host) + CAMERA % "robot", 'g.toml:8: no host "robot"'),
+            (
+                self.network.table(host, "/no/hc") + CAMERA % "h1",
+                "g.toml:2: host h1: .*/no/hc.*hc = ",
+            ),
+            (
+                self.network.table(host, other) + CAMERA % "h1",
+                "host h1: it has hc 9.9.9, and this is",
+            ),
+            (
+                self.network.table(host, noisy) + CAMERA % "h1",
+                "host h1: what it says is no message: .*bashrc, must print nothing",
+            ),
+            (
+                self.network.table(host, liar) + CAMERA % "h1",
+                "host h1: what it says is wrong: .*must be string",
+            ),
+            (unreachable + CAMERA % "h1", "g.toml:2: host h1: (ssh: connect|Host key|No ED25519)"),
+            (
+                self.tables(host) + camera,
+                "host h1: camera: parameter source: .*no_such.* does not exist",
+            ),
+        ):
+            self.write_graph(text)
+            self.shell("hc check g.toml", 2)
+            self.assertRegex(self.err, words)
+            self.assert_empty(host)
+        self.shell("hc doctor g.toml", 1)
+        self.write_graph(self.tables(host) + CAMERA % "h1")
+        self.assertRegex(self.shell("hc doctor g.toml || true"), "ok +host h1 +connected")
+
+    def test_the_document(self):
+        from documents_test import Documents
+
+        (host,) = self.network.add()
+        self.network.write("names", "Host robot\n  HostName %s\n" % host.address)
+        folder = self.network.folder
+        ssh = pathlib.Path(folder, "ssh")
+        ssh.write_text('#!/bin/sh\nexec /usr/bin/ssh -F %s/all "$@"\n' % folder)
+        ssh.chmod(0o755)
+        self.network.write("all", "Include %s/names\nInclude %s/ssh_config\n" % (folder, folder))
+        self.environment["PATH"] = folder + ":" + self.environment["PATH"]
+        self.commands = lambda name: Documents.commands(self, name)
+        Documents.run_document(self, "doc/hosts.md")
+        self.assert_empty(host)
+
+    def test_the_head_on_another_host(self):
+        (host,) = self.network.add()
+        self.network.write("names", "Host robot\n  HostName %s\n" % host.address)
+        graph = (ROOT / "graphs/score_track.toml").read_text().partition("version = 1\n")[2]
+        graph = graph.replace(
+            "[graphs.head]", self.network.table(host, HC) + "[graphs.head]\nhost = 'h1'"
+        )
+        graph = graph.replace(
+            '"simulated_head.toml"', '"%s"' % (ROOT / "graphs/simulated_head.toml")
+        )
+        self.write_graph(graph)
+        out = self.shell("hc run --quiet g.toml")
+        error = float(re.search(r"track_score: RMS error ([\d.]+)°", out)[1])
+        self.assertLess(error, 5)
+        self.assert_empty(host)
+
+    # What ends, and what is left.
+
+    def recovers_from(self, victim):
+        host, process, messages, state = self.run_two()
+        for _ in range(TIMES):
+            camera = self.modules_of(host)["camera"]
+            self.kill(victim(host))
+            wait_until(lambda: not os.path.exists("/proc/%d" % camera))
+            state = self.state(
+                messages, lambda state: self.module(state, "camera")["pid"] not in (0, camera)
+            )
+            state = self.flows(messages, state["links"][0]["messages"])
+        self.stop(process)
+        self.assert_empty(host)
+
+    def test_a_killed_agent(self):
+        self.recovers_from(self.agent_of)
+
+    def test_a_killed_child_of_sshd(self):
+        self.recovers_from(self.child_of_sshd)
+
+    def test_a_killed_module(self):
+        self.recovers_from(lambda host: self.modules_of(host)["camera"])
+
+    def test_a_killed_runner(self):
+        (host,) = self.network.add()
+        self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % "")
+        for _ in range(TIMES):
+            process = self.run_graph()
+            self.flows(self.observe(process))
+            self.kill(process.pid)
+            process.communicate()
+            self.assert_empty(host)
+            self.assertNotIn("ssh ", " ".join(self.own_programs()))
+
+    def test_a_cut_cable(self):
+        host, process, messages, state = self.run_two()
+        host.cut()
+        self.assert_empty(host)
+        lost = self.state(messages, lambda state: not state["hosts"][0]["connected"])
+        self.assertNotEqual(lost["hosts"][0]["detail"], "")
+        waits = self.state(
+            messages, lambda state: self.module(state, "camera")["status"] == "waiting"
+        )
+        self.assertIn("host h1 is not connected", self.module(waits, "camera")["detail"])
+        # The graph can be changed meanwhile; what is there counts when it is back.
+        self.assertEqual(self.ask(process, "set camera.rate=20", "restart brightness"), ["ok"])
+        host.cut(False)
+        state = self.flows(messages, state["links"][0]["messages"])
+        self.assertEqual(self.module(state, "camera")["parameters"]["rate"], "20")
+        host.cut()
+        self.stop(process)  # also while it is cut
+        self.assert_empty(host)
+
+    # Clocks.
+
+    def test_clocks_that_differ_by_an_hour(self):
+        (host,) = self.network.add()
+        self.write("offset", "0")
+        program = self.write_program(
+            "shifted_hc",
+            '#!/bin/sh\nexport WALL_CLOCK=%s LD_PRELOAD=%s\nexec %s "$@"\n'
+            % (self.path("offset"), BUILD / "tests/wall_clock.so", HC),
+        )
+        graph = (
+            CAMERA % "h1"
+            + BRIGHTNESS % 'host = "h1"\n'
+            + "[modules.here]\nprogram = 'brightness'\n"
+        )
+        self.write_graph(
+            self.network.table(host, program) + graph + 'inputs.image = "camera.left"\n'
+        )
+        for hours in (1, -1):
+            self.write("offset", str(3600 * hours))
+            process = self.run_graph("", "here: started")
+            messages = self.observe(process)
+            state = self.state(
+                messages, lambda state: self.rate(state, "camera.left", "here.image")
+            )
+            self.clock_is(state, 3600 * hours)
+            self.ages_are_right(messages)
+            # A clock that is set while the graph runs changes no time of a message.
+            self.write("offset", "7200")
+            began = time.monotonic()
+            self.await_lines(process, "host h1: its clock was set by %d" % (7200 - 3600 * hours))
+            self.assertLess(time.monotonic() - began, TO_NOTICE)
+            self.ages_are_right(messages)
+            self.clock_is(self.state(messages, lambda s: abs(s["hosts"][0]["offset"]) > 7000), 7200)
+            self.stop(process)
+
+    def clock_is(self, state, offset):
+        host = state["hosts"][0]
+        self.assertLess(abs(host["offset"] - offset), 0.001 + host["error"], host)
+        self.assertLess(host["error"], 0.1)
+
+    def ages_are_right(self, messages):
+        for _ in range(4):
+            state = self.state(messages)
+            for link in state["links"]:
+                if link["age"]:
+                    self.assertGreater(link["age"][0], -0.002, link)
+                    self.assertLess(link["age"][0], 60, link)
+
+    # Strangers.
+
+    def test_other_users_get_nothing(self):
+        host, process, messages, _ = self.run_two()
+        camera = self.modules_of(host)["camera"]
+        words = pathlib.Path("/proc/%d/cmdline" % camera).read_bytes()
+        self.assertIn(b"key=/proc/self/fd/3", words)
+        self.assertNotIn(b"PRIVATE", words + pathlib.Path("/proc/%d/environ" % camera).read_bytes())
+        self.assertIn(b"PRIVATE", pathlib.Path("/proc/%d/fd/3" % camera).read_bytes())
+        names = [
+            row.split()[-1][1:]
+            for row in host.inside("cat /proc/net/unix", stdout=-1).stdout.decode().splitlines()
+            if "@hc-" in row and row.split()[3] == "00010000"
+        ]
+        self.assertEqual(len([name for name in names if name.endswith(".control")]), 1)
+        script = (
+            """
+import os, socket, sys
+os.setgid(65534); os.setuid(65534)
+try:
+    print(open("/proc/%d/fd/3").read())
+except OSError:
+    pass
+for name in sys.argv[1:]:
+    peer = socket.socket(socket.AF_UNIX)
+    peer.settimeout(10)
+    peer.connect("\\0" + name)
+    try:
+        print(peer.recv(1000).decode(), end="")
+    except ConnectionError:
+        pass
+"""
+            % camera
+        )
+        command = [*host.enter(sys.executable), "-c", script, *names]
+        done = subprocess.run(command, stdout=-1, stderr=-1, timeout=WATCHDOG)
+        self.assertEqual((done.returncode, done.stdout), (0, b""), done)
+        self.flows(messages)
+        self.stop(process)
+        self.assert_empty(host)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc agent: starts modules here for a `hc run` on another host, which starts it through ssh.
+#include <unistd.h>
+
+#include <hc/os/program.h>
+#include <hosts/agent.h>
+
+#include "common.h"
+#include "examination.h"
+#include "verbs.h"
+
+namespace tool {
+
+void add_agent(CLI::App& app) {
+  auto* verb = app.add_subcommand(
+      "agent", "Start modules for hc run on another host, which starts this through ssh");
+  verb->callback([] {
+    if (::isatty(STDIN_FILENO) == 1)
+      throw Failure({hc::Code::Invalid,
+                     "hc run starts this through ssh, for modules with host = \"NAME\"; see "
+                     "spec/graph.md"});
+    allow_descriptors();
+    hc::hosts::AgentOptions options;
+    options.stop = hc::stop_descriptor();
+    options.version = HC_VERSION;
+    options.examine = examine;
+    if (auto ended = hc::hosts::run_agent(options); !ended) throw Failure(ended.error());
+  });
+}
+
+}  // namespace tool

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "examination.h"
+
+#include <algorithm>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include <hc/os/program.h>
+
+#include "facts.h"
+
+namespace tool {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string question_of(const Needs& needs) {
+  Json question = {{"paths", Json::array()}, {"ports", Json::array()}};
+  for (const auto& path : needs.paths) question["paths"].push_back(path.path);
+  for (const auto& port : needs.ports) question["ports"].push_back(port.port);
+  return question.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Errors: Malformed.
+hc::Result<Facts> facts_of(const std::string& answer) try {
+  const auto json = Json::parse(answer);
+  Facts facts;
+  facts.display = json.at("display");
+  facts.processors = json.at("processors");
+  for (const auto& [path, state] : json.at("paths").items())
+    facts.paths[path] = {state.at(0), state.at(1), state.at(2), state.at(3)};
+  json.at("ports").get_to(facts.ports);
+  return facts;
+} catch (const Json::exception& error) {
+  return hc::Error{hc::Code::Malformed, error.what()};
+}
+
+}  // namespace
+
+hc::Plan part_of(const hc::Plan& plan, const std::string& host) {
+  hc::Plan part;
+  for (const auto& module : plan.modules)
+    if (module.host == host) part.modules.push_back(module);
+  return part;
+}
+
+std::vector<Finding> diagnose(const hc::Plan& plan, hc::Hosts& hosts) {
+  std::set<std::string> names;
+  for (const auto& module : plan.modules)
+    if (!module.host.empty()) names.insert(module.host);
+  std::vector<Finding> findings;
+  for (const auto& name : names) {
+    const auto needs = needs_of(part_of(plan, name));
+    const auto host = hosts.find(name);
+    auto answer = host ? host->examine(question_of(needs), hc::stop_descriptor())
+                       : hc::Error{hc::Code::Closed, "it is not connected"};
+    auto facts = answer ? facts_of(*answer) : answer.error();
+    const std::string what = "host " + name;
+    if (!facts) {
+      findings.push_back({Mark::Missing, what, facts.error().text()});
+      continue;
+    }
+    findings.push_back({Mark::Ok, what, "connected"});
+    for (auto& finding : diagnose(needs, *facts)) {
+      finding.text = finding.what + ": " + finding.text;
+      finding.what = what;
+      findings.push_back(std::move(finding));
+    }
+  }
+  return findings;
+}
+
+std::string examine(const std::string& question) {
+  const auto asked = Json::parse(question, nullptr, false);
+  const auto list = [&](const char* key) {
+    return asked.is_object() ? asked.value(key, std::vector<std::string>())
+                             : std::vector<std::string>();
+  };
+  const Facts facts = gather_facts(list("paths"), list("ports"));
+  Json answer = {{"display", facts.display},
+                 {"processors", facts.processors},
+                 {"paths", Json::object()},
+                 {"ports", facts.ports}};
+  for (const auto& [path, state] : facts.paths)
+    answer["paths"][path] = {state.is_there, state.is_readable, state.is_folder, state.is_writable};
+  return answer.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace tool
