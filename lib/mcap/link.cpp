@@ -28,11 +28,12 @@ std::string stream_name(const ChannelRecord& channel) {
   return name != channel.metadata.end() ? name->second : channel.topic;
 }
 
-/// The channels that are beside one of MTP, by the topic of that.
+/// The channels that are beside one of MTP, by the topic of that; none is of MTP itself.
 std::multimap<std::string_view, std::uint16_t> channels_beside(const Summary& summary) {
   std::multimap<std::string_view, std::uint16_t> channels;
   for (const auto& [id, channel] : summary.channels)
-    if (const auto beside = channel.metadata.find(kBeside); beside != channel.metadata.end())
+    if (const auto beside = channel.metadata.find(kBeside);
+        beside != channel.metadata.end() && !is_matrix(summary, channel))
       channels.emplace(beside->second, id);
   return channels;
 }
