@@ -247,6 +247,43 @@ class Memory(Package):
         self.assertEqual(taken, count)
         self.assertLess(resident() - early, 4 << 20)
 
+    def test_a_handler_of_a_million_messages_leaks_nothing(self):
+        rows = b"".join(b"1 1 0 %d 8 5 10391 0 3 1 1\n%s\n" % (i, bytes(24)) for i in range(1000))
+        self.write("many.mtp", rows * 1000)
+        program = self.write_module(
+            "module",
+            """
+import os
+import hypercolumn as hc
+module = hc.Module("adder", "Adds what a position has.")
+position = module.input("position", hc.position(), "a position")
+total = module.output("sum", hc.table(), "the sum of its numbers")
+taken, early = 0, 0
+
+def resident():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+@module.on(position)
+def add(message):
+    global taken, early
+    total.send(sum(message.numbers) + message.array.size)
+    taken += 1
+    if taken == 200000:
+        early = resident()
+
+@module.on_end
+def end():
+    module.log("%d %d" % (taken, resident() - early))
+
+module.run()
+""",
+        )
+        self.shell(program + " --in many.mtp --out /dev/null")
+        taken, grown = map(int, self.err.split(":")[1].split())
+        self.assertEqual(taken, 1000000)
+        self.assertLess(grown, 1 << 20)
+
 
 class Waiting(Package):
     def test_other_threads_run_meanwhile(self):
