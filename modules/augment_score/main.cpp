@@ -65,10 +65,11 @@ int main(int argc, char** argv) {
                             "truth: of the left image [m]");
   auto corners = module.input("corners", hc::table<double>(), "from augment");
   auto mask = module.input("mask", hc::intensity_image<std::uint8_t>(), "from augment");
-  auto result = module.output("score", hc::table<double>().of(6, 1),
-                              "reprojection error of the corners, median and most [px], share of "
-                              "the object's pixels that are right, median and minimum, fastest turn "
-                              "[rad/s], images");
+  auto result =
+      module.output("score", hc::table<double>().of(6, 1),
+                    "reprojection error of the corners, median and most [px], share of "
+                    "the object's pixels that are right, median and minimum, fastest turn "
+                    "[rad/s], images");
   auto x = module.parameter("x", 2.75, "m", "middle of the cube in the world", {.fixed = true});
   auto y = module.parameter("y", 0.35, "m", "the same", {.fixed = true});
   auto z = module.parameter("z", 0.7, "m", "the same", {.fixed = true});
