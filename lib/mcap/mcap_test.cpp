@@ -362,6 +362,23 @@ TEST(Mcap, StreamsNeverShareATopic) {
   EXPECT_EQ(topics.size(), summary->channels.size());
 }
 
+TEST(Mcap, TracesHaveNoTopicForViewers) {
+  Folder folder;
+  auto recorder = recorder_of(folder / "x.mcap");
+  std::vector<std::string> all;
+  for (const char* name : {"eye.trace", "eye.left"}) {
+    ASSERT_TRUE(recorder->record(recorder->add_stream(name), image(1), 1));
+    all.push_back(encode(image(1)));
+  }
+  ASSERT_TRUE(recorder->close());
+  EXPECT_EQ(play(folder / "x.mcap").messages, all);
+  auto reader = Reader::open(folder / "x.mcap");
+  std::set<std::string> topics;
+  const auto summary = reader->summary();
+  for (const auto& [id, channel] : summary->channels) topics.insert(channel.topic);
+  EXPECT_EQ(topics, (std::set<std::string>{"/eye/left", "/eye/left/mtp", "/eye/trace/mtp"}));
+}
+
 TEST(Mcap, StreamsThatHaveNoRoomInAFileAreRefused) {
   Folder folder;
   auto recorder = recorder_of(folder / "x.mcap", 1 << 20);

@@ -12,6 +12,10 @@ namespace {
 /// topics, and /tf; /tf_static and /rosout are two more.
 constexpr std::uint16_t kMostChannels = 65535 - 5;
 constexpr std::string_view kStaticFrames = "/tf_static", kFrames = "/tf", kLog = "/rosout";
+/// How streams end that are of a module's output `trace`.
+constexpr std::string_view kTrace = ".trace";
+/// The frame in which Rerun shows things, unless somebody chooses another one.
+constexpr std::string_view kRerunOrigin = "tf#/";
 
 /// What rosbag2 wants to know of a topic: reliable, and volatile (2) or kept for who comes late
 /// (1).
@@ -61,6 +65,7 @@ std::size_t Recorder::add_stream(std::string_view name) {
   stream.topic = take_topic(topic_of(name));
   stream.matrix_topic = take_topic(stream.topic + "/mtp");
   stream.moves_frames = joints_.are_moved_by(name);
+  stream.is_shown = !name.ends_with(kTrace);
   streams_.push_back(std::move(stream));
   return streams_.size() - 1;
 }
@@ -117,12 +122,13 @@ Status Recorder::record(std::size_t number, const Message& message, std::int64_t
   bytes_ += message.elements.size();
   const bool is_picture =
       header.info.type == MatrixType::RgbImage || header.info.type == MatrixType::IntensityImage;
-  if (is_picture && header.coord == Coord::kLeftRectified) {
+  // Until a rectified image has come, they are as large as another one.
+  if (is_picture && (header.coord == Coord::kLeftRectified || encoder_.camera_width == 0)) {
     encoder_.camera_width = static_cast<std::uint32_t>(header.width);
     encoder_.camera_height = static_cast<std::uint32_t>(header.height);
   }
   // The type is that of the first message, but for images, which are compressed or not.
-  auto type = ros::type_for(header);
+  auto type = stream.is_shown ? ros::type_for(header) : std::nullopt;
   if (type && type != ros::Type::CompressedImage) {
     if (!stream.type) stream.type = type;
     type = stream.type;
@@ -172,8 +178,10 @@ Status Recorder::set_frames(const std::string& text, std::int64_t time) {
   joints_ = std::move(*joints);
   encoder_.frames = joints_.names;
   for (auto& joint : joints_.fixed) joint.time = time;
-  if (joints_.fixed.empty()) return {};
-  add_other(kStaticFrames, ros::Type::TfMessage, time, encoder_.encode(joints_.fixed));
+  if (joints_.root.empty()) return {};
+  auto fixed = joints_.fixed;
+  fixed.push_back({.parent = std::string(kRerunOrigin), .child = joints_.root, .time = time});
+  add_other(kStaticFrames, ros::Type::TfMessage, time, encoder_.encode(fixed));
   return hand_on(true);
 }
 

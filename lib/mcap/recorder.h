@@ -44,7 +44,8 @@ class Recorder {
   ~Recorder();
 
   /// A stream of messages; gives its number.
-  /// @param name  "MODULE.PORT", or any text: its topic is `/MODULE/PORT`.
+  /// @param name  "MODULE.PORT", or any text: its topic is `/MODULE/PORT`. Traces, "MODULE.trace",
+  ///     have none: viewers show a text for each of the graph's modules otherwise.
   std::size_t add_stream(std::string_view name);
 
   /// Records a message. Waits while the backlog is full.
@@ -87,6 +88,7 @@ class Recorder {
     std::optional<ros::Type> type;  // of its first message, fixed from then on
     std::uint16_t matrix = 0;       // channel; 0: none yet
     bool has_topic = false;         // taken by a channel
+    bool is_shown = true;           // viewers can see it
     std::map<ros::Type, std::uint16_t> channels;
     bool moves_frames = false;  // its messages are poses of these
   };

@@ -24,13 +24,15 @@ Joint joint(std::string parent, std::string child, const Eigen::Isometry3d& T, s
 Result<GraphJoints> GraphJoints::read(const std::string& text) {
   auto frames = hc::frames::read_frames(text);
   if (!frames) return frames.error();
-  GraphJoints joints{std::move(*frames), {}, {}};
+  GraphJoints joints{std::move(*frames), {}, {}, {}};
+  std::map<std::string, std::string> parents;
   std::istringstream entries(text);
   for (std::string entry; std::getline(entries, entry, ';');) {
     std::istringstream words(entry);
     std::string child, parent;
     std::int32_t number = 0;
     if (!(words >> child >> number >> parent)) continue;
+    parents[child] = joints.root = parent;
     if (number != 0) joints.names[number] = child;
     const bool moves = std::ranges::find(joints.frames.movers, child, &hc::frames::Mover::child) !=
                        joints.frames.movers.end();
@@ -39,6 +41,7 @@ Result<GraphJoints> GraphJoints::read(const std::string& text) {
     if (!T) return T.error();
     joints.fixed.push_back(joint(parent, child, *T, 0));
   }
+  while (parents.contains(joints.root)) joints.root = parents[joints.root];
   return joints;
 }
 

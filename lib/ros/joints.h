@@ -19,6 +19,7 @@ struct GraphJoints {
   hc::frames::GraphFrames frames;
   std::map<std::int32_t, std::string> names;  ///< of frames, by their number
   std::vector<Joint> fixed;                   ///< those that do not move
+  std::string root;                           ///< the frame that has no parent; empty: no frames
 
   /// @param text  of a module's parameter `frames` (spec/graph.md, G31).
   /// Errors: as frames::read_frames().

@@ -14,6 +14,7 @@ TEST(GraphJoints, are_fixed_or_moved) {
   const auto joints = GraphJoints::read(kFrames);
   ASSERT_TRUE(joints) << joints.error().detail;
   EXPECT_EQ(joints->names.at(200), "cup");
+  EXPECT_EQ(joints->root, "robot");
   ASSERT_EQ(joints->fixed.size(), 2u);
   EXPECT_EQ(joints->fixed[1].parent, "head");
   EXPECT_EQ(joints->fixed[1].child, "cup");
