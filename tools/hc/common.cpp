@@ -138,11 +138,12 @@ std::vector<std::string> shipped_graphs() {
 }
 
 std::string seconds_in_words(double seconds) {
+  constexpr std::int64_t kMinute = 60, kHour = 60 * kMinute, kDay = 24 * kHour;
   auto whole = static_cast<std::int64_t>(seconds);
-  if (whole < 60) return hc::format("{} s", whole);
-  if (whole < 3600) return hc::format("{}:{:02} min", whole / 60, whole % 60);
-  if (whole < 48 * 3600) return hc::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
-  return hc::format("{} d", whole / (24 * 3600));
+  if (whole < kMinute) return hc::format("{} s", whole);
+  if (whole < kHour) return hc::format("{}:{:02} min", whole / kMinute, whole % kMinute);
+  if (whole < 2 * kDay) return hc::format("{}:{:02} h", whole / kHour, whole / kMinute % 60);
+  return hc::format("{} d", whole / kDay);
 }
 
 std::string bytes_in_words(double bytes) {

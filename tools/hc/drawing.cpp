@@ -51,7 +51,7 @@ std::string table_of(const Drawing::Box& box, const std::vector<std::string>& in
       "BGCOLOR=\"{}\"><TR><TD COLSPAN=\"2\"><B>{}</B></TD></TR>",
       box.is_bold ? 4 : 1, color, in_html(box.name));
   if (!box.words.empty())
-    text += hc::format("<TR><TD COLSPAN=\"2\"><FONT POINT-SIZE=\"10\">{}</FONT></TD></TR>",
+    text += hc::format(R"(<TR><TD COLSPAN="2"><FONT POINT-SIZE="10">{}</FONT></TD></TR>)",
                        in_html(box.words));
   for (std::size_t i = 0; i < std::max(inputs.size(), outputs.size()); ++i) {
     text += "<TR>";
@@ -181,7 +181,7 @@ std::string as_dot(const Drawing& drawing) {
             " -> " + in_quotes(to) + (input.empty() ? "" : ":" + in_quotes("in_" + input) + ":w") +
             hc::format(" [label={}", in_quotes(arrow.words));
     if (arrow.is_bold) text += ", penwidth=3, color=black";
-    if (arrow.is_wrong) text += ", color=\"#cc0000\", fontcolor=\"#cc0000\"";
+    if (arrow.is_wrong) text += R"(, color="#cc0000", fontcolor="#cc0000")";
     text += "];\n";
   }
   if (drawing.is_running) text += kLegend;

@@ -102,6 +102,7 @@ void become_module(const std::string& name, char** argv) {
   for (char** word = argv; *word != nullptr; ++word) words.emplace_back(*word);
   words = module_arguments(program, std::move(words));
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   ::execv(program.c_str(), arguments.data());
