@@ -16,18 +16,23 @@
 doc/python.md is a tour of ten minutes.
 """
 
-from hypercolumn.errors import Error, Stopped
-from hypercolumn._hypercolumn import (
-    Frames,
-    Input,
-    Kind,
-    Loan,
-    Message,
-    Output,
-    Parameter,
-    Stream,
-    Timeout,
-)
+from hypercolumn.errors import Error, Stopped, other_python
+
+try:
+    from hypercolumn._hypercolumn import (
+        Frames,
+        Input,
+        Kind,
+        Loan,
+        Message,
+        Output,
+        Parameter,
+        Stream,
+        Timeout,
+    )
+except ModuleNotFoundError as missing:
+    raise ImportError(other_python()) from missing
+
 from hypercolumn.graphs import Graph, Port, attach, running, start
 from hypercolumn.kinds import (
     any_of,

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What this package raises."""
 
+import pathlib
+import sys
+
 
 class Error(RuntimeError):
     """A failure of the world, with the text that C++ and the commands have for it.
@@ -22,3 +25,14 @@ class Stopped(BaseException):
 
     It passes through handlers as KeyboardInterrupt does; no `except Exception` catches it.
     """
+
+
+def other_python() -> str:
+    """Says that the package was built for another version of Python than this one."""
+    folder = pathlib.Path(__file__).parent
+    built = ", ".join(sorted(path.name for path in folder.glob("_hypercolumn.*.so"))) or "nothing"
+    return (
+        "hypercolumn was built for another Python than %s (%d.%d): %s has %s; start the program with "
+        "the Python of that, or build with cmake -D Python_EXECUTABLE=%s"
+        % (sys.executable, *sys.version_info[:2], folder, built, sys.executable)
+    )

@@ -4,6 +4,7 @@
 
 import gc
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -13,7 +14,7 @@ import warnings
 
 import numpy
 
-from package import Package, hc, is_shared, wait_until
+from package import BUILD, Package, hc, is_shared, wait_until
 
 FULL = os.environ.get("HC_FULL") == "1"
 KEPT = 40  # messages of a publisher's memory that are kept at most
@@ -67,6 +68,19 @@ class Fields(Package):
         (table,) = self.read(b"1 1 0 0 8 0 120190 0 0 1 1\n1\n")
         with self.assertRaisesRegex(hc.Error, "no text: the message is a table"):
             table.text
+
+    def test_another_python_is_named(self):
+        shutil.copytree(
+            BUILD / "python/hypercolumn",
+            self.path("hypercolumn"),
+            ignore=shutil.ignore_patterns("*.so", "__pycache__"),
+        )
+        self.write("hypercolumn/_hypercolumn.cpython-30-x86_64-linux-gnu.so", "")
+        self.environment["PYTHONPATH"] = self.path("")
+        self.shell("python3 -c 'import hypercolumn'", 1)
+        said = self.err.splitlines()[-1]
+        self.assertIn("ImportError: hypercolumn was built for another Python than /", said)
+        self.assertIn("hypercolumn has _hypercolumn.cpython-30-x86_64-linux-gnu.so; ", said)
 
     def test_without_memory_it_raises(self):
         self.write("x.mtp", b"1 1 0 0 8 0 60100 0 0 32000000 2\n" + b"x" * (64 * 10**6) + b"\n")
