@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // What messages hold where all bytes are written and read: word i of message n is n + i. The sum
-// of all words tells the reader that each byte came. Compiled for wider registers where they are,
+// of all words shows the reader that each byte came. Compiled for wider registers where they are,
 // so that the memory is measured, not the loop.
 
 #include <cstddef>

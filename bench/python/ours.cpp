@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands around a module in Python in the measurements of scripts/bench_python: a source, a
+// What surrounds a module in Python in the measurements of scripts/bench_python: a source, a
 // sink, and a module in C++ in its place.
 #include <algorithm>
 #include <cstring>

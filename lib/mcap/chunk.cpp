@@ -34,7 +34,7 @@ ChunkPacker::~ChunkPacker() = default;
 
 PackedChunk ChunkPacker::pack(const ChunkBuilder& chunk) {
   const std::span<const std::byte> plain(chunk.records_.bytes);
-  // What does not get smaller stands as it is.
+  // What does not get smaller stays as it is.
   const auto smaller = compressor_ != nullptr ? compressor_->compress(plain) : plain;
   const bool helps = smaller.size() < plain.size();
   const auto stored = helps ? smaller : plain;

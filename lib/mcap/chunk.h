@@ -60,7 +60,7 @@ struct ChunkInfo {
   std::map<std::uint16_t, std::uint64_t> counts;         ///< of messages, where it is known
 };
 
-/// A chunk as it stands in a file, with its MessageIndex behind it; offsets count from its begin.
+/// A chunk as it is in a file, with its MessageIndex behind it; offsets count from its begin.
 struct PackedChunk {
   std::vector<std::byte> bytes;
   ChunkInfo info;

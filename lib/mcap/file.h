@@ -52,7 +52,7 @@ class File {
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:
-  /// What the summary repeats, and where it stands.
+  /// What the summary repeats, and where it is.
   template <typename T>
   struct Placed {
     T record;

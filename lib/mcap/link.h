@@ -29,7 +29,7 @@ struct StreamInfo {
 std::vector<StreamInfo> streams(const Summary& summary);
 
 /// The messages of a recording, or of one of its streams, in the order in which they were recorded.
-/// resume() goes on behind what is damaged.
+/// resume() continues behind what is damaged.
 ///
 /// Errors: Invalid (an option that it does not have), NotFound (no such file or stream), Malformed,
 /// Unsupported (no messages of MTP in it), System.

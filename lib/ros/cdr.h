@@ -125,7 +125,7 @@ class CdrWriter {
 
   std::vector<std::byte> buffer_;
   std::span<const std::byte> body_;
-  std::size_t split_ = kNone;  // of buffer_, where the body stands
+  std::size_t split_ = kNone;  // of buffer_, where the body is
 };
 
 /// Reads one message. What is hostile costs no more memory than in proportion to its bytes.

@@ -186,7 +186,7 @@ struct Log {
 };
 
 /// hypercolumn_msgs/msg/Matrix: an MTP message whole, or what a message of another type, which
-/// stands beside it, lacks of it.
+/// is beside it, lacks of it.
 struct Matrix {
   std::string header;        ///< its header line without the line end
   std::uint32_t offset = 0;  ///< of the elements in the message beside; 0: they are here

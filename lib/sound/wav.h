@@ -55,7 +55,7 @@ class WavWriter {
  public:
   /// Errors: System (cannot be written).
   static Result<WavWriter> create(const std::string& path, const Format& format);
-  /// Goes on behind what is in a file that another WavWriter of this format wrote, or who writes
+  /// Continues behind what is in a file that another WavWriter of this format wrote, or who writes
   /// the same plain header; wrong sizes in it, as after a crash of its writer, are repaired. Any
   /// other file is overwritten, as by create().
   /// Errors: as of create().

@@ -97,7 +97,7 @@ Status Acceptor::let_in(ConnectedSocket accepted) {
   return {};
 }
 
-/// Goes on with a handshake.
+/// Continues a handshake.
 void Acceptor::go_on(Peer peer, bool is_late) {
   auto awaited = peer->socket.channel->agree();
   if (awaited && *awaited != 0 && !is_late) {

@@ -19,7 +19,7 @@
 namespace hc::tls {
 
 /// Accepts connections and agrees with their peers on TLS, in the reactor's thread: also while the
-/// link's own thread does other things. Peers that are refused, or too slow, are told to the log.
+/// link's own thread does other things. Peers that are refused, or too slow, are logged.
 class Acceptor {
  public:
   /// How many peers may be in a handshake; the oldest makes room for another.

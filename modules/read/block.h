@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads what stands on a board: one line or several.
+// Reads what is on a board: one line or several.
 
 #include <vector>
 

@@ -88,7 +88,7 @@ struct Vp8Encoder::Codec {
     settings.g_threads = 1;
     settings.g_lag_in_frames = 0;
     settings.rc_end_usage = VPX_CBR;
-    // 0.15 bit a pixel of 20 images a second is seldom told from the original.
+    // 0.15 bit a pixel of 20 images a second is seldom distinguished from the original.
     settings.rc_target_bitrate = static_cast<unsigned>(wanted.area() * 20.0 * 0.15 / 1000) + 100;
     settings.rc_max_quantizer = 40;
     settings.kf_mode = VPX_KF_DISABLED;  // key frames are asked for

@@ -42,7 +42,7 @@ MOST_NUMBER = 64  # bytes; R31
 MOST_LENGTH = 20  # bytes without the line feed; R34
 CHUNK = 1 << 16  # bytes asked of a stream at a time
 
-NUMBER = re.compile(rb" *([^ \n]*)([ \n])")  # with what stands before it and the byte that ends it
+NUMBER = re.compile(rb" *([^ \n]*)([ \n])")  # with what is before it and the byte that ends it
 
 
 # ---------------------------------------------------------------------------------------- reading

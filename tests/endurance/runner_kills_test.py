@@ -32,7 +32,7 @@ class RunnerKills(Endurance):
             process.wait()
         self.check_noted("near", "far")
         report(
-            "hc run killed %d times: all gone after %.0f ms, %.0f at most; the next graph's first "
+            "hc run killed %d times: all ended after %.0f ms, %.0f at most; the next graph's first "
             "messages after %.0f ms, %.0f at most",
             *(KILLS, 1e3 * quantile(ended, 0.5), 1e3 * max(ended)),
             *(1e3 * quantile(started, 0.5), 1e3 * max(started)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Graphs that run, as tests see them: what hc run tells, and what is asked of it."""
+"""Graphs that run, as tests see them: what hc run prints, and what is asked of it."""
 
 import json
 import os

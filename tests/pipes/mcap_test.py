@@ -294,7 +294,7 @@ class Recordings(Pipes):
         return found
 
     def sent(self, graph, source, target):
-        """How many messages have gone over a link."""
+        """How many messages a link has carried."""
         out = self.shell("hc top --json --once " + graph)
         links = json.loads(out.split("\n")[0])["links"]
         return next(

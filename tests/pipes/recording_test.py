@@ -9,7 +9,7 @@ What is compared how:
   byte, in all messages that have the same time.
 - What it does by the clock (commands, bids, the focus) has times of its own, so a message counts as
   the same if one of the replay with the same numbers is near it in time. Numbers and times may
-  differ by what is said where they are compared: a recording tells when things were sensed, and not
+  differ by what is said where they are compared: a recording says when things were sensed, and not
   that the module heard of them up to 0.1 s later, more on a busy machine; that is why a share of
   the messages may differ, too.
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Graphs while they run: what hc run tells of them, takes, and does when they change."""
+"""Graphs while they run: what hc run says of them, takes, and does when they change."""
 
 import os
 import pathlib

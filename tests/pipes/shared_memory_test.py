@@ -21,7 +21,7 @@ class SharedMemory(harness.Pipes):
         self.uri = "shm:" + self.name
 
     def many(self, count, path="many.mtp"):
-        """A recording of images that their seq tells."""
+        """A recording of images that their seq determines."""
         with open(self.path(path), "wb") as file:
             for i in range(count):
                 file.write(

@@ -3,7 +3,7 @@
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {
-  hc::Module module{"trio", "Tells the times of three inputs that are taken together."};
+  hc::Module module{"trio", "Sends the times of three inputs that are taken together."};
   auto place = module.input("place", hc::position<double>(), "a position");
   auto score = module.input("score", hc::table<double>(), "a table");
   auto words = module.input("words", hc::string(), "a text");

@@ -121,7 +121,7 @@ void visit(V& v, TYPE(sensor_msgs, CompressedImage) & m) {
   if (!V::kIsBack) return numbers(v, "data", m.M(data), kJpeg);
   const std::size_t size = length(m.M(data));
   if (size < 4) return v.size("data", m.M(data), kJpeg.size());
-  v.number("data[0]", item(m.M(data), 0), 0xFF);  // compressed anew: its ends are known
+  v.number("data[0]", item(m.M(data), 0), 0xFF);  // compressed again: its ends are known
   v.number("data[1]", item(m.M(data), 1), 0xD8);
   v.number("data[-2]", item(m.M(data), size - 2), 0xFF);
   v.number("data[-1]", item(m.M(data), size - 1), 0xD9);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A module that ./dev new begins compiles, passes its case, and stands where the build finds it.
+"""A module that ./dev new begins compiles, passes its case, and is where the build finds it.
 
     new_module_test.py BUILD_FOLDER
 """

@@ -45,7 +45,7 @@ hc::GraphState some_state(int modules) {
     link.bytes_per_second = 43.2e6;
     link.traffic.superseded = static_cast<std::uint64_t>(i);
     link.traffic.over_rate = static_cast<std::uint64_t>(2 * i);
-    link.left_out = i == 0 ? 1234 : 0;
+    link.ignored = i == 0 ? 1234 : 0;
     link.age = {0.0021, 0.0102, 0.5};
     link.in_workspace = i == 1;
   }

@@ -43,7 +43,7 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
   std::uint64_t restarts = 0, ignored = 0;
   for (const auto& link : report.state.links) {
     sum += link.traffic;
-    ignored += link.left_out;
+    ignored += link.ignored;
   }
   for (const auto& module : report.state.modules)
     restarts += static_cast<std::uint64_t>(module.restarts);

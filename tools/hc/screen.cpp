@@ -173,7 +173,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
       {"THROTTLED", 10, [](const auto& l) { return short_count(l.traffic.over_rate); }},
       {"DROPPED", 8,
        [](const auto& l) { return short_count(l.traffic.lost() - l.traffic.over_rate); }},
-      {"IGNORED", 8, [](const auto& l) { return short_count(l.left_out); }},
+      {"IGNORED", 8, [](const auto& l) { return short_count(l.ignored); }},
   };
   constexpr std::size_t kWide = 100;
   if (width < kWide) columns.erase(columns.begin() + 3);
@@ -193,7 +193,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
     note(link.status);
     if (link.rate > 0) note("at most " + short_number(link.rate) + "/s");
     note(losses_in_words(link.traffic));
-    if (link.left_out > 0) note("ignored: not in focus");
+    if (link.ignored > 0) note("ignored: not in focus");
     const auto text = fitted(link.from + " → " + link.to, name) + cells(columns, link) + notes;
     lines.push_back({text, link.in_workspace, !link.status.empty()});
   }

@@ -99,7 +99,7 @@ Result<HostPort> parse_host_port(std::string_view text) {
     result.host = text.substr(0, colon);
     port = text.substr(colon + 1);
     if (result.host.find(':') != std::string::npos)
-      return usage("an IPv6 address stands in brackets", text);
+      return usage("an IPv6 address is written in brackets", text);
   }
   const char* end = port.data() + port.size();
   auto [stop, status] = std::from_chars(port.data(), end, result.port);

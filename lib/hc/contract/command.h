@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `hc run` tells a module over its --control link: rows of text, written and read here alone
+// What `hc run` says to a module over its --control link: rows of text, written and read here alone
 // (spec/module.md). Pure.
 
 #include <string>

@@ -19,7 +19,7 @@ using internal::quoted_name;
 constexpr std::size_t kMaxIncludedDepth = 16;                  // of files that include files
 constexpr std::size_t kMaxIncludedBytes = 4 * kMaxGraphBytes;  // of all that is included
 
-/// Reads a file and those that it includes, and goes on after what is wrong.
+/// Reads a file and those that it includes, and continues after what is wrong.
 class GraphReader {
  public:
   GraphReader(const Environment& environment, Problems& problems, const ReadFile& read_file)

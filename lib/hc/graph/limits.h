@@ -7,7 +7,7 @@
 
 namespace hc {
 
-/// How often a module is started anew.
+/// How often a module is restarted.
 struct RestartLimits {
   std::size_t starts_at_once = 5;                              ///< so many …
   std::chrono::nanoseconds window = std::chrono::seconds(10);  ///< … within this time

@@ -22,7 +22,7 @@ namespace internal {
 struct HeldPort;
 }
 
-/// One end of a link, as a module is told of it.
+/// One end of a link, as a module gets it.
 struct PlannedEnd {
   bool is_input = false;
   std::string port, uri;
@@ -110,7 +110,7 @@ inline constexpr std::string_view kKeyFile = "/proc/self/fd/3";
 ///
 /// @param token  a word that no other running graph has; the names of links begin with it.
 ///
-/// The names of links tell what they join, so they stay the same when a graph is planned anew.
+/// The names of links say what they join, so they stay the same when a graph is planned again.
 ///
 /// Ports without an address get the least ones that are free, in the order of the file.
 ///

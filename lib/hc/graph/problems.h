@@ -12,7 +12,7 @@
 
 namespace hc {
 
-/// Where something stands.
+/// Where something is.
 struct Place {
   int line = 0;  ///< from 1 on; 0: it was not in a file, but set beside it
   int file = 0;  ///< as Problems counts them; 0 is the graph's own, others are included

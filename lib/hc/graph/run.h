@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Runs a planned graph: starts its processes and supervises them, has them changed while they run,
-// tells what they do, and takes all of them down together.
+// reports what they do, and takes all of them down together.
 
 #include <functional>
 #include <optional>

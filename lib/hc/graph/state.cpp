@@ -101,7 +101,7 @@ void visit_link(Link& link, Visit visit) {
   visit("dropped_newer", link.traffic.superseded);
   visit("dropped_memory", link.traffic.over_memory);
   visit("dropped_disconnect", link.traffic.cut);
-  visit("ignored", link.left_out);
+  visit("ignored", link.ignored);
   visit("age", link.age);
   visit("gap", link.gap);
   visit("in_workspace", link.in_workspace);

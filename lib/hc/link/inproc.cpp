@@ -14,7 +14,7 @@
 namespace hc::internal {
 namespace {
 
-constexpr std::size_t kCapacity = 64;  // messages under way before a sender waits that loses none
+constexpr std::size_t kCapacity = 64;  // messages in flight before a sender waits that loses none
 
 /// What the two ends share. Each end holds it; the last one frees it.
 struct Channel {

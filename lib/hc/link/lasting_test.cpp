@@ -102,7 +102,7 @@ TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   heard = true;
   while (!done) ASSERT_TRUE(source_->take(message_));
   sender.join();
-  EXPECT_LE(sink_->traffic().cut, 1U);  // the one under way to who left
+  EXPECT_LE(sink_->traffic().cut, 1U);  // the one in flight to the reader that left
 }
 
 TEST_P(LastingLink, WithoutStayItEndsWithItsReaders) {

@@ -43,7 +43,7 @@ class Source {
   ///
   /// Errors: those of StreamReader, Truncated, Closed (the peer has died or vanished), NotFound (it
   /// never was there), System; the link is of no use afterwards. A
-  /// listening source closes the connection at fault, tells the log, and goes on with the others.
+  /// listening source closes the connection at fault, logs it, and continues with the others.
   virtual Result<Got> take(Message& message) = 0;
 
   // How to wait. WaitSet does it for any number of sources; an event loop may do the same.
@@ -77,10 +77,10 @@ class Source {
   [[nodiscard]] virtual Traffic traffic() const = 0;
 
   /// Says that the peer will not come back: the end of the connection there is, or that there is
-  /// none, is the end of the link. Only a source that reconnects needs to be told.
+  /// none, is the end of the link. Only a source that reconnects needs this.
   virtual void finish() {}
 
-  /// Goes on after an error that take() gave, at the next valid header (R40).
+  /// Continues after an error that take() gave, at the next valid header (R40).
   ///
   /// Errors: Unsupported for everything that cannot be read once more; files can.
   virtual Status resume();
@@ -114,7 +114,7 @@ class Sink {
   virtual Status close() = 0;
 
   /// Ends the link and waits for nobody: what is still on its way to a reader is lost, and counted
-  /// (Traffic::cut), unless the reader has the memory where it stands. Nothing is sent any more.
+  /// (Traffic::cut), unless the reader has the memory where it is. Nothing is sent any more.
   virtual void abandon() {}
 
   /// What send() has taken so far; a message to several readers counts once.
@@ -153,13 +153,13 @@ struct LinkOptions {
 ///   connection, and ends when it has had none for so long; default 0: it ends with its connection.
 ///   If there never was a connection for so long, or for `wait` where it is given beside, take()
 ///   and send() fail with NotFound. A message that a sink has begun on a lost connection is sent
-///   anew, whole; whether those that the kernel had taken have arrived is unknown. A source cannot
+///   again, whole; whether those that the kernel had taken have arrived is unknown. A source cannot
 ///   tell a peer's end from its death, so both lead to trying again. A name's addresses are looked
 ///   up once.
 /// - `readers=N` (listening sinks, shm sink): how many readers to wait for before the first message
 ///   and before the end; default: 1 before the first message, and none before the end. When as many
 ///   as were counted have all left, the link is closed. 0: none, ever; what is sent without a
-///   reader is lost (Traffic::cut), and the link goes on. For a program that must not wait for
+///   reader is lost (Traffic::cut), and the link continues. For a program that must not wait for
 ///   those who observe it.
 /// - `stay=1` (the same): who has left may come back, so the link is not closed then. With keep=all
 ///   send() waits for the next reader; else what is sent meanwhile is lost (Traffic::cut).
@@ -183,7 +183,7 @@ struct LinkOptions {
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options = {});
 
-/// Whether a URI makes sense at a source or a sink, as far as can be told while nothing is opened.
+/// Whether a URI makes sense at a source or a sink, as far as is known while nothing is opened.
 ///
 /// Errors: Invalid.
 Status check_source(const Uri& uri);

@@ -16,7 +16,7 @@ namespace hc::internal {
 
 /// A queue of whole messages none of which has begun to go. When there are more than the policy
 /// keeps, or they take more memory, the oldest are dropped and counted by the reason for which they
-/// had not gone yet; the newest one always stays, however large.
+/// had not been sent yet; the newest one always stays, however large.
 template <typename Item>
 class SendQueue {
  public:
@@ -35,7 +35,7 @@ class SendQueue {
 
   /// Adds a message, and drops what there is no room for; nothing where all are kept.
   void push(Item item, std::uint64_t bytes, Traffic& traffic) {
-    // Who stands behind one that is kept back is kept back too.
+    // What is behind a message that is kept back is kept back too.
     bool held = !items_.empty() && items_.front().held;
     items_.push_back({std::move(item), bytes, false});
     bytes_ += bytes;
@@ -69,7 +69,7 @@ class SendQueue {
     return true;
   }
 
-  /// Takes the last message back, which has not gone.
+  /// Takes the last message back, which has not been sent.
   void take_back() {
     bytes_ -= items_.back().bytes;
     items_.pop_back();

@@ -85,7 +85,7 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   if (poll_ >= 0 &&
       std::equal(watched_.begin(), watched_.end(), sources.begin(), sources.end(), is_watched))
     return {};
-  // A new instance, since a descriptor of a source that is gone may live on elsewhere.
+  // A new instance, since a descriptor of a source that is closed may be open elsewhere.
   if (poll_ >= 0) ::close(poll_);
   watched_.clear();
   never_sleeps_ = false;

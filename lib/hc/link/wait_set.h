@@ -12,7 +12,7 @@
 
 namespace hc {
 
-/// Waits for sources, again and again. What a wait needs is prepared once, and anew only when the
+/// Waits for sources, again and again. What a wait needs is prepared once, and again only when the
 /// sources are others than the last time.
 ///
 ///     WaitSet waits(stop_descriptor());

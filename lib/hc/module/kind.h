@@ -189,7 +189,7 @@ struct MessageOf : Message {
   /// All numbers, row by row.
   [[nodiscard]] std::span<const Scalar> numbers() const { return matrix().numbers(); }
 
-  /// The same message with the time of what it tells [ns since the Unix epoch].
+  /// The same message with the time of what it says [ns since the Unix epoch].
   [[nodiscard]] MessageOf at(std::int64_t time) const {
     MessageOf message = *this;
     message.header.time = time;

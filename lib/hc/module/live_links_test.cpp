@@ -175,7 +175,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   Message message;
   for (double i : {1, 2, 3}) {
     auto sink = open_sink(*parse_uri(uri("in")));
-    while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has gone
+    while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has closed
     ASSERT_TRUE(tell(*control_, "link in in=" + uri("in")));
     ASSERT_TRUE((*sink)->send(table({i})));
     ASSERT_TRUE(*receive(*handled, message));

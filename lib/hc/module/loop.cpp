@@ -19,7 +19,7 @@ using internal::Stopped;
 
 constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
 constexpr const char* kSetsKept = "4";      // by links whose newest complete set is handled
-/// A line about a link waits for so long: at the end of a graph it tells nothing.
+/// A line about a link waits for so long: at the end of a graph it means nothing.
 constexpr std::chrono::milliseconds kLineDelay{200};
 constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
 

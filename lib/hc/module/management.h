@@ -12,7 +12,7 @@
 
 namespace hc::internal {
 
-/// The two links, of which either may be missing. When one breaks, the module goes on without.
+/// The two links, of which either may be missing. When one breaks, the module continues without it.
 class Management {
  public:
   Management() = default;

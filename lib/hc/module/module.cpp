@@ -174,7 +174,7 @@ void Module::keep_rate(double rate) {
 
 namespace {
 
-/// Sends to a link; false when its reader has gone, which ends the link.
+/// Sends to a link; false when its reader has left, which ends the link.
 bool send_to(internal::LinkedSink& link, const std::string& port, const Message& message) {
   auto sent = link.sink->send(message);
   if (sent) return true;

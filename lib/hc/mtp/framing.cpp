@@ -60,8 +60,7 @@ Result<std::size_t> read_closing(const Header& header, std::string_view text, st
     if (text[1] == '\n') return std::size_t{2};
   }
   return refusal(Code::Malformed, 26, "elements",
-                 in_quotes(text.substr(0, 1)) + " stands where a line feed closes the elements",
-                 byte);
+                 in_quotes(text.substr(0, 1)) + " is where a line feed closes the elements", byte);
 }
 
 }  // namespace hc::internal

@@ -52,7 +52,7 @@ struct Limits {
 /// Reads a header line.
 ///
 /// @param line  the line without its LF or CR LF, at most kMaxHeaderBytes.
-/// @param byte  where the line stands in its stream; errors count from there.
+/// @param byte  where the line is in its stream; errors count from there.
 ///
 /// Errors: Malformed, Unsupported (version, encoding), TooLarge; the detail is
 /// "R7 src: -1 is below 0, at byte 2".

@@ -80,7 +80,7 @@ class StreamReader {
 
   Limits limits_;
   State state_ = State::Head;
-  SharedBytes block_;  // the stream from byte_ on stands in [begin_, end_)
+  SharedBytes block_;  // the stream from byte_ on is in [begin_, end_)
   std::size_t begin_ = 0, end_ = 0;
   std::uint64_t byte_ = 0;
   std::uint64_t messages_ = 0;

@@ -24,7 +24,7 @@ bool is_end(char c) {
 }
 
 /// Whether a well-spelled number that fits no float is too small for one, rather than too large:
-/// whether its first digit that is not 0 stands behind the decimal point once that is moved.
+/// whether its first digit that is not 0 is behind the decimal point once that is moved.
 bool is_tiny(std::string_view number) {
   std::int64_t places = 0;  // digits before the point, or -zeros behind it
   bool behind_point = false, significant = false;

@@ -27,7 +27,7 @@ class TextRows {
   ///
   /// @param text  the stream from where the last call stopped. A number is whole when the byte
   ///     after it is there.
-  /// @param byte  where `text` stands in the stream, for errors.
+  /// @param byte  where `text` is in the stream, for errors.
   /// @param numbers  the first free byte of the result; has room for all numbers of the matrix or
   ///     for text.size() / 2 + 1 of them.
   /// @returns  bytes of text used, not more than up to the matrix' end.

@@ -40,7 +40,7 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// "open(eyes.mtp): No such file or directory", from errno as it stands.
+/// "open(eyes.mtp): No such file or directory", from errno as it is.
 inline Error system_error(std::string_view call, std::string_view argument, int number = errno) {
   bool closed = number == EPIPE || number == ECONNRESET || number == ECONNREFUSED ||
                 number == ETIMEDOUT;  // a peer that vanished

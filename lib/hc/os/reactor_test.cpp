@@ -33,7 +33,7 @@ Watch::TimePoint now() {
   return std::chrono::steady_clock::now();
 }
 
-/// A descriptor that is readable when it is told so, and always has room.
+/// A descriptor that is readable when it is made so, and always has room.
 struct Event {
   Descriptor descriptor{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
   void raise() const { EXPECT_EQ(::eventfd_write(descriptor.get(), 1), 0); }

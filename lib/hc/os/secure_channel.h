@@ -20,7 +20,7 @@ class SecureChannel {
  public:
   virtual ~SecureChannel() = default;
 
-  /// Goes on with the handshake; the poll events that it waits for, 0: it is done.
+  /// Continues the handshake; the poll events that it waits for, 0: it is done.
   ///
   /// Errors: Closed (one side refused the other; the detail says which, and why).
   virtual Result<short> agree() = 0;
@@ -33,7 +33,8 @@ class SecureChannel {
 
   /// Whether bytes have been taken from the socket that read() has not given yet.
   [[nodiscard]] virtual bool has_unread() const = 0;
-  /// Whether bytes that write() took are not with the kernel yet; it goes on, also with no parts.
+  /// Whether bytes that write() took are not with the kernel yet; write() continues, also with no
+  /// parts.
   [[nodiscard]] virtual bool has_unsent() const = 0;
   /// Says that nothing more will be written.
   virtual void end() = 0;

@@ -40,7 +40,7 @@ Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reser
   memory.bytes_ = bytes;
   // Large pages are fewer to set up and to look up, for who writes images; it is advice alone.
   ::madvise(*data, bytes, MADV_HUGEPAGE);
-  // The mapping made above goes on writing; nobody can make another that does.
+  // The mapping made above can still write; nobody can make another that does.
   auto sealed = system_call("fcntl", "F_ADD_SEALS", [&] {
     return ::fcntl(*number, F_ADD_SEALS, kFixedSize | F_SEAL_FUTURE_WRITE);
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Anonymous memory that processes share: it has no name, cannot change its size, and is gone with
+// Anonymous memory that processes share: it has no name, cannot change its size, and ends with
 // the last process that maps it. Internal.
 
 #include <atomic>

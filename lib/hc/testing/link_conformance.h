@@ -47,7 +47,7 @@ inline std::string with(const std::string& uri, const std::string& options) {
   return uri + (uri.find('?') == std::string::npos ? "?" : "&") + options;
 }
 
-/// What tells links to stop, once raised and for ever.
+/// What asks links to stop, once raised and for ever.
 class Stop {
  public:
   void raise() const { EXPECT_EQ(::eventfd_write(event_.get(), 1), 0); }
@@ -61,7 +61,7 @@ class Stop {
   internal::Descriptor event_{::eventfd(0, EFD_CLOEXEC)};
 };
 
-/// A message with `size` bytes of elements that its seq tells.
+/// A message with `size` bytes of elements that its seq determines.
 inline Message numbered(std::int64_t seq, std::int32_t size) {
   Header header;
   header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};

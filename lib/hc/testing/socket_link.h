@@ -52,7 +52,7 @@ inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
           {scheme.name + "_sink_listens", sink_listens, true, true}};
 }
 
-/// What a link told its log.
+/// What a link logged.
 struct Warnings {
   std::vector<std::string> lines;
   LinkOptions options() {

@@ -136,7 +136,7 @@ class RecordingsPanel {
     this.name.value = nameOfNow(new Date(Date.now() + 1000));
   }
 
-  /** Asks for the outputs when modules have come or gone. */
+  /** Asks for the outputs when modules have come or left. */
   private updateStreams(state: GraphState): void {
     const modules = state.modules.map(({ name }) => name).join();
     if (modules === this.modules) return;

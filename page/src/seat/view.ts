@@ -168,7 +168,7 @@ export class SeatView {
     requestAnimationFrame(drawn); // after the drawing, since it came later
   }
 
-  /** Width to ask for, in steps, so that it is not asked anew for each pixel. */
+  /** Width to ask for, in steps, so that it is not asked again for each pixel. */
   private width(): number {
     if (this.xr) return widest;
     const across = this.shownWay === "side by side" ? 2 : 1;

@@ -2,7 +2,7 @@
 
 export type Unsubscribe = () => void;
 
-/** A value that others are told of: each listener at once, if there is a value, and on changes. */
+/** A value that others listen to: each listener hears at once, if there is a value, and on changes. */
 export class Signal<T> {
   private readonly listeners = new Set<(value: T) => void>();
 
@@ -17,7 +17,7 @@ export class Signal<T> {
     this.emit(value);
   }
 
-  /** Tells the listeners, and keeps nothing. */
+  /** Calls the listeners, and keeps nothing. */
   emit(value: T): void {
     for (const listener of [...this.listeners]) listener(value);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/** What a socket of this page tells. */
+/** What a socket of this page reports. */
 export interface SocketEvents {
   open?(): void;
   text?(text: string): void;
@@ -34,7 +34,7 @@ export class Socket {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
-  /** Bytes that have not gone out yet. */
+  /** Bytes that have not been sent yet. */
   get waiting(): number {
     return this.socket?.bufferedAmount ?? 0;
   }
@@ -53,7 +53,7 @@ export class Socket {
     this.connect();
   }
 
-  /** Connects anew. */
+  /** Connects again. */
   reopen(): void {
     if (this.closed) return;
     clearTimeout(this.timer);

@@ -84,7 +84,7 @@ export class Stream {
     this.socket.send(`rate=${rate}`);
   }
 
-  /** Begins anew: with the last message, and of video with a key frame. */
+  /** Starts over: with the last message, and of video with a key frame. */
   restart(): void {
     this.socket.reopen();
   }

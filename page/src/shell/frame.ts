@@ -8,7 +8,7 @@ export type Direction = "left" | "right" | "up" | "down";
 /** What a person may do to a panel as a whole. */
 export interface FrameActions {
   move(direction: Direction): void;
-  /** Gives the panel more room of its column, or of the page where it stands alone. */
+  /** Gives the panel more room of its column, or of the page where it is alone. */
   grow(factor: number): void;
   enlarge(): void;
   close(): void;

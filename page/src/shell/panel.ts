@@ -14,7 +14,7 @@ export interface PanelHost {
   openPanel(args: PanelArgs): void;
   /** Title of this panel. */
   setTitle(title: string): void;
-  /** Changes what this panel shows, in the URL too; it is not made anew. */
+  /** Changes what this panel shows, in the URL too; it is not made again. */
   setArgs(args: PanelArgs): void;
   /** Says a sentence to the person, in the status line and to screen readers. */
   say(sentence: string): void;

@@ -23,7 +23,7 @@ export class ConsoleView implements View {
 
   show(arrival: Arrival): void {
     const { time } = arrival.message.header;
-    // A recording that is wound back begins anew.
+    // A recording that is wound back starts over.
     if (this.host.source.isReplay && time < this.lastTime) this.lines.replaceChildren();
     this.lastTime = time;
     const at = new Date(time > 0n ? Number(time / 1_000_000n) : arrival.at);

@@ -175,7 +175,7 @@ export class PlotView implements View {
     this.build();
   }
 
-  /** Makes the plot anew, after its series or colours have changed. */
+  /** Makes the plot again, after its series or colours have changed. */
   private build(): void {
     if (!this.series) return;
     this.plot?.destroy();

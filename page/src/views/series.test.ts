@@ -39,7 +39,7 @@ test("what is older than ten minutes goes", () => {
   assert.ok(series.lastTime - series.firstTime < 1100);
 });
 
-test("a source that begins anew begins a new series", () => {
+test("a source that starts over begins a new series", () => {
   const series = new Series(1);
   series.push(1000, [1]);
   series.push(10, [2]);

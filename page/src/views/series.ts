@@ -36,7 +36,7 @@ export class Series {
   push(time: number, numbers: ArrayLike<number>): void {
     if (this.count > 0 && time <= this.lastTime) {
       if (time > this.lastTime - 1) return;
-      this.count = 0; // the source has begun anew
+      this.count = 0; // the source has started over
     }
     if (this.count === this.times.length) this.makeRoom();
     this.times[this.count] = time;

@@ -118,7 +118,7 @@ export class StreamView {
     if (isVideo(arrival.message, sent)) void this.keepSnapshot(arrival.at);
   }
 
-  /** Keeps what is shown now; the stream goes on meanwhile, since browsers encode when idle. */
+  /** Keeps what is shown now; the stream continues meanwhile, since browsers encode when idle. */
   private async keepSnapshot(now: number): Promise<void> {
     if (now < this.lastSnapshot + snapshotPeriod) return;
     this.lastSnapshot = Infinity; // until this one is made

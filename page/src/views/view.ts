@@ -13,7 +13,7 @@ export interface Source {
   on(event: "problem", listener: (problem: string) => void): Unsubscribe;
   /** Asks for no more elements in a row. */
   setWidth(width: number): void;
-  /** Begins anew, of video with a key frame. */
+  /** Starts over, of video with a key frame. */
   restart?(): void;
   close(): void;
 }
@@ -50,7 +50,7 @@ export interface View {
   readonly keepsPast?: boolean;
   /** Whether it takes messages while nobody sees it: sound is heard. */
   readonly runsUnseen?: boolean;
-  /** Of a view that keeps its past: stops or goes on with the present. */
+  /** Of a view that keeps its past: stops or continues with the present. */
   setPaused?(paused: boolean): void;
   /** What is shown now, as a message that can be shown again by itself. */
   snapshot?(): Promise<Arrival | undefined>;

@@ -33,7 +33,7 @@ hc::Result<Script> Script::parse(std::string_view text) {
     auto salience = parse_number(what);
     bool is_last = what == "end" || what == "again";
     if (!seconds || !(salience || is_last)) return wrong("is not SECONDS:SALIENCE");
-    if (script.end_) return wrong("stands behind the end");
+    if (script.end_) return wrong("is behind the end");
     if (!(*seconds >= 0 && *seconds > latest && std::isfinite(*seconds)))
       return wrong("is not later than what is before it");
     latest = *seconds;

@@ -20,7 +20,8 @@ namespace hc::internal {
 namespace {
 
 /// toml++ up to 3.4 runs into undefined behaviour at letters outside ASCII in odd places, so it
-/// gets none to see: each of their bytes stands as ~ and two digits, and original() brings it back.
+/// gets none to see: each of their bytes is written as ~ and two digits, and original() brings it
+/// back.
 std::string ascii_only(std::string_view text) {
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string result;
@@ -45,7 +46,8 @@ std::size_t find_no_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
-/// Where ~ stands as an escape, \u007e, which original() would take for one of ours; npos: nowhere.
+/// Where ~ is written as an escape, \u007e, which original() would take for one of ours; npos:
+/// nowhere.
 std::size_t find_escaped_tilde(std::string_view text) {
   for (std::size_t at = text.find('\\'); at != std::string_view::npos;
        at = text.find('\\', at + 1)) {
@@ -109,7 +111,7 @@ std::string original(std::string_view text) {
   return result;
 }
 
-/// What toml++ says of the commonest mistakes tells little of them, and what replaces a letter
+/// What toml++ says of the commonest mistakes explains little, and what replaces a letter
 /// outside ASCII is not what somebody wrote.
 std::string in_plain_words(std::string_view description, std::string_view toml) {
   auto says = [&](std::string_view words) {

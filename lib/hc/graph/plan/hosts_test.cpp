@@ -71,12 +71,12 @@ TEST(HostsOfAGraph, WithoutAnAddressHaveNoLinks) {
   auto planned = plan_hosts(far("a", "robot") + far("b", "", "a"), nowhere);
   ASSERT_FALSE(planned);
   EXPECT_EQ(planned.error().detail,
-            "g.toml:12: host robot has no address that links can use: say address = \"…\" in its "
+            "g.toml:13: host robot has no address that links can use: say address = \"…\" in its "
             "table");
   planned = plan_hosts(far("a", "") + far("b", "robot", "a"), nowhere);
   ASSERT_FALSE(planned);
   EXPECT_EQ(planned.error().detail,
-            "g.toml:12: host robot has no address of this one that links can use: connect to it by "
+            "g.toml:13: host robot has no address of this one that links can use: connect to it by "
             "another, not a link-local one");
 }
 

@@ -192,7 +192,7 @@ void check_loops(Planning& planning) {
   for (const auto& link : planning.graph.links) {
     const Description* from = planning.description_of(link.from.module);
     const Description* to = planning.description_of(link.to.module);
-    // One at a port that there is not has been told of.
+    // One at a port that does not exist has been reported.
     if ((from != nullptr && find_named(from->outputs, link.from.port) == nullptr) ||
         (to != nullptr && find_input(*to, link.to.port) == nullptr))
       continue;

@@ -89,7 +89,7 @@ class Numbering {
     if (dot == std::string::npos) return std::nullopt;
     GraphPort port{name.substr(0, dot), name.substr(dot + 1), {}};
     const Description* description = planning_.description_of(port.module);
-    // What is not described may have any input; it has been told what is wrong with it.
+    // What is not described may have any input; what is wrong with it has been reported.
     bool may_be = description == nullptr ? planning_.names.contains(port.module)
                                          : find_named(description->inputs, port.port) != nullptr;
     return may_be ? std::optional(port) : std::nullopt;

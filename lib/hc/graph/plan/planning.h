@@ -78,14 +78,15 @@ const PortDescription* find_port(Planning& planning, const Place& place, const G
 /// Gives ports their addresses, and messages of outputs their destinations.
 void number_ports(Planning& planning);
 
-/// Modes, focus and exclusive inputs: checks them, tells modules, and links the focus to them.
+/// Modes, focus and exclusive inputs: checks them, hands them to modules, and links the focus to
+/// them.
 void plan_modes(Planning& planning);
 
 /// Whether a module gets the frames as text: it has a parameter for them.
 bool takes_frames(const Planning& planning, const std::string& module);
 /// Links what moves frames to the inputs `frames` of modules that get them as text.
 void link_frames(Planning& planning);
-/// Checks the frames, and tells them to modules that have a parameter `frames`.
+/// Checks the frames, and hands them to modules that have a parameter `frames`.
 void plan_frames(Planning& planning);
 
 /// Checks each link on its own; those that are wrong are taken out of the graph.

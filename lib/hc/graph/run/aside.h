@@ -10,7 +10,7 @@
 
 namespace hc::internal {
 
-/// Does one piece of work at a time on a thread of its own, while the loop goes on.
+/// Does one piece of work at a time on a thread of its own, while the loop continues.
 class Aside {
  public:
   /// Ends as soon as it can when the descriptor `stop` is readable.
@@ -25,7 +25,7 @@ class Aside {
 
   /// Begins work when there is none; `done` is called in the turn of the loop that follows it.
   void begin(Work work, std::function<void()> done);
-  /// Asks the work that is under way, if any, to stop; `done` is called all the same.
+  /// Asks the work in progress, if any, to stop; `done` is called all the same.
   void stop();
   [[nodiscard]] bool is_busy() const { return thread_.joinable(); }
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }

@@ -23,7 +23,7 @@ struct ModuleChange {
 /// Whether two ends are of the same link, whatever number of readers a writer waits for at first.
 bool is_same_end(const PlannedEnd& one, const PlannedEnd& other);
 
-/// @param before  with the ends as the process has been told them.
+/// @param before  with the ends as the process knows them.
 ModuleChange change_between(const PlannedModule& before, const PlannedModule& after);
 
 }  // namespace hc::internal

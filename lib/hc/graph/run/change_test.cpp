@@ -64,14 +64,14 @@ TEST_F(ChangeTest, WhatCannotBeToldNeedsARestart) {
 TEST_F(ChangeTest, LinksComeAndGo) {
   after_.ends = {{false, "left", "shm:t.camera.left.view.image?readers=1&rate=3", ""},
                  {false, "right", "shm:t.camera.right?readers=1&stay=1", "to=21"}};
-  auto told = change();
-  EXPECT_EQ(told.unlinks,
+  auto made = change();
+  EXPECT_EQ(made.unlinks,
             (Commands{"unlink out left=shm:t.camera.left?readers=1&stay=1",
                       "unlink in gaze=unix:@t.eyes.gaze.camera.gaze?reconnect=86400"}));
-  EXPECT_EQ(told.outputs, (Commands{"link out left=shm:t.camera.left.view.image?readers=1&rate=3",
+  EXPECT_EQ(made.outputs, (Commands{"link out left=shm:t.camera.left.view.image?readers=1&rate=3",
                                     "link out right=shm:t.camera.right?readers=1&stay=1",
                                     "route right=shm:t.camera.right?readers=1&stay=1 to=21"}));
-  EXPECT_TRUE(told.inputs.empty());
+  EXPECT_TRUE(made.inputs.empty());
 }
 
 TEST_F(ChangeTest, ARouteAloneChanges) {

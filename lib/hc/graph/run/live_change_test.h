@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A graph that runs and is changed, for tests: what it is told, and what it is planned anew as.
+// A graph that runs and is changed, for tests: the commands it gets, and what it is planned as
+// then.
 
 #include <poll.h>
 

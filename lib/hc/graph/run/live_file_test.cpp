@@ -78,7 +78,7 @@ TEST_F(LiveFile, AFileThatIsTakenAwayIsToldOnce) {
   };
   int states = 0;
   options_.state = [&](const GraphState&) {
-    // By the second it has been noticed that the file was there, and is gone again.
+    // By the second it has been noticed that the file was there, and has been removed again.
     if (said(is_gone) && ++states == 3) write();
   };
   stop_at_ = "graph: unchanged";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What modules are told when their graph changes.
+// The commands that modules get when their graph changes.
 #include <hc/graph/run/live_change_test.h>
 
 #include <memory>
@@ -7,7 +7,7 @@
 namespace hc {
 namespace {
 
-/// Listens to what a module is told, in its place.
+/// Takes the commands for a module, in its place.
 class Listener {
  public:
   explicit Listener(const PlannedModule& module)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The two links that a graph which runs has for others of the same user: it tells its state and its
-// log over one, and takes commands over the other (spec/graph.md). Internal to graph.
+// The two links that a graph which runs has for others of the same user: it publishes its state and
+// its log over one, and takes commands over the other (spec/graph.md). Internal to graph.
 
 #include <functional>
 #include <memory>
@@ -19,8 +19,8 @@ class Observation {
   using Answer = std::function<void(const std::vector<std::string>& wrong)>;
   struct Asked {
     std::function<GraphState()> state;
-    /// Does what commands say, all of them or none; then or later it tells what is wrong with them,
-    /// if anything.
+    /// Does what commands say, all of them or none; then or later it answers what is wrong with
+    /// them, if anything.
     std::function<void(const std::vector<std::string>& commands, Answer answer)> obey;
     /// Gives the URI of an observation of "MODULE.PORT". Errors: Invalid.
     std::function<Result<std::string>(const std::string& port)> observe;
@@ -32,9 +32,9 @@ class Observation {
   static Result<std::unique_ptr<Observation>> make(Loop& loop, const std::string& name,
                                                    Asked asked);
 
-  /// Tells the state, if anybody listens.
+  /// Publishes the state, if anybody reads it.
   void tell_state();
-  /// Has the state told soon, however often it is called by then.
+  /// Has the state published soon, however often it is called by then.
   void changed();
   void log(const std::string& line);
   [[nodiscard]] bool is_heard() const { return announcer_->is_heard(); }
@@ -47,7 +47,7 @@ class Observation {
 
   Loop& loop_;
   Asked asked_;
-  std::int64_t states_ = 0, lines_ = 0;  // told so far
+  std::int64_t states_ = 0, lines_ = 0;  // published so far
   Loop::Handle soon_;
   std::unique_ptr<Announcer> announcer_;
   std::unique_ptr<Intake> commands_;

@@ -21,7 +21,7 @@ struct Start {
   char* const* arguments;
   int input, output, errors;  // of the program; -1: none
   int failure;                // for the errno of what fails
-  int life;                   // at its end when we have gone
+  int life;                   // at its end when we have ended
   int key;                    // that the program gets; -1: none
 };
 
@@ -74,7 +74,7 @@ bool kill_children() {
   return any;
 }
 
-/// Stands between us and a program: see process.h.
+/// The guard between us and a program: see process.h.
 [[noreturn]] void guard(const Start& start) {
   sigset_t all, before, ended;
   ::sigfillset(&all);
@@ -108,7 +108,7 @@ bool kill_children() {
       status = WIFSIGNALED(each) ? 128 + WTERMSIG(each) : WEXITSTATUS(each);
     }
   }
-  // The children of one that dies become ours, so this goes on until nobody is left.
+  // The children of one that dies become ours, so this continues until nobody is left.
   while (kill_children()) ::waitpid(-1, nullptr, 0);
   // Those that the system would not list, where it lists none, and this process itself.
   if (!has_ended) ::kill(0, SIGKILL);

@@ -2,7 +2,7 @@
 #pragma once
 // Child processes, dead with all their descendants when we are. Internal to graph.
 //
-// Between us and a program stands its guard: a fork of us that starts the program, adopts what the
+// Between us and a program is its guard: a fork of us that starts the program, adopts what the
 // program's processes leave behind (PR_SET_CHILD_SUBREAPER), and ends as the program did. It kills
 // all that descends from the program when the program ends, when it is told to, and when we have
 // gone, however that came about: we hold a pipe to it that closes then. It leads a process group
@@ -61,7 +61,7 @@ class Process {
   /// stopped (SIGCONT).
   void ask_to_end() const;
 
-  /// Kills the process and all that it has started; ended() tells when that is done.
+  /// Kills the process and all that it has started; ended() is readable when that is done.
   void kill() { life_.reset(); }
 
  private:

@@ -125,7 +125,7 @@ TEST(Process, AGuardThatIsKilledTakesItsGroupAlong) {
   std::string numbers = listen(process, '\n');
   ASSERT_EQ(::kill(std::stoi(numbers), SIGKILL), 0);
   EXPECT_EQ(status_of(process), 128 + SIGKILL);
-  EXPECT_EQ(listen(process), "");  // all who could write have gone
+  EXPECT_EQ(listen(process), "");  // all who could write have ended
 }
 
 TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {

@@ -104,7 +104,7 @@ TEST_F(ReportsTest, CountsGoOnWhenItIsStartedAnew) {
   count({{2, 2}, {200, 2000}});
   EXPECT_EQ(reports_.find(out_)->traffic.messages, 300U);
   EXPECT_EQ(reports_.find(out_)->per_second, 0);
-  count({{2, 2}, {50, 500}});  // a link that was made anew counts from 0 too
+  count({{2, 2}, {50, 500}});  // a link that was opened again counts from 0 too
   EXPECT_EQ(reports_.find(out_)->traffic.messages, 350U);
 }
 

@@ -69,7 +69,7 @@ TEST_F(Run, AFloodOfLinesDoesNotKeepItFromStopping) {
 }
 
 TEST_F(Run, WhoHoldsStandardErrorOpenIsNotWaitedFor) {
-  // The shell goes on when standard output is closed, which is when the sleep begins.
+  // The shell continues when standard output is closed, which is when the sleep begins.
   add("a", "pid=$(setsid sh -c 'echo $$; exec sleep 1000 >&2' &); echo $pid >&2");
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;

@@ -64,7 +64,7 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   const auto* reader = report_of(link.to, true, link.reader_uri);
   const auto* counts = sender != nullptr ? sender : reader;
   if (counts != nullptr) state.traffic = counts->traffic;
-  // What has gone over it is what its reader has taken; a sender may count what waits or is lost.
+  // What it carried is what its reader has taken; a sender may count what waits or is lost.
   if (const auto* gone = reader != nullptr ? reader : counts; gone != nullptr) {
     state.per_second = gone->per_second;
     state.bytes_per_second = gone->bytes_per_second;
@@ -80,7 +80,7 @@ LinkState Runner::state_of(const PlannedLink& link) const {
     lost.messages = lost.bytes = 0;
     state.traffic += lost;
   }
-  state.left_out = reader->ignored;
+  state.ignored = reader->ignored;
   auto seconds = [](const std::array<std::int64_t, 3>& times) {
     std::optional<std::array<double, 3>> result;
     if (times[0] < 0) return result;

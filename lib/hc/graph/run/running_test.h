@@ -15,7 +15,7 @@
 
 namespace hc {
 
-/// A graph of shells, each with the script that it runs; what is said of it stands in `lines`.
+/// A graph of shells, each with the script that it runs; what is said of it is in `lines`.
 class Run : public ::testing::Test {
  protected:
   PlannedModule& add(const std::string& name, const std::string& script) {
@@ -63,7 +63,7 @@ class Run : public ::testing::Test {
   std::vector<std::string> files_;
   RunOptions options_;
   std::function<void(std::string_view line)> heard_;
-  std::string stop_at_;  // the line at which the graph is told to end
+  std::string stop_at_;  // the line at which the graph is asked to end
   internal::Descriptor stop_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
   std::vector<std::string> lines_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the start of a module to its end, and what it is told.
+// From the start of a module to its end, and its commands.
 #include <hc/graph/run/supervised.h>
 
 #include <array>
@@ -70,7 +70,7 @@ Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule p
   return module;
 }
 
-/// Listens to be told, if the plan says that the module takes commands.
+/// Listens for the module to connect, if the plan says that it takes commands.
 Status Supervised::open_control() {
   if (plan_.control_uri.empty()) control_.reset();
   if (plan_.control_uri.empty() || control_) return {};
@@ -84,7 +84,7 @@ Status Supervised::open_control() {
   return {};
 }
 
-/// What a process that comes to listen has to be told: what has changed since it was started.
+/// The commands for a process that has just connected: what has changed since it was started.
 std::vector<std::string> Supervised::catch_up() {
   const auto change = change_between(told_, plan_);
   std::vector<std::string> commands;
@@ -100,7 +100,7 @@ std::vector<std::string> Supervised::catch_up() {
   return commands;
 }
 
-/// Notes that the process has been told all that the plan says. It goes on to know links by the
+/// Notes that the process knows all that the plan says. It continues to know links by the
 /// URIs that it has them by.
 void Supervised::set_told() {
   auto ends = std::exchange(told_, plan_).ends;
@@ -220,7 +220,8 @@ void Supervised::ask_to_end() {
 }
 
 ModuleChange Supervised::adopt(PlannedModule plan) {
-  // A connected one has been told all so far; another catches up, and only this plan's part is new.
+  // A connected one has got all commands so far; another catches up, and only this plan's part is
+  // new.
   auto change = change_between(is_heard() ? told_ : plan_, plan);
   const bool needs_restart = change_between(told_, plan).needs_restart;
   plan_ = std::move(plan);
@@ -291,7 +292,7 @@ void Supervised::forget_process() {
 void Supervised::go_on(int status) {
   exit_ = status;
   auto words = end_in_words(status);
-  // One that did not come to heed our signal yet has done as it was told all the same.
+  // One that did not come to heed our signal yet has done as it was asked all the same.
   const bool is_as_told = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
   if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_told) {
     hear_.event(is_as_told ? end_in_words(0) : words);

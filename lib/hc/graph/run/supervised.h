@@ -71,7 +71,7 @@ class Supervised {
   /// that accepts no commands is restarted.
   void tell(const std::vector<std::string>& commands);
 
-  /// Tells it that an input's writer has ended for good, or that it is there again.
+  /// Has it know that an input's writer has ended for good, or is there again.
   void finish_input(const PlannedEnd& end, bool is_finished);
   /// A module that it is linked to is interrupted. One without `control` takes that for the end of
   /// its work, and is restarted when it ends.
@@ -97,7 +97,7 @@ class Supervised {
   [[nodiscard]] bool is_over() const {
     return status_ == ModuleStatus::Ended || status_ == ModuleStatus::GivenUp;
   }
-  /// Ended or is about to, because it was told to.
+  /// Ended or is about to, because it was asked to.
   [[nodiscard]] bool is_to_end() const { return wish_ == Wish::End || wish_ == Wish::Dismissal; }
   [[nodiscard]] std::optional<int> exit() const { return exit_; }
   [[nodiscard]] const Reports& reports() const { return reports_; }
@@ -142,7 +142,7 @@ class Supervised {
 
   Loop& loop_;
   PlannedModule plan_;
-  PlannedModule told_;  // as its process has been told, which may know links by their older URIs
+  PlannedModule told_;  // as its process knows it, which may know links by their older URIs
   SupervisionLimits limits_;
   Hear hear_;
   Hosts* hosts_;

@@ -259,7 +259,7 @@ TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
 
 TEST_F(Supervision, AReportThatIsTooLargeIsNotTaken) {
   add("a", "exec sleep 1000");
-  options_.limits.stall = 1ms;  // tells that the next one has been taken
+  options_.limits.stall = 1ms;  // shows that the next one has been taken
   std::thread reporting;
   heard_ = [&](std::string_view line) {
     if (line == "a: started")

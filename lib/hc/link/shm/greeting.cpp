@@ -81,7 +81,7 @@ Result<Received> take_greeting(int socket, std::size_t wanted) {
       descriptors[count++] = Descriptor(number);
     }
   }
-  if (*size == 0) return Error{Code::Closed, "the other side has gone"};
+  if (*size == 0) return Error{Code::Closed, "the other side disconnected"};
   if (static_cast<std::size_t>(*size) != sizeof greeting || greeting.magic != kMagic)
     return malformed("what answers is no end of a shared memory link of this version");
   // The refusal is shown to people, so it is printable.
@@ -96,9 +96,9 @@ Result<Received> take_greeting(int socket, std::size_t wanted) {
   return received;
 }
 
-/// A pipe that was handed over, opened to be written to. Opened anew, since whoever has handed it
+/// A pipe that was handed over, opened to be written to. Opened again, since whoever has handed it
 /// over can have writes to the same open file wait; and to be read too, so that writing raises no
-/// signal when the reader has gone.
+/// signal when the reader has left.
 Result<Descriptor> open_pipe(const Descriptor& pipe) {
   struct stat status {};
   if (::fstat(pipe.get(), &status) != 0 || !S_ISFIFO(status.st_mode))
@@ -129,7 +129,7 @@ Status send_hello(int socket, std::uint64_t keep, const SharedMemory& page, int 
   greeting.keep = keep;
   greeting.orders = can_order_everywhere() ? 1 : 0;
   auto sent = send_greeting(socket, greeting, std::array{page_descriptor->get(), wakes});
-  // A publisher that has refused us before we said anything has told why.
+  // A publisher that has refused us before we said anything has said why.
   if (!sent && sent.error().code != Code::Closed) return sent;
   HC_CRASH_POINT("reader greeted");
   return {};

@@ -59,7 +59,7 @@ Status send_hello(int socket, std::uint64_t keep, const SharedMemory& page, int 
 /// What the publisher has answered; never waits, and gives nothing when there is no answer yet.
 ///
 /// Errors: Malformed (no such peer, or what it hands over is not as it should be), Closed (it has
-/// refused or gone).
+/// refused or disconnected).
 Result<std::optional<Offer>> take_offer(int socket);
 
 /// Waits for the answer, 4 s at most. Errors: as take_offer(), Stopped, System.

@@ -75,7 +75,7 @@ constexpr std::uint64_t kRingBegin = kPageBytes;                                
 constexpr std::uint64_t kSlotsBegin = kRingBegin + kCells * sizeof(Cell);       ///< [byte]
 constexpr std::uint64_t kLeastMemory = kSlotsBegin + (std::uint64_t{1} << 20);  ///< [byte]
 
-/// What a reader tells its publisher.
+/// What a reader says to its publisher.
 struct ReaderPage {
   /// The position that is taken next; kLeft: the reader takes no more, but may hold slots still.
   alignas(kLine) SharedWord<std::uint64_t> cursor;

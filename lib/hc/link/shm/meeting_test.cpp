@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How publishers and readers find each other, and again when one has gone.
+// How publishers and readers find each other, and again when one has left.
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/shm_test.h>
 #include <hc/link/stream/peers.h>

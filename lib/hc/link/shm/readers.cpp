@@ -49,7 +49,7 @@ ShmReaders::~ShmReaders() {
   current_.clear();
 }
 
-/// On the thread that serves links: the publisher's tells the log.
+/// On the thread that serves links: the publisher's writes the log.
 void ShmReaders::remark(std::string line) {
   remarks_.add(std::move(line));
   std::lock_guard lock(mutex_);
@@ -140,7 +140,7 @@ void ShmReaders::note_leaving(const ShmReader& reader) {
   tell_change(reader);
 }
 
-/// A reader or stranger has gone, or died, which looks the same: what it held is free.
+/// A reader or stranger has left, or died, which looks the same: what it held is free.
 void ShmReaders::let_go(ShmReader& reader) {
   static_cast<void>(reader.watch.want(0));
   std::shared_ptr<ShmReader> owner;  // goes outside the lock

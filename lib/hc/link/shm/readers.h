@@ -58,13 +58,13 @@ class ShmReaders {
   /// Those there are, as of the last refresh(). On the publisher's thread.
   [[nodiscard]] const std::vector<std::shared_ptr<ShmReader>>& current() const { return current_; }
 
-  /// Whether some have come or gone since, or something is to be told.
+  /// Whether some have come or left since, or something is to be logged.
   ///
   /// A reader that can hold a slot by now has come before the caller's last fence ("hold"), and is
   /// seen here.
   [[nodiscard]] bool changed() const { return changed_.load(std::memory_order_relaxed); }
   void refresh();
-  /// What is to be told the log, since it was last told.
+  /// What is to be logged, since this was last called.
   [[nodiscard]] Remarks& remarks() { return remarks_; }
 
   // Of those there are, on the publisher's thread; `published` is the position it publishes next.
@@ -79,7 +79,7 @@ class ShmReaders {
   /// Wakes those who sleep; whether there were any.
   bool wake();
 
-  /// Readable when some have come or gone, or something is to be told, since refresh().
+  /// Readable when some have come or left, or something is to be logged, since refresh().
   [[nodiscard]] int event() const { return event_.get(); }
 
  private:

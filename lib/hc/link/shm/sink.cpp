@@ -49,7 +49,7 @@ Status ShmSink::send(const Message& message) {
       ++traffic_.cut;
       return {};
     }
-    if (counted_ > 0 && !stays_) return Error{Code::Closed, "the readers have gone"};
+    if (counted_ > 0 && !stays_) return Error{Code::Closed, "the readers disconnected"};
     if (keep_ == 0) {
       if (auto came = await_readers(1); !came) return came;
     } else if (stays_) {

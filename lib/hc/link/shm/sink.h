@@ -19,7 +19,7 @@ namespace hc::internal {
 class ShmSink final : public Sink {
  public:
   /// @param counted  readers that the first message waits for, which are all; below 0: one, and
-  ///     others may come; 0: nobody is ever waited for. @param stays  goes on when all of those
+  ///     others may come; 0: nobody is ever waited for. @param stays  continues when all of those
   ///     have left.
   /// @param keep  newest messages that wait for a reader that does not say; 0: all, it is waited
   ///     for.
@@ -54,7 +54,7 @@ class ShmSink final : public Sink {
   void end();
 
   // Who is there (sink_room.cpp).
-  /// Learns who has come and gone. Cost: next to nothing when nobody has.
+  /// Learns who has come and left. Cost: next to nothing when nobody has.
   void refresh() {
     if (readers_->changed()) meet_readers();
   }

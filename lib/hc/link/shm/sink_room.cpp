@@ -37,7 +37,7 @@ void ShmSink::meet_readers() {
   waker_.meet(readers);
 }
 
-/// refresh() for sure, of all who could have been told where they begin; before one takes back what
+/// refresh() for sure, of all who could have learnt where they begin; before one takes back what
 /// they are to have.
 void ShmSink::refresh_for_sure() {
   std::atomic_thread_fence(memory_order_seq_cst);

@@ -37,7 +37,7 @@ TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
   EXPECT_EQ(lagging->traffic().messages + lagging->traffic().over_memory, std::uint64_t{kCount});
 }
 
-/// A cell that is written anew while it is read is no damage.
+/// A cell that is written again while it is read is no damage.
 TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?keep=latest&readers=1");
@@ -61,7 +61,7 @@ TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
   publisher.join();
 }
 
-/// A slot is not written anew while somebody reads it, however late he came to hold it.
+/// A slot is not written again while somebody reads it, however late he came to hold it.
 TEST(ShmSlow, WhatIsTakenBackJustThenIsWholeOrLost) {
   constexpr std::int32_t kBytes = 4096;
   auto name = fresh_name();

@@ -224,7 +224,7 @@ bool ShmSource::is_ready() const {
   return attachment_->cell(cursor_).stamp.load(memory_order_acquire) > cursor_ || has_ended();
 }
 
-/// Notices that the publisher has gone.
+/// Notices that the publisher has left.
 void ShmSource::look_at_socket() {
   char byte;
   auto size = ::recv(attachment_->socket.get(), &byte, 1, MSG_DONTWAIT);

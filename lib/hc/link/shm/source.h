@@ -26,7 +26,7 @@ struct Attachment {
     return reinterpret_cast<const Cell*>(memory.data() + kRingBegin)[position % kCells];
   }
 
-  /// Wakes the publisher if it waits for what this reader has just taken. A fence stands before.
+  /// Wakes the publisher if it waits for what this reader has just taken. A fence comes before.
   void offer_cells() {
     auto wanted = head().wanted.load(std::memory_order_relaxed);
     if (wanted != 0 && own().cursor.load(std::memory_order_relaxed) >= wanted) wake_publisher();
@@ -79,7 +79,7 @@ class ShmSource final : public Source {
     [[nodiscard]] const char* text() const { return reinterpret_cast<const char*>(words.data()); }
   };
 
-  /// Nothing comes where there was nothing a moment ago: the publisher has gone, or has closed and
+  /// Nothing comes where there was nothing a moment ago: the publisher has left, or has closed and
   /// all that it published has been taken.
   [[nodiscard]] bool has_ended() const {
     const Head& head = attachment_->head();

@@ -89,13 +89,13 @@ Result<bool> Connection::send(Outgoing& message, TimePoint now) {
     if (!writer_waits_) advance(now);
   }
   if (failed_) return *failed_;
-  bool under_way = blocked_ || !queue_.empty() || !connected();
-  if (writer_waits_ && under_way) {
+  bool is_pending = blocked_ || !queue_.empty() || !connected();
+  if (writer_waits_ && is_pending) {
     if (auto drained = drain(lock, false); !drained) return drained.error();
     return true;
   }
   if (writer_.borrows()) writer_.keep(message.kept().pieces, message.kept().keeper);
-  if (under_way) arm(now);
+  if (is_pending) arm(now);
   return all_written();
 }
 
@@ -157,9 +157,9 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
 void Connection::fail(const Error& why) {
   failed_ = why;
   stop_watching();
-  // What a waiting writer has in the queue is told to it, and is not among the lost.
-  Traffic untold;
-  auto waiting = queue_.clear(writer_waits_ ? untold : losses_);
+  // A waiting writer gets an error for what it has in the queue, which is not among the lost.
+  Traffic reported;
+  auto waiting = queue_.clear(writer_waits_ ? reported : losses_);
   losses_.cut += writer_.clear() + (writer_waits_ ? 0 : waiting);
 }
 
@@ -186,7 +186,7 @@ void Connection::check_connection(TimePoint now) {
 void Connection::on_event(std::uint32_t events) {
   std::lock_guard lock(mutex_);
   flush_is_due_ = false;
-  if (events != 0) wanted_ = 0;  // it is told once
+  if (events != 0) wanted_ = 0;  // it comes once
   if (failed_ || waits_) return;
   const auto now = clock_now();
   if ((events & (EPOLLERR | EPOLLHUP)) != 0) check_connection(now);
@@ -211,13 +211,13 @@ short Connection::awaited_events() const {
   return blocked_ ? POLLOUT : POLLERR;
 }
 
-/// Has the descriptor watched for events, which are told once. A file cannot be, and need not.
+/// Has the descriptor watched for events, each of which comes once. A file cannot be, and need not.
 void Connection::want(std::uint32_t events) {
   if (std::exchange(wanted_, events) == events) return;
   static_cast<void>(watch_.want(events == 0 ? 0 : events | EPOLLONESHOT));
 }
 
-/// When there is something to do next, beside what the descriptor tells.
+/// When there is something to do next, beside the descriptor's events.
 TimePoint Connection::due(TimePoint now) {
   if (failed_) return TimePoint::max();
   if (!connected()) return dialer_->due();

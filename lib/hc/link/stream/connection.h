@@ -21,7 +21,7 @@
 
 namespace hc::internal {
 
-/// Tells whether messages follow so close that it pays to gather them.
+/// Learns whether messages follow so close that it pays to gather them.
 ///
 /// Whether more will come nobody knows; but who answers a question sends nothing more either,
 /// though the question came right behind the last answer. So the more often it was in vain, the
@@ -47,7 +47,7 @@ class Gathering {
 
 /// Sends the messages of one thread over one connection, with the help of the reactor.
 ///
-/// A message is written at once where nothing is under way. When some follow right behind another,
+/// A message is written at once where nothing waits. When some follow right behind another,
 /// small ones are gathered, up to kFlushBytes or kFlushAge, whichever comes first; see Gathering.
 /// What is gathered or partly written has been begun and is finished; the policy is about what
 /// waits behind it.
@@ -89,7 +89,7 @@ class Connection {
   [[nodiscard]] Traffic losses() const;
   /// Whether the connection has failed for good.
   [[nodiscard]] bool has_failed() const;
-  /// Tells the log what has happened to the connection; on the thread that sends, which also hears
+  /// Logs what has happened to the connection; on the thread that sends, which also hears
   /// of it while it waits in send() or close().
   void tell_log() { remarks_.tell(log_); }
   [[nodiscard]] int descriptor() const { return writer_.descriptor(); }

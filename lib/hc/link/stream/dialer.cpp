@@ -72,7 +72,7 @@ void Dialer::try_next(TimePoint now) {
     fail(errno, now);
 }
 
-/// Whether the try under way has succeeded; ends it if it has failed.
+/// Whether the current attempt has succeeded; ends it if it has failed.
 bool Dialer::is_connected(TimePoint now) {
   if (attempt_.channel) return has_agreed(now);
   pollfd polled{attempt_.get(), POLLOUT, 0};

@@ -69,7 +69,7 @@ class Dialer {
   ///
   /// Errors: once patience is at its end, Closed, or NotFound if there never was a connection.
   Result<ConnectedSocket> dial(TimePoint now);
-  /// The try under way; -1: none.
+  /// The current attempt; -1: none.
   [[nodiscard]] int descriptor() const { return attempt_.get(); }
   /// The poll events that it waits for.
   [[nodiscard]] short events() const { return events_; }

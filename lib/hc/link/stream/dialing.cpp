@@ -26,7 +26,7 @@ class DialingSource final : public Source {
         made_(std::move(made)),
         loop_(std::move(loop)),
         options_(std::move(options)) {
-    static_cast<void>(dial());  // the first take() tells if it is in vain
+    static_cast<void>(dial());  // the first take() reports a failure
   }
 
   Result<Got> take(Message& message) override {
@@ -133,7 +133,7 @@ class DialingSource final : public Source {
 
   std::unique_ptr<Dialer> dialer_;
   Made made_;
-  std::unique_ptr<Loop> loop_;  // of what follows; calls nothing, but its descriptor tells
+  std::unique_ptr<Loop> loop_;  // of what follows; calls nothing, its descriptor is watched
   Loop::Handle watch_;          // of the connection, or the attempt at one
   Loop::Handle retry_;
   LinkOptions options_;

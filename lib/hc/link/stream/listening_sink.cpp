@@ -168,7 +168,7 @@ class ListeningSink final : public Sink {
   /// Whether a peer has taken what was sent to it, or will.
   ///
   /// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
-  /// succeeds in either case; what tells is its kernel's answer, an acknowledgement or a reset.
+  /// succeeds in either case; what shows it is its kernel's answer, an acknowledgement or a reset.
   [[nodiscard]] Result<bool> has_taken(const Connection& peer) const {
     Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(200));
     while (true) {
@@ -176,9 +176,9 @@ class ListeningSink final : public Sink {
       ::poll(&polled, 1, 0);
       if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
       bool shut = (polled.revents & POLLRDHUP) != 0;
-      int under_way = 0;
+      int unanswered = 0;
       if (!shut || !policy_.writer_waits() ||
-          ::ioctl(peer.descriptor(), SIOCOUTQ, &under_way) != 0 || under_way == 0)
+          ::ioctl(peer.descriptor(), SIOCOUTQ, &unanswered) != 0 || unanswered == 0)
         return true;
       if (look_at_peer(peer.descriptor()).vanished) return false;
       auto waited =

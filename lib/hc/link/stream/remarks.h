@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Lines for a log that are said on any thread, and told on the one that the log belongs to.
+// Lines for a log that come from any thread, and are logged on the one that the log belongs to.
 // Internal.
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace hc::internal {
 
-/// Keeps what is to be told, kMost lines at most, as others may have us say much.
+/// Keeps what is to be logged, kMost lines at most, as others may have us say much.
 class Remarks {
  public:
   static constexpr std::size_t kMost = 64;
@@ -27,7 +27,7 @@ class Remarks {
     any_.store(true, std::memory_order_relaxed);
   }
 
-  /// Tells what there is. Cost: next to nothing when there is nothing.
+  /// Logs what there is. Cost: next to nothing when there is nothing.
   void tell(const LogSink& log) {
     if (!any_.load(std::memory_order_relaxed)) return;
     std::unique_lock lock(mutex_);

@@ -16,7 +16,7 @@ namespace hc::internal {
 /// the next one begins, and would call the stream damaged.
 ///
 /// @param descriptor  its writes do not wait; those of sockets never do. May be none (-1) with a
-///     dialer, which makes the connection anew when it is lost.
+///     dialer, which connects again when the connection is lost.
 /// @param uri  for its policy.
 ///
 /// Errors: Invalid, System.

@@ -71,7 +71,7 @@ Got StreamSource::nothing() {
 }
 
 bool StreamSource::awaits_writer() const {
-  // Reading gives 0 before a writer has come as it does when all have left; only poll tells.
+  // Reading gives 0 before a writer has come as it does when all have left; only poll can tell.
   pollfd polled{descriptor_.get(), POLLIN, 0};
   return may_await_writer_ && reader_.bytes() == 0 && ::poll(&polled, 1, 0) == 0;
 }

@@ -39,7 +39,7 @@ Result<UnixAddress> address_of(const Uri& uri) {
 
 /// Whether a socket's file was left behind by a process that was killed: nobody has it bound.
 ///
-/// Asked with a socket of the other kind, which a listener is never told of; a connection would
+/// Asked with a socket of the other kind, of which a listener never learns; a connection would
 /// take the place of its first reader.
 bool is_left_behind(const UnixAddress& address) {
   Descriptor probe(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));

@@ -27,7 +27,7 @@ class StreamWriter {
   static constexpr std::size_t kMostGathered = 64 << 10;
 
   /// Writes to a descriptor from now on. Where there was another before, the message that was begun
-  /// on it is to be written anew, whole, and those behind it.
+  /// on it is to be written again, whole, and those behind it.
   /// @param descriptor  its writes do not wait; those of sockets never do. -1: none, for now.
   void start(ConnectedSocket descriptor);
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }

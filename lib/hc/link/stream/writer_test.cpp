@@ -30,7 +30,7 @@ std::string text_of(std::size_t size, unsigned seed) {
   return text;
 }
 
-/// A pair of connected sockets, where few bytes are under way.
+/// A pair of connected sockets, where few bytes are in flight.
 struct Connection {
   Descriptor writing, reading;
 
