@@ -59,7 +59,7 @@ struct LinkState {
   Traffic traffic;        ///< of its sender, and what was dropped at its reader
   /// At its reader, or at its sender where the reader reports nothing.
   double per_second = 0, bytes_per_second = 0;
-  std::uint64_t ignored = 0;                ///< ignored by its reader: out of focus
+  std::uint64_t ignored = 0;                 ///< ignored by its reader: out of focus
   std::optional<std::array<double, 3>> age;  ///< latency: median, p99, maximum [s]
   std::optional<std::array<double, 3>> gap;  ///< inter-arrival time, the same [s]
   bool in_workspace = false;
