@@ -55,7 +55,7 @@ class DistantWall {
   std::atomic<std::int64_t> to_wall_ = 0, behind_ = 0, since_ = 0;
 };
 
-/// The one that SystemClock goes by, where it is set (--wall_offset).
+/// The wall clock that SystemClock uses, where it is set (--wall_offset).
 extern DistantWall distant_wall;
 
 }  // namespace internal

@@ -27,7 +27,7 @@ class Host {
   // For who plans: from any thread, waiting for the host until `stop` is readable. Errors: Closed
   // (it is not connected), Stopped, and those of the functions of this host.
 
-  /// As find_program(), but that one that is not there is an error, which says so (NotFound).
+  /// As find_program(), but a missing program is an error (NotFound).
   virtual Result<std::string> find_program(const std::string& name, int stop) = 0;
   /// As describe_program().
   virtual Result<std::string> describe_program(const std::string& program, int stop) = 0;
@@ -64,7 +64,7 @@ class Hosts {
   /// Stopped.
   virtual std::vector<Result<std::shared_ptr<Host>>> connect(const std::vector<GraphHost>& declared,
                                                              int stop) = 0;
-  /// One that has been connected to; null: there is none of that name.
+  /// A host that has been connected to; null: none has that name.
   [[nodiscard]] virtual std::shared_ptr<Host> find(const std::string& name) const = 0;
 
   /// Of the key of this host: its fingerprint, and its file.

@@ -155,7 +155,7 @@ class FileLoader : public GraphLoader {
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {
       auto known = described.find({host, program});
-      if (known == described.end()) {  // one that failed is not tried twice
+      if (known == described.end()) {  // a failure is not tried twice
         const auto there = host.empty() ? nullptr : options_.hosts->find(host);
         known =
             described

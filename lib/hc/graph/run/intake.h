@@ -11,7 +11,7 @@
 
 namespace hc::internal {
 
-/// Hands on all messages of a link until it ends; one that never ends lets others have a turn.
+/// Hands on all messages of a link until it ends; a link that never ends lets others have a turn.
 class Intake {
  public:
   using Take = std::function<void(const Message& message)>;

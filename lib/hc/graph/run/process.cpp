@@ -108,7 +108,7 @@ bool kill_children() {
       status = WIFSIGNALED(each) ? 128 + WTERMSIG(each) : WEXITSTATUS(each);
     }
   }
-  // The children of one that dies become ours, so this continues until nobody is left.
+  // Orphans become our children, so this continues until no process is left.
   while (kill_children()) ::waitpid(-1, nullptr, 0);
   // Those that the system would not list, where it lists none, and this process itself.
   if (!has_ended) ::kill(0, SIGKILL);
