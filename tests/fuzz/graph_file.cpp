@@ -38,7 +38,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   HC_CHECK(plan.links.size() >= graph.links.size());
   HC_CHECK(plan.modules.size() == graph.modules.size());
   for (const auto& module : plan.modules) HC_CHECK(!module.command().empty());
-  for (const auto& [mode, number] : plan.modes)
-    HC_CHECK(hc::global_workspace(plan, mode).links.size() <= plan.links.size());
+  for (const auto& [mode, number] : plan.modes) {
+    std::map<std::string, std::string> focus;
+    for (const auto& workspace : plan.workspaces) focus[workspace] = mode;
+    HC_CHECK(hc::global_workspace(plan, focus).links.size() <= plan.links.size());
+  }
   return 0;
 }

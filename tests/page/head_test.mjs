@@ -261,7 +261,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await bar.getByLabel("nobody is in its way").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
     await bar.waitFor({ state: "hidden" });
-    await until("a task has the focus again", () => graph.state().focus);
+    await until("a task has the focus again", () => graph.state().focus.workspace);
   });
 
   test("a stop that is pressed before the page is connected stops", async () => {

@@ -3,6 +3,7 @@
 """The demonstration graphs of routers, gateway and workspace, with what their modules recorded."""
 
 import collections
+import json
 import os
 import pathlib
 import re
@@ -215,6 +216,51 @@ mode = "look"
         self.wait_for(lambda: ", focus look" in top(), "errors")
         self.interrupt(process)
 
+    def test_each_of_two_robots_in_a_graph_shows_its_own_focus(self):
+        self.write(
+            "robot.toml",
+            """version = 1
+[modes]
+look = 1
+rest = 2
+[workspace]
+module = "judge"
+[modules.judge]
+program = "workspace"
+inputs.bids = ["looking.bid", "resting.bid"]
+[modules.looking]
+program = "bidder"
+mode = "look"
+parameters.script = "0:0.9"
+[modules.resting]
+program = "bidder"
+mode = "rest"
+parameters.script = "0:0.5"
+""",
+        )
+        self.write(
+            "two.toml",
+            """version = 1
+[graphs.left]
+file = "robot.toml"
+[graphs.right]
+file = "robot.toml"
+[graphs.right.modules.looking]
+parameters.script = "0:0.1"
+""",
+        )
+        name = "two_%d" % os.getpid()
+        process = self.start("exec hc run two.toml --as %s 2>errors" % name)
+        focus = "left_judge: look, right_judge: rest"
+        top = lambda: self.shell("hc top --once %s 2>&1 || true" % name)
+        self.wait_for(lambda: ", focus " + focus in top(), "errors")
+        self.wait_for(lambda: "bids: left_judge: look 0.90 *, " in top(), "errors")
+        self.assertIn(focus, self.shell("hc ps"))
+        state = json.loads(self.shell("hc top --once --json %s" % name))
+        mode_of = lambda which: state["focus"][which + "_judge"]["mode"]
+        self.assertEqual((mode_of("left"), mode_of("right")), ("look", "rest"))
+        self.interrupt(process)
+
     def test_nobody_commands_the_actor_while_the_workspace_hangs_or_is_dead(self):
         self.write_copy("contest.toml", "actor.done", "looking.command", never="failure")
         process = self.start(
@@ -225,7 +271,7 @@ mode = "look"
         sent = lambda: len(self.recorded("looking.command"))
         self.wait_for(lambda: done() > 3, "errors")
         messages = self.observe(process, "contest")
-        focused = lambda state: state["focus"] is not None
+        focused = lambda state: any(state["focus"].values())
         state = self.state(messages, focused)
         workspace = self.module(state, "workspace")["pid"]
         os.kill(workspace, signal.SIGSTOP)

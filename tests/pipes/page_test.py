@@ -255,7 +255,7 @@ class Graph(Page):
         cookie = self.session()
         graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
         self.hear(graph, 3, lambda text: '"stopped":false' in text)
-        stopped = lambda text: json.loads(text)["focus"] is None
+        stopped = lambda text: json.loads(text)["focus"]["workspace"] is None
         drive.send_frame(BINARY, number(5, 1, 1))
         in_focus = lambda text: not stopped(text)
 

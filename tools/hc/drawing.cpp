@@ -97,7 +97,8 @@ Drawing drawing_of(const hc::GraphState& state) {
   Drawing drawing;
   drawing.title = state.name;
   drawing.is_running = true;
-  if (state.focus != 0) drawing.title += ", focus: " + state.focus_name();
+  if (const auto focus = state.focus_in_words(); !focus.empty())
+    drawing.title += ", focus: " + focus;
   for (const auto& module : state.modules) {
     Drawing::Box box;
     box.name = module.name;

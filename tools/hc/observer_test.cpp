@@ -24,7 +24,7 @@ hc::GraphState some_state(int modules) {
   state.name = "head";
   state.uptime = 65.2;
   state.modes = {{"track", 1}};
-  state.focus = 1;
+  state.focus = {{"judge", 1}};
   for (int i = 0; i < modules; ++i) {
     auto& module = state.modules.emplace_back();
     module.name = "module_" + std::to_string(i);
@@ -34,6 +34,7 @@ hc::GraphState some_state(int modules) {
     module.processor = 0.031;
     module.memory = 1234567;
     module.mode = i == 1 ? "track" : "";
+    module.workspace = "judge";
     module.in_focus = i != 2;
     module.in_workspace = i == 1;
     auto& link = state.links.emplace_back();
@@ -56,9 +57,10 @@ TEST(Screen, ShowsModulesAndLinks) {
   auto state = some_state(2);
   state.modules[0].last_line = "ready";
   EXPECT_EQ(
-      draw(state, {{"track", 0.6, 0.1, true, false}, {"point", 1, 0, false, true}}, {120, 0, true}),
+      draw(state, {{"", "track", 0.6, 0.1, true, false}, {"left", "point", 1, 0, false, true}},
+           {120, 0, true}),
       "head: running 1:05 min, 2/2 modules up, 60 messages/s, 6 % CPU, focus track\n"
-      "bids: track 0.60 *, point 1.00 (person)\n"
+      "bids: track 0.60 *, left: point 1.00 (person)\n"
       "\n"
       "MODULE      CPU   MEMORY RESTARTS  MODE  STATUS\n"
       "module_0   3.1%  1.23 MB        0        running | ready (0 s ago)\n"
@@ -111,7 +113,8 @@ TEST(Screen, IsScrolledAndHasTroubleFirst) {
 TEST(Screen, FitsAnySize) {
   for (std::size_t width : {1U, 20U, 40U, 80U, 300U})
     for (std::size_t height : {1U, 2U, 5U, 6U, 100U}) {
-      const auto text = draw(some_state(7), {{"track", 1, 0, true, false}}, {width, height, true});
+      const auto text =
+          draw(some_state(7), {{"", "track", 1, 0, true, false}}, {width, height, true});
       EXPECT_LE(std::count(text.begin(), text.end(), '\n'), height);
       for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos;
            begin = end + 1) {

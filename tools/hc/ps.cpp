@@ -26,11 +26,11 @@ std::string row(const std::string& name, const hc::GraphState& state, bool is_pl
       status += hc::format(", {} {}", number, hc::name(trouble));
   const bool is_red = std::any_of(state.modules.begin(), state.modules.end(), is_in_trouble);
   const bool is_painted = is_red && !is_plain;
+  const auto focus = state.focus_in_words();
   return hc::format("{}{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}{}\n", is_painted ? "\x1b[31m" : "",
                     name, state.process, seconds_in_words(state.uptime),
                     count(hc::ModuleStatus::Running), state.modules.size(),
-                    state.focus == 0 ? "-" : state.focus_name(), status,
-                    is_painted ? "\x1b[0m" : "");
+                    focus.empty() ? "-" : focus, status, is_painted ? "\x1b[0m" : "");
 }
 
 void ps(bool as_json) {

@@ -58,16 +58,18 @@ std::string heading(const hc::GraphState& state) {
     load += module.processor;
   }
   for (const auto& link : state.links) rate += link.per_second;
+  const auto focus = state.focus_in_words();
   return hc::format("{}: {} {}, {}/{} modules up, {} messages/s, {:.0f} % CPU{}", state.name,
                     state.is_stopping ? "stopping" : "running", seconds_in_words(state.uptime), up,
                     state.modules.size(), short_number(rate), 100 * load,
-                    state.focus == 0 ? "" : ", focus " + state.focus_name());
+                    focus.empty() ? "" : ", focus " + focus);
 }
 
 std::string bids_line(const std::vector<Bid>& bids) {
   std::string text;
   for (const auto& bid : bids)
-    text += hc::format("{}{} {:.2f}{}{}", text.empty() ? "bids: " : ", ", bid.mode, bid.salience,
+    text += hc::format("{}{}{} {:.2f}{}{}", text.empty() ? "bids: " : ", ",
+                       bid.workspace.empty() ? "" : bid.workspace + ": ", bid.mode, bid.salience,
                        bid.is_person ? " (person)" : "", bid.in_focus ? " *" : "");
   return text;
 }
@@ -94,25 +96,24 @@ std::string names(const std::vector<Column<Row>>& columns) {
   return text;
 }
 
-/// The modules that work for the task in focus: those of its mode, and those without a mode whose
-/// messages lead to them.
-std::set<std::string> contributors(const hc::GraphState& state) {
+/// The modules that work for a task in focus, and its mode: those of that mode, and those without a
+/// mode whose messages lead to them.
+std::map<std::string, std::string> contributors(const hc::GraphState& state) {
   std::map<std::string, const hc::ModuleState*> modules;
-  std::set<std::string> found;
+  std::map<std::string, std::string> found;
   for (const auto& module : state.modules) {
     modules[module.name] = &module;
-    if (!module.mode.empty() && module.mode == state.focus_name()) found.insert(module.name);
+    if (!module.mode.empty() && module.mode == state.focus_of(module))
+      found.emplace(module.name, module.mode);
   }
   for (bool is_more = true; is_more;) {
     is_more = false;
     for (const auto& link : state.links) {
       const auto from = modules.find(link.from.substr(0, link.from.find('.')));
-      if (from == modules.end() || !from->second->mode.empty() ||
-          std::find(state.workspaces.begin(), state.workspaces.end(), from->first) !=
-              state.workspaces.end())
+      if (from == modules.end() || !from->second->mode.empty() || state.focus.contains(from->first))
         continue;
-      if (found.contains(link.to.substr(0, link.to.find('.'))))
-        is_more = found.insert(from->first).second || is_more;
+      if (const auto to = found.find(link.to.substr(0, link.to.find('.'))); to != found.end())
+        is_more = found.emplace(from->first, to->second).second || is_more;
     }
   }
   return found;
@@ -142,8 +143,9 @@ void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
   std::size_t name = 6, mode = 4;
   const auto contributing = contributors(state);
   auto mode_of = [&](const hc::ModuleState& module) {
-    const bool is_borrowed = module.mode.empty() && contributing.contains(module.name);
-    return is_borrowed ? "(" + state.focus_name() + ")" : module.mode;
+    const auto borrowed = contributing.find(module.name);
+    return module.mode.empty() && borrowed != contributing.end() ? "(" + borrowed->second + ")"
+                                                                 : module.mode;
   };
   for (const auto& module : state.modules) {
     name = std::max(name, std::min(kMaxName, length(full_name(module))));

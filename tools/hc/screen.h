@@ -18,6 +18,7 @@ struct Screen {
 
 /// A bid for the focus, as the workspace's output `standings` has it.
 struct Bid {
+  std::string workspace;  ///< that it was sent to; empty: the only one
   std::string mode;
   double salience = 0, age = 0;  ///< age [s]
   bool in_focus = false, is_person = false;

@@ -24,7 +24,7 @@ std::string summary_of(const hc::GraphState& state) {
   double rate = 0;
   for (const auto& link : state.links) rate += link.per_second;
   std::string text = hc::format("{} | {:.0f} messages/s", modules, rate);
-  if (state.focus != 0) text += " | focus: " + state.focus_name();
+  if (const auto focus = state.focus_in_words(); !focus.empty()) text += " | focus: " + focus;
   return text;
 }
 

@@ -63,10 +63,13 @@ class Page {
 class Bids {
  public:
   Bids(const RunningGraph& graph, const hc::GraphState& state) {
-    for (const auto& workspace : state.workspaces) try {
+    for (const auto& [workspace, focus] : state.focus) try {
         auto observation = make_observation(graph, workspace + ".standings");
         auto source = open_source(observation.uri(), kDefaultLimit);
-        all_.push_back({std::move(observation), std::move(source), {}});
+        all_.push_back({state.focus.size() > 1 ? workspace : "",
+                        std::move(observation),
+                        std::move(source),
+                        {}});
       } catch (const Failure&) {
         continue;  // it has no such output
       }
@@ -75,12 +78,12 @@ class Bids {
   std::vector<Bid> take(const hc::GraphState& state) {
     std::vector<Bid> all;
     hc::Message message;
-    for (auto& [observation, source, bids] : all_) {
+    for (auto& [name, observation, source, bids] : all_) {
       static_cast<void>(observation.renew());
       for (auto got = source->take(message); got && *got == hc::Got::Message;
            got = source->take(message))
         if (auto rows = message.view<double>(); rows && rows->width() == 5)
-          bids = bids_of(*rows, state);
+          bids = bids_of(name, *rows, state);
       all.insert(all.end(), bids.begin(), bids.end());
     }
     return all;
@@ -88,17 +91,19 @@ class Bids {
 
  private:
   struct Workspace {
+    std::string name;  // empty: the only one
     Observation observation;
     std::unique_ptr<hc::Source> source;
     std::vector<Bid> bids;
   };
 
-  static std::vector<Bid> bids_of(const hc::MatrixView<const double>& rows,
+  static std::vector<Bid> bids_of(const std::string& workspace,
+                                  const hc::MatrixView<const double>& rows,
                                   const hc::GraphState& state) {
     std::vector<Bid> bids;
     for (std::size_t i = 0; i < rows.height(); ++i) {
       const auto row = rows.row(i);
-      bids.push_back({state.mode_name(static_cast<std::int64_t>(row[0])), row[1], row[2],
+      bids.push_back({workspace, state.mode_name(static_cast<std::int64_t>(row[0])), row[1], row[2],
                       row[3] != 0, row[4] != 0});
     }
     return bids;

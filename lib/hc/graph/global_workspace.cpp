@@ -8,20 +8,30 @@
 namespace hc {
 namespace {
 
-/// A link between two modules that both work while the mode is in focus.
+/// Of each workspace, the mode in focus.
+using Focus = std::map<std::string, std::string>;
+
+/// A link between two modules that both work now.
 struct Edge {
   std::size_t link;
   std::string from, to;
   bool is_exclusive;  // it ends at an exclusive input
 };
 
-bool works_in(const PlannedModule& module, std::string_view focus) {
-  if (!module.mode.empty()) return module.mode == focus;
-  return module.modes.empty() ||
-         std::find(module.modes.begin(), module.modes.end(), focus) != module.modes.end();
+bool is_in_focus(const PlannedModule& module, const Focus& focus) {
+  const auto mode = focus.find(module.workspace);
+  return mode != focus.end() && !module.mode.empty() && module.mode == mode->second;
 }
 
-std::vector<Edge> edges_in(const Plan& plan, std::string_view focus) {
+bool works(const PlannedModule& module, const Focus& focus) {
+  if (!module.mode.empty()) return is_in_focus(module, focus);
+  if (module.modes.empty()) return true;
+  const auto mode = focus.find(module.workspace);
+  return mode != focus.end() &&
+         std::find(module.modes.begin(), module.modes.end(), mode->second) != module.modes.end();
+}
+
+std::vector<Edge> edges_in(const Plan& plan, const Focus& focus) {
   std::map<std::string_view, const PlannedModule*> modules;
   for (const auto& module : plan.modules) modules[module.name] = &module;
   std::vector<Edge> edges;
@@ -31,9 +41,9 @@ std::vector<Edge> edges_in(const Plan& plan, std::string_view focus) {
     auto from = modules.find(std::string_view(link.from).substr(0, from_dot));
     auto to = modules.find(std::string_view(link.to).substr(0, to_dot));
     if (from == modules.end() || to == modules.end()) continue;  // the world outside
-    const bool tells_focus = plan.workspaces.contains(from->second->name) &&
-                             link.to == std::string(to->first) + ".focus";
-    if (tells_focus || !works_in(*from->second, focus) || !works_in(*to->second, focus)) continue;
+    const bool carries_focus = plan.workspaces.contains(from->second->name) &&
+                               link.to == std::string(to->first) + ".focus";
+    if (carries_focus || !works(*from->second, focus) || !works(*to->second, focus)) continue;
     edges.push_back({i, from->second->name, to->second->name,
                      to->second->exclusive.contains(link.to.substr(to_dot + 1))});
   }
@@ -56,9 +66,8 @@ std::set<std::string> reach(const Neighbours& neighbours, std::set<std::string> 
 
 }  // namespace
 
-GlobalWorkspace global_workspace(const Plan& plan, std::string_view focus) {
+GlobalWorkspace global_workspace(const Plan& plan, const Focus& focus) {
   GlobalWorkspace workspace;
-  if (focus.empty()) return workspace;
   const std::vector<Edge> edges = edges_in(plan, focus);
   Neighbours forward, backward;
   std::set<std::string> senders;  // of what exclusive inputs take
@@ -70,7 +79,8 @@ GlobalWorkspace global_workspace(const Plan& plan, std::string_view focus) {
   const std::set<std::string> leads_to_action = reach(backward, senders);
   std::set<std::string> tasks;
   for (const auto& module : plan.modules)
-    if (module.mode == focus && leads_to_action.contains(module.name)) tasks.insert(module.name);
+    if (is_in_focus(module, focus) && leads_to_action.contains(module.name))
+      tasks.insert(module.name);
   const std::set<std::string> before = reach(backward, tasks), behind = reach(forward, tasks);
   for (const Edge& edge : edges) {
     bool leads_to_task = before.contains(edge.to);

@@ -3,9 +3,9 @@
 // Which part of a running graph leads to action: the global workspace. Pure.
 
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include <hc/graph/plan.h>
 
@@ -17,12 +17,13 @@ struct GlobalWorkspace {
   std::set<std::size_t> links;  ///< by their number in Plan::links
 };
 
-/// The modules and links of a plan through which what is sensed becomes what is done, while a mode
-/// is in focus: all that is on some way which passes a task of that mode and ends at an exclusive
-/// input. A module that works in other modes only is on none; nor are links that tell the focus.
+/// The modules and links of a plan through which what is sensed becomes what is done: all that is
+/// on some way which passes a task in focus and ends at an exclusive input. A module that works in
+/// other modes only is on none; nor are links that carry the focus.
 ///
-/// @param focus  a mode's name; empty, or one that no task has: nothing is in the workspace.
+/// @param focus  of each workspace the name of its mode in focus; empty, or one that no task has:
+/// nothing of that workspace is in it.
 /// Cost: linear in modules and links.
-GlobalWorkspace global_workspace(const Plan& plan, std::string_view focus);
+GlobalWorkspace global_workspace(const Plan& plan, const std::map<std::string, std::string>& focus);
 
 }  // namespace hc

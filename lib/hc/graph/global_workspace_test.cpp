@@ -17,6 +17,7 @@ Plan robot() {
     module.name = name;
     module.mode = mode;
     module.modes = std::move(modes);
+    module.workspace = "workspace";
   };
   add("camera");
   add("motion", "", {"track"});
@@ -51,7 +52,7 @@ Plan robot() {
 
 void expect_workspace(const Plan& plan, const std::string& mode, const Names& modules,
                       const std::set<std::size_t>& links) {
-  auto workspace = global_workspace(plan, mode);
+  auto workspace = global_workspace(plan, {{"workspace", mode}});
   EXPECT_EQ(workspace.modules, modules) << mode;
   EXPECT_EQ(workspace.links, links) << mode;
 }
@@ -78,6 +79,26 @@ TEST(GlobalWorkspace, GoesThroughRouters) {
   link.to = "head.command";
   expect_workspace(plan, "track", {"camera", "motion", "track", "router", "head"},
                    {0, 3, 5, 7, 13});
+}
+
+TEST(GlobalWorkspace, TheTasksOfTwoWorkspacesWithModesOfTheSameNamesAreApart) {
+  Plan plan = robot();
+  const Plan other = robot();
+  for (auto module : other.modules) {
+    module.name = "b_" + module.name;
+    module.workspace = "b_workspace";
+    plan.modules.push_back(std::move(module));
+  }
+  for (auto link : other.links) {
+    link.from = "b_" + link.from;
+    link.to = "b_" + link.to;
+    plan.links.push_back(std::move(link));
+  }
+  plan.workspaces.insert("b_workspace");
+  auto workspace = global_workspace(plan, {{"workspace", "track"}, {"b_workspace", "read"}});
+  EXPECT_EQ(workspace.modules,
+            (Names{"camera", "motion", "track", "head", "b_camera", "b_text", "b_read", "b_head"}));
+  EXPECT_EQ(workspace.links, (std::set<std::size_t>{0, 3, 5, 7, 14, 17, 19}));
 }
 
 }  // namespace

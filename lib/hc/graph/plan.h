@@ -45,6 +45,7 @@ struct PlannedModule {
   Restart restart = Restart::Failure;
   std::string mode;                 ///< of a task; empty: none
   std::vector<std::string> modes;   ///< it works in; empty: all
+  std::string workspace;            ///< whose focus it obeys; empty: none
   std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
   bool ends_graph = false;          ///< when it has ended with status 0
 

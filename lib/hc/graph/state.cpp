@@ -66,6 +66,7 @@ void visit_module(Module& module, Visit visit) {
   visit("memory", module.memory);
   visit("mode", module.mode);
   visit("modes", module.modes);
+  visit("workspace", module.workspace);
   visit("in_focus", module.in_focus);
   visit("in_workspace", module.in_workspace);
   visit("last_line", module.last_line);
@@ -113,7 +114,6 @@ void visit_graph(Graph& graph, Visit visit) {
   visit("file", graph.file);
   visit("pid", graph.process);
   visit("uptime", graph.uptime);
-  visit("workspaces", graph.workspaces);
   visit("modes", graph.modes);
   visit("addresses", graph.addresses);
 }
@@ -131,12 +131,31 @@ std::string GraphState::mode_name(std::int64_t number) const {
   return number == 0 ? "" : std::to_string(number);
 }
 
+std::string GraphState::focus_of(const ModuleState& module) const {
+  const auto found = focus.find(module.workspace);
+  return found == focus.end() ? "" : mode_name(found->second);
+}
+
+std::string GraphState::focus_in_words() const {
+  std::string words;
+  bool is_any = false;
+  for (const auto& [workspace, number] : focus) {
+    is_any = is_any || number != 0;
+    if (focus.size() == 1) return mode_name(number);
+    if (!words.empty()) words += ", ";
+    words += workspace + ": " + (number == 0 ? "none" : mode_name(number));
+  }
+  return is_any ? words : "";
+}
+
 std::string to_json(const GraphState& state) {
   Json json = Json::object();
   visit_graph(state, Writer{json});
   json["status"] = state.is_stopping ? "stopping" : "running";
-  json["focus"] = nullptr;
-  if (state.focus != 0) json["focus"] = {{"mode", state.focus_name()}, {"number", state.focus}};
+  auto& focus = json["focus"] = Json::object();
+  for (const auto& [workspace, number] : state.focus)
+    focus[workspace] =
+        number == 0 ? Json(nullptr) : Json{{"mode", state.mode_name(number)}, {"number", number}};
   for (const char* list : {"hosts", "modules", "links"}) json[list] = Json::array();
   for (const auto& host : state.hosts)
     visit_host(host, Writer{json["hosts"].emplace_back(Json::object())});
@@ -154,8 +173,8 @@ Result<GraphState> parse_graph_state(std::string_view text) {
     GraphState state;
     visit_graph(state, Reader{json});
     state.is_stopping = json.at("status") == "stopping";
-    if (const auto& focus = json.at("focus"); !focus.is_null())
-      focus.at("number").get_to(state.focus);
+    for (const auto& [workspace, mode] : json.at("focus").items())
+      state.focus[workspace] = mode.is_null() ? 0 : mode.at("number").get<std::int64_t>();
     for (const auto& host : json.value("hosts", Json::array()))
       visit_host(state.hosts.emplace_back(), Reader{host});
     for (const auto& module : json.at("modules"))

@@ -43,6 +43,7 @@ struct ModuleState {
   std::uint64_t memory = 0;        ///< PSS [byte]
   std::string mode;                ///< of a task; empty: none
   std::vector<std::string> modes;  ///< in which it is active; empty: all
+  std::string workspace;           ///< whose focus it obeys; empty: none
   std::string last_line;           ///< of its log
   double last_line_age = 0;        ///< [s]
   bool in_focus = true;
@@ -81,17 +82,20 @@ struct GraphState {
   pid_t process = 0;  ///< of the runner
   double uptime = 0;  ///< [s]
   bool is_stopping = false;
-  std::int64_t focus = 0;  ///< number of the mode in focus; 0: none
+  std::map<std::string, std::int64_t> focus;  ///< of each workspace, the mode in focus; 0: none
   std::vector<HostState> hosts;
   std::vector<ModuleState> modules;
   std::vector<LinkState> links;
-  std::vector<std::string> workspaces;            ///< modules that arbitrate a focus
   std::map<std::string, std::int64_t> modes;      ///< their numbers
   std::map<std::string, std::int64_t> addresses;  ///< of inputs, "MODULE.PORT"
 
   /// Name of a mode, its number where it has none; empty for 0.
   [[nodiscard]] std::string mode_name(std::int64_t number) const;
-  [[nodiscard]] std::string focus_name() const { return mode_name(focus); }
+  /// Name of the mode that a module's workspace has in focus; empty: none.
+  [[nodiscard]] std::string focus_of(const ModuleState& module) const;
+  /// The modes in focus: "track", and of several workspaces "left: track, right: none"; empty: no
+  /// workspace has one.
+  [[nodiscard]] std::string focus_in_words() const;
 };
 
 /// The state as one line of JSON, as spec/graph.md describes it.

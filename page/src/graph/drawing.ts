@@ -194,12 +194,12 @@ export class Drawing {
     if (!elements) return;
     const { is, why } = this.failures.conditionOf(module);
     const load = `${percentText(module.cpu)} · ${bytesText(module.memory)}`;
-    const isTask = module.mode !== "" && module.mode === state.focus?.mode;
+    const isTask = module.mode !== "" && module.mode === state.focus[module.workspace]?.mode;
     const classes = ["node", is];
     if (module.in_workspace) classes.push("in-workspace");
     if (isTask) classes.push("task");
     if (!module.in_focus) classes.push("idle");
-    if (state.workspaces.includes(module.name)) classes.push("arbiter");
+    if (module.name in state.focus) classes.push("arbiter");
     setAttribute(elements.group, "class", classes.join(" "));
     const room = Math.floor((elements.box.width - 16) / 6.2);
     setText(elements.detail, why ? shorten(why, room) : load);

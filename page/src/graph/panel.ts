@@ -94,12 +94,12 @@ export const graphPanel: PanelKind = (args, host) => {
     drawing.update(state);
     if (shown() === "tables") tables.update(state);
     for (const [name, view] of views) {
-      if (state.workspaces.includes(name)) continue;
+      if (name in state.focus) continue;
       view.close();
       view.element.remove();
       views.delete(name);
     }
-    for (const name of state.workspaces) {
+    for (const name of Object.keys(state.focus)) {
       if (views.has(name)) continue;
       const view = new WorkspaceView(server, name);
       views.set(name, view);

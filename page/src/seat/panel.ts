@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's seat: what the robot sees, and all by which a person moves it.
-import type { DriveOutput, GraphState, Session } from "../server";
+import { modesInFocus, type DriveOutput, type GraphState, type Session } from "../server";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
 import { earsOf } from "./eyes";
@@ -95,7 +95,7 @@ class SeatPanel {
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();
           const text = this.text.value.trim();
-          const mode = server.state?.focus?.number ?? 0;
+          const mode = modesInFocus(server.state)[0]?.number ?? 0;
           if (text && this.seat.speak(text, mode)) this.text.value = "";
         },
       },
@@ -261,8 +261,11 @@ class SeatPanel {
     const { session, state } = this.host.server;
     const { seat } = this;
     const driver = this.driverText(session);
-    const focus = state?.focus ? `Task in focus: ${state.focus.mode}.` : "No task has the focus.";
-    const text = `${driver} ${state && state.workspaces.length > 0 ? focus : ""}`.trim();
+    const modes = modesInFocus(state).map((focus) => focus.mode);
+    const focus =
+      modes.length > 0 ? `Task in focus: ${modes.join(", ")}.` : "No task has the focus.";
+    const decides = Object.keys(state?.focus ?? {}).length > 0;
+    const text = `${driver} ${decides ? focus : ""}`.trim();
     if (this.who.textContent !== text) this.who.textContent = text;
     const mayDrive = session?.right === "drive";
     this.takeButton.hidden = !mayDrive || seat.isHeld || seat.state.is === "waiting";
@@ -291,7 +294,8 @@ class SeatPanel {
   private showTasks(state: GraphState): void {
     const names = Object.entries(state.modes).sort((a, b) => a[1] - b[1]);
     const can = this.seat.isHeld && this.has("bid");
-    const key = JSON.stringify([names, can, this.seat.task, state.focus?.number]);
+    const inFocus = modesInFocus(state).map((focus) => focus.number);
+    const key = JSON.stringify([names, can, this.seat.task, inFocus]);
     if (this.tasks.dataset.key === key) return;
     this.tasks.dataset.key = key;
     const focused = this.tasks.contains(document.activeElement)
@@ -305,7 +309,7 @@ class SeatPanel {
           "button",
           {
             "data-task": name,
-            class: state.focus?.number === number ? "task-button in-focus" : "task-button",
+            class: inFocus.includes(number) ? "task-button in-focus" : "task-button",
             "aria-pressed": String(chosen),
             disabled: !can,
             title: chosen ? `Release ${name}` : `Choose ${name}`,

@@ -24,6 +24,8 @@ export interface GraphModule {
   readonly memory: number;
   readonly mode: string;
   readonly modes: readonly string[];
+  /** Whose focus it obeys; empty: none. */
+  readonly workspace: string;
   readonly in_focus: boolean;
   readonly in_workspace: boolean;
   readonly last_line: string;
@@ -55,6 +57,11 @@ export interface GraphLink {
   readonly gap: Percentiles | null;
 }
 
+export interface Focus {
+  readonly mode: string;
+  readonly number: number;
+}
+
 export interface GraphState {
   readonly graph: string;
   readonly file: string;
@@ -62,12 +69,17 @@ export interface GraphState {
   /** [s] */
   readonly uptime: number;
   readonly status: "running" | "stopping";
-  readonly focus: { readonly mode: string; readonly number: number } | null;
+  /** The mode in focus, by the workspace that decides on it. */
+  readonly focus: Readonly<Record<string, Focus | null>>;
   readonly modules: readonly GraphModule[];
   readonly links: readonly GraphLink[];
-  readonly workspaces: readonly string[];
   readonly modes: Readonly<Record<string, number>>;
   readonly addresses: Readonly<Record<string, number>>;
+}
+
+/** The modes in focus, in the order of the workspaces' names. */
+export function modesInFocus(state: GraphState | null | undefined): Focus[] {
+  return Object.values(state?.focus ?? {}).filter((focus) => focus !== null);
 }
 
 export type DriveOutput = "stick" | "rotation" | "target" | "text" | "bid";

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Connection, GraphState, Server, Session } from "../server";
+import {
+  modesInFocus,
+  type Connection,
+  type GraphState,
+  type Server,
+  type Session,
+} from "../server";
 import { Board } from "./board";
 import { fill, h } from "./h";
 import { layoutOf, layoutText, type Layout } from "./layout";
@@ -122,14 +128,14 @@ export class Shell {
       this.graphName.title = state.file;
       document.title = `${state.graph} – Hypercolumn`;
     }
-    const hasFocus = state.workspaces.length > 0;
-    const task = state.focus?.mode ?? "no task";
-    const text = hasFocus ? task : "";
+    const modes = modesInFocus(state).map((focus) => focus.mode);
+    const task = modes.length > 0 ? modes.join(", ") : "no task";
+    const text = Object.keys(state.focus).length > 0 ? task : "";
     if (this.focus.textContent !== text) {
       this.focus.textContent = text;
       this.focus.setAttribute("aria-label", text && `Task in focus: ${text}`);
     }
-    this.focus.classList.toggle("has-task", state.focus !== null);
+    this.focus.classList.toggle("has-task", modes.length > 0);
   }
 
   private showSession(session: Session): void {

@@ -22,9 +22,9 @@ class Modes {
     for (const auto& module : graph_.modules)
       if (PlannedModule* planned = planning_.planned(module.name)) {
         if (planning_.description_of(module.name)->control) add_options(module, *planned);
-        if (planning_.plan.workspaces.contains(module.workspace) &&
-            module.name != module.workspace && wants_focus(module))
-          link_focus(module);
+        if (!planning_.plan.workspaces.contains(module.workspace)) continue;
+        planned->workspace = module.workspace;
+        if (module.name != module.workspace && wants_focus(module)) link_focus(module);
       }
   }
 

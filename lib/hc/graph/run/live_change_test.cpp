@@ -165,7 +165,7 @@ TEST_F(LiveChange, TheStateIsToldAsJson) {
   });
   ASSERT_TRUE(run());
   for (const char* part : {"{\"graph\":\"live\"", "\"name\":\"camera\"", "\"status\":\"starting\"",
-                           "\"mode\":\"track\"", "\"modes\":{\"track\":1}", "\"focus\":null"})
+                           "\"mode\":\"track\"", "\"modes\":{\"track\":1}", "\"focus\":{}"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
   EXPECT_EQ(line.substr(0, 8), "camera: ");
 }

@@ -18,7 +18,7 @@ GraphState Runner::state() const {
   state.process = ::getpid();
   state.uptime = std::chrono::duration<double>(SystemClock().monotonic() - begun_).count();
   state.is_stopping = is_stopping_;
-  state.workspaces = {plan_.workspaces.begin(), plan_.workspaces.end()};
+  for (const auto& workspace : plan_.workspaces) state.focus[workspace] = 0;
   state.modes = plan_.modes;
   state.addresses = plan_.addresses;
   for (const auto& declared : graph_.hosts)
@@ -29,11 +29,16 @@ GraphState Runner::state() const {
     if (module == nullptr) continue;
     state.modules.push_back(module->state());
     // Reported by modules that receive the focus or decide it; stale unless they run.
-    if (state.focus == 0 && module->status() == ModuleStatus::Running)
-      state.focus = module->reports().state().focus;
+    if (module->status() != ModuleStatus::Running) continue;
+    const bool decides = plan_.workspaces.contains(planned.name);
+    const auto focus = state.focus.find(decides ? planned.name : planned.workspace);
+    if (focus != state.focus.end() && focus->second == 0)
+      focus->second = module->reports().state().focus;
   }
   for (const auto& link : plan_.links) state.links.push_back(state_of(link));
-  const auto workspace = global_workspace(plan_, state.focus_name());
+  std::map<std::string, std::string> focus;
+  for (const auto& [name, number] : state.focus) focus[name] = state.mode_name(number);
+  const auto workspace = global_workspace(plan_, focus);
   for (auto& module : state.modules) module.in_workspace = workspace.modules.contains(module.name);
   for (auto number : workspace.links) state.links.at(number).in_workspace = true;
   return state;

@@ -156,6 +156,7 @@ ModuleState Supervised::state() const {
   state.memory = usage_.memory;
   state.mode = plan_.mode;
   state.modes = plan_.modes;
+  state.workspace = plan_.workspace;
   state.in_focus = reports_.state().in_focus;
   if (!lines_.last().empty()) {
     state.last_line = lines_.last().back();
