@@ -51,7 +51,7 @@ void see(const float* depth, const float* nearness, float scale, int width, std:
 }
 
 constexpr int kNear = 6;              // of an edge [px]
-constexpr int kReach = 9, kStep = 3;  // of the pixels that are asked about it [px]
+constexpr int kReach = 8, kStep = 4;  // of the pixels that are asked about it [px]
 
 /// How alike two colours are, by the sum of their channels' differences.
 std::array<float, 3 * 255 + 1> make_likeness() {
@@ -111,17 +111,20 @@ void refine(const cv::Mat& image, const cv::Mat& rgba, const cv::Mat& seen, cv::
 }
 
 void cover(const cv::Vec4b* rgba, int width, std::uint8_t* opacity) {
-  for (int x = 0; x < width; ++x)
-    if (rgba[x][3] == 0) opacity[x] = 0;
+  for (int x = 0; x < width; ++x) opacity[x] &= rgba[x][3];  // which is 0 or 255
 }
 
 void blend(const cv::Vec4b* rgba, const std::uint8_t* opacity, int width, cv::Vec3b* image) {
   for (int x = 0; x < width; ++x) {
     const int share = opacity[x];
     if (share == 0) continue;
-    for (int channel = 0; channel < 3; ++channel)
-      image[x][channel] = static_cast<std::uint8_t>(
-          (rgba[x][channel] * share + image[x][channel] * (255 - share) + 127) / 255);
+    const auto& drawn = rgba[x];
+    if (share == 255)
+      image[x] = {drawn[0], drawn[1], drawn[2]};
+    else
+      for (int channel = 0; channel < 3; ++channel)
+        image[x][channel] = static_cast<std::uint8_t>(
+            (drawn[channel] * share + image[x][channel] * (255 - share) + 127) / 255);
   }
 }
 
