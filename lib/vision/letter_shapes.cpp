@@ -29,6 +29,10 @@ constexpr double kBar = 0.28;         // width by height of an I without serifs 
 constexpr double kGap = 1.6;          // by the median of those in words; a space is wider
 constexpr double kSpace = 0.75;       // by the narrowest space that was read; a gap so wide is one
 constexpr double kLeastSpace = 0.25;  // by the height of capital letters; no space is narrower
+// By the median, and by the height: a gap so wide is a space although none was read anywhere.
+constexpr double kWideGap = 2.5, kWideSpace = 0.36;
+// An L has no more ink in the upper right than this part, and a C none where a G has its bar.
+constexpr double kNoInk = 0.03;
 // What it costs that no letter was read of a glyph, and that a letter shares one, by the height.
 constexpr double kUnread = 1, kShared = 1;
 // How wide letters that touch are together at least, by the sum of their widths; how wide slim ones
@@ -123,6 +127,14 @@ bool is_bar(const cv::Mat& glyph) {
   double most = 0;
   cv::minMaxLoc(rows.rowRange(glyph.rows / 10, glyph.rows - glyph.rows / 10), nullptr, &most);
   return most < 128;
+}
+
+/// The part of a rectangle of a glyph, given as parts of its width and height, that is ink.
+double ink_in(const cv::Mat& glyph, const cv::Rect2d& part) {
+  const cv::Rect box(
+      cv::Point(cvRound(part.x * glyph.cols), cvRound(part.y * glyph.rows)),
+      cv::Point(cvRound(part.br().x * glyph.cols), cvRound(part.br().y * glyph.rows)));
+  return box.empty() ? 1 : static_cast<double>(cv::countNonZero(glyph(box) < 128)) / box.area();
 }
 
 std::string text_of(const std::vector<Letter>& letters) {
@@ -283,8 +295,11 @@ void set_spaces(Match& match) {
     if (gap(i) < least) letters[i].begins_word = false;
     if (letters[i].begins_word) space = std::min<double>(space, gap(i));
   }
+  // Where none was read, a gap has to be clearer.
+  const double least_new =
+      space < 1e9 ? kSpace * space : std::max(kWideGap * *middle, kWideSpace * height_of(boxes));
   for (std::size_t i = 1; i < letters.size(); ++i)
-    if (gap(i) > kSpace * space) letters[i].begins_word = true;
+    if (gap(i) > least_new) letters[i].begins_word = true;
 }
 
 }  // namespace
@@ -338,7 +353,11 @@ char by_shape(const cv::Mat& glyph, char letter) {
       const double cut = cut_corner(glyph);
       return cut > kRoundCorner ? '2' : cut < kCorner ? 'Z' : letter;
     }
+    case 'G':
+      return ink_in(glyph, {0.7, 0.48, 0.3, 0.14}) < kNoInk ? 'C' : letter;
     case 'E':
+      if (ink_in(glyph, {0.5, 0, 0.5, 0.55}) < kNoInk) return 'L';
+      [[fallthrough]];
     case 'Y':
     case '5':
     case 'S': {

@@ -15,6 +15,11 @@ namespace {
 constexpr int kLeastHeight = 8, kMostHeight = 40, kWindow = 35;
 constexpr int kMostPieces = 1500;  // an image of nothing but grains
 constexpr int kLevels = 3;
+// Of lines that are not level: from what slope and how like a line of how many letters they are
+// searched again as level ones, and how many.
+constexpr double kTurned = 0.08, kTurnedScore = 0.2;
+constexpr int kTurnedLetters = 4;
+constexpr std::size_t kMostTurned = 3;
 
 /// Something dark that is connected.
 struct Piece {
@@ -289,33 +294,8 @@ void scale(TextLine& line, double by) {
   line.height *= by;
 }
 
-}  // namespace
-
-cv::Point2f TextLine::middle() const {
-  return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
-}
-
-cv::Rect2f TextLine::box() const {
-  const float left = std::min(corners[0].x, corners[3].x);
-  const float right = std::max(corners[1].x, corners[2].x);
-  const float top = std::min(corners[0].y, corners[1].y);
-  const float bottom = std::max(corners[2].y, corners[3].y);
-  return {left, top, right - left, bottom - top};
-}
-
-double TextLine::width() const {
-  return cv::norm((corners[1] + corners[2]) - (corners[0] + corners[3])) / 2;
-}
-
-std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score) {
-  cv::Mat grey = mean_of_channels(image);
-  double noise = noise_of(grey);
-  if (noise > 4) {
-    cv::Mat smooth;
-    cv::GaussianBlur(grey, smooth, {}, 0.8);
-    grey = smooth;
-    noise *= 0.36;  // norm of the blur's kernel
-  }
+/// The lines of letters that are about level, from large to small.
+std::vector<TextLine> search(cv::Mat grey, double noise, double min_score) {
   std::vector<TextLine> found;
   double by = 1;
   for (int level = 0; level < kLevels; ++level) {
@@ -340,14 +320,101 @@ std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score) {
         }
     }
   }
-  std::stable_sort(found.begin(), found.end(),
+  return found;
+}
+
+bool overlap(const TextLine& a, const TextLine& b) {
+  if ((a.box() & b.box()).empty()) return false;
+  cv::Mat shared;
+  return cv::intersectConvexConvex(a.corners, b.corners, shared) > 0;
+}
+
+/// The best first, none of which overlaps a better one.
+std::vector<TextLine> best_of(std::vector<TextLine> lines) {
+  std::stable_sort(lines.begin(), lines.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
   std::vector<TextLine> kept;
-  for (const auto& line : found)
+  for (const auto& line : lines)
     if (std::none_of(kept.begin(), kept.end(),
-                     [&](const auto& better) { return (line.box() & better.box()).area() > 0; }))
+                     [&](const auto& better) { return overlap(line, better); }))
       kept.push_back(line);
   return kept;
+}
+
+/// Lines, or parts of some, that are so far from level that their letters' boxes say little of
+/// them; none where a line that is level is better than they are.
+std::vector<TextLine> turned_of(const std::vector<TextLine>& lines, double min_score) {
+  auto best = best_of(lines);
+  const auto is_level = [](const auto& line) { return std::abs(std::tan(line.angle())) < kTurned; };
+  if (!best.empty() && best.front().score >= min_score && is_level(best.front())) return {};
+  std::erase_if(best,
+                [&](const auto& line) { return is_level(line) || line.letters < kTurnedLetters; });
+  if (best.size() > kMostTurned) best.resize(kMostTurned);
+  return best;
+}
+
+/// Searches again around a line, where it is level.
+void search_turned(const cv::Mat& grey, double noise, const TextLine& line, double min_score,
+                   std::vector<TextLine>& found) {
+  const double width = line.width(), height = line.height;
+  const cv::Size size(cvRound(2 * width + 12 * height), cvRound(width + 12 * height));
+  const cv::Point2f middle = line.middle();
+  cv::Mat turn = cv::getRotationMatrix2D(middle, line.angle() * 180 / CV_PI, 1), level, back;
+  turn.at<double>(0, 2) += size.width / 2.0 - static_cast<double>(middle.x);
+  turn.at<double>(1, 2) += size.height / 2.0 - static_cast<double>(middle.y);
+  cv::warpAffine(grey, level, turn, size, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::invertAffineTransform(turn, back);
+  const cv::Rect2f whole({}, cv::Size2f(grey.size()));
+  for (auto each : search(level, noise, min_score)) {
+    std::vector<cv::Point2f> corners(each.corners.begin(), each.corners.end());
+    cv::transform(corners, corners, back);
+    std::copy(corners.begin(), corners.end(), each.corners.begin());
+    if (!whole.contains(each.middle())) continue;
+    const auto margin = static_cast<float>(each.height / 3);
+    auto box = each.box();
+    box = {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
+    each.is_whole = (box & whole) == box;
+    found.push_back(each);
+  }
+}
+
+}  // namespace
+
+cv::Point2f TextLine::middle() const {
+  return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+}
+
+cv::Rect2f TextLine::box() const {
+  const float left = std::min(corners[0].x, corners[3].x);
+  const float right = std::max(corners[1].x, corners[2].x);
+  const float top = std::min(corners[0].y, corners[1].y);
+  const float bottom = std::max(corners[2].y, corners[3].y);
+  return {left, top, right - left, bottom - top};
+}
+
+double TextLine::width() const {
+  return cv::norm((corners[1] + corners[2]) - (corners[0] + corners[3])) / 2;
+}
+
+double TextLine::angle() const {
+  const auto along = corners[1] + corners[2] - corners[0] - corners[3];
+  return std::atan2(along.y, along.x);
+}
+
+std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score) {
+  cv::Mat grey = mean_of_channels(image);
+  double noise = noise_of(grey);
+  if (noise > 4) {
+    cv::Mat smooth;
+    cv::GaussianBlur(grey, smooth, {}, 0.8);
+    grey = smooth;
+    noise *= 0.36;  // norm of the blur's kernel
+  }
+  std::vector<TextLine> found = search(grey, noise, std::min(min_score, kTurnedScore));
+  const auto turned = turned_of(found, min_score);
+  std::erase_if(found, [&](const auto& line) { return line.score < min_score; });
+  for (const auto& line : turned) search_turned(grey, noise, line, min_score, found);
+  return best_of(found);
 }
 
 std::vector<TextLine> block_of_best(const std::vector<TextLine>& lines) {
@@ -363,8 +430,13 @@ std::vector<TextLine> block_of_best(const std::vector<TextLine>& lines) {
     is_taken[i] = true;
     i = 0;  // the best is taken; a line passed over may stand beside the one just added
   }
+  if (block.empty()) return block;
+  const double angle = block.front().angle();
+  auto down = [&](const TextLine& line) {
+    return line.middle().y * std::cos(angle) - line.middle().x * std::sin(angle);
+  };
   std::sort(block.begin(), block.end(),
-            [](const auto& a, const auto& b) { return a.middle().y < b.middle().y; });
+            [&](const auto& a, const auto& b) { return down(a) < down(b); });
   return block;
 }
 

@@ -125,14 +125,24 @@ TEST(Block, may_be_out_of_focus) {
 TEST(Block, may_be_turned_or_seen_from_the_side) {
   EXPECT_GE(read(kUpper, {.roll = 4}), 90);
   EXPECT_GE(read(kUpper, {.roll = 10}), 90);
+  EXPECT_GE(read(kUpper, {.roll = 15}), 94);
+  EXPECT_GE(read(kUpper, {.roll = -15}), 88);
   EXPECT_GE(read(kUpper, {.yaw = 45}), 90);
 }
 
 TEST(Block, may_have_several_lines) {
   const std::vector<Text> texts = {
       {"HELLO", "ROBOT HEAD"}, {"ROOM 27", "STOP AT LAB 4"}, {"PLEASE", "CLOSE THE", "DOOR"}};
-  EXPECT_GE(read(texts, {}), 60);
-  EXPECT_GE(read(texts, {.ink = 230, .ground = 30}), 60);
+  EXPECT_GE(read(texts, {}), 83);
+  EXPECT_GE(read(texts, {.ink = 230, .ground = 30}), 83);
+}
+
+TEST(Block, may_have_several_lines_and_be_turned) {
+  const std::vector<Text> texts = {
+      {"PLEASE", "CLOSE THE", "DOOR"}, {"ROOM 27", "STOP AT", "LAB 4"}, {"ONE", "TWO", "THREE"}};
+  EXPECT_GE(read(texts, {}), 94);
+  EXPECT_GE(read(texts, {.roll = 10}), 83);
+  EXPECT_GE(read(texts, {.roll = -15}), 77);
 }
 
 TEST(Block, may_be_of_small_letters_to_the_end_of_the_line) {
