@@ -123,8 +123,8 @@ class Agent {
   /// Speaks from time to time, so that the other end knows that this one is there.
   void send_heartbeat() {
     if (++heartbeats_ % kHeartbeatsOfUsage == 0) tell_usage();
-    const Moments none{};
-    conversation_->say(make_numbers(Heartbeat, none, none.size()));
+    const Moments moments{0, 0, monotonic_now(), monotonic_to_wall()};
+    conversation_->say(make_numbers(Heartbeat, moments, moments.size()));
     heartbeat_ = loop_->call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
   }
 

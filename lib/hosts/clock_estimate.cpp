@@ -2,6 +2,7 @@
 #include <hosts/clock_estimate.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hc::hosts {
 namespace {
@@ -10,6 +11,8 @@ constexpr std::size_t kRecent = 8, kFitted = 64;
 constexpr double kFitSpan = 4e9;          // of the first fit [ns]
 constexpr double kUnknownDrift = 500e-6;  // before; the maximum that Linux corrects a clock by
 constexpr double kFittedDrift = 15e-6;    // source: PHI of RFC 5905, section 7.3
+constexpr double kFittedDoubt = 25e-6;    // of a fit that is used
+constexpr double kLeastDoubt = 20e3;      // of an exchange with the shortest delay [ns]
 
 }  // namespace
 
@@ -28,21 +31,29 @@ void ClockEstimate::add(const Exchange& exchange) {
   fit();
 }
 
+/// Weighted least squares. What of an exchange's delay is above the shortest one has come on one of
+/// its ways, nobody knows on which, so that its offset is wrong by half of that at most.
 void ClockEstimate::fit() {
   const auto& first = best_ones_.front();
   if (static_cast<double>(best_.here - first.here) < kFitSpan) return;
-  double x = 0, y = 0, xx = 0, xy = 0;
-  const auto count = static_cast<double>(best_ones_.size());
+  const auto shortest = std::ranges::min(best_ones_, {}, &Sample::delay).delay;
+  double w = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const auto& each : best_ones_) {
+    const double doubt = kLeastDoubt + static_cast<double>(each.delay - shortest) / 2;
+    const double weight = 1 / (doubt * doubt);
     const auto dx = static_cast<double>(each.here - first.here),
                dy = static_cast<double>(each.offset - first.offset);
-    x += dx;
-    y += dy;
-    xx += dx * dx;
-    xy += dx * dy;
+    w += weight;
+    x += weight * dx;
+    y += weight * dy;
+    xx += weight * dx * dx;
+    xy += weight * dx * dy;
   }
-  const double spread = count * xx - x * x;
-  if (spread > 0) drift_ = std::clamp((count * xy - x * y) / spread, -kUnknownDrift, kUnknownDrift);
+  const double spread = xx - x * x / w;
+  if (spread <= 0) return;
+  doubt_ = 1 / std::sqrt(spread);
+  if (doubt_ > kFittedDoubt) return drift_.reset();
+  drift_ = std::clamp((xy - x * y / w) / spread, -kUnknownDrift, kUnknownDrift);
 }
 
 std::int64_t ClockEstimate::offset(std::int64_t here) const {
@@ -52,7 +63,8 @@ std::int64_t ClockEstimate::offset(std::int64_t here) const {
 
 std::int64_t ClockEstimate::error(std::int64_t here) const {
   const double age = static_cast<double>(std::max<std::int64_t>(0, here - best_.here));
-  return best_.delay / 2 + static_cast<std::int64_t>((drift_ ? kFittedDrift : kUnknownDrift) * age);
+  const double drift = drift_ ? kFittedDrift + 2 * doubt_ : kUnknownDrift;
+  return best_.delay / 2 + static_cast<std::int64_t>(drift * age);
 }
 
 }  // namespace hc::hosts

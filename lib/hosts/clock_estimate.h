@@ -30,7 +30,8 @@ class ClockEstimate {
   /// By how much that can be wrong: half the delay, if all of it was one way, and what the clocks
   /// have drifted since [ns].
   [[nodiscard]] std::int64_t error(std::int64_t here) const;
-  /// How much faster the clock there runs, by least squares; nothing before there are 4 s of it.
+  /// How much faster the clock there runs, by least squares; nothing while that is not known within
+  /// some 50 ppm, which takes 4 s at the minimum.
   [[nodiscard]] std::optional<double> drift() const { return drift_; }
   /// The shortest delay of late, there and back [ns].
   [[nodiscard]] std::int64_t delay() const { return best_.delay; }
@@ -46,6 +47,7 @@ class ClockEstimate {
   std::deque<Sample> best_ones_;
   Sample best_;
   std::optional<double> drift_;
+  double doubt_ = 0;  // of it, standard deviation
 };
 
 }  // namespace hc::hosts

@@ -61,5 +61,19 @@ TEST(ClockEstimate, TheDriftIsFittedAndTheErrorBoundsWhatIsWrong) {
   EXPECT_NEAR(*estimate.drift(), kDrift, 20e-6);
 }
 
+TEST(ClockEstimate, WhatTookLongIsNotTakenForADrift) {
+  ClockEstimate estimate;
+  std::int64_t now = 0;
+  // A machine that is busy at first: each exchange is late on its way out.
+  for (std::int64_t late = 4 * kMs; now < 40'000 * kMs; now += 500 * kMs, late = late * 3 / 4) {
+    estimate.add(exchange(now, kMs / 10 + late, kMs / 10, 100e-6));
+    if (estimate.drift()) {
+      ASSERT_NEAR(*estimate.drift(), 100e-6, 75e-6) << now;  // unweighted, 200e-6
+    }
+    ASSERT_LE(std::abs(estimate.offset(now) - (there(now, 100e-6) - now)), estimate.error(now));
+  }
+  EXPECT_TRUE(estimate.drift());
+}
+
 }  // namespace
 }  // namespace hc::hosts

@@ -20,6 +20,8 @@ constexpr milliseconds kGreeting{20000};  // until ssh has connected and the age
 constexpr milliseconds kAnswerTime{30000};
 constexpr milliseconds kFirstDelay{100}, kLongestDelay{5000};
 constexpr std::chrono::seconds kLasting{10};  // a connection that counts as one
+constexpr int kFirstExchanges = 8;            // of the clock, unless they take longer:
+constexpr milliseconds kLongestFirst{300};
 constexpr std::size_t kSpares = 4;
 constexpr std::size_t kMaxErrorText = 4096;  // [byte]
 constexpr std::size_t kUsageColumns = 5;
@@ -359,19 +361,23 @@ void Connection::greet(const Json& hello) {
   conversation_->say(make_order({{"what", "key"}, {"key", parts_.key}}));
   estimate_ = {};
   there_to_wall_.reset();
+  first_exchanges_ = 0;
+  greeted_ = Clock::now();
   send_heartbeat();
 }
 
-/// The first answer to a beat makes the connection: then its clock is known.
+/// The first answers to a beat, one right behind the other, make the connection: then its clock is
+/// known, also where one of them was late.
 void Connection::take_heartbeat(const Message& message, std::int64_t received) {
   const auto moments = read_numbers(message, Moments().size());
-  if (moments.size() != Moments().size() || moments[0] == 0) return;
+  if (moments.size() != Moments().size() || !is_greeted_) return;
+  const auto there = moments[3];
+  look_at_clock(there);
+  if (moments[0] == 0) return;
   estimate_.add({moments[0], moments[1], moments[2], received});
-  const auto there = moments[3], here = monotonic_to_wall(), now = monotonic_now();
-  if (there_to_wall_ && std::abs(there - *there_to_wall_) > kClockSet)
-    parts_.log(format("host {}: its clock was set by {:.3f} s; times of its messages stay right",
-                      parts_.declared.name, static_cast<double>(there - *there_to_wall_) * 1e-9));
-  there_to_wall_ = there;
+  if (!is_open_ && ++first_exchanges_ < kFirstExchanges && Clock::now() < greeted_ + kLongestFirst)
+    return ask_time();
+  const auto here = monotonic_to_wall(), now = monotonic_now();
   const bool is_new = [&] {
     const std::lock_guard lock(mutex_);
     wall_offset_ = here - estimate_.offset(now);
@@ -399,6 +405,15 @@ void Connection::take_heartbeat(const Message& message, std::int64_t received) {
     parts_.log("host " + parts_.declared.name + ": connected again");
   }
   parts_.changed();
+}
+
+/// Notices that the clock there was set.
+void Connection::look_at_clock(std::int64_t there_to_wall) {
+  if (there_to_wall_ && std::abs(there_to_wall - *there_to_wall_) > kClockSet)
+    parts_.log(format("host {}: its clock was set by {:.3f} s; times of its messages stay right",
+                      parts_.declared.name,
+                      static_cast<double>(there_to_wall - *there_to_wall_) * 1e-9));
+  there_to_wall_ = there_to_wall;
 }
 
 /// Ports that links have stay theirs.
@@ -438,10 +453,14 @@ void Connection::take_usage(const Message& message) {
   }
 }
 
-void Connection::send_heartbeat() {
-  if (!conversation_) return;
+void Connection::ask_time() {
   const Moments moments{monotonic_now(), 0, 0, 0};
   conversation_->say(make_numbers(Heartbeat, moments, moments.size()));
+}
+
+void Connection::send_heartbeat() {
+  if (!conversation_) return;
+  ask_time();
   heartbeat_ = worker_.loop().call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
 }
 

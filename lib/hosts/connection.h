@@ -97,7 +97,9 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   void hold_again();
   void want_spare();
   void take_heartbeat(const Message& message, std::int64_t received);
+  void look_at_clock(std::int64_t there_to_wall);
   void take_usage(const Message& message);
+  void ask_time();
   void send_heartbeat();
   void lose(const std::string& why);
   [[nodiscard]] std::string reason_of(const std::string& noticed) const;
@@ -114,7 +116,8 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   std::string error_text_;  // what ssh has written to its standard error
   bool is_greeted_ = false, is_open_ = false, is_closed_ = false;
   std::chrono::milliseconds delay_{0};  // before it is tried again
-  std::chrono::steady_clock::time_point connected_;
+  std::chrono::steady_clock::time_point connected_, greeted_;
+  int first_exchanges_ = 0;  // of the clock
   std::int64_t asked_ = 0;
   std::map<std::int64_t, std::function<void(Result<Json>)>> questions_;
   std::map<std::int64_t, std::shared_ptr<RemoteModule>> modules_;

@@ -45,7 +45,8 @@ inline constexpr std::int64_t kClockSet = 10'000'000;
 inline constexpr std::size_t kCrowded = std::size_t{256} << 10, kTooMuch = std::size_t{16} << 20;
 
 /// A beat: of the runner the moment when it was sent; of the agent that moment again, when it came,
-/// when the answer was sent (monotonic), and what to add to that for the wall clock.
+/// when the answer was sent (monotonic), and what to add to that for the wall clock. What the agent
+/// says of its own accord has 0 for the first two.
 using Moments = std::array<std::int64_t, 4>;
 
 Message make_order(const Json& order);

@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Clocks of hosts that differ, are set, and run at different speeds. Needs root.
+
+    clocks_test.py BUILD_FOLDER [TEST …]
+
+HC_FULL=1 compares for a minute, and holds all to the times that doc/hosts.md promises.
+"""
+
+import statistics
+import time
+import unittest
+
+from hosts import BRIGHTNESS, BUILD, CAMERA, FULL, HC, HostsTest, WATCHDOG, wait_until
+
+# Until a clock that was set is logged [s].
+TO_NOTICE = 1 if FULL else WATCHDOG
+MOMENTS = 3000 if FULL else 300  # messages that are compared
+GRAPH = """
+[frames.moving]
+parent = "robot"
+moved_by = "fast.pose"
+[modules.fast]
+host = "h1"
+program = "{moments}"
+parameters = {{ start = {start} }}
+[modules.slow]
+host = "h2"
+program = "{moments}"
+inputs.in = "fast.moment"
+[modules.here]
+program = "{moments}"
+inputs.in = "slow.moment"
+[modules.whereabouts]
+program = "{whereabouts}"
+parameters = {{ target = "robot", source = "moving" }}
+inputs.when = "slow.moment"
+outputs.pose = {{ to = "file:{poses}", keep = "all" }}
+"""
+KEPT = """
+[modules.{name}]
+program = "relay"
+inputs.in = {{ from = "{output}", keep = "all" }}
+outputs.out = {{ to = "file:{file}", keep = "all" }}
+"""
+
+
+class Clocks(HostsTest):
+    def test_clocks_that_differ_by_an_hour(self):
+        (host,) = self.network.add()
+        self.write("offset", "0")
+        program = self.with_clock("shifted_hc", "WALL_CLOCK=" + self.path("offset"))
+        graph = (
+            CAMERA % "h1"
+            + BRIGHTNESS % 'host = "h1"\n'
+            + "[modules.here]\nprogram = 'brightness'\n"
+        )
+        self.write_graph(
+            self.network.table(host, program) + graph + 'inputs.image = "camera.left"\n'
+        )
+        for hours in (1, -1):
+            self.write("offset", str(3600 * hours))
+            process = self.run_graph("", "here: started")
+            messages = self.observe(process)
+            state = self.state(
+                messages, lambda state: self.rate(state, "camera.left", "here.image")
+            )
+            self.clock_is(state, 3600 * hours)
+            self.ages_are_right(messages)
+            # A clock that is set while the graph runs changes no time of a message.
+            self.write("offset", "7200")
+            began = time.monotonic()
+            self.await_lines(process, "host h1: its clock was set by %d" % (7200 - 3600 * hours))
+            self.assertLess(time.monotonic() - began, TO_NOTICE)
+            self.ages_are_right(messages)
+            self.clock_is(self.state(messages, lambda s: abs(s["hosts"][0]["offset"]) > 7000), 7200)
+            self.stop(process)
+
+    def clock_is(self, state, offset):
+        host = state["hosts"][0]
+        self.assertLess(abs(host["offset"] - offset), 0.001 + host["error"], host)
+        self.assertLess(host["error"], 0.1)
+
+    def ages_are_right(self, messages):
+        for _ in range(4):
+            state = self.state(messages)
+            for link in state["links"]:
+                if link["age"]:
+                    self.assertGreater(link["age"][0], -0.002, link)
+                    self.assertLess(link["age"][0], 60, link)
+
+    def with_clock(self, name, setting):
+        """A `hc` whose host has another clock."""
+        library = BUILD / "tests/wall_clock.so"
+        text = '#!/bin/sh\nexport %s LD_PRELOAD=%s\nexec %s "$@"\n'
+        return self.write_program(name, text % (setting, library, HC))
+
+    def test_clocks_that_drift(self):
+        """One runs faster by 100 ppm and one slower: it is known, and no time of a message shows it."""
+        hosts = self.network.add(2)
+        since, start = time.monotonic_ns(), time.time()
+        tables = ""
+        for host, ppm in zip(hosts, (100, -100)):
+            program = self.with_clock(host.name + "_hc", "CLOCK_DRIFT='%d %d'" % (ppm, since))
+            tables += self.network.table(host, program)
+        text = GRAPH.format(
+            moments=BUILD / "tests/moments",
+            whereabouts=BUILD / "tests/whereabouts",
+            start=start,
+            poses=self.path("poses"),
+        )
+        outputs = {"poses_in": "fast.pose", "when": "slow.moment"}
+        outputs.update({"ways_" + name: name + ".ways" for name in ("slow", "here")})
+        for name, output in outputs.items():
+            text += KEPT.format(name=name, output=output, file=self.path(name))
+        self.write_graph(tables + text)
+        process = self.run_graph("", "ways_here: started")
+        messages = self.observe(process)
+        states = [self.state(messages, self.is_whole)]
+        while not all(each["drift"] for each in states[-1]["hosts"]):
+            states.append(self.state(messages, self.is_whole))
+        for _ in range(40 if FULL else 8):
+            states.append(self.state(messages, self.is_whole))
+            passed = time.monotonic_ns() - since
+            for each, ppm in zip(states[-1]["hosts"], (100e-6, -100e-6)):
+                wrong = abs(each["offset"] - passed * 1e-9 * ppm)
+                self.assertLess(wrong, 0.001 + (0 if FULL else each["error"]), each)
+                self.assertLess(abs(each["drift"] - ppm), 75e-6, each)
+        wait_until(lambda: self.read("poses").count("\n") > 5 * MOMENTS)
+        states += [self.state(messages, self.is_whole) for _ in range(5)]
+        self.stop(process)
+        self.times_are_right(start, states)
+
+    @staticmethod
+    def is_whole(state):
+        return len(state["hosts"]) == 2 and all(each["connected"] for each in state["hosts"])
+
+    def times_are_right(self, start, states):
+        # On a machine that is busy, what the hosts say of their own error may come to it.
+        errors = [each["error"] for state in states for each in state["hosts"]]
+        most = 0.002 + (0 if FULL else 2 * max(errors))
+        moments = {t: rows[0][0] for t, rows in self.kept("when").items()}
+        stamps = [t - moment for t, moment in moments.items()]
+        self.assertGreater(len(stamps), 0.9 * MOMENTS)
+        self.assertLess(max(map(abs, stamps)), most * 1e9)
+        # Where the frame was at a moment is how long the truth has run then.
+        found = self.kept("poses")
+        self.assertGreater(len(found), 0.9 * MOMENTS)
+        for t, rows in found.items():
+            self.assertLess(abs(rows[0][3] - (moments[t] / 1e9 - start)), most)
+        for name, link in (
+            ("slow", ("fast.moment", "slow.in")),
+            ("here", ("slow.moment", "here.in")),
+        ):
+            ways = [rows[0] for rows in self.kept("ways_" + name).values()]
+            self.assertGreater(len(ways), 0.9 * MOMENTS)
+            self.assertLess(max(abs(true - by_clocks) for true, by_clocks in ways), most * 1e9)
+            true = statistics.median(each for each, _ in ways) / 1e9
+            ages = [self.link(state, *link)["age"] for state in states]
+            ages = [age[0] for age in ages if age]
+            self.assertLess(abs(statistics.median(ages) - true), most)
+
+    def kept(self, name):
+        """Messages of a file, their rows of numbers, by their time."""
+        lines = iter(self.shell("hc cat --raw " + name).splitlines())
+        found = {}
+        for line in lines:
+            header = [int(word) for word in line.split()]
+            found[header[5]] = [[float(n) for n in next(lines).split()] for _ in range(header[10])]
+        return found
+
+
+if __name__ == "__main__":
+    unittest.main()

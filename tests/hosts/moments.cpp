@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A module for clocks_test.py: says beside the times of messages what the kernel's clock says,
+// which all hosts of a test have in common, whatever clock they are given.
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <ctime>
+
+#include <hc/module/module.h>
+
+namespace {
+
+constexpr std::int64_t kSameMoment = 100'000;  // [ns]
+
+/// The wall clock past all libraries [ns].
+std::int64_t true_now() {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  timespec time{};
+  ::syscall(SYS_clock_gettime, CLOCK_REALTIME, &time);
+  return time.tv_sec * kSecond + time.tv_nsec;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hc::Module module{"moments", "Sends the time, as it is and as its host has it."};
+  auto in = module.input("in", hc::table<std::int64_t>(), "moments of another");
+  auto moment = module.output("moment", hc::table<std::int64_t>(), "true time [ns]");
+  auto pose = module.output("pose", hc::transformation<double>(4, 4),
+                            "moved along x by 1 m a second since `start`");
+  auto ways = module.output("ways", hc::table<std::int64_t>(),
+                            "how long a moment took to come: in truth, and by the clocks [ns]");
+  auto start = module.parameter("start", 0.0, "s", "when the true time began");
+  // The true time and the module's; false where something has come in between them.
+  struct Both {
+    std::int64_t truth, stamp, width;
+    explicit operator bool() const { return width < kSameMoment; }
+  };
+  auto look = [&] {
+    const auto before = true_now(), stamp = module.now(), after = true_now();
+    return Both{before + (after - before) / 2, stamp, after - before};
+  };
+  module.on(in, [&](const auto& message) {
+    if (const auto now = look())
+      ways.send(hc::table({now.truth - message.numbers()[0], now.stamp - message.header.time}));
+  });
+  module.every(std::chrono::milliseconds(20), [&] {
+    const auto now = look();
+    if (!now) return;
+    moment.send(hc::table({now.truth}).at(now.stamp));
+    auto draft = pose.loan(4, 4);
+    const auto T = draft.matrix();
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) T.at(i, j) = i == j ? 1 : 0;
+    T.at(0, 3) = hc::seconds(now.truth - hc::duration(*start).count());
+    draft.header.time = now.stamp;
+    pose.send(std::move(draft));
+  });
+  module.keep_running();
+  return module.run(argc, argv);
+}
