@@ -8,7 +8,6 @@
 #include <hc/base/uri.h>
 #include <hc/contract/description.h>
 #include <hc/graph/file/fields.h>
-#include <hc/link/policy.h>
 
 namespace hc {
 namespace {
@@ -87,7 +86,7 @@ void remove_module(Graph& graph, const std::string& name, Problems& problems) {
 }
 
 void add_policy(GraphLink& link, const Command& command, Problems& problems) {
-  static const std::vector<std::string> kKeys = {"keep", "rate", "burst", "memory"};
+  static const std::vector<std::string> kKeys(kPolicyKeys.begin(), kPolicyKeys.end());
   Uri policy;
   for (std::size_t i = 2; i < command.words.size(); ++i) {
     auto pair = pair_of(command.words[i], problems);
@@ -98,7 +97,7 @@ void add_policy(GraphLink& link, const Command& command, Problems& problems) {
     policy.options.push_back(*pair);
     link.policy[pair->first] = {pair->second, {}};
   }
-  if (auto valid = internal::parse_policy(policy); !valid) problems.add({}, valid.error().detail);
+  if (auto valid = check_policy(policy); !valid) problems.add({}, valid.error().detail);
 }
 
 /// A link to where readers come and go by hand makes no module wait, unless that was asked for.

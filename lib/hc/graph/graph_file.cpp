@@ -5,10 +5,12 @@
 #include <filesystem>
 
 #include <hc/base/suggestion.h>
+#include <hc/contract/conversion.h>
 #include <hc/contract/description.h>
 #include <hc/contract/trace.h>
 #include <hc/graph/file/tables.h>
 #include <hc/graph/programs.h>
+#include <hc/link/policy.h>
 
 namespace hc {
 namespace {
@@ -191,6 +193,12 @@ std::vector<std::string> Graph::host_names() const {
   std::vector<std::string> names;
   for (const auto& host : hosts) names.push_back(host.name);
   return names;
+}
+
+Status check_policy(Uri policy) {
+  if (auto conversion = take_conversion(policy); !conversion) return conversion.error();
+  auto valid = internal::parse_policy(policy);
+  return valid ? Status() : valid.error();
 }
 
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,

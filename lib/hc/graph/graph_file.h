@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include <hc/base/uri.h>
 #include <hc/graph/problems.h>
 #include <hc/mtp/element.h>
 
@@ -151,6 +152,13 @@ inline constexpr std::int64_t kGraphVersion = 1;
 /// @param read_file  reads what it includes; none: nothing can be included.
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
                   const ReadFile& read_file = {});
+
+/// The keys of a link's policy, in the order in which they are read.
+inline constexpr std::array<std::string_view, 7> kPolicyKeys = {
+    "keep", "rate", "burst", "memory", "as", "quality", "scale"};
+
+/// Whether a policy makes sense as far as it is in a URI's options. Errors: Invalid.
+Status check_policy(Uri policy);
 
 /// Records every linked output, and the focus, in a file each: FOLDER/MODULE.PORT.mtp.
 /// @param traced  modules whose output `trace` is recorded too.

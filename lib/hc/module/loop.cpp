@@ -114,10 +114,14 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   };
   if (const auto* commands = management_.commands(); commands != nullptr)
     options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
-  auto sink = open_sink(uri, options);
+  Uri opened = uri;
+  auto conversion = take_conversion(opened);
+  if (!conversion) fail(name_of(uri.text(), port), conversion.error());
+  auto sink = open_sink(opened, options);
   if (!sink) fail(name_of(uri.text(), port), sink.error());
   link->uri = uri.text();
   link->sink = std::move(*sink);
+  link->conversion = *conversion;
   sinks_.push_back(link);
   return link;
 }

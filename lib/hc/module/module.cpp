@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <hc/compress/compress.h>
+#include <hc/compress/scale.h>
 #include <hc/module/loop.h>
 #include <hc/os/program.h>
 
@@ -174,9 +175,26 @@ void Module::keep_rate(double rate) {
 
 namespace {
 
+/// A message as a link wants it; what it cannot be made of (an output may send anything) stays.
+Message converted(const Message& message, const Conversion& conversion) {
+  Message made = message;
+  const auto& header = message.header;
+  if (conversion.scale != 1 && can_scale(header.info) && !header.empty())
+    made = value_or_end(shrink(message, scaled(header.width, conversion.scale),
+                               scaled(header.height, conversion.scale)));
+  if (!conversion.as) return made;
+  Header wanted = made.header;
+  wanted.info.encoding = *conversion.as;
+  if (!check(wanted, {~std::uint64_t{0}})) return made;
+  CompressOptions options;
+  options.jpeg_quality = conversion.quality.value_or(options.jpeg_quality);
+  return value_or_end(compress(made, *conversion.as, options));
+}
+
 /// Sends to a link; false when its reader has left, which ends the link.
 bool send_to(internal::LinkedSink& link, const std::string& port, const Message& message) {
-  auto sent = link.sink->send(message);
+  auto sent = link.conversion.is_none() ? link.sink->send(message)
+                                        : link.sink->send(converted(message, link.conversion));
   if (sent) return true;
   if (sent.error().code == Code::Stopped) throw internal::Stopped();
   if (sent.error().code != Code::Closed)

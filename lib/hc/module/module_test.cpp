@@ -66,6 +66,51 @@ TEST(Module, AnswersEachMessageAndKeepsItsTime) {
   }
 }
 
+TEST(Module, ConvertsForTheLinkThatSaysSoAlone) {
+  Module module{"camera", "Sends an image, and a number."};
+  auto image = module.output("image", rgb_image<std::uint8_t>().in(Coord::kLeftImage), "");
+  auto number = module.output("number", table<double>(), "");
+  module.generate([&] {
+    auto draft = image.loan(64, 48);
+    std::ranges::fill(draft.numbers(), std::uint8_t{100});
+    draft.header.time = 12;
+    image.send(std::move(draft));
+    number.send(table({1.5}));
+    return false;
+  });
+  auto whole = source_of("inproc:m9-whole"), small = source_of("inproc:m9-small"),
+       other = source_of("inproc:m9-other");
+  EXPECT_EQ(run(module, {"--out=image=inproc:m9-small?as=jpeg&quality=50&scale=0.5&keep=latest",
+                         "--out=image=inproc:m9-whole", "--out=number=inproc:m9-other?scale=0.5"}),
+            0);
+  Message message;
+  ASSERT_TRUE(*receive(*whole, message));
+  EXPECT_EQ(message.header.width, 64);
+  EXPECT_EQ(message.header.info.encoding, Encoding::Binary);
+  const Header sent = message.header;
+  ASSERT_TRUE(*receive(*small, message));
+  EXPECT_EQ(message.header.info.encoding, Encoding::Jpeg);
+  const auto expanded = expand(message);
+  ASSERT_TRUE(expanded);
+  Header wanted = sent;
+  wanted.width = 32;
+  wanted.height = 24;
+  EXPECT_EQ(expanded->header, wanted);
+  EXPECT_NEAR(expanded->view<std::uint8_t>()->at(20, 30, 2), 100, 2);
+  ASSERT_TRUE(*receive(*other, message));  // is no image
+  EXPECT_EQ(message.view<double>()->at(0, 0), 1.5);
+}
+
+TEST(Module, RefusesALinkThatCannotConvert) {
+  Module module{"camera", "Sends nothing."};
+  module.output("image", rgb_image<std::uint8_t>(), "");
+  ::testing::internal::CaptureStderr();
+  EXPECT_NE(run(module, {"--out=image=inproc:m10?scale=2"}), 0);
+  EXPECT_NE(
+      ::testing::internal::GetCapturedStderr().find("option scale is a number from 0.01 to 1"),
+      std::string::npos);
+}
+
 TEST(Module, SendsWhatIsOnDemandOnlyByALinkOfItsOwn) {
   const auto linked = [](const std::vector<std::string>& arguments) {
     Module module{"numbers", "Sends numbers."};

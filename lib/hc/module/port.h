@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <hc/base/clock.h>
+#include <hc/contract/conversion.h>
 #include <hc/link/link.h>
 #include <hc/module/kind.h>
 #include <hc/module/matcher.h>
@@ -28,6 +29,7 @@ struct TogetherState;
 struct LinkedSink {
   std::string uri;
   std::unique_ptr<Sink> sink;  ///< null once the reader has disconnected
+  Conversion conversion;       ///< of what goes here
   Traffic traffic;             ///< as it was when the link ended
   Route route;                 ///< which messages go here
 };
@@ -154,7 +156,7 @@ class Output {
     header.width = width;
     header.height = height;
     for (const auto& link : state_->links)
-      if (link->sink != nullptr) return {link->sink->loan(header)};
+      if (link->sink != nullptr && link->conversion.is_none()) return {link->sink->loan(header)};
     return {Draft::make(header)};
   }
 

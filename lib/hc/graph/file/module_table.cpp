@@ -4,7 +4,6 @@
 #include <cstdlib>
 
 #include <hc/graph/file/tables.h>
-#include <hc/link/policy.h>
 
 namespace hc::internal {
 namespace {
@@ -89,6 +88,9 @@ class ModuleReader {
            {"rate", policy},
            {"burst", policy},
            {"memory", policy},
+           {"as", policy},
+           {"quality", policy},
+           {"scale", policy},
            {"via", fields_.choice({"tls", "tcp"},
                                   [&](const Node& via, std::size_t) {
                                     link.via = {*via.as<std::string>(), via.place};
@@ -115,21 +117,24 @@ class ModuleReader {
   void read_policy(const Node& option, GraphLink& link) {
     std::string& text = link.policy[option.key].value;
     link.policy[option.key].place = option.place;
-    if (option.as<std::int64_t>() != nullptr || option.as<std::string>() != nullptr)
+    const bool is_scale = option.key == "scale";
+    if (option.as<std::int64_t>() != nullptr || option.as<std::string>() != nullptr ||
+        (is_scale && option.as<double>() != nullptr))
       text = *Fields::scalar(option);
     if (text.empty())
-      fields_.add(option, quoted_name(option.key) + " must be a whole number or a string");
+      fields_.add(option, quoted_name(option.key) + " must be a " +
+                              (is_scale ? "number" : "whole number") + " or a string");
   }
 
   /// Problems: the first option that is wrong, which is empty then.
   void check_policy(GraphLink& link) {
     Uri policy;
-    for (const char* key : {"keep", "rate", "burst", "memory"}) {
-      auto option = link.policy.find(key);
+    for (const auto key : kPolicyKeys) {
+      auto option = link.policy.find(std::string(key));
       if (option == link.policy.end()) continue;
       if (option->second.value.empty()) return;
       policy.options.emplace_back(key, option->second.value);
-      if (auto valid = parse_policy(policy); !valid) {
+      if (auto valid = hc::check_policy(policy); !valid) {
         Node at;
         at.place = option->second.place;
         option->second.value.clear();

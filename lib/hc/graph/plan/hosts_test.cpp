@@ -131,5 +131,54 @@ TEST(HostsOfAGraph, AreChecked) {
             "authenticated");
 }
 
+/// A camera on the robot, and who reads it.
+std::string seen(const std::string& policy, const std::string& port = "any",
+                 const std::string& host = "", const std::string& camera = "camera") {
+  return "[modules.camera]\nhost = \"robot\"\nprogram = \"" + camera +
+         "\"\n[modules.fixed]\nhost = \"" + host + "\"\ninputs." + port + " = { from = \"camera." +
+         (camera == "far" ? "out" : "image") + "\", " + policy + " }\n";
+}
+
+TEST(HostsOfAGraph, HaveImagesConvertedByTheirSender) {
+  const std::string policy = R"(as = "jpeg", quality = 80, scale = 0.5)";
+  auto planned = plan_hosts(seen(policy));
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->links[0].sender_uri,
+            "tls-listen:0.0.0.0:7001?readers=1&stay=1&key=/proc/self/fd/3&peer=F0&keep=latest&as="
+            "jpeg&quality=80&scale=0.5");
+  EXPECT_EQ(planned->links[0].reader_uri, "tls:10.0.0.2:7001?wait=60&key=/proc/self/fd/3&peer=F1");
+  // Also on one host, by memory that others do not share.
+  planned = plan_hosts(seen(policy, "any", "robot"));
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(
+      planned->links[0].sender_uri,
+      "shm:t.camera.image.fixed.any?readers=1&stay=1&keep=latest&as=jpeg&quality=80&scale=0.5");
+}
+
+TEST(HostsOfAGraph, HaveNothingConvertedThatCannotBe) {
+  EXPECT_EQ(wrong(kHosts + seen("scale = 1.5")),
+            "g.toml:13: option scale is a number from 0.01 to 1");
+  EXPECT_EQ(wrong(kHosts + seen("quality = 80")),
+            "g.toml:13: option quality wants as=jpeg beside it");
+  EXPECT_EQ(wrong(kHosts + seen("as = \"gif\"")),
+            "g.toml:13: option as is text, binary, zstd or jpeg");
+  EXPECT_EQ(wrong(kHosts + seen("as = 1.5")),
+            "g.toml:13: \"as\" must be a whole number or a string");
+  EXPECT_EQ(wrong(kHosts + seen("scale = true")),
+            "g.toml:13: \"scale\" must be a number or a string");
+  EXPECT_EQ(wrong(kHosts + seen("scale = 0.5", "in")),
+            "g.toml:13: camera.image: scale changes the size of images, and the input takes "
+            "rgb_image 640 x 480 of 3 x u8");
+  EXPECT_EQ(wrong(kHosts + seen("as = \"jpeg\"", "in")), "");
+  EXPECT_EQ(wrong(kHosts + seen("scale = 0.5", "any", "", "far")),
+            "g.toml:13: module camera cannot have \"scale\": its program does not support "
+            "--control; see spec/module.md, sections 3 and 6");
+  EXPECT_EQ(wrong("[modules.router]\ninputs.in = { from = \"tcp-listen:1\", scale = 0.5 }\n"),
+            "g.toml:3: a link from outside cannot have scale: its sender sets it");
+  EXPECT_EQ(wrong("[modules.workspace]\noutputs.focus = { to = \"tcp:h:1\", as = \"jpeg\" }\n"),
+            "g.toml:3: workspace.focus: as: R21 jpeg is for images of 1 or 3 components of "
+            "u8, not table of 1 x i32");
+}
+
 }  // namespace
 }  // namespace hc

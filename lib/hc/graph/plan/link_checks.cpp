@@ -5,6 +5,7 @@
 
 #include <hc/base/format.h>
 #include <hc/base/uri.h>
+#include <hc/contract/conversion.h>
 #include <hc/graph/plan/planning.h>
 #include <hc/link/link.h>
 #include <hc/link/transports.h>
@@ -28,6 +29,7 @@ class LinkCheck {
     const PortDescription* to = end(link, link.to, true);
     if (link.route) check_route(link);
     if (!link.from.uri.empty() || !link.to.uri.empty()) check_outer_policy(link);
+    if (from != nullptr && to == nullptr) check_conversion(link, from->types, {});
     if (from == nullptr || to == nullptr) return true;
     bool right = fits(from->types, to->types);
     if (!right)
@@ -45,6 +47,7 @@ class LinkCheck {
         memory != link.policy.end() && !memory->second.value.empty() && transport == "shm")
       if (auto enough = check_shm_memory({"shm", "", {{"memory", memory->second.value}}}); !enough)
         problems_.add(memory->second.place, enough.error().detail);
+    check_conversion(link, from->types, to->types);
     return right;
   }
 
@@ -105,9 +108,15 @@ class LinkCheck {
     if (std::find(known.begin(), known.end(), uri.scheme) == known.end())
       problems_.add(link.place, "module " + module + " does not support " + uri.scheme + ": links" +
                                     suggest(planning_, uri.scheme, known));
-    else if (auto checked = is_input ? check_sink(uri) : check_source(uri);
+    else if (auto checked = is_input ? check_outlet(uri) : check_source(uri);
              !checked && is_ours(uri))
       problems_.add(link.place, outside.uri + ": " + checked.error().detail);
+  }
+
+  /// The same of what a module's output can have.
+  static Status check_outlet(Uri uri) {
+    auto conversion = take_conversion(uri);
+    return conversion ? check_sink(uri) : conversion.error();
   }
 
   /// Whether nobody else listens there. A TCP port alone is that of the loopback address, and
@@ -139,7 +148,7 @@ class LinkCheck {
     for (const auto& [key, value] : link.policy) {
       if (value.value.empty()) continue;
       const bool is_pace = key == "rate" || key == "burst";
-      if (is_input && (!is_shared || key == "memory"))
+      if (is_input && !(is_shared && (is_pace || key == "keep")))
         problems_.add(value.place,
                       "a link from outside cannot have " + key + ": its sender sets it");
       if (!is_input && is_shared && is_pace)
@@ -147,13 +156,37 @@ class LinkCheck {
     }
   }
 
+  /// What the sender is to make of messages, and whether it can and the reader takes it.
+  void check_conversion(const GraphLink& link, const std::vector<PortType>& given,
+                        const std::vector<PortType>& taken) {
+    Uri options;
+    const Lined<std::string>* first = nullptr;
+    for (const auto key : kConversionOptions) {
+      const auto option = link.policy.find(std::string(key));
+      if (option == link.policy.end()) continue;
+      if (option->second.value.empty()) return;
+      options.options.emplace_back(key, option->second.value);
+      if (first == nullptr) first = &option->second;
+    }
+    if (first == nullptr) return;
+    if (!planning_.description_of(link.from.module)->control)
+      return problems_.add(first->place, "module " + link.from.module + " cannot have \"" +
+                                             options.options.front().first + needs_control());
+    const auto conversion = take_conversion(options);
+    if (!conversion) return;  // it has been reported
+    if (const auto what = hindrance(*conversion, given, taken); !what.empty())
+      problems_.add(first->place, link.from.text() + ": " + what);
+  }
+
+  static std::string needs_control() {
+    return "\": its program does not support --control; see spec/module.md, sections 3 and 6";
+  }
+
   void check_route(const GraphLink& link) {
     const Description* sender = planning_.description_of(link.from.module);
     if (sender != nullptr && !sender->control)
-      problems_.add(link.route->place, "module " + link.from.module +
-                                           " cannot have \"route\": its program does not "
-                                           "support --control; see spec/module.md, sections 3 "
-                                           "and 6");
+      problems_.add(link.route->place,
+                    "module " + link.from.module + " cannot have \"route" + needs_control());
     else if (!link.from.uri.empty())
       problems_.add(link.route->place,
                     "a link from outside cannot have a route: its sender sets it");

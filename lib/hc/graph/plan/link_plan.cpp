@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gives each link of a graph, which has been checked, its two ends.
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include <hc/base/uri.h>
 #include <hc/graph/plan/planning.h>
@@ -23,8 +25,13 @@ std::string digest(std::string_view text) {
   return digits;
 }
 
+/// Keys of a policy that need a sending end of the link's own, and those that a reader of shared
+/// memory keeps.
+constexpr std::array<std::string_view, 4> kOfSender = {"memory", "as", "quality", "scale"};
+constexpr std::array<std::string_view, 2> kPace = {"rate", "burst"};
+
 /// Some options of a link's policy, as they are in a URI.
-std::string options_of(const GraphLink& link, std::initializer_list<std::string_view> keys) {
+std::string options_of(const GraphLink& link, std::span<const std::string_view> keys) {
   std::string options;
   for (const auto& [key, value] : link.policy)
     if (std::find(keys.begin(), keys.end(), key) != keys.end())
@@ -126,8 +133,9 @@ class LinkPlanner {
   /// Whether links of an output have an end in common with this one.
   bool is_common(std::size_t number) const {
     const GraphLink& link = graph_.links[number];
-    return transport_of(planning_, link) == "shm" && !link.policy.contains("memory") &&
-           routes_[number].sender.empty();
+    const bool is_own = std::ranges::any_of(
+        kOfSender, [&](const auto key) { return link.policy.contains(std::string(key)); });
+    return transport_of(planning_, link) == "shm" && !is_own && routes_[number].sender.empty();
   }
 
   std::string name_of(std::size_t number) const {
@@ -222,12 +230,12 @@ class LinkPlanner {
     const Ends ends = ends_of(link, transport, name);
     const std::string scheme(transport);
     const std::string and_keep = keep == "all" ? "" : "&keep=" + keep;
-    const std::string pace = options_of(link, {"rate", "burst"});
+    const std::string pace = options_of(link, kPace);
     Sender& sender = senders_[name];
     if (sender.uri.empty()) {
       sender.uri = scheme + (by_memory ? ":" : "-listen:") + ends.writer +
                    "?readers=" + std::to_string(sender.readers) + "&stay=1" + ends.writer_trusts +
-                   (is_common(number) ? "" : and_keep) + options_of(link, {"memory"}) +
+                   (is_common(number) ? "" : and_keep) + options_of(link, kOfSender) +
                    (by_memory ? "" : pace);
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }

@@ -44,6 +44,17 @@ inline Result<std::string> describe(const std::string& program, const std::strin
   if (program == "far")
     return lists(module(port("in", "map", 0), port("out", "map", 0)),
                  R"("shm","tcp","tcp-listen","tls","tls-listen","unix","unix-listen")");
+  if (program == "camera")
+    return lists(R"({"name":"x","inputs":[],"outputs":[{"name":"image","types":[{"type":)"
+                 R"("rgb_image","components":3,"scalar":"u8","width":0,"height":0,"coord":7}]}],)"
+                 R"("parameters":[],"control":true})",
+                 R"("shm","tls","tls-listen","unix")");
+  if (program == "fixed")
+    return lists(
+        R"({"name":"x","inputs":[{"name":"in","types":[{"type":"rgb_image","components":)"
+        R"(3,"scalar":"u8","width":640,"height":480,"coord":0}]},{"name":"any","types":[]}],)"
+        R"("outputs":[],"parameters":[]})",
+        R"("shm","tls","tls-listen")");
   if (program == "files") return lists(module(port("in", "map", 0), ""), R"("file","tcp-listen")");
   if (program == "liar") return lists(module("", ""), R"("tcp"],"control":true,"together":[)");
   if (program == "seer")

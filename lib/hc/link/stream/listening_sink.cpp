@@ -88,6 +88,11 @@ class ListeningSink final : public Sink {
 
   void abandon() override {
     for (auto& peer : peers_) peer->abandon();
+    // Another link may listen here from now on, and its readers come, while this object is still
+    // there.
+    while (!peers_.empty()) leave(peers_.size() - 1);
+    listening_.reset();
+    socket_ = ListeningSocket();
   }
 
   [[nodiscard]] Traffic traffic() const override {

@@ -171,6 +171,21 @@ TEST(Tcp, AReaderThatVanishesIsNoticedThoughItsBufferHasRoom) {
   EXPECT_EQ(sent.error().code, Code::Closed);
 }
 
+TEST(Tcp, WhereALinkWasAbandonedAnotherCanListen) {
+  const std::string place = free_port();
+  auto sink = sink_of("tcp-listen:" + place + "?readers=1");
+  auto source = source_of("tcp:" + place + "?reconnect=100");
+  ASSERT_TRUE(sink->send(numbered(0, 1)));
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  sink->abandon();  // and is still there
+  auto other = sink_of("tcp-listen:" + place + "?readers=1&keep=latest");
+  std::thread sender([&] { ASSERT_TRUE(other->send(numbered(1, 1))); });
+  ASSERT_TRUE(*receive(*source, message));
+  sender.join();
+  EXPECT_EQ(message.header.seq, 1);
+}
+
 TEST(Tcp, AConnectionWithItselfIsNone) {
   std::string place = free_port();
   chooses_the_same_port = true;
