@@ -36,6 +36,12 @@ parameters = { source = "{0}/aloeL.jpg", loop = true, rate = 50, width = 80, hei
 BRIGHTNESS = '[modules.brightness]\n%sinputs.image = "camera.left"\n'
 
 
+def report(text, *values):
+    """Says what was found, where all is done in full."""
+    if FULL:
+        print(text % values)
+
+
 class HostsTest(Graphs):
     def setUp(self):
         super().setUp()

@@ -58,15 +58,21 @@ def run(command, **options):
 class Host:
     """A host of the network: its namespace is that of a process that does nothing."""
 
-    def __init__(self, number, config):
+    def __init__(self, number, config, cable=None):
         self.name = "h%d" % number
         self.address = "10.9.0.%d" % (number + 1)
         self.process = subprocess.Popen(["unshare", "--net", "sleep", "infinity"])
-        self.sshd = None
+        self.sshd = self.cable = None
         own = os.readlink("/proc/self/ns/net")
         while os.readlink("/proc/%d/ns/net" % self.process.pid) == own:
             time.sleep(0.001)  # it has not got there yet
-        run("ip link add %s type veth peer name eth netns %d" % (self.name, self.process.pid))
+        if cable is None:
+            run("ip link add %s type veth peer name eth netns %d" % (self.name, self.process.pid))
+        else:
+            far = self.name + "_far"
+            self.cable = subprocess.Popen([cable, self.name, far], stdin=-1, stdout=-1)
+            assert self.cable.stdout.readline(), "there is no cable: see above"
+            run("ip link set %s netns %d name eth" % (far, self.process.pid))
         run("ip link set %s master bridge up" % self.name)
         self.inside("ip address add %s/24 dev eth" % self.address)
         self.inside("ip link set eth up")
@@ -98,6 +104,12 @@ class Host:
                 found[int(path.name)] = " ".join(words).strip()
         return {number: text for number, text in found.items() if not text.startswith("sshd:")}
 
+    def worsen(self, delay=0, loss=0, rate=0):
+        """How its cable is from now on: late [ms], loses packets [1], slow [byte/s]."""
+        self.cable.stdin.write(b"%g %g %d\n" % (delay, loss, rate))
+        self.cable.stdin.flush()
+        self.cable.stdout.readline()
+
     def cut(self, is_cut=True):
         run("ip link set %s %s" % (self.name, "down" if is_cut else "up"))
 
@@ -105,7 +117,10 @@ class Host:
         for number, text in self.processes().items():
             if "/usr/sbin/sshd -D" not in text:
                 os.kill(number, signal.SIGKILL)
-        for process in (self.sshd, self.process):
+        if self.cable is not None:
+            self.cable.stdout.close()
+            self.cable.stdin.close()
+        for process in (self.sshd, self.process, self.cable):
             if process is not None:
                 process.kill()
                 process.wait()
@@ -133,9 +148,10 @@ class Network:
         path.write_text(text.format(folder=self.folder, build=self.build))
         return str(path)
 
-    def add(self, count=1):
+    def add(self, count=1, cable=None):
+        """Hosts; `cable` is the program that makes bad ones."""
         for _ in range(count):
-            self.hosts.append(Host(len(self.hosts) + 1, self.sshd_config))
+            self.hosts.append(Host(len(self.hosts) + 1, self.sshd_config, cable))
         key = pathlib.Path(self.folder, "host_key.pub").read_text()
         known = "".join("%s %s" % (host.address, key) for host in self.hosts)
         pathlib.Path(self.folder, "known_hosts").write_text(known)
