@@ -29,7 +29,7 @@ std::string footer() {
   return text +
          "\nA link's end is -, a file, tcp:HOST:PORT, tcp-listen:PORT, tls:HOST:PORT, "
          "tls-listen:PORT, unix:PATH, "
-         "unix-listen:PATH, shm:NAME.";
+         "unix-listen:PATH, shm:NAME, dds:TOPIC.";
 }
 
 constexpr const char* kOverview =

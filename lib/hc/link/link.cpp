@@ -63,9 +63,23 @@ Result<internal::ListeningSocket> find_tls_listener(const Uri& uri) {
   return internal::listen_tls != nullptr ? internal::listen_tls(uri) : no_tls();
 }
 
+// Links by DDS, where the program has lib/dds.
+
+Error no_dds() {
+  return {Code::Unsupported, "dds: links need Cyclone DDS: this program is linked without lib/dds"};
+}
+
+Opened dds_source(const Uri& uri, const LinkOptions& options) {
+  return internal::open_dds_source != nullptr ? internal::open_dds_source(uri, options) : no_dds();
+}
+
+OpenedSink dds_sink(const Uri& uri, const LinkOptions& options) {
+  return internal::open_dds_sink != nullptr ? internal::open_dds_sink(uri, options) : no_dds();
+}
+
 /// Every transport there is. The options that an end has are named here, so that one misspelt is
 /// refused and not overlooked.
-constexpr std::array<Transport, 10> kTransports = {{
+constexpr std::array<Transport, 11> kTransports = {{
     {"-", "", "keep rate burst memory", internal::open_stdin, internal::open_stdout},
     {"file", "", "keep rate burst memory", internal::open_file_source, internal::open_file_sink},
     {"tcp", "wait reconnect same_user", "wait reconnect same_user keep rate burst memory",
@@ -84,6 +98,8 @@ constexpr std::array<Transport, 10> kTransports = {{
      internal::open_inproc_sink},
     {"shm", "keep rate burst spin wait reconnect", "readers stay keep memory",
      internal::open_shm_source, internal::open_shm_sink},
+    {"dds", "domain interface wait reconnect keep rate burst memory",
+     "domain interface readers stay keep rate burst memory", dds_source, dds_sink},
 }};
 
 std::vector<std::string> split(std::string_view words) {
@@ -143,7 +159,7 @@ Status check_end(const Uri& uri, std::string_view allowed) {
   } else if (uri.scheme != "-" && (uri.rest.empty() || uri.rest == "@")) {
     return Error{Code::Invalid, "there is no name"};
   }
-  for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user"})
+  for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user", "domain"})
     if (auto number = internal::number_option(uri, key, 0); !number) return number.error();
   auto policy = internal::parse_policy(uri);
   return policy ? Status() : policy.error();

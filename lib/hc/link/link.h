@@ -145,7 +145,8 @@ struct LinkOptions {
 /// listens (`unix:@NAME` in the abstract namespace, without a file), `tcp-listen:[HOST:]PORT` and
 /// `unix-listen:PATH` wait for peers, `tls` and `tls-listen` are tcp encrypted (lib/tls),
 /// `shm:NAME` is memory that the sink's process shares with any number of sources of this host and
-/// user, `inproc:NAME` another thread of it. Listening is on loopback without HOST. Options:
+/// user, `inproc:NAME` another thread of it, `dds:TOPIC` any number of writers and readers in a
+/// network, by Cyclone DDS (lib/dds). Listening is on loopback without HOST. Options:
 /// - `wait=SECONDS` (tcp, tls, unix, shm source): how long to try while nobody listens; default 0,
 ///   which gives a host that does not answer 4 s. The answer of a publisher of shm that is there
 ///   has 4 s in any case.
@@ -163,6 +164,8 @@ struct LinkOptions {
 ///   those who observe it.
 /// - `stay=1` (the same): who has left may come back, so the link is not closed then. With keep=all
 ///   send() waits for the next reader; else what is sent meanwhile is lost (Traffic::cut).
+/// - `domain=N` (dds; default 0): the domain of DDS. `interface=ADDRESS,…` (dds): IPv4 addresses of
+///   this host, whose networks it uses; default: loopback alone.
 /// - `spin=MICROSECONDS` (shm source; default 20): how long a reader that waits looks for the next
 ///   message before it sleeps. It does so only while messages follow one another closely.
 ///
@@ -174,6 +177,9 @@ struct LinkOptions {
 ///   once. Where none is dropped the writer waits for its turn.
 /// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be
 ///   larger, but not with shm, where it is all the memory that is shared.
+/// With dds a source may have all of these too: what it drops or keeps back is its own affair,
+/// while all readers share the pace of a sink. `wait`, `reconnect`, `readers` and `stay` are as
+/// above, but that a source awaits its first writer for ever unless `wait` says otherwise.
 /// With shm, `rate` and `burst` are options of the source, since all readers share one memory; it
 /// may also have a `keep` of its own, of which `all` makes no sink wait that drops.
 /// Bytes may be written with K, M or G (of 1024).

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: Apache-2.0
+// DDS links do what all links do; how they do it differs where several meet.
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include <dds/stranger_test.h>
+
+namespace hc::testing {
+namespace {
+
+/// A topic that no other test has, nor another run beside this one.
+std::string fresh_topic() {
+  static int number = 0;
+  return "dds:test/t" + std::to_string(::getpid()) + "_" + std::to_string(number++) +
+         "?domain=97";
+}
+
+INSTANTIATE_TEST_SUITE_P(Dds, LinkConformance, ::testing::Values(Transport{"dds", [] {
+  const auto uri = fresh_topic();
+  return std::pair{uri, uri + "&readers=1"};
+}}));
+
+/// What is logged.
+class Lines {
+ public:
+  [[nodiscard]] LinkOptions options() {
+    LinkOptions options;
+    options.log = [this](Severity, std::string_view line) { lines.emplace_back(line); };
+    return options;
+  }
+  std::vector<std::string> lines;
+};
+
+/// This program as another process that reads a link, or writes it, for as long as it can.
+class Child {
+ public:
+  Child(const char* what, const std::string& uri) : process_(::fork()) {
+    if (process_ != 0) return;
+    ::execl("/proc/self/exe", "dds_link_test", what, uri.c_str(), nullptr);
+    ::_exit(1);
+  }
+  ~Child() { kill(); }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  void kill() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    ::waitpid(std::exchange(process_, 0), nullptr, 0);
+  }
+
+  static void read(const std::string& uri) {
+    const auto source = source_of(uri);
+    Message message;
+    while (*receive(*source, message)) continue;
+  }
+  static void write(const std::string& uri) {
+    const auto sink = sink_of(uri);
+    for (int i = 0; sink->send(numbered(i, 1000)); ++i) continue;
+  }
+
+ private:
+  pid_t process_;
+};
+
+TEST(Dds, AllReadersGetEachMessage) {
+  constexpr int kCount = 100;
+  const auto uri = fresh_topic();
+  std::vector<std::unique_ptr<Source>> sources;
+  for (int i = 0; i < 3; ++i) sources.push_back(source_of(uri));
+  const auto sink = sink_of(uri + "&readers=3");
+  std::thread sender([&] {
+    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 10 == 9 ? 100'000 : i)));
+    ASSERT_TRUE(sink->close());
+  });
+  Message message;
+  for (int i = 0; i < kCount; ++i)
+    for (const auto& source : sources) {
+      ASSERT_TRUE(*receive(*source, message));
+      EXPECT_EQ(message.characters(), numbered(i, i % 10 == 9 ? 100'000 : i).characters());
+    }
+  for (const auto& source : sources) EXPECT_FALSE(*receive(*source, message));
+  sender.join();
+}
+
+TEST(Dds, AllWritersAreRead) {
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri);
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (int i = 0; i < 3; ++i) sinks.push_back(sink_of(uri + "&readers=1"));
+  Message message;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(sinks[static_cast<std::size_t>(i)]->send(numbered(i, 10)));
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  std::thread closer([&] {
+    for (const auto& sink : sinks) ASSERT_TRUE(sink->close());
+  });
+  EXPECT_FALSE(*receive(*source, message));
+  closer.join();
+}
+
+TEST(Dds, WhoComesLateGetsWhatIsSentFromThenOn) {
+  const auto uri = fresh_topic();
+  const auto sink = sink_of(uri + "&readers=1");
+  const auto first = source_of(uri);
+  std::unique_ptr<Source> late;
+  Message message;
+  std::int64_t begin = -1;
+  for (int i = 0; begin < 0 || i < begin + 10; ++i) {
+    ASSERT_TRUE(sink->send(numbered(i, 10)));
+    ASSERT_TRUE(*receive(*first, message));
+    EXPECT_EQ(message.header.seq, i);
+    if (i == 5) late = source_of(uri);
+    if (begin < 0 && late && *late->take(message) == Got::Message) begin = message.header.seq;
+  }
+  EXPECT_GT(begin, 5);
+  for (auto seq = begin + 1; seq < begin + 10; ++seq) {
+    ASSERT_TRUE(*receive(*late, message));
+    EXPECT_EQ(message.header.seq, seq);
+  }
+}
+
+TEST(Dds, AReaderMayLeaveAndComeBack) {
+  const auto uri = fresh_topic();
+  const auto sink = sink_of(uri + "&readers=1&stay=1&keep=latest");
+  Message message;
+  int sent = 0;
+  for (int i = 0; i < 2; ++i) {
+    auto source = source_of(uri);
+    for (bool has_come = false; !has_come; has_come = *source->take(message) == Got::Message)
+      ASSERT_TRUE(sink->send(numbered(sent++, 10)));
+    source.reset();
+    const auto before = sink->traffic().cut;
+    while (sink->traffic().cut == before) ASSERT_TRUE(sink->send(numbered(sent++, 10)));
+  }
+  EXPECT_EQ(sink->traffic().messages, static_cast<std::uint64_t>(sent));
+}
+
+TEST(Dds, AKilledReaderIsNoticedAndMayComeBack) {
+  const auto uri = fresh_topic();
+  const auto sink = sink_of(uri + "&readers=1");
+  Child child("read", uri);
+  ASSERT_TRUE(sink->send(numbered(0, 100'000)));
+  child.kill();
+  Status sent;
+  for (int i = 1; sent; ++i) sent = sink->send(numbered(i, 100'000));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+  const auto stays = sink_of(uri + "&readers=1&stay=1");
+  const auto source = source_of(uri);
+  ASSERT_TRUE(stays->send(numbered(7, 1)));
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 7);
+}
+
+TEST(Dds, AKilledWriterIsTheEnd) {
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri), stays = source_of(uri + "&reconnect=86400");
+  Message message;
+  Child child("write", uri + "&readers=2");
+  ASSERT_TRUE(*receive(*source, message));
+  ASSERT_TRUE(*receive(*stays, message));
+  child.kill();
+  while (*receive(*source, message)) continue;
+  const auto sink = sink_of(uri + "&readers=2");
+  ASSERT_TRUE(sink->send(numbered(7, 1)));
+  do {
+    ASSERT_TRUE(*receive(*stays, message));
+  } while (message.elements.size() != 1);
+}
+
+TEST(Dds, ASlowReaderThatKeepsTheLatestHoldsUpNobody) {
+  constexpr int kCount = 1000;
+  const auto uri = fresh_topic();
+  const auto slow = source_of(uri + "&keep=latest"), some = source_of(uri + "&keep=1000&memory=1M");
+  const auto fast = source_of(uri);
+  const auto sink = sink_of(uri + "&readers=3");
+  std::thread sender([&] {
+    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, 10'000)));
+    ASSERT_TRUE(sink->close());
+  });
+  Message message;
+  for (int i = 0; i < kCount; ++i) {
+    ASSERT_TRUE(*receive(*fast, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  sender.join();
+  ASSERT_TRUE(*receive(*slow, message));
+  EXPECT_EQ(message.header.seq, kCount - 1);
+  EXPECT_FALSE(*receive(*slow, message));
+  EXPECT_EQ(slow->traffic().superseded, kCount - 1U);
+  while (*receive(*some, message)) continue;
+  EXPECT_EQ(some->traffic().messages + some->traffic().over_memory, std::uint64_t{kCount});
+  EXPECT_LE(some->traffic().messages, 105U);
+}
+
+TEST(Dds, OfASlowReaderThatLosesNothingLittleWaits) {
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri);
+  const auto sink = sink_of(uri + "&readers=1&keep=latest");
+  int count = 0;
+  while (sink->traffic().superseded < 10) ASSERT_TRUE(sink->send(numbered(count++, 100'000)));
+  EXPECT_LT(count, 200);  // 2 MiB with the reader, 4 MB on the way
+}
+
+TEST(Dds, ARateIsKeptByEitherEnd) {
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri + "&rate=20&keep=2");
+  const auto sink = sink_of(uri + "&readers=1");
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
+  ASSERT_TRUE(sink->close());
+  Message message;
+  std::uint64_t received = 0;
+  while (*receive(*source, message)) ++received;
+  EXPECT_EQ(message.header.seq, 0);  // none
+  EXPECT_EQ(received + source->traffic().lost(), 10U);
+  EXPECT_GE(source->traffic().kept_back, 1U);
+}
+
+TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
+  const auto uri = fresh_topic();
+  Lines log;
+  const auto source = source_of(uri, log.options());
+  const auto sink = sink_of(uri + "&readers=1");
+  Stranger text(uri), raw(uri);
+  Message message;
+  for (int i = 0; i < 20 || log.lines.size() < 2; ++i) {
+    text.send("GET / HTTP/1.1\r\n");
+    raw.send_raw(std::string("\0\1\0\0\xff\xff\xff\xff----", 12));
+    ASSERT_TRUE(sink->send(numbered(i, 10)));
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  ASSERT_EQ(log.lines.size(), 2U);
+  std::ranges::sort(log.lines);
+  const std::string end = "; further ones of this writer are dropped in silence";
+  EXPECT_EQ(log.lines[0], uri + ": dropped a sample: Malformed: R5 version: \"GET\" is not an "
+                                "integer, at byte 0" + end);
+  EXPECT_EQ(log.lines[1], uri + ": dropped a sample: Malformed: it is no sequence of octets: it says "
+                                "4294967295 and has 4" + end);
+}
+
+TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
+  const auto uri = fresh_topic();
+  Lines log;
+  auto options = log.options();
+  options.limits.element_bytes = 1000;
+  const auto source = source_of(uri, options);
+  const auto sink = sink_of(uri + "&readers=1");
+  Stranger stranger(uri);
+  Message message;
+  for (int i = 0; i < 20 || log.lines.empty(); ++i) {
+    stranger.send(encode(numbered(i, 1'000'000)));
+    stranger.send(encode(numbered(i, 1001)));
+    ASSERT_TRUE(sink->send(numbered(i, 1000)));
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.elements.size(), 1000U);
+  }
+  // What is far too large is not even put together.
+  EXPECT_EQ(log.lines,
+            std::vector<std::string>{
+                uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes are over the limit "
+                      "of 1000, at byte 22; further ones of this writer are dropped in silence"});
+}
+
+TEST(Dds, WaitingEndsWhenToldToStop) {
+  Stop stop;
+  stop.raise();
+  const auto sink = sink_of(fresh_topic(), stop.options());
+  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Stopped);
+}
+
+TEST(Dds, ItIsInterruptedWhileItWaitsForAReader) {
+  Stop stop;
+  stop.raise();
+  LinkOptions options;
+  std::unique_ptr<Sink> sink;
+  options.interrupt = {stop.options().stop, [&] {
+                         sink->abandon();
+                         return true;
+                       }};
+  std::vector<bool> awaits;
+  options.awaits_reader = [&](bool does) { awaits.push_back(does); };
+  sink = sink_of(fresh_topic(), options);
+  EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::Closed);
+  EXPECT_EQ(awaits, (std::vector<bool>{true, false}));
+}
+
+TEST(Dds, WithNoReadersToWaitForItNeverWaits) {
+  const auto sink = sink_of(fresh_topic() + "&readers=0");
+  ASSERT_TRUE(sink->send(numbered(1, 1)));
+  EXPECT_EQ(sink->traffic().cut, 1U);
+  EXPECT_TRUE(sink->close());
+}
+
+TEST(Dds, AWriterThatNeverComesIsNotFound) {
+  const auto source = source_of(fresh_topic() + "&wait=1");
+  Message message;
+  auto got = receive(*source, message);
+  ASSERT_FALSE(got);
+  EXPECT_EQ(got.error().code, Code::NotFound);
+}
+
+TEST(Dds, ASourceThatOutlivesItsWritersEndsWhenItIsFinished) {
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri + "&reconnect=86400");
+  Message message;
+  for (int i = 0; i < 2; ++i) {
+    const auto sink = sink_of(uri + "&readers=1");
+    std::thread sender([&] {
+      ASSERT_TRUE(sink->send(numbered(i, 1)));
+      ASSERT_TRUE(sink->close());
+    });
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+    sender.join();
+  }
+  source->finish();
+  EXPECT_FALSE(*receive(*source, message));
+}
+
+TEST(Dds, APlaceIsChecked) {
+  const auto wrong = [](const std::string& uri) {
+    auto source = open_source(*parse_uri(uri));
+    return source ? "" : source.error().text();
+  };
+  EXPECT_EQ(wrong("dds:1a"), "Invalid: \"1a\" is no topic of DDS: it takes letters, digits, _ and "
+                             "/, and begins with no digit");
+  EXPECT_EQ(wrong("dds:a?domain=233"), "Invalid: option domain is a whole number from 0 to 232");
+  EXPECT_EQ(wrong("dds:a?interface=robot"),
+            "Invalid: option interface is an IPv4 address of this host, or several with commas "
+            "between, not \"robot\"");
+  EXPECT_EQ(wrong("dds:a?interface=192.0.2.77"),
+            "NotFound: no network interface of this host has the address 192.0.2.77; `ip address` "
+            "lists them");
+}
+
+}  // namespace
+
+int run(int count, char** words) {
+  if (count == 3 && std::string_view(words[1]) == "read") return Child::read(words[2]), 0;
+  if (count == 3 && std::string_view(words[1]) == "write") return Child::write(words[2]), 0;
+  ::testing::InitGoogleTest(&count, words);
+  return RUN_ALL_TESTS();
+}
+
+}  // namespace hc::testing
+
+int main(int count, char** words) {
+  return hc::testing::run(count, words);
+}

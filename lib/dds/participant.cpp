@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <linux/filter.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <set>
+#include <span>
+#include <vector>
+
+#include <dds/ddsrt/log.h>
+
+#include <dds/participant.h>
+#include <dds/sockets.h>
+#include <hc/os/descriptor.h>
+
+namespace hc::dds {
+namespace {
+
+/// Who gets the warnings of which domain; Cyclone DDS has one log for the process.
+class Log {
+ public:
+  void add(std::uint32_t domain, std::shared_ptr<internal::Remarks> remarks) {
+    const std::lock_guard lock(mutex_);
+    dds_set_log_sink(
+        [](void* log, const dds_log_data_t* line) { static_cast<Log*>(log)->take(*line); }, this);
+    readers_[domain] = {std::move(remarks), {}};
+  }
+  void remove(std::uint32_t domain) {
+    const std::lock_guard lock(mutex_);
+    readers_.erase(domain);
+  }
+
+ private:
+  void take(const dds_log_data_t& line) {
+    const std::lock_guard lock(mutex_);
+    const auto found = readers_.find(line.domid);
+    // Whatever strangers send, each kind of complaint is made once.
+    if (found == readers_.end() || !found->second.said.insert({line.file, line.line}).second) return;
+    std::string_view text(line.message, line.size);
+    while (text.ends_with('\n')) text.remove_suffix(1);
+    found->second.remarks->add("Cyclone DDS: " + std::string(text));
+  }
+
+  struct Reader {
+    std::shared_ptr<internal::Remarks> remarks;
+    std::set<std::pair<std::string, std::uint32_t>> said;  // by line of its source
+  };
+
+  std::mutex mutex_;
+  std::map<std::uint32_t, Reader> readers_;
+};
+
+Log& log_of_all() {
+  static auto* log = new Log;  // Cyclone's threads may outlive what is destroyed at the end
+  return *log;
+}
+
+/// The domains of a process have numbers of their own, whatever theirs is in the network: above all
+/// that another user of Cyclone DDS in the process may have.
+std::uint32_t next_number() {
+  constexpr std::uint32_t kFirst = 1'000'000;
+  static std::atomic<std::uint32_t> next{kFirst};
+  return next++;
+}
+
+/// Has a socket take packets from these interfaces alone: Cyclone DDS listens at all of them.
+Status take_from(int socket, const std::vector<unsigned>& interfaces) {
+  constexpr auto kInterface = static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_IFINDEX);
+  std::vector<sock_filter> program = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kInterface)};
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, interfaces[i],
+                               static_cast<std::uint8_t>(interfaces.size() - i), 0));
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, 0));
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, 0xffffffff));
+  const sock_fprog filter = {static_cast<unsigned short>(program.size()), program.data()};
+  if (::setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter) != 0)
+    return internal::system_error("setsockopt", "SO_ATTACH_FILTER");
+  return {};
+}
+
+}  // namespace
+
+Error failed(const std::string& what, dds_return_t code) {
+  return {Code::System, what + ": Cyclone DDS: " + dds_strretcode(code)};
+}
+
+Qos make_qos() {
+  Qos qos(dds_create_qos());
+  constexpr dds_duration_t kNever = 0;  // waits a writer for room
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kNever);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
+  dds_qset_data_representation(qos.get(), 1, &representation);
+  return qos;
+}
+
+Participant::Participant(std::uint32_t number)
+    : number_(number), remarks_(std::make_shared<internal::Remarks>()) {}
+
+Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const Limits& limits) {
+  constexpr std::uint64_t kMostBytes = (std::uint64_t{1} << 31) - 1;  // of a sample
+  auto interfaces = find_interfaces(place);
+  if (!interfaces) return interfaces.error();
+  std::unique_ptr<Participant> made(new Participant(next_number()));
+  log_of_all().add(made->number_, made->remarks_);
+  const auto most = std::min(limits.element_bytes + kMaxHeaderBytes + 64 + kFrame, kMostBytes);
+  const auto domain = dds_create_domain(made->number_, configuration(place, most).c_str());
+  if (domain < 0) return failed("domain " + std::to_string(place.domain), domain);
+  made->domain_ = Entity(domain);
+  const auto participant = dds_create_participant(made->number_, nullptr, nullptr);
+  if (participant < 0)
+    return failed("no participant of domain " + std::to_string(place.domain) +
+                      ", which has 120 on a machine",
+                  participant);
+  made->participant_ = Entity(participant);
+  auto* type = make_type();
+  const auto topic =
+      dds_create_topic_sertype(participant, place.topic.c_str(), &type, nullptr, nullptr, nullptr);
+  if (topic < 0) {
+    ddsi_sertype_unref(type);
+    return failed("topic " + place.topic, topic);
+  }
+  made->topic_ = Entity(topic);
+  made->type_ = type;
+  if (auto barred = made->bar_others(*interfaces); !barred) return barred.error();
+  return made;
+}
+
+Status Participant::bar_others(const std::vector<unsigned>& interfaces) const {
+  std::array<int, HC_DDS_MOST_SOCKETS> sockets{};
+  const auto count = static_cast<std::size_t>(hc_dds_sockets(type_, sockets.data()));
+  for (const int socket : std::span(sockets).first(count))
+    if (auto barred = take_from(socket, interfaces); !barred) return barred;
+  return {};
+}
+
+Participant::~Participant() {
+  topic_.reset();
+  participant_.reset();
+  domain_.reset();
+  log_of_all().remove(number_);
+}
+
+}  // namespace hc::dds

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// One end of a DDS link in the network: a participant of its own with one topic. Internal.
+// Cyclone DDS has threads and sockets for each, so that a reader who takes nothing stalls no other.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <dds/dds.h>
+
+#include <dds/place.h>
+#include <dds/sample.h>
+#include <hc/link/link.h>
+#include <hc/link/stream/remarks.h>
+
+namespace hc::dds {
+
+/// An entity of DDS, deleted with it.
+class Entity {
+ public:
+  Entity() = default;
+  explicit Entity(dds_entity_t handle) : handle_(handle) {}
+  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+  Entity& operator=(Entity&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Entity() { reset(); }
+  void reset() {
+    if (handle_ > 0) dds_delete(handle_);
+    handle_ = 0;
+  }
+  [[nodiscard]] dds_entity_t handle() const { return handle_; }
+
+ private:
+  dds_entity_t handle_ = 0;
+};
+
+struct QosDelete {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDelete>;
+
+/// Reliable, and nothing is kept for who comes later; no message gives way to another but where a
+/// link's policy says so.
+Qos make_qos();
+
+struct ListenerDelete {
+  void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
+};
+using Listener = std::unique_ptr<dds_listener_t, ListenerDelete>;
+
+/// "writer: Cyclone DDS: Out of resources"
+Error failed(const std::string& what, dds_return_t code);
+
+class Participant {
+ public:
+  /// Errors: NotFound (no such interface), System.
+  static Result<std::unique_ptr<Participant>> open(const Place& place, const Limits& limits);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  [[nodiscard]] dds_entity_t handle() const { return participant_.handle(); }
+  [[nodiscard]] dds_entity_t topic() const { return topic_.handle(); }
+  [[nodiscard]] const ddsi_sertype& type() const { return *type_; }
+
+  /// Logs what Cyclone DDS has warned of.
+  void tell_log(const LogSink& log) { remarks_->tell(log); }
+
+ private:
+  explicit Participant(std::uint32_t number);
+  /// Has what comes in by any other interface thrown away.
+  [[nodiscard]] Status bar_others(const std::vector<unsigned>& interfaces) const;
+
+  std::uint32_t number_;  // of the domain, in this process
+  std::shared_ptr<internal::Remarks> remarks_;
+  Entity domain_, participant_, topic_;
+  const ddsi_sertype* type_ = nullptr;
+};
+
+}  // namespace hc::dds

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <string_view>
+
+#include <dds/place.h>
+#include <hc/link/transports.h>
+#include <hc/os/descriptor.h>
+
+namespace hc::dds {
+namespace {
+
+constexpr std::int64_t kLastDomain = 232;   // whose ports there are
+constexpr std::size_t kLongestTopic = 255;  // as discovery carries it [byte]
+
+bool is_topic(std::string_view text) {
+  const auto may_be = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '/';
+  };
+  return !text.empty() && text.size() <= kLongestTopic && !(text[0] >= '0' && text[0] <= '9') &&
+         std::all_of(text.begin(), text.end(), may_be);
+}
+
+std::string element(std::string_view name, const std::string& content) {
+  std::string text = "<";
+  text.append(name).append(">").append(content).append("</").append(name).append(">");
+  return text;
+}
+
+}  // namespace
+
+Result<Place> parse_place(const Uri& uri) {
+  Place place{uri.rest, 0, {}};
+  if (!is_topic(place.topic))
+    return Error{Code::Invalid, "\"" + uri.rest +
+                                    "\" is no topic of DDS: it takes letters, digits, _ and /, and "
+                                    "begins with no digit"};
+  auto domain = internal::number_option(uri, "domain", 0, kLastDomain);
+  if (!domain) return domain.error();
+  place.domain = static_cast<std::uint32_t>(*domain);
+  auto list = uri.option("interface", "");
+  while (!list.empty()) {
+    const std::string address(list.substr(0, list.find(',')));
+    list.remove_prefix(std::min(list.size(), address.size() + 1));
+    in_addr read{};
+    if (::inet_pton(AF_INET, address.c_str(), &read) != 1)
+      return Error{Code::Invalid, "option interface is an IPv4 address of this host, or several "
+                                  "with commas between, not \"" +
+                                      address + "\""};
+    place.addresses.push_back(address);
+  }
+  return place;
+}
+
+Result<std::vector<unsigned>> find_interfaces(const Place& place) {
+  ifaddrs* first = nullptr;
+  if (::getifaddrs(&first) != 0) return internal::system_error("getifaddrs", "");
+  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> all(first, &::freeifaddrs);
+  const auto number_of = [&](const std::string& address) {
+    for (const auto* each = all.get(); each != nullptr; each = each->ifa_next) {
+      if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+      char text[INET_ADDRSTRLEN] = {};
+      const auto* own = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+      ::inet_ntop(AF_INET, &own->sin_addr, text, sizeof text);
+      if (address == text) return ::if_nametoindex(each->ifa_name);
+    }
+    return 0U;
+  };
+  std::vector<unsigned> numbers = {number_of("127.0.0.1")};
+  for (const auto& address : place.addresses) {
+    numbers.push_back(number_of(address));
+    if (numbers.back() == 0)
+      return Error{Code::NotFound,
+                   "no network interface of this host has the address " + address +
+                       "; `ip address` lists them"};
+  }
+  return numbers;
+}
+
+std::string configuration(const Place& place, std::uint64_t most_bytes) {
+  const bool is_loopback = place.addresses.empty();
+  std::string interfaces;
+  for (const auto& address : is_loopback ? std::vector<std::string>{"127.0.0.1"} : place.addresses)
+    interfaces += "<NetworkInterface address=\"" + address + "\"/>";
+  std::string general = element("Interfaces", interfaces);
+  // Unless it is asked for, who dies without a word is noticed as late as that.
+  std::string discovery = element("ExternalDomainId", std::to_string(place.domain)) +
+                          element("LeaseDuration", "3 s");
+  if (is_loopback) {
+    // There are no cables where a large packet could be lost in parts. Loopback carries no
+    // multicast, so that all ports a participant can have are asked.
+    constexpr int kLastIndex = 119;  // whose ports are of the domain, and not the next
+    general += element("AllowMulticast", "false") + element("MaxMessageSize", "65500 B") +
+               element("FragmentSize", "65000 B");
+    discovery += element("ParticipantIndex", "auto") +
+                 element("MaxAutoParticipantIndex", std::to_string(kLastIndex)) +
+                 element("Peers", "<Peer address=\"127.0.0.1\"/>");
+  }
+  std::string text =
+      element("General", general) + element("Discovery", discovery) +
+      // What is acknowledged is with the reader's link; what waits there is bounded by it.
+      element("Internal",
+              element("MaxSampleSize", std::to_string(most_bytes) + " B") +
+                  element("NackDelay", "10 ms") +
+                  "<SocketReceiveBufferSize min=\"default\" max=\"8 MB\"/>" +
+                  element("Watermarks", element("WhcHigh", "4 MB") + element("WhcHighInit", "4 MB") +
+                                            element("WhcAdaptive", "false")));
+  // What the user says of Cyclone DDS counts over that: tuning, security.
+  if (const char* own = std::getenv("CYCLONEDDS_URI"); own != nullptr && *own != '\0')
+    text.append(",").append(own);
+  return text;
+}
+
+}  // namespace hc::dds

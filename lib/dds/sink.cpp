@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <dds/sink.h>
+
+#include <sys/eventfd.h>
+
+#include <array>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <dds/participant.h>
+#include <hc/base/backoff.h>
+#include <hc/link/queue.h>
+#include <hc/link/transports.h>
+#include <hc/os/descriptor.h>
+
+namespace hc::dds {
+namespace {
+
+using internal::Policy;
+using internal::SendQueue;
+using internal::TimePoint;
+using std::chrono::steady_clock;
+
+constexpr std::size_t kCapacity = 64;  // messages that wait before a sender that loses none does
+
+/// Writes at once where Cyclone DDS takes a message. Where it does not, since readers have not
+/// acknowledged what went before, or the pace says so, the message waits by the link's policy, and a
+/// thread writes it as soon as may be.
+class DdsSink final : public Sink {
+ public:
+  DdsSink(const Policy& policy, LinkOptions options, std::int64_t readers, bool stays)
+      : waits_(policy.writer_waits()),
+        is_paced_(policy.is_paced()),
+        wanted_(readers),
+        stays_(stays),
+        options_(std::move(options)),
+        queue_(policy) {}
+
+  ~DdsSink() override { end(); }
+
+  Status begin(const Place& place) {
+    auto number = internal::system_call("eventfd", "",
+                                        [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
+    if (!number) return number.error();
+    event_ = internal::Descriptor(*number);
+    auto participant = Participant::open(place, options_.limits);
+    if (!participant) return participant.error();
+    participant_ = std::move(*participant);
+    const auto qos = make_qos();
+    const Listener listener(dds_create_listener(this));
+    dds_lset_publication_matched(
+        listener.get(),
+        [](dds_entity_t, const dds_publication_matched_status_t status, void* self) {
+          static_cast<DdsSink*>(self)->count_readers(status.current_count);
+        });
+    const auto writer = dds_create_writer(participant_->handle(), participant_->topic(), qos.get(),
+                                          listener.get());
+    if (writer < 0) return failed("writer of " + place.topic, writer);
+    writer_ = Entity(writer);
+    return {};
+  }
+
+  Status send(const Message& message) override {
+    participant_->tell_log(options_.log);
+    const auto pieces = encoder_.encode(message);
+    const std::uint64_t size = pieces[0].size() + pieces[1].size() + pieces[2].size();
+    if (size > UINT32_MAX - kFrame)
+      return Error{Code::TooLarge, "a message of " + std::to_string(size) +
+                                       " bytes is larger than any sample of DDS"};
+    std::unique_lock lock(mutex_);
+    while (true) {
+      if (failed_) return *failed_;
+      if (has_ended_)
+        return Error{Code::Closed, has_lost_all_ ? "all readers disconnected" : "the link is closed"};
+      const bool needs_none = wanted_ == 0 || (has_begun_ && stays_ && !waits_);
+      if (readers_ == 0 && needs_none) {
+        has_begun_ = true;
+        ++messages_;
+        ++losses_.cut;
+        return {};
+      }
+      if (readers_ < needed()) {
+        if (auto awaited = await_readers(lock); !awaited) return awaited;
+        continue;
+      }
+      has_begun_ = true;
+      if (!waits_ || (queue_.size() < kCapacity && queue_.has_memory(size))) break;
+      if (auto waited = wait(lock); !waited) return waited;
+    }
+    auto sample = make_sample(participant_->type(), pieces, message);
+    if (is_paced_ || !queue_.empty() || !write(*sample)) {
+      if (failed_) return *failed_;
+      queue_.push(std::move(sample), size, losses_);
+      if (!thread_.joinable()) thread_ = std::thread([this] { write_all(); });
+      changed_.notify_one();
+    }
+    ++messages_;
+    bytes_ += size;
+    return {};
+  }
+
+  Status close() override {
+    Status outcome;
+    std::unique_lock lock(mutex_);
+    if (wanted_ > 0 && !has_begun_ && !has_ended_) outcome = await_readers(lock);
+    while (outcome && !queue_.empty() && readers_ > 0 && !failed_ && !has_ended_)
+      outcome = wait(lock);
+    lock.unlock();
+    // Cyclone DDS throws away what its receiving thread holds while a reader has no room, when the
+    // writer leaves; what comes after that has been answered for says that it holds nothing. So the
+    // end is said twice.
+    if (outcome) outcome = await_answers();
+    for (int i = 0; i < 2 && outcome; ++i) outcome = say_end();
+    participant_->tell_log(options_.log);
+    end();
+    return outcome;
+  }
+
+  void abandon() override {
+    const std::lock_guard lock(mutex_);
+    give_up();
+  }
+
+  [[nodiscard]] Traffic traffic() const override {
+    const std::lock_guard lock(mutex_);
+    Traffic all = losses_;
+    all.messages = messages_;
+    all.bytes += bytes_;
+    return all;
+  }
+
+ private:
+  void raise() const { ::eventfd_write(event_.get(), 1); }
+
+  /// How many readers the next message wants.
+  [[nodiscard]] std::uint32_t needed() const {
+    if (has_begun_ || wanted_ < 0) return 1;
+    return static_cast<std::uint32_t>(wanted_);
+  }
+
+  /// Called on a thread of Cyclone's.
+  void count_readers(std::uint32_t count) {
+    const std::lock_guard lock(mutex_);
+    readers_ = count;
+    if (count == 0 && has_begun_ && wanted_ > 0 && !stays_) {
+      has_lost_all_ = true;
+      return give_up();
+    }
+    raise();
+    changed_.notify_one();
+  }
+
+  /// Sends no more. With the mutex.
+  void give_up() {
+    has_ended_ = true;
+    losses_.cut += queue_.clear(losses_);
+    raise();
+    changed_.notify_one();
+  }
+
+  /// Waits until something has changed; the lock is free meanwhile.
+  Status wait(std::unique_lock<std::mutex>& lock) {
+    eventfd_t count = 0;
+    ::eventfd_read(event_.get(), &count);
+    if (count > 0) return {};
+    lock.unlock();
+    auto& [interrupter, call] = options_.interrupt;
+    auto ready = wait_readable(std::array{event_.get(), interrupter}, options_.stop);
+    if (ready && *ready == 1 && !call()) interrupter = -1;
+    lock.lock();
+    return ready ? Status() : ready.error();
+  }
+
+  Status await_readers(std::unique_lock<std::mutex>& lock) {
+    const auto say = [&](bool awaits) {
+      if (!options_.awaits_reader) return;
+      lock.unlock();
+      options_.awaits_reader(awaits);
+      lock.lock();
+    };
+    say(true);
+    Status outcome;
+    while (outcome && readers_ < needed() && !has_ended_) outcome = wait(lock);
+    say(false);
+    return outcome;
+  }
+
+  /// Hands a sample to Cyclone DDS; false where there is no room, or it has failed. With the mutex.
+  bool write(ddsi_serdata& sample) {
+    const auto written = dds_writecdr(writer_.handle(), ddsi_serdata_ref(&sample));
+    if (written != DDS_RETCODE_OK && written != DDS_RETCODE_TIMEOUT)
+      failed_ = failed("written", written);
+    return written == DDS_RETCODE_OK;
+  }
+
+  /// What the thread does: writes what waits.
+  void write_all() {
+    constexpr std::chrono::microseconds kShortest{100}, kLongest{10'000};
+    auto pause = kShortest;
+    std::unique_lock lock(mutex_);
+    while (!has_ended_ && !failed_) {
+      const auto now = steady_clock::now();
+      if (const auto ready = queue_.ready_at(now, losses_); ready > now) {
+        if (ready == TimePoint::max())
+          changed_.wait(lock);
+        else
+          changed_.wait_until(lock, ready);
+        continue;
+      }
+      if (readers_ == 0 && waits_) {
+        changed_.wait(lock);
+        continue;
+      }
+      if (readers_ == 0) {
+        losses_.cut += 1;
+        queue_.pop(now);
+      } else if (write(*queue_.front())) {
+        queue_.pop(now);
+        pause = kShortest;
+      } else {
+        lock.unlock();
+        dds_wait_for_acks(writer_.handle(), pause.count() * 1000);
+        pause = std::min(2 * pause, kLongest);
+        lock.lock();
+        continue;
+      }
+      raise();
+    }
+  }
+
+  Status say_end() {
+    const auto end = make_end(participant_->type());
+    {
+      const std::lock_guard lock(mutex_);
+      if (readers_ == 0 || has_ended_ || failed_) return {};
+      write(*end);
+    }
+    return await_answers();
+  }
+
+  /// Waits until all readers have what was written, or have left.
+  Status await_answers() {
+    constexpr std::chrono::seconds kGrace{2};  // after it is to stop
+    std::optional<TimePoint> give_up;
+    while (true) {
+      {
+        const std::lock_guard lock(mutex_);
+        if (readers_ == 0 || has_ended_ || failed_) return failed_ ? Status(*failed_) : Status();
+      }
+      if (dds_wait_for_acks(writer_.handle(), DDS_MSECS(20)) != DDS_RETCODE_TIMEOUT) return {};
+      const auto now = steady_clock::now();
+      if (!give_up && !internal::wait_for(-1, 0, options_.stop, now)) give_up = now + kGrace;
+      if (give_up && now >= *give_up)
+        return Error{Code::Truncated, "a reader has not acknowledged what was sent to it"};
+    }
+  }
+
+  /// Ends the thread, and the link.
+  void end() {
+    abandon();
+    if (thread_.joinable()) thread_.join();
+    writer_.reset();
+  }
+
+  const bool waits_, is_paced_;
+  const std::int64_t wanted_;  // readers before the first message and the end; -1: one, none
+  const bool stays_;
+  LinkOptions options_;
+  Encoder encoder_;
+  internal::Descriptor event_;  // readable when something has changed that is waited for
+
+  mutable std::mutex mutex_;  // of what follows
+  std::condition_variable changed_;
+  SendQueue<Sample> queue_;
+  Traffic losses_;
+  std::uint64_t messages_ = 0, bytes_ = 0;
+  std::uint32_t readers_ = 0;
+  bool has_begun_ = false;  // the readers that were to be waited for have come
+  bool has_ended_ = false, has_lost_all_ = false;
+  std::optional<Error> failed_;
+
+  std::thread thread_;
+  std::unique_ptr<Participant> participant_;
+  Entity writer_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> make_sink(const Place& place, const Uri& uri,
+                                        const LinkOptions& options) {
+  constexpr std::int64_t kMostReaders = 1000;
+  auto readers = internal::number_option(uri, "readers", -1, kMostReaders);
+  if (!readers) return readers.error();
+  auto stays = internal::number_option(uri, "stay", 0, 1);
+  if (!stays) return stays.error();
+  auto policy = internal::parse_policy(uri);
+  if (!policy) return policy.error();
+  auto sink = std::make_unique<DdsSink>(*policy, options, *readers, *stays == 1);
+  if (auto begun = sink->begin(place); !begun) return begun.error();
+  return std::unique_ptr<Sink>(std::move(sink));
+}
+
+}  // namespace hc::dds

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <sys/eventfd.h>
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include <dds/dds.h>
+#include <dds/ddsc/dds_rhc.h>
+
+#include <dds/participant.h>
+#include <dds/source.h>
+#include <hc/link/paced_source.h>
+#include <hc/link/queue.h>
+#include <hc/link/transports.h>
+#include <hc/os/reactor.h>
+
+namespace hc::dds {
+namespace {
+
+using internal::Policy;
+using internal::SendQueue;
+using internal::TimePoint;
+using std::chrono::steady_clock;
+
+class DdsSource;
+
+/// What Cyclone DDS gives samples to. Its own cache has no end that a thread in it could be let out
+/// by: where it is full, the receiving thread tries again, and the reader is not deleted meanwhile.
+struct Cache : dds_rhc {
+  explicit Cache(DdsSource& to);
+  DdsSource& source;
+};
+
+/// A sample that waits, and who has sent it.
+struct Arrived {
+  Sample sample;
+  dds_instance_handle_t writer = 0;
+};
+
+class DdsSource final : public Source {
+ public:
+  /// What waits for a reader that loses nothing; then its writers wait. [byte]
+  static constexpr std::uint64_t kWindow = std::uint64_t{2} << 20;
+  static constexpr std::uint64_t kBesides = 256;  // of a sample [byte]
+  /// What a writer that vanishes has sent may be on its way for so long.
+  static constexpr std::chrono::seconds kPatience{1};
+
+  DdsSource(const Policy& policy, LinkOptions options, std::chrono::seconds wait,
+            std::chrono::seconds reconnect)
+      : loses_nothing_(policy.writer_waits()),
+        options_(std::move(options)),
+        reconnect_(reconnect),
+        queue_(policy) {
+    const auto patience = wait.count() > 0 ? wait : reconnect;
+    if (patience.count() > 0) give_up_ = steady_clock::now() + patience;
+  }
+
+  ~DdsSource() override {
+    {
+      const std::lock_guard lock(mutex_);
+      is_closing_ = true;
+    }
+    reader_.reset();  // nothing is called back from then on
+    timer_.end();
+  }
+
+  Status begin(const Place& place) {
+    auto number = internal::system_call("eventfd", "",
+                                        [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
+    if (!number) return number.error();
+    event_ = internal::Descriptor(*number);
+    if (auto started = timer_.start(-1, [this](auto) { raise(); }); !started) return started;
+    if (give_up_ != TimePoint::max()) timer_.call_at(give_up_);
+    auto participant = Participant::open(place, options_.limits);
+    if (!participant) return participant.error();
+    participant_ = std::move(*participant);
+    const auto qos = make_qos();
+    const Listener listener(dds_create_listener(this));
+    dds_lset_subscription_matched(
+        listener.get(),
+        [](dds_entity_t, const dds_subscription_matched_status_t status, void* self) {
+          static_cast<DdsSource*>(self)->count_writers(status);
+        });
+    const auto reader =
+        dds_create_reader_rhc(participant_->handle(), participant_->topic(), qos.get(),
+                              listener.get(), std::make_unique<Cache>(*this).release());
+    if (reader < 0) return failed("reader of " + place.topic, reader);
+    reader_ = Entity(reader);
+    return {};
+  }
+
+  Result<Got> take(Message& message) override {
+    message = {};
+    participant_->tell_log(options_.log);
+    while (true) {
+      Arrived arrived;
+      {
+        std::lock_guard lock(mutex_);
+        if (queue_.empty()) return nothing();
+        arrived = queue_.pop({});  // it has no pace
+      }
+      auto read = read_message(*arrived.sample, options_.limits, memo_);
+      if (!read) {
+        drop(arrived.writer, read.error());
+        continue;
+      }
+      message = std::move(*read);
+      ++traffic_.messages;
+      traffic_.bytes += octets_of(*arrived.sample);
+      return Got::Message;
+    }
+  }
+
+  /// Takes a sample, on a thread of Cyclone's; false where there is no room for it now.
+  bool store(dds_instance_handle_t writer, ddsi_serdata& sample) {
+    const std::lock_guard lock(mutex_);
+    if (is_closing_ || sample.kind != SDK_DATA) return true;
+    const auto octets = octets_of(sample);
+    if (octets == 0) {
+      if (closed_.insert(writer).second && alive() == 0) await_next(std::chrono::seconds(0));
+      return true;
+    }
+    if (loses_nothing_ && queue_.bytes() >= kWindow) return false;
+    if (queue_.empty()) raise();
+    queue_.push({Sample(ddsi_serdata_ref(&sample)), writer}, octets + kBesides, losses_);
+    return true;
+  }
+
+  [[nodiscard]] int descriptor() const override { return event_.get(); }
+
+  [[nodiscard]] Traffic traffic() const override {
+    const std::lock_guard lock(mutex_);
+    Traffic all = losses_;
+    all.messages = traffic_.messages;
+    all.bytes = traffic_.bytes;
+    return all;
+  }
+
+  void finish() override {
+    const std::lock_guard lock(mutex_);
+    is_final_ = true;
+    raise();
+  }
+
+ private:
+  void raise() const { ::eventfd_write(event_.get(), 1); }
+
+  /// Called on a thread of Cyclone's.
+  void count_writers(const dds_subscription_matched_status_t& status) {
+    const std::lock_guard lock(mutex_);
+    matched_ = status.current_count;
+    const bool has_come = status.current_count_change > 0;
+    const bool had_closed = !has_come && closed_.erase(status.last_publication_handle) > 0;
+    if (has_come) {
+      has_had_one_ = true;
+      give_up_ = TimePoint::max();
+    } else if (!had_closed && alive() == 0) {
+      await_next(kPatience);
+    }
+  }
+
+  /// How many writers have not closed. With the mutex.
+  [[nodiscard]] std::size_t alive() const { return matched_ - std::min(matched_, closed_.size()); }
+
+  /// There is no writer any more. @param least  until what is on its way will have come.
+  void await_next(std::chrono::seconds least) {
+    give_up_ = steady_clock::now() + std::max(least, reconnect_);
+    timer_.call_at(give_up_);
+    raise();
+  }
+
+  /// What there is to say where no message is. With the mutex.
+  Result<Got> nothing() {
+    eventfd_t count = 0;
+    ::eventfd_read(event_.get(), &count);
+    if (alive() > 0) return Got::Nothing;
+    if (give_up_ > steady_clock::now() && !is_final_) return Got::Nothing;
+    raise();  // it stays so
+    if (!has_had_one_ && !is_final_) return Error{Code::NotFound, "nobody writes to this topic"};
+    return Got::End;
+  }
+
+  /// One line for each writer, however much it sends.
+  void drop(dds_instance_handle_t writer, const Error& why) {
+    constexpr std::size_t kMost = 1000;
+    if (strangers_.size() >= kMost || !strangers_.insert(writer).second || !options_.log) return;
+    options_.log(Severity::Warning, "dropped a sample: " + why.text() +
+                                        "; further ones of this writer are dropped in silence");
+  }
+
+  const bool loses_nothing_;
+  const LinkOptions options_;
+  const std::chrono::seconds reconnect_;
+  internal::HeaderMemo memo_;
+  std::set<dds_instance_handle_t> strangers_;
+  Traffic traffic_;
+  internal::Descriptor event_;
+
+  mutable std::mutex mutex_;  // of what follows
+  SendQueue<Arrived> queue_;
+  Traffic losses_;
+  std::size_t matched_ = 0;                 // writers
+  std::set<dds_instance_handle_t> closed_;  // those of them that have
+  bool has_had_one_ = false, is_final_ = false, is_closing_ = false;
+  TimePoint give_up_ = TimePoint::max();  // while there is no writer
+
+  internal::Watch timer_;
+  std::unique_ptr<Participant> participant_;
+  Entity reader_;
+};
+
+dds_rhc_ops make_cache_ops() {
+  dds_rhc_ops ops{};
+  ops.rhc_ops.store = [](ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* sample,
+                         ddsi_tkmap_instance*) {
+    return reinterpret_cast<Cache*>(cache)->source.store(writer->iid, *sample);
+  };
+  ops.rhc_ops.unregister_wr = [](ddsi_rhc*, const ddsi_writer_info*) {};
+  ops.rhc_ops.relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {};
+  ops.rhc_ops.set_qos = [](ddsi_rhc*, const dds_qos*) {};
+  ops.rhc_ops.free = [](ddsi_rhc* cache) { delete reinterpret_cast<Cache*>(cache); };
+  // Nobody else takes anything out.
+  ops.read = ops.take = [](dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
+                           dds_instance_handle_t, dds_readcond*) { return std::int32_t{0}; };
+  ops.readcdr = ops.takecdr = [](dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, std::uint32_t,
+                                 std::uint32_t, std::uint32_t, std::uint32_t,
+                                 dds_instance_handle_t) { return std::int32_t{0}; };
+  ops.add_readcondition = [](dds_rhc*, dds_readcond*) { return false; };
+  ops.remove_readcondition = [](dds_rhc*, dds_readcond*) {};
+  ops.lock_samples = [](dds_rhc*) { return std::uint32_t{0}; };
+  ops.associate = [](dds_rhc*, dds_reader*, const ddsi_sertype*, ddsi_tkmap*) {
+    return dds_return_t{DDS_RETCODE_OK};
+  };
+  return ops;
+}
+
+Cache::Cache(DdsSource& to) : dds_rhc{}, source(to) {
+  static const dds_rhc_ops kOps = make_cache_ops();
+  common.ops = &kOps;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> make_source(const Place& place, const Uri& uri,
+                                            const LinkOptions& options) {
+  auto policy = internal::parse_policy(uri);
+  if (!policy) return policy.error();
+  auto wait = internal::number_option(uri, "wait", 0);
+  if (!wait) return wait.error();
+  auto reconnect = internal::number_option(uri, "reconnect", 0);
+  if (!reconnect) return reconnect.error();
+  Policy unpaced = *policy;
+  unpaced.rate = 0;
+  auto source = std::make_unique<DdsSource>(unpaced, options, std::chrono::seconds(*wait),
+                                            std::chrono::seconds(*reconnect));
+  if (auto begun = source->begin(place); !begun) return begun.error();
+  return internal::make_paced(std::move(source), *policy);
+}
+
+}  // namespace hc::dds
