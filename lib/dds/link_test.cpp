@@ -13,14 +13,14 @@ namespace {
 /// A topic that no other test has, nor another run beside this one.
 std::string fresh_topic() {
   static int number = 0;
-  return "dds:test/t" + std::to_string(::getpid()) + "_" + std::to_string(number++) +
-         "?domain=97";
+  return "dds:test/t" + std::to_string(::getpid()) + "_" + std::to_string(number++) + "?domain=97";
 }
 
-INSTANTIATE_TEST_SUITE_P(Dds, LinkConformance, ::testing::Values(Transport{"dds", [] {
-  const auto uri = fresh_topic();
-  return std::pair{uri, uri + "&readers=1"};
-}}));
+INSTANTIATE_TEST_SUITE_P(Dds, LinkConformance,
+                         ::testing::Values(Transport{"dds", [] {
+                                                       const auto uri = fresh_topic();
+                                                       return std::pair{uri, uri + "&readers=1"};
+                                                     }}));
 
 /// What is logged.
 class Lines {
@@ -72,7 +72,8 @@ TEST(Dds, AllReadersGetEachMessage) {
   for (int i = 0; i < 3; ++i) sources.push_back(source_of(uri));
   const auto sink = sink_of(uri + "&readers=3");
   std::thread sender([&] {
-    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 10 == 9 ? 100'000 : i)));
+    for (int i = 0; i < kCount; ++i)
+      ASSERT_TRUE(sink->send(numbered(i, i % 10 == 9 ? 100'000 : i)));
     ASSERT_TRUE(sink->close());
   });
   Message message;
@@ -238,10 +239,14 @@ TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
   ASSERT_EQ(log.lines.size(), 2U);
   std::ranges::sort(log.lines);
   const std::string end = "; further ones of this writer are dropped in silence";
-  EXPECT_EQ(log.lines[0], uri + ": dropped a sample: Malformed: R5 version: \"GET\" is not an "
-                                "integer, at byte 0" + end);
-  EXPECT_EQ(log.lines[1], uri + ": dropped a sample: Malformed: it is no sequence of octets: it says "
-                                "4294967295 and has 4" + end);
+  EXPECT_EQ(log.lines[0], uri +
+                              ": dropped a sample: Malformed: R5 version: \"GET\" is not an "
+                              "integer, at byte 0" +
+                              end);
+  EXPECT_EQ(log.lines[1], uri +
+                              ": dropped a sample: Malformed: it is no sequence of octets: it says "
+                              "4294967295 and has 4" +
+                              end);
 }
 
 TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
@@ -261,10 +266,11 @@ TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
     EXPECT_EQ(message.elements.size(), 1000U);
   }
   // What is far too large is not even put together.
-  EXPECT_EQ(log.lines,
-            std::vector<std::string>{
-                uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes are over the limit "
-                      "of 1000, at byte 22; further ones of this writer are dropped in silence"});
+  EXPECT_EQ(
+      log.lines,
+      std::vector<std::string>{
+          uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes are over the limit "
+                "of 1000, at byte 22; further ones of this writer are dropped in silence"});
 }
 
 TEST(Dds, WaitingEndsWhenToldToStop) {
@@ -328,8 +334,9 @@ TEST(Dds, APlaceIsChecked) {
     auto source = open_source(*parse_uri(uri));
     return source ? "" : source.error().text();
   };
-  EXPECT_EQ(wrong("dds:1a"), "Invalid: \"1a\" is no topic of DDS: it takes letters, digits, _ and "
-                             "/, and begins with no digit");
+  EXPECT_EQ(wrong("dds:1a"),
+            "Invalid: \"1a\" is no topic of DDS: it takes letters, digits, _ and "
+            "/, and begins with no digit");
   EXPECT_EQ(wrong("dds:a?domain=233"), "Invalid: option domain is a whole number from 0 to 232");
   EXPECT_EQ(wrong("dds:a?interface=robot"),
             "Invalid: option interface is an IPv4 address of this host, or several with commas "

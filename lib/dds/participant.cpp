@@ -39,7 +39,8 @@ class Log {
     const std::lock_guard lock(mutex_);
     const auto found = readers_.find(line.domid);
     // Whatever strangers send, each kind of complaint is made once.
-    if (found == readers_.end() || !found->second.said.insert({line.file, line.line}).second) return;
+    if (found == readers_.end() || !found->second.said.insert({line.file, line.line}).second)
+      return;
     std::string_view text(line.message, line.size);
     while (text.ends_with('\n')) text.remove_suffix(1);
     found->second.remarks->add("Cyclone DDS: " + std::string(text));
@@ -114,9 +115,9 @@ Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const
   made->domain_ = Entity(domain);
   const auto participant = dds_create_participant(made->number_, nullptr, nullptr);
   if (participant < 0)
-    return failed("no participant of domain " + std::to_string(place.domain) +
-                      ", which has 120 on a machine",
-                  participant);
+    return failed(
+        "no participant of domain " + std::to_string(place.domain) + ", which has 120 on a machine",
+        participant);
   made->participant_ = Entity(participant);
   auto* type = make_type();
   const auto topic =

@@ -50,9 +50,10 @@ Result<Place> parse_place(const Uri& uri) {
     list.remove_prefix(std::min(list.size(), address.size() + 1));
     in_addr read{};
     if (::inet_pton(AF_INET, address.c_str(), &read) != 1)
-      return Error{Code::Invalid, "option interface is an IPv4 address of this host, or several "
-                                  "with commas between, not \"" +
-                                      address + "\""};
+      return Error{Code::Invalid,
+                   "option interface is an IPv4 address of this host, or several "
+                   "with commas between, not \"" +
+                       address + "\""};
     place.addresses.push_back(address);
   }
   return place;
@@ -76,9 +77,8 @@ Result<std::vector<unsigned>> find_interfaces(const Place& place) {
   for (const auto& address : place.addresses) {
     numbers.push_back(number_of(address));
     if (numbers.back() == 0)
-      return Error{Code::NotFound,
-                   "no network interface of this host has the address " + address +
-                       "; `ip address` lists them"};
+      return Error{Code::NotFound, "no network interface of this host has the address " + address +
+                                       "; `ip address` lists them"};
   }
   return numbers;
 }
@@ -90,8 +90,8 @@ std::string configuration(const Place& place, std::uint64_t most_bytes) {
     interfaces += "<NetworkInterface address=\"" + address + "\"/>";
   std::string general = element("Interfaces", interfaces);
   // Unless it is asked for, who dies without a word is noticed as late as that.
-  std::string discovery = element("ExternalDomainId", std::to_string(place.domain)) +
-                          element("LeaseDuration", "3 s");
+  std::string discovery =
+      element("ExternalDomainId", std::to_string(place.domain)) + element("LeaseDuration", "3 s");
   if (is_loopback) {
     // There are no cables where a large packet could be lost in parts. Loopback carries no
     // multicast, so that all ports a participant can have are asked.
@@ -105,12 +105,12 @@ std::string configuration(const Place& place, std::uint64_t most_bytes) {
   std::string text =
       element("General", general) + element("Discovery", discovery) +
       // What is acknowledged is with the reader's link; what waits there is bounded by it.
-      element("Internal",
-              element("MaxSampleSize", std::to_string(most_bytes) + " B") +
-                  element("NackDelay", "10 ms") +
-                  "<SocketReceiveBufferSize min=\"default\" max=\"8 MB\"/>" +
-                  element("Watermarks", element("WhcHigh", "4 MB") + element("WhcHighInit", "4 MB") +
-                                            element("WhcAdaptive", "false")));
+      element("Internal", element("MaxSampleSize", std::to_string(most_bytes) + " B") +
+                              element("NackDelay", "10 ms") +
+                              "<SocketReceiveBufferSize min=\"default\" max=\"8 MB\"/>" +
+                              element("Watermarks", element("WhcHigh", "4 MB") +
+                                                        element("WhcHighInit", "4 MB") +
+                                                        element("WhcAdaptive", "false")));
   // What the user says of Cyclone DDS counts over that: tuning, security.
   if (const char* own = std::getenv("CYCLONEDDS_URI"); own != nullptr && *own != '\0')
     text.append(",").append(own);

@@ -16,7 +16,9 @@ class DdsSample : public ::testing::Test {
  protected:
   ~DdsSample() override { ddsi_sertype_unref(type_); }
 
-  Sample make(const Message& message) { return make_sample(*type_, encoder_.encode(message), message); }
+  Sample make(const Message& message) {
+    return make_sample(*type_, encoder_.encode(message), message);
+  }
 
   /// All bytes of a sample, in words, as they go over the network in pieces.
   static std::string in_pieces(const ddsi_serdata& sample, std::size_t piece) {
@@ -35,10 +37,9 @@ class DdsSample : public ::testing::Test {
   Sample come(const std::string& bytes, std::size_t piece = 1 << 20) {
     std::vector<ddsrt_iovec_t> pieces;
     for (std::size_t at = 0; at < bytes.size(); at += piece)
-      pieces.push_back(
-          {const_cast<char*>(bytes.data()) + at, std::min(piece, bytes.size() - at)});
-    return Sample(ddsi_serdata_from_ser_iov(type_, SDK_DATA, pieces.size(), pieces.data(),
-                                            bytes.size()));
+      pieces.push_back({const_cast<char*>(bytes.data()) + at, std::min(piece, bytes.size() - at)});
+    return Sample(
+        ddsi_serdata_from_ser_iov(type_, SDK_DATA, pieces.size(), pieces.data(), bytes.size()));
   }
 
   /// What is wrong with a sample of these octets.
@@ -141,7 +142,8 @@ TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
 
 TEST_F(DdsSample, ThatIsNoSequenceIsRefused) {
   const auto bytes = [](const auto& text) { return std::string(text, sizeof text - 1); };
-  EXPECT_EQ(refusal_of(bytes("\0\1\0\0")), "Malformed: it is no sequence of octets: it has no bytes");
+  EXPECT_EQ(refusal_of(bytes("\0\1\0\0")),
+            "Malformed: it is no sequence of octets: it has no bytes");
   EXPECT_EQ(refusal_of(bytes("\0\3\0\0\0\0\0\0")),
             "Malformed: it is no sequence of octets: it is not in CDR");
   EXPECT_EQ(refusal_of(bytes("\0\1\0\0\5\0\0\0abcd")),

@@ -26,8 +26,8 @@ using std::chrono::steady_clock;
 constexpr std::size_t kCapacity = 64;  // messages that wait before a sender that loses none does
 
 /// Writes at once where Cyclone DDS takes a message. Where it does not, since readers have not
-/// acknowledged what went before, or the pace says so, the message waits by the link's policy, and a
-/// thread writes it as soon as may be.
+/// acknowledged what went before, or the pace says so, the message waits by the link's policy, and
+/// a thread writes it as soon as may be.
 class DdsSink final : public Sink {
  public:
   DdsSink(const Policy& policy, LinkOptions options, std::int64_t readers, bool stays)
@@ -55,8 +55,8 @@ class DdsSink final : public Sink {
         [](dds_entity_t, const dds_publication_matched_status_t status, void* self) {
           static_cast<DdsSink*>(self)->count_readers(status.current_count);
         });
-    const auto writer = dds_create_writer(participant_->handle(), participant_->topic(), qos.get(),
-                                          listener.get());
+    const auto writer =
+        dds_create_writer(participant_->handle(), participant_->topic(), qos.get(), listener.get());
     if (writer < 0) return failed("writer of " + place.topic, writer);
     writer_ = Entity(writer);
     return {};
@@ -73,7 +73,8 @@ class DdsSink final : public Sink {
     while (true) {
       if (failed_) return *failed_;
       if (has_ended_)
-        return Error{Code::Closed, has_lost_all_ ? "all readers disconnected" : "the link is closed"};
+        return Error{Code::Closed,
+                     has_lost_all_ ? "all readers disconnected" : "the link is closed"};
       const bool needs_none = wanted_ == 0 || (has_begun_ && stays_ && !waits_);
       if (readers_ == 0 && needs_none) {
         has_begun_ = true;

@@ -79,10 +79,8 @@ class DdsSource final : public Source {
     const auto qos = make_qos();
     const Listener listener(dds_create_listener(this));
     dds_lset_subscription_matched(
-        listener.get(),
-        [](dds_entity_t, const dds_subscription_matched_status_t status, void* self) {
-          static_cast<DdsSource*>(self)->count_writers(status);
-        });
+        listener.get(), [](dds_entity_t, const dds_subscription_matched_status_t status,
+                           void* self) { static_cast<DdsSource*>(self)->count_writers(status); });
     const auto reader =
         dds_create_reader_rhc(participant_->handle(), participant_->topic(), qos.get(),
                               listener.get(), std::make_unique<Cache>(*this).release());

@@ -18,11 +18,10 @@ inline std::span<const std::byte> bytes_of(std::string_view text) {
 class Stranger {
  public:
   explicit Stranger(const std::string& uri)
-      : participant_(std::move(
-            *dds::Participant::open(*dds::parse_place(*parse_uri(uri)), {}))) {
+      : participant_(std::move(*dds::Participant::open(*dds::parse_place(*parse_uri(uri)), {}))) {
     const auto qos = dds::make_qos();
-    writer_ = dds::Entity(dds_create_writer(participant_->handle(), participant_->topic(),
-                                            qos.get(), nullptr));
+    writer_ = dds::Entity(
+        dds_create_writer(participant_->handle(), participant_->topic(), qos.get(), nullptr));
     EXPECT_GT(writer_.handle(), 0);
     while (!has_reader()) std::this_thread::yield();
   }
@@ -34,8 +33,8 @@ class Stranger {
   /// All bytes of a sample.
   void send_raw(std::string_view bytes) {
     const ddsrt_iovec_t piece = {const_cast<char*>(bytes.data()), bytes.size()};
-    write(dds::Sample(ddsi_serdata_from_ser_iov(&participant_->type(), SDK_DATA, 1, &piece,
-                                                bytes.size())));
+    write(dds::Sample(
+        ddsi_serdata_from_ser_iov(&participant_->type(), SDK_DATA, 1, &piece, bytes.size())));
   }
 
  private:

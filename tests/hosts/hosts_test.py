@@ -235,6 +235,82 @@ class Hosts(HostsTest):
         self.assertLess(error, 5)
         self.assert_empty(host)
 
+    # DDS.
+
+    def test_a_topic_of_dds_for_two_hosts(self):
+        first, second = self.network.add(2)
+        other = BRIGHTNESS.replace(
+            "[modules.brightness]", "[modules.other]\nprogram = 'brightness'"
+        )
+        via = 'inputs.image = { from = "camera.left", via = "dds" }'
+        self.write_graph(
+            self.tables(first, second)
+            + CAMERA % ""
+            + (BRIGHTNESS % 'host = "h1"\n' + other % 'host = "h2"\n').replace(
+                'inputs.image = "camera.left"', via
+            )
+        )
+        self.assertIn("no problems found", self.shell("hc check g.toml"))
+        process = self.run_graph("", "other: started")
+        messages = self.observe(process)
+        links = [("camera.left", "brightness.image"), ("camera.left", "other.image")]
+
+        def both_flow(state):
+            return all(self.rate(state, *link) for link in links)
+
+        state = self.state(messages, both_flow)
+        self.assertEqual({self.link(state, *link)["transport"] for link in links}, {"dds"})
+        # Each host has joined the group, and the bridge carries what is sent to it.
+        for host in (first, second):
+            self.assertIn("239.255.0.1", self.groups(host))
+        # One reader is killed, and comes back; the other notices nothing.
+        killed = self.modules_of(second)["other"]
+        self.kill(killed)
+        state = self.state(
+            messages, lambda state: self.module(state, "other")["pid"] not in (0, killed)
+        )
+        before = self.link(state, *links[0])["messages"]
+        state = self.state(
+            messages,
+            lambda state: both_flow(state) and self.link(state, *links[0])["messages"] > before,
+        )
+        # A host is cut off, and comes back.
+        second.cut()
+        state = self.state(
+            messages, lambda state: self.module(state, "other")["status"] == "waiting"
+        )
+        before = self.link(state, *links[0])["messages"]
+        self.state(
+            messages,
+            lambda state: self.rate(state, *links[0])
+            and self.link(state, *links[0])["messages"] > before + 100,
+        )
+        second.cut(False)
+        self.state(messages, both_flow)
+        self.stop(process)
+        self.assert_empty(first, second)
+
+    def test_dds_comes_in_over_loopback_alone_unless_it_is_asked(self):
+        (host,) = self.network.add()
+        reads = [HC, "cat", "--count", "1", "dds:alone"]
+        here = subprocess.Popen(reads, stdout=-1)
+        self.addCleanup(here.kill)
+        open_to_it = subprocess.Popen(
+            [*reads[:-1], "dds:alone?interface=10.9.0.1"], stdout=subprocess.PIPE
+        )
+        self.addCleanup(open_to_it.kill)
+        text = "%s send --text 'from another host' --out 'dds:alone?readers=1&interface=%s'"
+        host.inside(text % (HC, host.address), timeout=WATCHDOG)
+        self.assertIn(b"from another host", open_to_it.communicate(timeout=WATCHDOG)[0])
+        subprocess.run(
+            [HC, "send", "--text", "from here", "--out", "dds:alone?readers=1"], check=True
+        )
+        self.assertIn(b"from here", here.communicate(timeout=WATCHDOG)[0])
+
+    @staticmethod
+    def groups(host):
+        return host.inside("ip maddress show dev eth", stdout=-1).stdout.decode()
+
     # What ends, and what is left.
 
     def recovers_from(self, victim):

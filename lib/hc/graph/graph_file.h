@@ -79,7 +79,7 @@ struct GraphLink {
   GraphPort from, to;
   /// `keep`, `rate` and so on, as in a link's URI; an empty value is wrong, and has been reported.
   std::map<std::string, Lined<std::string>> policy;
-  Lined<std::string> via;  ///< "tls" or "tcp", of one between hosts; empty: not given
+  Lined<std::string> via;  ///< "tls", "tcp" or "dds", of one between hosts; empty: not given
   /// Whom messages are for that pass this link; nothing: as computed.
   std::optional<Lined<std::vector<std::int64_t>>> route;
   bool routes_all = false;  ///< all of them do

@@ -91,7 +91,7 @@ class ModuleReader {
            {"as", policy},
            {"quality", policy},
            {"scale", policy},
-           {"via", fields_.choice({"tls", "tcp"},
+           {"via", fields_.choice({"tls", "tcp", "dds"},
                                   [&](const Node& via, std::size_t) {
                                     link.via = {*via.as<std::string>(), via.place};
                                   })},

@@ -87,6 +87,48 @@ TEST(HostsOfAGraph, HavePlainLinksWhereTheFileSaysSo) {
   EXPECT_EQ(planned->links[0].reader_uri, "tcp:10.0.0.2:7001?wait=60");
 }
 
+TEST(HostsOfAGraph, ShareATopicOfDdsWhereTheFileSaysSo) {
+  const HostPlaces places = {{"", {"", "", "F0"}},
+                             {"robot", {"10.0.0.2", "10.0.0.1", "F1"}},
+                             {"lab", {"10.0.0.3", "10.1.0.1", "F2"}}};
+  const std::string dds = ", via = \"dds\"", dropped = dds + ", keep = \"latest\"";
+  auto planned = plan_hosts(far("a", "robot") + far("b", "lab", "a", dropped) +
+                                far("c", "", "a", dds + ", keep = 3, rate = 5, memory = 1000") +
+                                far("d", "robot", "a") + far("e", "lab", "a"),
+                            places);
+  ASSERT_TRUE(planned) << planned.error().detail;
+  const auto& links = planned->links;
+  EXPECT_EQ(links[0].sender_uri, "dds:t/a/out?readers=2&stay=1&interface=10.0.0.2&keep=3");
+  EXPECT_EQ(links[0].reader_uri, "dds:t/a/out?wait=60&interface=10.0.0.3&keep=latest");
+  EXPECT_EQ(links[1].sender_uri, links[0].sender_uri);
+  EXPECT_EQ(links[1].reader_uri,
+            "dds:t/a/out?wait=60&interface=10.0.0.1&keep=3&memory=1000&rate=5");
+  EXPECT_TRUE(links[2].reader_uri.starts_with("shm:")) << links[2].reader_uri;
+  EXPECT_TRUE(links[3].reader_uri.starts_with("tls:")) << links[3].reader_uri;
+  EXPECT_EQ(values_of(planned->modules[0], "--out").size(), 3U);
+  // One reader that is to get all has its writer wait; and the host of hc run may have several
+  // addresses.
+  planned = plan_hosts(far("a", "") + far("b", "lab", "a", dropped) + far("c", "robot", "a", dds),
+                       places);
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->links[0].sender_uri,
+            "dds:t/a/out?readers=2&stay=1&interface=10.0.0.1,10.1.0.1");
+}
+
+TEST(HostsOfAGraph, HaveAddressesOfVersion4ForDds) {
+  auto planned = plan_hosts(far("a", "lab") + far("b", "robot", "a", ", via = \"dds\""));
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(
+      planned.error().detail,
+      "g.toml:14: dds needs the IPv4 address of host lab, not fe80::3: say address = \"…\" in "
+      "its table");
+  EXPECT_EQ(wrong(kHosts + "[modules.java]\nhost = \"robot\"\n" +
+                  far("b", "", "java", ", via = \"dds\"")),
+            "g.toml:12: no transport from java.out to b.in: module java supports tcp, tcp-listen, "
+            "module b supports dds, shm, tcp, tcp-listen, tls, tls-listen, unix, unix-listen; it "
+            "takes dds at both ends");
+}
+
 TEST(HostsOfAGraph, AreGivenToAllModulesOfAnIncludedGraph) {
   const std::string outer = kHosts + "[graphs.head]\nfile = \"head.toml\"\nhost = \"robot\"\n" +
                             "[graphs.head.modules.c]\nhost = \"lab\"\n";
@@ -124,11 +166,12 @@ TEST(HostsOfAGraph, AreChecked) {
             "g.toml:4: unknown key \"port\" in host robot");
   EXPECT_EQ(wrong(far("a", "") + far("b", "", "a", ", via = \"tls\"")),
             "g.toml:6: \"via\" is for a link between hosts, and a and b run on the same");
-  EXPECT_EQ(wrong(kHosts + "[modules.java]\nhost = \"robot\"\n" + far("b", "", "java")),
-            "g.toml:12: no transport from java.out to b.in: module java supports tcp, tcp-listen, "
-            "module b supports shm, tcp, tcp-listen, tls, tls-listen, unix, unix-listen; it takes "
-            "tls-listen at java and tls at b; via = \"tcp\" would be neither encrypted nor "
-            "authenticated");
+  EXPECT_EQ(
+      wrong(kHosts + "[modules.java]\nhost = \"robot\"\n" + far("b", "", "java")),
+      "g.toml:12: no transport from java.out to b.in: module java supports tcp, tcp-listen, "
+      "module b supports dds, shm, tcp, tcp-listen, tls, tls-listen, unix, unix-listen; it takes "
+      "tls-listen at java and tls at b; via = \"tcp\" would be neither encrypted nor "
+      "authenticated");
 }
 
 /// A camera on the robot, and who reads it.

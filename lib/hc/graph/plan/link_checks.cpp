@@ -71,10 +71,12 @@ class LinkCheck {
     std::string takes = "shm at both ends, or tcp-listen at " + from + " and tcp at " + to +
                         ", or unix-listen and unix";
     if (planning_.is_between_hosts(link)) {
-      const bool is_plain = link.via.value == "tcp";
+      const bool is_plain = link.via.value == "tcp", is_dds = link.via.value == "dds";
       const std::string scheme = is_plain ? "tcp" : "tls";
-      takes = scheme + "-listen at " + from + " and " + scheme + " at " + to;
-      if (!is_plain) takes += "; via = \"tcp\" would be neither encrypted nor authenticated";
+      takes = is_dds ? "dds at both ends"
+                     : scheme + "-listen at " + from + " and " + scheme + " at " + to;
+      if (!is_plain && !is_dds)
+        takes += "; via = \"tcp\" would be neither encrypted nor authenticated";
     }
     problems_.add(link.place, "no transport from " + link.from.text() + " to " + link.to.text() +
                                   ": " + supported(from) + ", " + supported(to) + "; it takes " +
@@ -141,10 +143,13 @@ class LinkCheck {
     return std::find(schemes.begin(), schemes.end(), uri.scheme) != schemes.end();
   }
 
-  /// The policy of a link is its sender's affair but for `memory`, of shared memory its reader's.
+  /// The policy of a link is its sender's affair but for `memory`, of shared memory its reader's;
+  /// of a topic of DDS each end has its own.
   void check_outer_policy(const GraphLink& link) {
     const bool is_input = !link.from.uri.empty();
-    const bool is_shared = (is_input ? link.from : link.to).uri.starts_with("shm:");
+    const std::string& uri = (is_input ? link.from : link.to).uri;
+    if (uri.starts_with("dds:")) return;
+    const bool is_shared = uri.starts_with("shm:");
     for (const auto& [key, value] : link.policy) {
       if (value.value.empty()) continue;
       const bool is_pace = key == "rate" || key == "burst";

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gives each link of a graph, which has been checked, its two ends.
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <array>
 #include <span>
@@ -25,10 +27,12 @@ std::string digest(std::string_view text) {
   return digits;
 }
 
-/// Keys of a policy that need a sending end of the link's own, and those that a reader of shared
-/// memory keeps.
+/// Keys of a policy that need a sending end of the link's own, over sockets or shared memory and
+/// over DDS; and those that a reader of shared memory, and of a topic, keeps.
 constexpr std::array<std::string_view, 4> kOfSender = {"memory", "as", "quality", "scale"};
-constexpr std::array<std::string_view, 2> kPace = {"rate", "burst"};
+constexpr auto kConversion = std::span(kOfSender).subspan<1>();
+constexpr std::array<std::string_view, 3> kOfTopicReader = {"rate", "burst", "memory"};
+constexpr auto kPace = std::span(kOfTopicReader).first<2>();
 
 /// Some options of a link's policy, as they are in a URI.
 std::string options_of(const GraphLink& link, std::span<const std::string_view> keys) {
@@ -130,19 +134,77 @@ class LinkPlanner {
     return !planning_.planned(link.to.module)->control_uri.empty();
   }
 
-  /// Whether links of an output have an end in common with this one.
+  /// Whether links of an output have an end in common with this one: by memory, or a topic.
   bool is_common(std::size_t number) const {
     const GraphLink& link = graph_.links[number];
+    const auto transport = transport_of(planning_, link);
+    const bool by_topic = transport == "dds";
+    const auto own = by_topic ? std::span<const std::string_view>(kConversion) : kOfSender;
     const bool is_own = std::ranges::any_of(
-        kOfSender, [&](const auto key) { return link.policy.contains(std::string(key)); });
-    return transport_of(planning_, link) == "shm" && !is_own && routes_[number].sender.empty();
+        own, [&](const auto key) { return link.policy.contains(std::string(key)); });
+    return (transport == "shm" || by_topic) && !is_own && routes_[number].sender.empty();
   }
 
   std::string name_of(std::size_t number) const {
     const GraphPort& from = graph_.links[number].from;
     const GraphPort& to = graph_.links[number].to;
-    return is_common(number) ? link_name({from.module, from.port})
-                             : link_name({from.module, from.port, to.module, to.port});
+    const std::string name = is_common(number)
+                                 ? link_name({from.module, from.port})
+                                 : link_name({from.module, from.port, to.module, to.port});
+    return transport_of(planning_, graph_.links[number]) == "dds" ? topic_of(name) : name;
+  }
+
+  /// A name as a topic of DDS, whose letters are fewer.
+  static std::string topic_of(std::string name) {
+    std::ranges::replace(name, '.', '/');
+    std::ranges::replace(name, '-', '_');
+    return name;
+  }
+
+  /// What all readers of a topic let their writer do: it waits for none where each of them drops.
+  std::string keep_of_all(const std::string& name) const {
+    std::uint64_t most = 1;
+    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
+      if (!is_inside(graph_.links[i]) || name_of(i) != name) continue;
+      const std::string keep = keep_of(graph_.links[i]);
+      if (keep == "all") return keep;
+      if (keep != "latest") most = std::max<std::uint64_t>(most, std::stoull(keep));
+    }
+    return most == 1 ? "latest" : std::to_string(most);
+  }
+
+  /// The addresses by which the two ends of a topic reach each other, of which the host of `hc run`
+  /// has one for each of the others.
+  std::string interfaces_of(const std::string& name, bool of_writer, const GraphLink& own) {
+    const auto address_of = [&](const GraphLink& link) {
+      const std::string &here = planning_.host_of((of_writer ? link.from : link.to).module),
+                        &there = planning_.host_of((of_writer ? link.to : link.from).module);
+      return here.empty() ? place_of(there).runner : place_of(here).address;
+    };
+    std::set<std::string> addresses;
+    for (std::size_t i = 0; i < graph_.links.size(); ++i)
+      if (is_inside(graph_.links[i]) && name_of(i) == name &&
+          (of_writer || graph_.links[i].to.text() == own.to.text()))
+        addresses.insert(address_of(graph_.links[i]));
+    std::string list;
+    for (const auto& address : addresses) {
+      if (!is_v4(address) && !planning_.places.empty()) {
+        const std::string &from = planning_.host_of(own.from.module),
+                          &to = planning_.host_of(own.to.module);
+        const std::string &here = of_writer ? from : to, &there = of_writer ? to : from;
+        planning_.problems.add(own.place, "dds needs the IPv4 address of host " +
+                                              (here.empty() ? there : here) +
+                                              (address.empty() ? "" : ", not " + address) +
+                                              ": say address = \"…\" in its table");
+      }
+      list += (list.empty() ? "" : ",") + address;
+    }
+    return list;
+  }
+
+  static bool is_v4(const std::string& address) {
+    in_addr read{};
+    return ::inet_pton(AF_INET, address.c_str(), &read) == 1;
   }
 
   /// Images are as good as they are new, so that the newest alone waits for who is slow; of
@@ -219,12 +281,33 @@ class LinkPlanner {
     return found == planning_.places.end() ? HostPlace{} : found->second;
   }
 
+  /// All links of an output by DDS have a topic in common, and each reader keeps its rate, and
+  /// drops by its own policy.
+  PlannedLink plan_topic(std::size_t number) {
+    const GraphLink& link = graph_.links[number];
+    const std::string name = name_of(number), keep = keep_of(link), all = keep_of_all(name);
+    Sender& sender = senders_[name];
+    if (sender.uri.empty()) {
+      sender.uri = "dds:" + name + "?readers=" + std::to_string(sender.readers) +
+                   "&stay=1&interface=" + interfaces_of(name, true, link) +
+                   (all == "all" ? "" : "&keep=" + all) + options_of(link, kConversion);
+      add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
+    }
+    const std::string reader_uri = "dds:" + name + (lasts(link) ? "?reconnect=86400" : "?wait=60") +
+                                   "&interface=" + interfaces_of(name, false, link) +
+                                   (keep == "all" ? "" : "&keep=" + keep) +
+                                   options_of(link, kOfTopicReader);
+    add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
+    return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
+  }
+
   /// The links of an output that share memory have one sending end in common, but for those that
   /// have a bound or a route of their own, and each reader keeps its rate; every other link has a
   /// socket. Senders wait for their readers, so that it does not matter who starts first.
   PlannedLink plan_inside(std::size_t number) {
     const GraphLink& link = graph_.links[number];
     const std::string_view transport = transport_of(planning_, link);
+    if (transport == "dds") return plan_topic(number);
     const bool by_memory = transport == "shm";
     const std::string name = name_of(number), keep = keep_of(link);
     const Ends ends = ends_of(link, transport, name);
@@ -285,6 +368,7 @@ std::string_view transport_of(const Planning& planning, const GraphLink& link) {
   const Description& from = *planning.description_of(link.from.module);
   const Description& to = *planning.description_of(link.to.module);
   if (planning.is_between_hosts(link)) {
+    if (link.via.value == "dds") return from.knows("dds") && to.knows("dds") ? "dds" : "";
     const bool is_plain = link.via.value == "tcp";
     if (is_plain) return from.knows("tcp-listen") && to.knows("tcp") ? "tcp" : "";
     return from.knows("tls-listen") && to.knows("tls") ? "tls" : "";

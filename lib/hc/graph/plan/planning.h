@@ -101,7 +101,8 @@ void check_bids(Planning& planning);
 void check_destinations(Planning& planning);
 
 /// What a link between two modules goes over, the first of shm, unix and tcp that both have, or tls
-/// (or tcp, if that is asked for) to another host; empty where there is none. Both are described.
+/// (or tcp or dds, if that is asked for) to another host; empty where there is none. Both are
+/// described.
 std::string_view transport_of(const Planning& planning, const GraphLink& link);
 
 /// Gives each link its two ends.

@@ -43,7 +43,7 @@ inline Result<std::string> describe(const std::string& program, const std::strin
     return lists(module(port("in", "map", 0), port("out", "map", 0)), R"("tcp","tcp-listen")");
   if (program == "far")
     return lists(module(port("in", "map", 0), port("out", "map", 0)),
-                 R"("shm","tcp","tcp-listen","tls","tls-listen","unix","unix-listen")");
+                 R"("dds","shm","tcp","tcp-listen","tls","tls-listen","unix","unix-listen")");
   if (program == "camera")
     return lists(R"({"name":"x","inputs":[],"outputs":[{"name":"image","types":[{"type":)"
                  R"("rgb_image","components":3,"scalar":"u8","width":0,"height":0,"coord":7}]}],)"

@@ -49,12 +49,12 @@ void Intake::take() {
 Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri) {
   auto uri = parse_uri(reader_uri);
   if (!uri) return uri.error();
-  constexpr std::array<std::string_view, 3> kWhoMay = {"same_user", "key", "peer"};
+  constexpr std::array<std::string_view, 4> kWhoMay = {"same_user", "key", "peer", "interface"};
   std::erase_if(uri->options, [&](const auto& option) {
     return std::find(kWhoMay.begin(), kWhoMay.end(), option.first) == kWhoMay.end();
   });
   uri->options.emplace_back("reconnect", "86400");
-  if (uri->scheme == "shm") uri->options.emplace_back("keep", "latest");
+  if (uri->scheme == "shm" || uri->scheme == "dds") uri->options.emplace_back("keep", "latest");
   return Intake::make(loop, uri->text(), [](const Message&) {});
 }
 
