@@ -80,6 +80,7 @@ def _cyclone(more=""):
     return {"CYCLONEDDS_URI": text % more}
 
 
+_KEY = "&key={folder}/key.pem&peer={folder}/key.pem"
 _LOSSLESS = ("messages", "images", "fan_out")  # measures that count what arrives
 
 CASES = [
@@ -101,6 +102,12 @@ CASES = [
     _bare("pipe", "floor_stream", "pipe", "named pipe of 1 MiB, one writev a message, read"),
     _bare("unix", "floor_stream", "unix", "Unix socket, one writev a message, read"),
     _bare("tcp", "floor_stream", "tcp", "TCP on loopback with TCP_NODELAY, one writev, read"),
+    Case(
+        "bare_tls",
+        "bare",
+        "floor_tls",
+        "TLS 1.3 on loopback, by OpenSSL alone, one SSL_write, SSL_read; the cipher is that of tls",
+    ),
     _ours(
         "shm_polled",
         "shm:{link}?readers={readers}&memory=6M",
@@ -131,6 +138,18 @@ CASES = [
         "tcp-listen:127.0.0.1:{port}?readers={readers}",
         "tcp:127.0.0.1:{port}?wait=10",
         "the publisher listens",
+    ),
+    _ours(
+        "tls",
+        "tls-listen:127.0.0.1:{port}?readers={readers}" + _KEY,
+        "tls:127.0.0.1:{port}?wait=10" + _KEY,
+        "the publisher listens; TLS 1.3",
+    ),
+    _ours(
+        "dds",
+        "dds:bench/{link}?domain=90&readers={readers}",
+        "dds:bench/{link}?domain=90",
+        "reliable, all kept, by Cyclone DDS, UDP on loopback",
     ),
     _module("module", "two modules under hc run, an input each", 20),
     _module("module_waiting", "the same, who sleep at once", 0),
@@ -172,6 +191,27 @@ CASES = [
         "udp",
         "reliable, KEEP_ALL, UDP on loopback, WaitSet",
         environment=_cyclone(),
+    ),
+    *(
+        Case(
+            name,
+            "peer",
+            "ddsperf",
+            about,
+            (mode,),
+            environment=_cyclone(),
+            cannot={
+                "fan_out": "it counts all readers together",
+            },
+        )
+        for name, mode, about in (
+            (
+                "ddsperf",
+                "listener",
+                "Cyclone's own program: reliable, KEEP_LAST 1, UDP on loopback",
+            ),
+            ("ddsperf_waitset", "waitset", "the same, taken by another thread than receives"),
+        )
     ),
     _peer(
         "fastdds_datasharing",

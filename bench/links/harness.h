@@ -21,7 +21,8 @@ struct Setup {
   std::string link;       ///< letters, digits and _; nobody else has it
   std::string folder;     ///< for sockets and pipes that need a path
   std::string sink;       ///< our transports: the URI of the end where messages go in …
-  std::string source;     ///< … and of the other; {link}, {port} and {readers} are replaced
+  std::string source;     ///< … and of the other; {link}, {folder}, {port} and {readers} are
+                          ///< replaced
   int port = 0;           ///< the first of 8 free ports
   int readers = 1;        ///< of each message
   int reader = 0;         ///< which of them this is, from 0

@@ -18,6 +18,7 @@ constexpr std::int64_t kTime = 1'763'683'200'123'456'789;
 hc::Uri uri_of(std::string text, const Setup& setup) {
   const std::pair<std::string_view, std::string> names[] = {
       {"{link}", setup.link},
+      {"{folder}", setup.folder},
       {"{port}", std::to_string(setup.port)},
       {"{readers}", std::to_string(setup.readers)}};
   for (const auto& [name, value] : names)

@@ -119,6 +119,10 @@ def targets(results):
             yield measure, [name], ["bare_" + name], 1.15
         yield "messages", [name], [zeromq], 1
         yield "images", [name], ["bare_" + name], 0.9
+    yield "latency_96", ["tls"], ["bare_tls"], 1.2
+    yield "images", ["tls"], ["bare_tls"], 0.85
+    yield "latency_96_one", ["dds"], ["ddsperf_waitset"], 1 / 0.9
+    yield "images", ["dds"], ["ddsperf", "ddsperf_waitset"], 0.9
 
 
 def ratios(results, is_markdown):

@@ -5,7 +5,9 @@ import ctypes
 import fcntl
 import glob
 import json
+import math
 import os
+import re
 import select
 import shutil
 import signal
@@ -150,6 +152,8 @@ class Runner:
             fcntl.flock(self.lock, fcntl.LOCK_EX)
         self.folder = tempfile.mkdtemp(prefix="hc_bench_")
         self.cleaner = start_cleaner(self.folder)
+        hc = os.path.join(self.programs, "../../bin/hc")
+        subprocess.run([hc, "key", os.path.join(self.folder, "key.pem")], check=True, stdout=-3)
         return self
 
     def __exit__(self, *_):
@@ -193,12 +197,48 @@ class Runner:
             process.popen.terminate()
             process.end(PATIENCE)
 
+    def run_ddsperf(self, case, measure):
+        """The last of the numbers that Cyclone DDS's own program prints each second."""
+        roles = ("pong", "ping") if measure.is_latency else ("sub", "pub")
+        size = ["size", str(measure.bytes)]
+        common = ["ddsperf", "-i", "91", "-D", "%d" % (2 + math.ceil(self.seconds))]
+        mode = list(case.arguments)
+        commands = [
+            [*common, roles[0], *mode],
+            [*common, roles[1], *size, *(mode if measure.is_latency else [])],
+        ]
+        try:
+            started = [
+                Process(
+                    each, case.environment, i % measure.processors if measure.processors else None
+                )
+                for i, each in enumerate(commands)
+            ]
+        except FileNotFoundError as error:
+            raise Failed("no ddsperf: install cyclonedds-tools") from error
+        printed = [process.popen.stdout.read().decode() for process in started]
+        for process in started:
+            process.end(PATIENCE)
+        if measure.is_latency:
+            found = re.findall(r" 50% ([\d.]+)us .* 99% ([\d.]+)us", printed[1])
+            if found:
+                return {"median_us": float(found[-1][0]), "p99_us": float(found[-1][1])}
+        found = re.findall(
+            r"^\S+ ([\d.]+)  size .* delta (\d+) lost (\d+)", printed[0], re.MULTILINE
+        )
+        if len(found) < 2:
+            raise Failed("it printed no numbers")
+        (begin, _, _), (end, count, lost) = found[-2:]
+        return {"per_second": int(count) / (float(end) - float(begin)), "lost": int(lost)}
+
     def run(self, case, measure):
         """The numbers of one run. Raises Failed."""
         program = os.path.join(self.programs, case.program)
         if case.program == "floor_memcpy":
             done = subprocess.run([program, str(measure.bytes), str(self.seconds)], stdout=-1)
             return json.loads(done.stdout)
+        if case.program == "ddsperf":
+            return self.run_ddsperf(case, measure)
         if case.needs_roudi and not self.roudi:
             self.start_roudi()
         self.count += 1
