@@ -107,7 +107,7 @@ std::string configuration(const Place& place, std::uint64_t most_bytes) {
       // What is acknowledged is with the reader's link; what waits there is bounded by it.
       element("Internal", element("MaxSampleSize", std::to_string(most_bytes) + " B") +
                               element("NackDelay", "10 ms") +
-                              "<SocketReceiveBufferSize min=\"default\" max=\"8 MB\"/>" +
+                              R"(<SocketReceiveBufferSize min="default" max="8 MB"/>)" +
                               element("Watermarks", element("WhcHigh", "4 MB") +
                                                         element("WhcHighInit", "4 MB") +
                                                         element("WhcAdaptive", "false")));

@@ -81,9 +81,8 @@ class DdsSource final : public Source {
     dds_lset_subscription_matched(
         listener.get(), [](dds_entity_t, const dds_subscription_matched_status_t status,
                            void* self) { static_cast<DdsSource*>(self)->count_writers(status); });
-    const auto reader =
-        dds_create_reader_rhc(participant_->handle(), participant_->topic(), qos.get(),
-                              listener.get(), std::make_unique<Cache>(*this).release());
+    const auto reader = dds_create_reader_rhc(participant_->handle(), participant_->topic(),
+                                              qos.get(), listener.get(), &cache_);
     if (reader < 0) return failed("reader of " + place.topic, reader);
     reader_ = Entity(reader);
     return {};
@@ -205,6 +204,7 @@ class DdsSource final : public Source {
   TimePoint give_up_ = TimePoint::max();  // while there is no writer
 
   internal::Watch timer_;
+  Cache cache_{*this};  // until the participant is gone
   std::unique_ptr<Participant> participant_;
   Entity reader_;
 };
@@ -218,7 +218,7 @@ dds_rhc_ops make_cache_ops() {
   ops.rhc_ops.unregister_wr = [](ddsi_rhc*, const ddsi_writer_info*) {};
   ops.rhc_ops.relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {};
   ops.rhc_ops.set_qos = [](ddsi_rhc*, const dds_qos*) {};
-  ops.rhc_ops.free = [](ddsi_rhc* cache) { delete reinterpret_cast<Cache*>(cache); };
+  ops.rhc_ops.free = [](ddsi_rhc*) {};  // the source has it
   // Nobody else takes anything out.
   ops.read = ops.take = [](dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
                            dds_instance_handle_t, dds_readcond*) { return std::int32_t{0}; };

@@ -166,7 +166,7 @@ class LinkPlanner {
     std::uint64_t most = 1;
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
       if (!is_inside(graph_.links[i]) || name_of(i) != name) continue;
-      const std::string keep = keep_of(graph_.links[i]);
+      std::string keep = keep_of(graph_.links[i]);
       if (keep == "all") return keep;
       if (keep != "latest") most = std::max<std::uint64_t>(most, std::stoull(keep));
     }
