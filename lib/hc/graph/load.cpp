@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include <hc/base/suggestion.h>
@@ -145,13 +147,15 @@ class FileLoader : public GraphLoader {
   }
 
  private:
+  using Answers = std::map<std::pair<std::string, std::string>, Result<std::string>>;
+
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
     find_programs(graph, problems);
-    const HostPlaces places = find_programs_elsewhere(graph, problems, stop);
+    Answers described;
+    const HostPlaces places = find_programs_elsewhere(graph, problems, described, stop);
     LoadedGraph loaded{graph, {}, {}, {}};
     const std::string recorder = options_.recorder.empty() ? "" : find_program("recorder");
     std::vector<std::string> recorded;
-    std::map<std::pair<std::string, std::string>, Result<std::string>> described;
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {
       auto known = described.find({host, program});
@@ -184,9 +188,10 @@ class FileLoader : public GraphLoader {
     return loaded;
   }
 
-  /// Connects to the hosts that modules run on, and has each say where its programs are. Nothing
-  /// more is said of the modules of one that cannot be reached.
-  HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, int stop) {
+  /// Connects to the hosts that modules run on, and has each say where its programs are, and what
+  /// they say of themselves. Nothing more is said of the modules of one that cannot be reached.
+  HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, Answers& described,
+                                     int stop) {
     std::vector<GraphHost> wanted;
     for (const auto& declared : graph.hosts)
       if (!declared.ssh.empty() &&
@@ -210,7 +215,7 @@ class FileLoader : public GraphLoader {
       }
       places[""].fingerprint = options_.hosts->fingerprint();
     }
-    std::map<std::pair<std::string, std::string>, Result<std::string>> found;
+    const auto found = ask_all(graph, hosts, described, stop);
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
       const std::string& name = module.host.value;
@@ -219,14 +224,47 @@ class FileLoader : public GraphLoader {
         program.clear();
         continue;
       }
-      auto known = found.find({name, program});
-      if (known == found.end())
-        known =
-            found.emplace(std::pair(name, program), hosts[name]->find_program(program, stop)).first;
-      if (!known->second) problems.add(place, "host " + name + ": " + known->second.error().detail);
-      program = known->second ? *known->second : "";
+      const auto& known = found.at({name, program});
+      if (!known) problems.add(place, "host " + name + ": " + known.error().detail);
+      program = known ? *known : "";
     }
     return places;
+  }
+
+  /// Asks all hosts at the same time, each on a thread: where its programs are, by host and name,
+  /// and what these say of themselves.
+  static Answers ask_all(const Graph& graph,
+                         const std::map<std::string, std::shared_ptr<Host>>& hosts,
+                         Answers& described, int stop) {
+    struct Of {
+      Answers found, described;
+    };
+    std::vector<std::future<Of>> asked;
+    for (const auto& each : hosts) {
+      const auto name = each.first;
+      const auto host = each.second;
+      std::set<std::string> programs;
+      for (const auto& module : graph.modules)
+        if (module.host.value == name && !module.program.value.empty())
+          programs.insert(module.program.value);
+      asked.push_back(std::async(std::launch::async, [name, host, programs, stop] {
+        Of of;
+        for (const auto& program : programs) {
+          auto path = host->find_program(program, stop);
+          if (path)
+            of.described.emplace(std::pair(name, *path), host->describe_program(*path, stop));
+          of.found.emplace(std::pair(name, program), std::move(path));
+        }
+        return of;
+      }));
+    }
+    Answers found;
+    for (auto& each : asked) {
+      auto of = each.get();
+      found.merge(of.found);
+      described.merge(of.described);
+    }
+    return found;
   }
 
   Result<std::string> describe_once(const std::string& program, int stop) {
