@@ -49,7 +49,11 @@ class SeatPanel {
   );
   private readonly tasks = h("div", { class: "tasks", role: "group", "aria-label": "Tasks" });
   private readonly knob = h("div", { class: "knob" });
-  private readonly pad = h("div", { class: "pad", "aria-hidden": "true" }, this.knob);
+  private readonly pad = h(
+    "div",
+    { class: "pad", "aria-hidden": "true", title: "Drag to turn the head" },
+    this.knob,
+  );
   private readonly phoneButton = h(
     "button",
     { "aria-pressed": "false", onclick: () => void this.togglePhone() },
@@ -158,6 +162,8 @@ class SeatPanel {
     const { stick } = this.seat;
     const { canvas } = this.view;
     const show = ({ left, down }: { left: number; down: number }): void => {
+      const pushed = left !== 0 || down !== 0;
+      if (pushed && !this.seat.isHeld) return this.host.say("Take the seat first, then steer.");
       this.knob.style.transform = `translate(${-left * 40}px, ${down * 40}px)`;
     };
     dragSteers(this.pad, stick, "pad", () => this.pad.clientWidth / 2, show);
@@ -173,7 +179,7 @@ class SeatPanel {
     const pixel = this.view.pixelAt(event.clientX, event.clientY);
     if (!pixel) return this.host.say("Point at the image of an eye, as its camera takes it.");
     this.seat.lookAt(pixel.x, pixel.y, pixel.coord, pixel.time);
-    this.host.say(`The head looks at ${Math.round(pixel.x)}, ${Math.round(pixel.y)}.`);
+    this.host.say(`Asked to look at pixel ${Math.round(pixel.x)}, ${Math.round(pixel.y)}.`);
   }
 
   private take(): void {
@@ -284,11 +290,13 @@ class SeatPanel {
     if (!session) return "";
     const { state } = this.seat;
     if (state.is === "held")
-      return session.stopped ? "You drive, but the robot is stopped." : "You drive.";
+      return session.stopped
+        ? "You drive, but the robot is stopped."
+        : "You drive. Drag the disc or the image, or click where to look.";
     if (state.is === "waiting") return "Waiting for the seat…";
     const other = session.driver === "other" ? "Somebody else drives." : "Nobody drives.";
     if (session.right === "view") return `${other} You may look; ask for a URL that may drive.`;
-    return state.is === "lost" ? `${state.why} ${state.taken ? "" : other}`.trim() : other;
+    return state.is === "lost" ? state.why : other;
   }
 
   private showTasks(state: GraphState): void {

@@ -43,7 +43,7 @@ export class Drive {
         const taken = code === 4409;
         const why = taken
           ? "Somebody else drives."
-          : reason || `The server has closed it: ${code}.`;
+          : `The server has closed it: ${reason || String(code)}.`;
         this.statuses.set({ status: "closed", taken, why });
         this.close();
       },
