@@ -191,7 +191,7 @@ Error no_message(const std::string& why) {
 }
 
 /// The octets of a sample's sequence.
-Result<std::span<const std::byte>> octets_of(const MessageSample& sample) {
+Result<std::span<const std::byte>> sequence_of(const MessageSample& sample) {
   // CDR, of one byte order or the other; its options are how much padding there is.
   constexpr unsigned char kCdrBig = 0, kCdrLittle = 1;
   if (sample.kind != SDK_DATA || sample.size < kPrelude) return no_message("it has no bytes");
@@ -289,7 +289,7 @@ std::uint64_t octets_of(const ddsi_serdata& sample) {
 Result<Message> read_message(const ddsi_serdata& data, const Limits& limits,
                              internal::HeaderMemo& memo) {
   const auto& sample = own(&data);
-  auto octets = octets_of(sample);
+  auto octets = sequence_of(sample);
   if (!octets) return octets.error();
   std::string_view text(reinterpret_cast<const char*>(octets->data()), octets->size());
   auto line = internal::read_header_line(text, limits, 0, memo);
