@@ -12,7 +12,7 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
   EXPECT_EQ(source.error().code, Code::Invalid);
   EXPECT_EQ(source.error().detail,
             "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, tls, tls-listen, unix, "
-            "unix-listen, inproc, shm");
+            "unix-listen, inproc, shm, dds");
   EXPECT_FALSE(open_sink(*parse_uri("pigeon:home")));
 }
 
