@@ -89,8 +89,8 @@ Error failed(const std::string& what, dds_return_t code) {
   return {Code::System, what + ": Cyclone DDS: " + dds_strretcode(code)};
 }
 
-Qos make_qos() {
-  Qos qos(dds_create_qos());
+QosOwner make_qos() {
+  QosOwner qos(dds_create_qos());
   constexpr dds_duration_t kNever = 0;  // waits a writer for room
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kNever);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);

@@ -4,11 +4,11 @@
 // Cyclone DDS has threads and sockets for each, so that a reader who takes nothing stalls no other.
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include <dds/dds.h>
 
+#include <dds/entity.h>
 #include <dds/place.h>
 #include <dds/sample.h>
 #include <hc/link/link.h>
@@ -16,40 +16,9 @@
 
 namespace hc::dds {
 
-/// An entity of DDS, deleted with it.
-class Entity {
- public:
-  Entity() = default;
-  explicit Entity(dds_entity_t handle) : handle_(handle) {}
-  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
-  Entity& operator=(Entity&& other) noexcept {
-    std::swap(handle_, other.handle_);
-    return *this;
-  }
-  ~Entity() { reset(); }
-  void reset() {
-    if (handle_ > 0) dds_delete(handle_);
-    handle_ = 0;
-  }
-  [[nodiscard]] dds_entity_t handle() const { return handle_; }
-
- private:
-  dds_entity_t handle_ = 0;
-};
-
-struct QosDelete {
-  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
-};
-using Qos = std::unique_ptr<dds_qos_t, QosDelete>;
-
 /// Reliable, and nothing is kept for who comes later; no message gives way to another but where a
 /// link's policy says so.
-Qos make_qos();
-
-struct ListenerDelete {
-  void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
-};
-using Listener = std::unique_ptr<dds_listener_t, ListenerDelete>;
+QosOwner make_qos();
 
 /// "writer: Cyclone DDS: Out of resources"
 Error failed(const std::string& what, dds_return_t code);

@@ -83,7 +83,7 @@ Result<std::vector<unsigned>> find_interfaces(const Place& place) {
   return numbers;
 }
 
-std::string configuration(const Place& place, std::uint64_t most_bytes) {
+std::string configuration(const Place& place, std::uint64_t max_bytes) {
   const bool is_loopback = place.addresses.empty();
   std::string interfaces;
   for (const auto& address : is_loopback ? std::vector<std::string>{"127.0.0.1"} : place.addresses)
@@ -105,7 +105,7 @@ std::string configuration(const Place& place, std::uint64_t most_bytes) {
   std::string text =
       element("General", general) + element("Discovery", discovery) +
       // What is acknowledged is with the reader's link; what waits there is bounded by it.
-      element("Internal", element("MaxSampleSize", std::to_string(most_bytes) + " B") +
+      element("Internal", element("MaxSampleSize", std::to_string(max_bytes) + " B") +
                               element("NackDelay", "10 ms") +
                               R"(<SocketReceiveBufferSize min="default" max="8 MB"/>)" +
                               element("Watermarks", element("WhcHigh", "4 MB") +

@@ -28,7 +28,7 @@ Result<Place> parse_place(const Uri& uri);
 Result<std::vector<unsigned>> find_interfaces(const Place& place);
 
 /// How Cyclone DDS is to go about it, in XML.
-/// @param most_bytes  longer samples are dropped before they are put together.
-std::string configuration(const Place& place, std::uint64_t most_bytes);
+/// @param max_bytes  longer samples are dropped before they are put together.
+std::string configuration(const Place& place, std::uint64_t max_bytes);
 
 }  // namespace hc::dds

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <dds/sample.h>
+
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cstdio>
 #include <cstring>
+#include <functional>
 #include <string_view>
 #include <vector>
 
-#include <dds/ddsi/q_radmin.h>
-
-#include <dds/sample.h>
+#include <dds/byte_sample.h>
 #include <hc/mtp/framing.h>
 #include <hc/mtp/stream_reader.h>
 
@@ -18,15 +17,26 @@ namespace {
 
 constexpr std::size_t kPrelude = 8;  // encapsulation, and the number of bytes
 
-std::size_t in_words(std::size_t size) {
-  return (size + 3) / 4 * 4;
-}
-
-/// A sample that is sent: the frame and the header's line are ours, the elements the message's.
-/// Or one that has come: all its bytes are the elements.
+/// Of a sample that is sent, the frame and the header's line are in `begin`, and the elements are
+/// the message's; of one that was received, all bytes are in `elements`.
 struct MessageSample : ddsi_serdata {
   MessageSample(const ddsi_sertype& of, ddsi_serdata_kind what) : ddsi_serdata{} {
     ddsi_serdata_init(this, &of, what);
+  }
+
+  /// Room in which what follows the first line feed is aligned.
+  std::byte* allot(std::size_t wanted, std::span<const std::byte> first) {
+    constexpr std::size_t kAlignment = 64;
+    size = wanted;
+    const std::string_view start(reinterpret_cast<const char*>(first.data()),
+                                 std::min(first.size(), kPrelude + kMaxHeaderBytes));
+    const auto feed = start.find('\n');
+    const std::size_t header = feed == std::string_view::npos ? 0 : feed + 1;
+    const std::size_t offset = (kAlignment - header % kAlignment) % kAlignment;
+    auto room = allocate_bytes(size + offset);
+    bytes = SharedBytes(room, room.get() + offset);
+    elements = {bytes.get(), size};
+    return room.get() + offset;
   }
 
   /// Copies what is in a part of it; behind its end there are zeros.
@@ -42,66 +52,14 @@ struct MessageSample : ddsi_serdata {
   }
 
   std::size_t size = 0;
-  std::vector<std::byte> begin;  // of one that is sent
+  std::vector<std::byte> begin;
   std::span<const std::byte> elements, end;
-  std::shared_ptr<const void> owner;
-  SharedBytes bytes;  // of one that has come, aligned for its message
+  std::shared_ptr<const void> owner;  // of `elements`, if it is sent
+  SharedBytes bytes;                  // of `elements`, if it was received
 };
 
 const MessageSample& own(const ddsi_serdata* sample) {
   return *static_cast<const MessageSample*>(sample);
-}
-
-/// Room for a sample of so many bytes, in which what follows the first line feed is aligned.
-void allot(MessageSample& sample, std::size_t size, std::string_view start) {
-  constexpr std::size_t kAlignment = 64;
-  sample.size = size;
-  const auto feed = start.find('\n');
-  const std::size_t elements = feed == std::string_view::npos ? 0 : feed + 1;
-  const std::size_t offset = (kAlignment - elements % kAlignment) % kAlignment;
-  auto room = allocate_bytes(size + offset);
-  sample.bytes = SharedBytes(room, room.get() + offset);
-  sample.elements = {sample.bytes.get(), size};
-}
-
-std::string_view text_of(const void* bytes, std::size_t size) {
-  return {static_cast<const char*>(bytes), std::min(size, kPrelude + kMaxHeaderBytes)};
-}
-
-ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
-                             const nn_rdata* fragment, std::size_t size) {
-  auto sample = std::make_unique<MessageSample>(*type, kind);
-  const auto payload_of = [](const nn_rdata* each) {
-    return NN_RMSG_PAYLOADOFF(each->rmsg, NN_RDATA_PAYLOAD_OFF(each));
-  };
-  if (fragment == nullptr) return sample.release();
-  allot(*sample, size, text_of(payload_of(fragment), fragment->maxp1 - fragment->min));
-  std::uint32_t at = 0;  // fragments may overlap
-  for (; fragment != nullptr; fragment = fragment->nextfrag) {
-    const auto end = std::min<std::uint32_t>(fragment->maxp1, static_cast<std::uint32_t>(size));
-    if (end <= at) continue;
-    std::memcpy(sample->bytes.get() + at, payload_of(fragment) + at - fragment->min, end - at);
-    at = end;
-  }
-  return sample.release();
-}
-
-ddsi_serdata* from_vector(const ddsi_sertype* type, ddsi_serdata_kind kind,
-                          ddsrt_msg_iovlen_t count, const ddsrt_iovec_t* pieces, std::size_t size) {
-  auto sample = std::make_unique<MessageSample>(*type, kind);
-  if (count == 0) return sample.release();
-  allot(*sample, size, text_of(pieces[0].iov_base, pieces[0].iov_len));
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count) && at < size; ++i) {
-    const std::size_t length = std::min<std::size_t>(pieces[i].iov_len, size - at);
-    std::memcpy(sample->bytes.get() + at, pieces[i].iov_base, length);
-    at += length;
-  }
-  return sample.release();
-}
-
-ddsi_serdata* without_bytes(const ddsi_sertype* type) {
-  return std::make_unique<MessageSample>(*type, SDK_KEY).release();
 }
 
 /// A part of a sample where it is, if it is of one piece; else a copy, until refer_no_more().
@@ -128,63 +86,15 @@ void refer_no_more(ddsi_serdata* data, const ddsrt_iovec_t* reference) {
   ddsi_serdata_unref(data);
 }
 
-ddsi_serdata_ops make_data_ops() {
-  ddsi_serdata_ops ops{};
-  ops.eqkey = [](const ddsi_serdata*, const ddsi_serdata*) { return true; };
-  ops.get_size = [](const ddsi_serdata* data) {
-    return static_cast<std::uint32_t>(own(data).size);
-  };
-  ops.from_ser = from_fragments;
-  ops.from_ser_iov = from_vector;
-  ops.from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) {
-    return without_bytes(type);
-  };
-  ops.from_sample = [](const ddsi_sertype* type, ddsi_serdata_kind, const void*) {
-    return without_bytes(type);  // samples are made by make_sample() alone
-  };
-  ops.to_ser = [](const ddsi_serdata* data, std::size_t at, std::size_t size, void* to) {
-    own(data).copy(at, {static_cast<std::byte*>(to), size});
-  };
+ddsi_serdata_ops make_sample_ops() {
+  auto ops = byte_sample_ops<MessageSample>();
   ops.to_ser_ref = refer;
   ops.to_ser_unref = refer_no_more;
-  ops.to_sample = [](const ddsi_serdata*, void*, void**, void*) { return false; };
-  ops.to_untyped = [](const ddsi_serdata* data) {
-    ddsi_serdata* untyped = without_bytes(data->type);
-    untyped->type = nullptr;
-    return untyped;
-  };
-  ops.untyped_to_sample = [](const ddsi_sertype*, const ddsi_serdata*, void*, void**, void*) {
-    return true;
-  };
-  ops.free = [](ddsi_serdata* data) { delete static_cast<MessageSample*>(data); };
-  ops.print = [](const ddsi_sertype*, const ddsi_serdata* data, char* to, std::size_t size) {
-    return static_cast<std::size_t>(std::snprintf(to, size, "%zu bytes", own(data).size));
-  };
-  ops.get_keyhash = [](const ddsi_serdata*, ddsi_keyhash* hash, bool) { *hash = {}; };
   return ops;
 }
 
-ddsi_sertype_ops make_type_ops() {
-  ddsi_sertype_ops ops{};
-  ops.version = ddsi_sertype_v0;
-  ops.free = [](ddsi_sertype* type) {
-    ddsi_sertype_fini(type);
-    delete type;
-  };
-  ops.zero_samples = [](const ddsi_sertype*, void*, std::size_t) {};
-  ops.realloc_samples = [](void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {};
-  ops.free_samples = [](const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {};
-  ops.equal = [](const ddsi_sertype*, const ddsi_sertype*) { return true; };
-  ops.hash = [](const ddsi_sertype*) { return std::uint32_t{0}; };
-  ops.derive_sertype = [](const ddsi_sertype* type, dds_data_representation_id_t,
-                          dds_type_consistency_enforcement_qospolicy_t) {
-    return const_cast<ddsi_sertype*>(type);  // bytes are bytes
-  };
-  return ops;
-}
-
-const ddsi_serdata_ops kDataOps = make_data_ops();
-const ddsi_sertype_ops kTypeOps = make_type_ops();
+const ddsi_serdata_ops kSampleOps = make_sample_ops();
+const ddsi_sertype_ops kTypeOps = byte_type_ops<ddsi_sertype>();
 
 Error no_message(const std::string& why) {
   return {Code::Malformed, "it is no sequence of octets: " + why};
@@ -239,11 +149,7 @@ Result<Message> read_rows(std::span<const std::byte> octets, const Limits& limit
 }  // namespace
 
 ddsi_sertype* make_type() {
-  auto type = std::make_unique<ddsi_sertype>();
-  ddsi_sertype_init_flags(type.get(), kTypeName, &kTypeOps, &kDataOps,
-                          DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
-  type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
-  return type.release();
+  return make_byte_type<ddsi_sertype>(kTypeName, kTypeOps, kSampleOps).release();
 }
 
 Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message& message) {
@@ -251,7 +157,7 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
   const auto& [head, elements, end] = pieces;
   const auto count = static_cast<std::uint32_t>(head.size() + elements.size() + end.size());
   sample->size = kPrelude + count;
-  const auto padding = static_cast<unsigned char>(in_words(sample->size) - sample->size);
+  const auto padding = static_cast<unsigned char>(-sample->size % 4);
   std::array<unsigned char, kPrelude> prelude = {0, 1, 0, padding};
   for (std::size_t i = 0; i < 4; ++i) prelude[4 + i] = static_cast<unsigned char>(count >> 8 * i);
   constexpr std::size_t kMostCopied = 4096;  // a piece more costs as much
@@ -314,7 +220,7 @@ Result<Message> read_message(const ddsi_serdata& data, const Limits& limits,
   const std::size_t scalar =
       internal::is_compressed(line->header) ? 1 : size_of(line->header.info.scalar);
   if (reinterpret_cast<std::uintptr_t>(message.elements.data()) % scalar != 0) {
-    message.owner.reset();  // a stranger's, of fragments inside the header
+    message.owner.reset();  // of another program, with a fragment's end inside the header
     message = message.keep();
   }
   return message;

@@ -19,15 +19,6 @@ namespace {
 constexpr std::uint32_t kLastDomain = 232;  // whose ports there are
 constexpr std::size_t kSmall = std::size_t{1} << 20, kLarge = std::size_t{64} << 20;  // [byte]
 
-struct QosDelete {
-  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
-};
-using QosPointer = std::unique_ptr<dds_qos_t, QosDelete>;
-
-struct ListenerDelete {
-  void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
-};
-
 // rmw_dds_common/msg: an id has 16 bytes, of ROS before Iron 24.
 template <std::size_t kSize>
 using Id = std::array<std::uint8_t, kSize>;
@@ -65,8 +56,8 @@ hc::Error failed(const std::string& what, dds_return_t code) {
   return {hc::Code::System, what + ": Cyclone DDS: " + dds_strretcode(code)};
 }
 
-QosPointer make_qos(const Qos& qos, std::string_view hash) {
-  QosPointer made(dds_create_qos());
+hc::dds::QosOwner make_qos(const Qos& qos, std::string_view hash) {
+  hc::dds::QosOwner made(dds_create_qos());
   auto* to = made.get();
   constexpr dds_duration_t kBlocking = DDS_MSECS(100);
   dds_qset_reliability(to, qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
@@ -94,9 +85,9 @@ std::size_t max_bytes(std::string_view type) {
 }
 
 /// A topic, and its type as Cyclone keeps it.
-hc::Result<std::pair<Entity, const ddsi_sertype*>> open_topic(dds_entity_t participant,
-                                                              const std::string& name,
-                                                              const std::string& type) {
+hc::Result<std::pair<hc::dds::Entity, const ddsi_sertype*>> open_topic(dds_entity_t participant,
+                                                                       const std::string& name,
+                                                                       const std::string& type) {
   auto* sertype = make_blob_type(type, max_bytes(type));
   const auto topic =
       dds_create_topic_sertype(participant, name.c_str(), &sertype, nullptr, nullptr, nullptr);
@@ -104,7 +95,7 @@ hc::Result<std::pair<Entity, const ddsi_sertype*>> open_topic(dds_entity_t parti
     ddsi_sertype_unref(sertype);
     return failed("topic " + name, topic);
   }
-  return std::pair<Entity, const ddsi_sertype*>{Entity(topic), sertype};
+  return std::pair<hc::dds::Entity, const ddsi_sertype*>{hc::dds::Entity(topic), sertype};
 }
 
 void hand_over(void* log, const dds_log_data_t* data) {
@@ -181,8 +172,8 @@ hc::Result<std::unique_ptr<Participant>> Participant::open(
   made->options_ = options;
   const auto domain = dds_create_domain(options.domain, config.c_str());
   if (domain < 0) return failed("domain " + std::to_string(options.domain), domain);
-  made->domain_ = Entity(domain);
-  const QosPointer qos(dds_create_qos());
+  made->domain_ = hc::dds::Entity(domain);
+  const hc::dds::QosOwner qos(dds_create_qos());
   constexpr std::string_view kEnclave = "enclave=/;";
   dds_qset_userdata(qos.get(), kEnclave.data(), kEnclave.size());
   const auto participant = dds_create_participant(options.domain, qos.get(), nullptr);
@@ -190,7 +181,7 @@ hc::Result<std::unique_ptr<Participant>> Participant::open(
     return failed("no participant of domain " + std::to_string(options.domain) +
                       ", which has 33 on a machine",
                   participant);
-  made->participant_ = Entity(participant);
+  made->participant_ = hc::dds::Entity(participant);
   auto discovery = made->open_writer("ros_discovery_info",
                                      dds_type("rmw_dds_common/msg/ParticipantEntitiesInfo"),
                                      kDiscoveryHash, {.transient_local = true, .depth = 1});
@@ -217,7 +208,7 @@ hc::Result<Writer> Participant::open_writer(const std::string& topic, const std:
   const auto writer =
       dds_create_writer(participant_.handle(), made.topic_.handle(), settings.get(), nullptr);
   if (writer < 0) return failed("writer of " + topic, writer);
-  made.writer_ = Entity(writer);
+  made.writer_ = hc::dds::Entity(writer);
   return made;
 }
 
@@ -244,7 +235,7 @@ hc::Result<Reader> Participant::read(const std::string& topic, hc::ros::Type typ
   Reader made;
   made.depth_ = qos.depth;
   made.topic_ = std::move(opened->first);
-  const std::unique_ptr<dds_listener_t, ListenerDelete> listener(
+  const hc::dds::Listener listener(
       dds_create_listener(const_cast<std::function<void()>*>(&arrived)));
   dds_lset_data_available(listener.get(), [](dds_entity_t, void* call) {
     (*static_cast<const std::function<void()>*>(call))();
@@ -252,7 +243,7 @@ hc::Result<Reader> Participant::read(const std::string& topic, hc::ros::Type typ
   const auto reader = dds_create_reader(participant_.handle(), made.topic_.handle(), settings.get(),
                                         listener.get());
   if (reader < 0) return failed("reader of " + topic, reader);
-  made.reader_ = Entity(reader);
+  made.reader_ = hc::dds::Entity(reader);
   {
     const std::lock_guard lock(mutex_);
     readers_.push_back(guid_of(reader));

@@ -9,10 +9,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-#include <dds/dds.h>
+#include <dds/entity.h>
 #include <hc/base/result.h>
 #include <ros/cdr.h>
 #include <ros/schema.h>
@@ -25,25 +24,6 @@ struct Qos {
   std::int32_t depth = 10;       ///< of the newest that are kept
 };
 
-/// An entity of DDS, deleted with it.
-class Entity {
- public:
-  Entity() = default;
-  explicit Entity(dds_entity_t handle) : handle_(handle) {}
-  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
-  Entity& operator=(Entity&& other) noexcept {
-    std::swap(handle_, other.handle_);
-    return *this;
-  }
-  ~Entity() {
-    if (handle_ > 0) dds_delete(handle_);
-  }
-  [[nodiscard]] dds_entity_t handle() const { return handle_; }
-
- private:
-  dds_entity_t handle_ = 0;
-};
-
 /// Writes a topic, from one thread at a time. Ends before its participant.
 class Writer {
  public:
@@ -52,7 +32,7 @@ class Writer {
 
  private:
   friend class Participant;
-  Entity topic_, writer_;
+  hc::dds::Entity topic_, writer_;
   const ddsi_sertype* type_ = nullptr;
 };
 
@@ -67,7 +47,7 @@ class Reader {
 
  private:
   friend class Participant;
-  Entity topic_, reader_;
+  hc::dds::Entity topic_, reader_;
   std::int32_t depth_ = 0;
 };
 
@@ -105,7 +85,7 @@ class Participant {
   hc::Status announce();
 
   Options options_;
-  Entity domain_, participant_;
+  hc::dds::Entity domain_, participant_;
   Writer discovery_;
   std::mutex mutex_;  // for the lists
   std::vector<dds_guid_t> writers_, readers_;

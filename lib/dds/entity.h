@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Owners of what Cyclone DDS makes. Internal.
+
+#include <memory>
+#include <utility>
+
+#include <dds/dds.h>
+
+namespace hc::dds {
+
+/// An entity of DDS, deleted with it.
+class Entity {
+ public:
+  Entity() = default;
+  explicit Entity(dds_entity_t handle) : handle_(handle) {}
+  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+  Entity& operator=(Entity&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Entity() { reset(); }
+  void reset() {
+    if (handle_ > 0) dds_delete(handle_);
+    handle_ = 0;
+  }
+  [[nodiscard]] dds_entity_t handle() const { return handle_; }
+
+ private:
+  dds_entity_t handle_ = 0;
+};
+
+struct QosDelete {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using QosOwner = std::unique_ptr<dds_qos_t, QosDelete>;
+
+struct ListenerDelete {
+  void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
+};
+using Listener = std::unique_ptr<dds_listener_t, ListenerDelete>;
+
+}  // namespace hc::dds
