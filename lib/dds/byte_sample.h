@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Samples whose bytes Cyclone DDS carries without understanding them, and their topics' types, which
-// have no key and no type information. Internal.
+// Samples whose bytes Cyclone DDS carries without understanding them, and their topics' types,
+// which have no key and no type information. Internal.
 
 #include <cstddef>
 #include <cstdio>
@@ -44,8 +44,7 @@ ddsi_serdata_ops byte_sample_ops() {
           NN_RMSG_PAYLOADOFF(each->rmsg, NN_RDATA_PAYLOAD_OFF(each)));
     };
     if (fragment == nullptr) return sample.release();
-    std::byte* room =
-        sample->allot(size, {payload_of(fragment), fragment->maxp1 - fragment->min});
+    std::byte* room = sample->allot(size, {payload_of(fragment), fragment->maxp1 - fragment->min});
     std::uint32_t at = 0;  // fragments may overlap
     for (; room != nullptr && fragment != nullptr; fragment = fragment->nextfrag) {
       const auto end = std::min<std::uint32_t>(fragment->maxp1, static_cast<std::uint32_t>(size));

@@ -76,8 +76,8 @@ std::array<double, 4> FollowScore::numbers() const {
 
 std::string FollowScore::text() const {
   constexpr double kDegrees = 180 / M_PI, kMilliseconds = 1000;
-  return format("error {:.2f}° RMS, {:.2f}° at most, behind by {:.0f} ms", rms * kDegrees,
-                max * kDegrees, behind * kMilliseconds);
+  return hc::format("error {:.2f}° RMS, {:.2f}° at most, behind by {:.0f} ms", rms * kDegrees,
+                    max * kDegrees, behind * kMilliseconds);
 }
 
 }  // namespace hc::gaze

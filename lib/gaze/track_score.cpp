@@ -61,11 +61,11 @@ std::array<double, 5> TrackScore::numbers() const {
 std::string TrackScore::text() const {
   const double degrees = rms * 180 / M_PI;
   if (!acquired)
-    return format(
+    return hc::format(
         "the ball was never acquired, RMS error {:.2f}° of {} images: can the finder see it "
         "(exposure, colour)?",
         degrees, samples);
-  return format(
+  return hc::format(
       "RMS error {:.2f}°, acquired after {:.2f} s, came back {} times, acquired again after {:.2f} "
       "s "
       "at most, of {} images",

@@ -410,9 +410,9 @@ void Connection::take_heartbeat(const Message& message, std::int64_t received) {
 /// Notices that the clock there was set.
 void Connection::look_at_clock(std::int64_t there_to_wall) {
   if (there_to_wall_ && std::abs(there_to_wall - *there_to_wall_) > kClockSet)
-    parts_.log(format("host {}: its clock was set by {:.3f} s; times of its messages stay right",
-                      parts_.declared.name,
-                      static_cast<double>(there_to_wall - *there_to_wall_) * 1e-9));
+    parts_.log(hc::format(
+        "host {}: its clock was set by {:.3f} s; times of its messages stay right",
+        parts_.declared.name, static_cast<double>(there_to_wall - *there_to_wall_) * 1e-9));
   there_to_wall_ = there_to_wall;
 }
 
@@ -422,8 +422,8 @@ void Connection::hold_again() {
     const auto id = ++asked_;
     questions_[id] = [this, number = number](const Result<Json>& answer) {
       if (!answer)
-        parts_.log(format("host {}: port {} is lost: {}", parts_.declared.name, number,
-                          answer.error().detail));
+        parts_.log(hc::format("host {}: port {} is lost: {}", parts_.declared.name, number,
+                              answer.error().detail));
     };
     conversation_->say(
         make_order({{"what", "hold"}, {"id", id}, {"of_all", of_all}, {"port", number}}));

@@ -118,8 +118,8 @@ class AllHosts final : public Hosts {
   void look_at_clock() {
     const auto wall_offset = monotonic_to_wall();
     if (wall_offset_ && std::abs(wall_offset - *wall_offset_) > kClockSet)
-      log(format("graph: the clock of this host was set by {:.3f} s",
-                 static_cast<double>(wall_offset - *wall_offset_) * 1e-9));
+      log(hc::format("graph: the clock of this host was set by {:.3f} s",
+                     static_cast<double>(wall_offset - *wall_offset_) * 1e-9));
     wall_offset_ = wall_offset;
     clock_ = worker_->loop().call_at(std::chrono::steady_clock::now() + kHeartbeat,
                                      [this] { look_at_clock(); });

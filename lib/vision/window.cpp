@@ -60,8 +60,9 @@ Result<std::unique_ptr<Display>> Display::open(int monitor) {
     if (SDL_GetDesktopDisplayMode(monitor, &mode) != 0) {
       const int count = SDL_GetNumVideoDisplays();
       SDL_QuitSubSystem(SDL_INIT_VIDEO);
-      return Error{Code::Unsupported, format("there is no monitor {}, but {}", monitor,
-                                             count == 1 ? "0 alone" : format("0 … {}", count - 1))};
+      return Error{Code::Unsupported,
+                   hc::format("there is no monitor {}, but {}", monitor,
+                              count == 1 ? "0 alone" : hc::format("0 … {}", count - 1))};
     }
     size = {mode.w, mode.h};
   }

@@ -54,7 +54,7 @@ bool is_of_graph_name(char c) {
 }
 
 std::string RunningGraph::state_uri() const {
-  return format("unix:@{}{}", kPrefix, text());
+  return hc::format("unix:@{}{}", kPrefix, text());
 }
 
 std::optional<RunningGraph> parse_running(std::string_view text) {
@@ -97,7 +97,7 @@ std::vector<RunningGraph> find_running() {
 
 Result<Answer> ask(const RunningGraph& graph, const std::vector<std::string>& commands, int stop) {
   static std::atomic<unsigned> asked{0};
-  const std::string answers = format("@{}{}.{}", kAnswerPrefix, ::getpid(), asked++);
+  const std::string answers = hc::format("@{}{}.{}", kAnswerPrefix, ::getpid(), asked++);
   auto source = open_source_at("unix-listen:" + answers, stop);
   if (!source) return source.error();
   std::vector<std::string> rows = {"reply unix:" + answers};

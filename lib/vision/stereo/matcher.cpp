@@ -21,14 +21,14 @@ namespace {
 Status check(const cv::Mat& left, const cv::Mat& right) {
   for (const auto* image : {&left, &right}) {
     const char* eye = image == &left ? "left" : "right";
-    if (image->empty()) return Error{Code::Invalid, format("the {} image is empty", eye)};
+    if (image->empty()) return Error{Code::Invalid, hc::format("the {} image is empty", eye)};
     if (image->depth() != CV_8U || (image->channels() != 1 && image->channels() != 3))
       return Error{Code::Invalid,
-                   format("the {} image is no u8 image of one or three channels", eye)};
+                   hc::format("the {} image is no u8 image of one or three channels", eye)};
   }
   if (left.size() != right.size())
-    return Error{Code::Invalid, format("the left image is {} x {}, the right one {} x {}",
-                                       left.cols, left.rows, right.cols, right.rows)};
+    return Error{Code::Invalid, hc::format("the left image is {} x {}, the right one {} x {}",
+                                           left.cols, left.rows, right.cols, right.rows)};
   return {};
 }
 
@@ -120,8 +120,8 @@ class OpenCvMatcher final : public StereoMatcher {
     if (auto checked = check(left, right); !checked) return checked;
     // OpenCV 4.6 writes where it should not otherwise.
     if (left.cols <= matcher_->getNumDisparities())
-      return Error{Code::Invalid, format("images of {} x {} are not wider than {} disparities",
-                                         left.cols, left.rows, matcher_->getNumDisparities())};
+      return Error{Code::Invalid, hc::format("images of {} x {} are not wider than {} disparities",
+                                             left.cols, left.rows, matcher_->getNumDisparities())};
     matcher_->compute(grey_of(left), grey_of(right), sixteenths_);
     constexpr int kScale = cv::StereoMatcher::DISP_SCALE;
     sixteenths_.convertTo(found.disparity, CV_32F, 1.0 / kScale);
