@@ -30,3 +30,8 @@ foreach(module core imgproc imgcodecs videoio calib3d aruco freetype video)
     target_link_libraries(opencv_${module} INTERFACE opencv_core)
   endif()
 endforeach()
+# From OpenCV 4.7 on most of ArUco is in another library, which comes with the package of contrib's.
+if(EXISTS ${HC_OPENCV_INCLUDE}/opencv2/objdetect/aruco_detector.hpp)
+  find_library(HC_OPENCV_objdetect opencv_objdetect REQUIRED)
+  target_link_libraries(opencv_aruco INTERFACE ${HC_OPENCV_objdetect})
+endif()

@@ -290,13 +290,13 @@ class Watching(Graphs):
 
     def test_help_says_what_each_word_is(self):
         for verb, words in (
-            ("add", ["MODULE", "PROGRAM", "PARAMETER=VALUE"]),
+            ("add", ["MODULE", "PROGRAM", "SETTING"]),
             ("remove", ["MODULE"]),
             ("restart", ["MODULE"]),
             ("get", [r"MODULE[.PARAMETER]"]),
-            ("link", ["FROM", "TO", "KEY=VALUE"]),
+            ("link", ["FROM", "TO", "POLICY"]),
             ("unlink", ["FROM", "TO"]),
-            ("set", ["MODULE.PARAMETER=VALUE"]),
+            ("set", ["SETTING"]),
         ):
             text = self.hc("graph %s --help" % verb)
             for word in words:

@@ -247,14 +247,15 @@ void add_graph(CLI::App& app) {
   add_change(*verb, options, "add", "Add a module",
              {{"MODULE", "its name, new in the graph"},
               {"PROGRAM", "a module's program, or the path of any program"}},
-             {"PARAMETER=VALUE", "its parameters (default: its own defaults)"});
+             {"SETTING", "a parameter, as PARAMETER=VALUE (default: its own default)"});
   add_changes(*verb, options, "remove", "Stop and remove modules, and their links", module);
   add_changes(*verb, options, "restart", "Restart modules", module);
-  add_change(*verb, options, "link", "Add a link, or change its policy", {from, to},
-             {"KEY=VALUE", "policy: keep, rate, burst, memory"});
+  add_change(
+      *verb, options, "link", "Add a link, or change its policy", {from, to},
+      {"POLICY", "of its policy, as KEY=VALUE: keep, rate, burst, memory, as, quality, scale"});
   add_change(*verb, options, "unlink", "Remove a link", {from, to});
   add_changes(*verb, options, "set", "Set parameters, all or none",
-              {"MODULE.PARAMETER=VALUE", "a parameter and its new value"});
+              {"SETTING", "a parameter and its new value, as MODULE.PARAMETER=VALUE"});
   add_change(*verb, options, "stop", "Stop the graph", {});
   auto wanted = std::make_shared<std::vector<std::string>>();
   auto* getter = add_verb(*verb, options, "get", "Print parameters: value, unit, range, default");
