@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <dds/sink.h>
 
-#include <sys/eventfd.h>
-
 #include <array>
 #include <condition_variable>
 #include <mutex>
@@ -13,7 +11,7 @@
 #include <hc/base/backoff.h>
 #include <hc/link/queue.h>
 #include <hc/link/transports.h>
-#include <hc/os/descriptor.h>
+#include <hc/os/event.h>
 
 namespace hc::dds {
 namespace {
@@ -41,10 +39,9 @@ class DdsSink final : public Sink {
   ~DdsSink() override { end(); }
 
   Status begin(const Place& place) {
-    auto number = internal::system_call("eventfd", "",
-                                        [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
-    if (!number) return number.error();
-    event_ = internal::Descriptor(*number);
+    auto event = internal::Event::make();
+    if (!event) return event.error();
+    event_ = std::move(*event);
     auto participant = Participant::open(place, options_.limits);
     if (!participant) return participant.error();
     participant_ = std::move(*participant);
@@ -133,8 +130,6 @@ class DdsSink final : public Sink {
   }
 
  private:
-  void raise() const { ::eventfd_write(event_.get(), 1); }
-
   /// How many readers the next message wants.
   [[nodiscard]] std::uint32_t needed() const {
     if (has_begun_ || wanted_ < 0) return 1;
@@ -149,7 +144,7 @@ class DdsSink final : public Sink {
       has_lost_all_ = true;
       return give_up();
     }
-    raise();
+    event_.raise();
     changed_.notify_one();
   }
 
@@ -157,18 +152,16 @@ class DdsSink final : public Sink {
   void give_up() {
     has_ended_ = true;
     losses_.cut += queue_.clear(losses_);
-    raise();
+    event_.raise();
     changed_.notify_one();
   }
 
   /// Waits until something has changed; the lock is free meanwhile.
   Status wait(std::unique_lock<std::mutex>& lock) {
-    eventfd_t count = 0;
-    ::eventfd_read(event_.get(), &count);
-    if (count > 0) return {};
+    if (event_.clear()) return {};
     lock.unlock();
     auto& [interrupter, call] = options_.interrupt;
-    auto ready = wait_readable(std::array{event_.get(), interrupter}, options_.stop);
+    auto ready = wait_readable(std::array{event_.descriptor(), interrupter}, options_.stop);
     if (ready && *ready == 1 && !call()) interrupter = -1;
     lock.lock();
     return ready ? Status() : ready.error();
@@ -227,7 +220,7 @@ class DdsSink final : public Sink {
         lock.lock();
         continue;
       }
-      raise();
+      event_.raise();
     }
   }
 
@@ -270,7 +263,7 @@ class DdsSink final : public Sink {
   const bool stays_;
   LinkOptions options_;
   Encoder encoder_;
-  internal::Descriptor event_;  // readable when something has changed that is waited for
+  internal::Event event_;  // readable when something has changed that is waited for
 
   mutable std::mutex mutex_;  // of what follows
   std::condition_variable changed_;

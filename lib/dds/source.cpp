@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <sys/eventfd.h>
-
 #include <algorithm>
 #include <mutex>
 #include <optional>
@@ -14,6 +12,7 @@
 #include <hc/link/paced_source.h>
 #include <hc/link/queue.h>
 #include <hc/link/transports.h>
+#include <hc/os/event.h>
 #include <hc/os/reactor.h>
 
 namespace hc::dds {
@@ -67,11 +66,10 @@ class DdsSource final : public Source {
   }
 
   Status begin(const Place& place) {
-    auto number = internal::system_call("eventfd", "",
-                                        [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
-    if (!number) return number.error();
-    event_ = internal::Descriptor(*number);
-    if (auto started = timer_.start(-1, [this](auto) { raise(); }); !started) return started;
+    auto event = internal::Event::make();
+    if (!event) return event.error();
+    event_ = std::move(*event);
+    if (auto started = timer_.start(-1, [this](auto) { event_.raise(); }); !started) return started;
     if (give_up_ != TimePoint::max()) timer_.call_at(give_up_);
     auto participant = Participant::open(place, options_.limits);
     if (!participant) return participant.error();
@@ -120,12 +118,12 @@ class DdsSource final : public Source {
       return true;
     }
     if (loses_nothing_ && queue_.bytes() >= kWindow) return false;
-    if (queue_.empty()) raise();
+    if (queue_.empty()) event_.raise();
     queue_.push({Sample(ddsi_serdata_ref(&sample)), writer}, octets + kBesides, losses_);
     return true;
   }
 
-  [[nodiscard]] int descriptor() const override { return event_.get(); }
+  [[nodiscard]] int descriptor() const override { return event_.descriptor(); }
 
   [[nodiscard]] Traffic traffic() const override {
     const std::lock_guard lock(mutex_);
@@ -138,12 +136,10 @@ class DdsSource final : public Source {
   void finish() override {
     const std::lock_guard lock(mutex_);
     is_final_ = true;
-    raise();
+    event_.raise();
   }
 
  private:
-  void raise() const { ::eventfd_write(event_.get(), 1); }
-
   /// Called on a thread of Cyclone's.
   void count_writers(const dds_subscription_matched_status_t& status) {
     const std::lock_guard lock(mutex_);
@@ -165,16 +161,15 @@ class DdsSource final : public Source {
   void await_next(std::chrono::seconds least) {
     give_up_ = steady_clock::now() + std::max(least, reconnect_);
     timer_.call_at(give_up_);
-    raise();
+    event_.raise();
   }
 
   /// What there is to say where no message is. With the mutex.
   Result<Got> nothing() {
-    eventfd_t count = 0;
-    ::eventfd_read(event_.get(), &count);
+    event_.clear();
     if (alive() > 0) return Got::Nothing;
     if (give_up_ > steady_clock::now() && !is_final_) return Got::Nothing;
-    raise();  // it stays so
+    event_.raise();  // it stays so
     if (!has_had_one_ && !is_final_) return Error{Code::NotFound, "nobody writes to this topic"};
     return Got::End;
   }
@@ -193,7 +188,7 @@ class DdsSource final : public Source {
   internal::HeaderMemo memo_;
   std::set<dds_instance_handle_t> strangers_;
   Traffic traffic_;
-  internal::Descriptor event_;
+  internal::Event event_;
 
   mutable std::mutex mutex_;  // of what follows
   SendQueue<Arrived> queue_;

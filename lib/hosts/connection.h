@@ -79,7 +79,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
     }
 
    private:
-    Event event_;
+    internal::Event event_ = internal::Event::must_make();
     mutable std::mutex mutex_;
     Result<Json> value_ = Error{Code::Closed, "no answer for 30 s"};
   };

@@ -128,7 +128,7 @@ class AllHosts final : public Hosts {
   const std::string version_;
   std::string fingerprint_;
   internal::Descriptor key_;
-  Event changed_;
+  internal::Event changed_ = internal::Event::must_make();
   mutable std::mutex mutex_;
   std::vector<std::string> events_;
   std::map<std::string, std::shared_ptr<Connection>> hosts_;

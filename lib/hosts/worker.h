@@ -2,8 +2,6 @@
 #pragma once
 // A loop on a thread of its own. Internal.
 
-#include <sys/eventfd.h>
-
 #include <csignal>
 #include <functional>
 #include <memory>
@@ -12,25 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include <hc/os/descriptor.h>
+#include <hc/os/event.h>
 #include <hc/os/loop.h>
 
 namespace hc::hosts {
-
-/// An event that a descriptor tells of.
-class Event {
- public:
-  Event() : descriptor_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
-  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
-  void raise() const { ::eventfd_write(descriptor_.get(), 1); }
-  void clear() const {
-    eventfd_t count = 0;
-    ::eventfd_read(descriptor_.get(), &count);
-  }
-
- private:
-  internal::Descriptor descriptor_;
-};
 
 class Worker {
  public:
@@ -86,7 +69,7 @@ class Worker {
   }
 
   std::unique_ptr<internal::Loop> loop_;
-  Event posted_;
+  internal::Event posted_ = internal::Event::must_make();
   std::mutex mutex_;
   std::vector<std::function<void()>> jobs_;
   bool is_stopped_ = false;  // of the thread

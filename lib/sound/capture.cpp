@@ -3,7 +3,6 @@
 
 #include <SDL2/SDL.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,6 +10,8 @@
 #include <deque>
 #include <mutex>
 #include <utility>
+
+#include <hc/os/event.h>
 
 namespace hc::audio {
 namespace {
@@ -24,13 +25,8 @@ struct Capture::Queue {
   std::deque<Heard> pieces;
   std::size_t most = 1;
   std::int64_t lost = 0;
-  int event = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);  // readable while there are any
+  internal::Event event = internal::Event::must_make();  // while there are any
   SystemClock clock;
-
-  Queue() = default;
-  Queue(const Queue&) = delete;
-  Queue& operator=(const Queue&) = delete;
-  ~Queue() { ::close(event); }
 
   void put(const void* bytes, std::size_t size) {
     Heard heard;
@@ -43,15 +39,11 @@ struct Capture::Queue {
       ++lost;
     }
     pieces.push_back(std::move(heard));
-    const std::uint64_t one = 1;
-    static_cast<void>(!::write(event, &one, sizeof one));
+    event.raise();
   }
   std::optional<Heard> take() {
     const std::lock_guard lock(mutex);
-    if (pieces.size() <= 1) {
-      std::uint64_t count = 0;
-      static_cast<void>(!::read(event, &count, sizeof count));
-    }
+    if (pieces.size() <= 1) event.clear();
     if (pieces.empty()) return std::nullopt;
     auto heard = std::move(pieces.front());
     pieces.pop_front();
@@ -94,13 +86,14 @@ Capture::~Capture() {
 
 std::optional<Heard> Capture::take(std::chrono::milliseconds timeout, int stop) {
   if (auto heard = queue_->take()) return heard;
-  std::array<pollfd, 2> waiting = {pollfd{queue_->event, POLLIN, 0}, pollfd{stop, POLLIN, 0}};
+  std::array<pollfd, 2> waiting = {pollfd{queue_->event.descriptor(), POLLIN, 0},
+                                   pollfd{stop, POLLIN, 0}};
   ::poll(waiting.data(), waiting.size(), static_cast<int>(timeout.count()));
   return queue_->take();
 }
 
 int Capture::descriptor() const {
-  return queue_->event;
+  return queue_->event.descriptor();
 }
 
 bool Capture::is_there() const {

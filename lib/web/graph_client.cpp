@@ -17,7 +17,7 @@ GraphClient::~GraphClient() {
     const std::lock_guard lock(mutex_);
     is_stopped_ = true;
   }
-  stop_.set();
+  stop_.raise();
   asked_.notify_one();
   listener_.join();
   asker_.join();

@@ -13,7 +13,7 @@
 #include <hc/mtp/message.h>
 #include <hc/observe/running.h>
 
-#include <web/event.h>
+#include <web/inbox.h>
 
 namespace hc::web {
 
@@ -46,7 +46,7 @@ class GraphClient {
   const RunningGraph graph_;
   const Post post_;
   const Hears hears_;
-  Event stop_;
+  internal::Event stop_ = internal::Event::must_make();
   std::mutex mutex_;
   std::condition_variable asked_;
   std::deque<Asked> commands_;

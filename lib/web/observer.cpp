@@ -29,12 +29,12 @@ Observer::Observer(RunningGraph graph, std::string port, Hears hears)
 
 Observer::~Observer() {
   is_stopped_ = true;
-  wake_.set();
+  wake_.raise();
   thread_.join();
 }
 
 void Observer::wake() {
-  if (is_open_) wake_.set();  // before, it would end the wait for the output
+  if (is_open_) wake_.raise();  // before, it would end the wait for the output
 }
 
 void Observer::run() {

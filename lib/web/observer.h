@@ -10,7 +10,7 @@
 #include <thread>
 
 #include <hc/observe/running.h>
-#include <web/event.h>
+#include <web/inbox.h>
 
 namespace hc::web {
 
@@ -47,7 +47,7 @@ class Observer {
   const RunningGraph graph_;
   const std::string port_;
   const Hears hears_;
-  Event wake_;
+  internal::Event wake_ = internal::Event::must_make();
   std::atomic<bool> is_open_{false}, is_stopped_{false};
   std::thread thread_;
 };

@@ -7,7 +7,7 @@
 #include <frames/default_head.h>
 #include <hc/module/module.h>
 #include <ros/joints.h>
-#include <web/event.h>
+#include <web/inbox.h>
 #include <web/listening.h>
 
 #include "bridge.h"

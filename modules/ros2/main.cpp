@@ -12,9 +12,9 @@
 #include <hc/compress/compress.h>
 #include <hc/module/module.h>
 #include <hc/observe/running.h>
+#include <hc/os/event.h>
 #include <ros/decode.h>
 #include <ros/joints.h>
-#include <web/event.h>
 
 #include "mapping.h"
 #include "names.h"
@@ -132,8 +132,8 @@ int main(int argc, char** argv) {
   const std::function<void(std::string_view)> warn = [&](std::string_view line) {
     log("warnings of Cyclone DDS", "Cyclone DDS: " + std::string(line));
   };
-  hc::web::Event arrived;
-  const std::function<void()> wake = [&] { arrived.set(); };
+  const auto arrived = hc::internal::Event::must_make();
+  const std::function<void()> wake = [&] { arrived.raise(); };
 
   std::optional<hc::ros::GraphJoints> joints;
   std::unique_ptr<Participant> participant;
@@ -190,7 +190,7 @@ int main(int argc, char** argv) {
             "run this module in a graph, or add it to one: hc graph add ros2 ros2");
       publications.emplace_back(*graph, each, joints->names, *participant, log);
     }
-    arrived.set();
+    arrived.raise();
   });
   module.keep_running();
   module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });

@@ -10,7 +10,7 @@
 
 #include <hc/module/module.h>
 
-#include <web/event.h>
+#include <web/inbox.h>
 #include <web/listening.h>
 #include <web/qr.h>
 #include "page.h"

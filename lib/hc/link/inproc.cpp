@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // `inproc:NAME`: between threads of one process, without bytes: the elements are shared.
-#include <sys/eventfd.h>
 
 #include <map>
 #include <mutex>
@@ -9,6 +8,7 @@
 #include <hc/link/queue.h>
 #include <hc/link/stream/source.h>
 #include <hc/link/transports.h>
+#include <hc/os/event.h>
 #include <hc/os/reactor.h>
 
 namespace hc::internal {
@@ -23,19 +23,11 @@ struct Channel {
   Traffic losses;
   bool has_source = false, has_sink = false;
   bool source_left = false, sink_left = false;
-  Descriptor readable;    // eventfd: messages wait, or the sink has left
-  Descriptor writable;    // eventfd: there is room again, or the source has left
+  Event readable;         // messages wait, or the sink has left
+  Event writable;         // there is room again, or the source has left
   bool is_paced = false;  // not each message may go at once
   Watch timer;            // raises the first when one may
 };
-
-void raise(const Descriptor& event) {
-  ::eventfd_write(event.get(), 1);
-}
-void lower(const Descriptor& event) {
-  eventfd_t count;
-  ::eventfd_read(event.get(), &count);
-}
 
 /// The channels by name, for as long as somebody holds them.
 class Channels {
@@ -46,11 +38,10 @@ class Channels {
     auto channel = channels_[name].lock();
     if (channel == nullptr) {
       channel = std::make_shared<Channel>();
-      for (Descriptor* event : {&channel->readable, &channel->writable}) {
-        auto number =
-            system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
-        if (!number) return number.error();
-        *event = Descriptor(*number);
+      for (Event* event : {&channel->readable, &channel->writable}) {
+        auto made = Event::make();
+        if (!made) return made.error();
+        *event = std::move(*made);
       }
       channels_[name] = channel;
     }
@@ -79,7 +70,7 @@ class InprocSource final : public Source {
     std::lock_guard lock(channel_->mutex);
     channel_->source_left = true;
     channel_->messages.clear(channel_->losses);
-    raise(channel_->writable);
+    channel_->writable.raise();
   }
 
   Result<Got> take(Message& message) override {
@@ -90,18 +81,18 @@ class InprocSource final : public Source {
     TimePoint now;
     if (channel_->is_paced) now = std::chrono::steady_clock::now();
     if (auto ready = messages.ready_at(now, channel_->losses); ready > now) {
-      lower(channel_->readable);
+      channel_->readable.clear();
       if (ready != TimePoint::max()) channel_->timer.call_at(ready);
       return Got::Nothing;
     }
     message = messages.pop(now);
     ++traffic_.messages;
     traffic_.bytes += message.elements.size();
-    raise(channel_->writable);
+    channel_->writable.raise();
     return Got::Message;
   }
 
-  [[nodiscard]] int descriptor() const override { return channel_->readable.get(); }
+  [[nodiscard]] int descriptor() const override { return channel_->readable.descriptor(); }
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
 
  private:
@@ -124,14 +115,15 @@ class InprocSink final : public Sink {
         if (!waits_ ||
             (waiting.size() < kCapacity && waiting.has_memory(message.elements.size()))) {
           channel_->messages.push(message.keep(), message.elements.size(), channel_->losses);
-          raise(channel_->readable);
+          channel_->readable.raise();
           ++messages_;
           bytes_ += message.elements.size();
           return {};
         }
-        lower(channel_->writable);
+        channel_->writable.clear();
       }
-      if (auto room = wait_for(channel_->writable.get(), POLLIN, stop_); !room) return room.error();
+      if (auto room = wait_for(channel_->writable.descriptor(), POLLIN, stop_); !room)
+        return room.error();
     }
   }
 
@@ -152,7 +144,7 @@ class InprocSink final : public Sink {
   void leave() {
     std::lock_guard lock(channel_->mutex);
     channel_->sink_left = true;
-    raise(channel_->readable);
+    channel_->readable.raise();
   }
 
   std::shared_ptr<Channel> channel_;
@@ -177,7 +169,7 @@ Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions
   auto& channel = **joined;
   std::unique_ptr<Sink> sink(new InprocSink(*joined, *policy, options.stop));
   if (policy->is_paced()) {
-    auto started = channel.timer.start(-1, [&channel](auto) { raise(channel.readable); });
+    auto started = channel.timer.start(-1, [&channel](auto) { channel.readable.raise(); });
     if (!started) return started.error();
   }
   std::lock_guard lock(channel.mutex);

@@ -4,7 +4,6 @@
 // No sleeps: everything waits for the other side, and the test runner's time-out is the watchdog.
 
 #include <gtest/gtest.h>
-#include <sys/eventfd.h>
 
 #include <functional>
 #include <memory>
@@ -12,7 +11,7 @@
 #include <thread>
 
 #include <hc/link/link.h>
-#include <hc/os/descriptor.h>
+#include <hc/os/event.h>
 
 namespace hc::testing {
 
@@ -50,15 +49,15 @@ inline std::string with(const std::string& uri, const std::string& options) {
 /// What asks links to stop, once raised and for ever.
 class Stop {
  public:
-  void raise() const { EXPECT_EQ(::eventfd_write(event_.get(), 1), 0); }
+  void raise() const { event_.raise(); }
   [[nodiscard]] LinkOptions options() const {
     LinkOptions options;
-    options.stop = event_.get();
+    options.stop = event_.descriptor();
     return options;
   }
 
  private:
-  internal::Descriptor event_{::eventfd(0, EFD_CLOEXEC)};
+  internal::Event event_ = internal::Event::must_make();
 };
 
 /// A message with `size` bytes of elements that its seq determines.

@@ -1,27 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/graph/run/aside.h>
 
-#include <sys/eventfd.h>
-
 #include <utility>
 
 namespace hc::internal {
-namespace {
-
-Result<int> make_event() {
-  return system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Aside>> Aside::make(Loop& loop) {
-  auto stop = make_event();
+  auto stop = Event::make();
   if (!stop) return stop.error();
-  Descriptor stopped(*stop);
-  auto ended = make_event();
+  auto ended = Event::make();
   if (!ended) return ended.error();
-  std::unique_ptr<Aside> aside(new Aside(std::move(stopped), Descriptor(*ended)));
-  auto watched = loop.watch(*ended, EPOLLIN, [self = aside.get()](auto) { self->finish(); });
+  std::unique_ptr<Aside> aside(new Aside(std::move(*stop), std::move(*ended)));
+  auto watched = loop.watch(aside->ended_.descriptor(), EPOLLIN,
+                            [self = aside.get()](auto) { self->finish(); });
   if (!watched) return watched.error();
   aside->watch_ = std::move(*watched);
   return aside;
@@ -33,25 +24,23 @@ Aside::~Aside() {
 }
 
 void Aside::begin(Work work, std::function<void()> done) {
-  eventfd_t count = 0;
-  ::eventfd_read(stop_.get(), &count);
+  stop_.clear();
   is_stopped_ = false;
   done_ = std::move(done);
-  thread_ = std::thread([work = std::move(work), stop = stop_.get(), ended = ended_.get()] {
-    work(stop);
-    ::eventfd_write(ended, 1);
+  thread_ = std::thread([this, work = std::move(work)] {
+    work(stop_.descriptor());
+    ended_.raise();
   });
 }
 
 void Aside::stop() {
   if (!is_busy()) return;
   is_stopped_ = true;
-  ::eventfd_write(stop_.get(), 1);
+  stop_.raise();
 }
 
 void Aside::finish() {
-  eventfd_t count = 0;
-  ::eventfd_read(ended_.get(), &count);
+  ended_.clear();
   thread_.join();
   std::exchange(done_, {})();
 }

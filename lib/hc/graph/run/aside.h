@@ -6,6 +6,7 @@
 #include <memory>
 #include <thread>
 
+#include <hc/os/event.h>
 #include <hc/os/loop.h>
 
 namespace hc::internal {
@@ -31,11 +32,11 @@ class Aside {
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
 
  private:
-  Aside(Descriptor stop, Descriptor ended) : stop_(std::move(stop)), ended_(std::move(ended)) {}
+  Aside(Event stop, Event ended) : stop_(std::move(stop)), ended_(std::move(ended)) {}
 
   void finish();
 
-  Descriptor stop_, ended_;  // of eventfd
+  Event stop_, ended_;
   bool is_stopped_ = false;
   std::function<void()> done_;
   Loop::Handle watch_;

@@ -31,13 +31,13 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
 
 TEST_F(LiveChange, TheGraphGoesOnWhileAChangeIsPlanned) {
   add("a");
-  internal::Descriptor again{::eventfd(0, EFD_CLOEXEC)};
+  const auto again = internal::Event::must_make();
   std::atomic<int> plans = 0;
   plans_ = [&](int) {
-    if (++plans == 1) await(again.get());
+    if (++plans == 1) await(again.descriptor());
   };
   heard_ = [&](std::string_view) {
-    if (count("a: started") == 2) ::eventfd_write(again.get(), 1);
+    if (count("a: started") == 2) again.raise();
   };
   beside([&] {
     plan_next(plan_);

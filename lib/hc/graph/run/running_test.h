@@ -3,7 +3,6 @@
 // What the tests of graphs that run share: a graph of shells, and what is heard of it. Internal.
 
 #include <gtest/gtest.h>
-#include <sys/eventfd.h>
 
 #include <algorithm>
 #include <functional>
@@ -11,7 +10,7 @@
 #include <vector>
 
 #include <hc/graph/run.h>
-#include <hc/os/descriptor.h>
+#include <hc/os/event.h>
 
 namespace hc {
 
@@ -30,7 +29,7 @@ class Run : public ::testing::Test {
   }
 
   Result<RunReport> run() {
-    options_.stop = stop_.get();
+    options_.stop = stop_.descriptor();
     options_.event = [this](std::string_view line) {
       lines_.emplace_back(line);
       if (line == stop_at_) stop();
@@ -51,7 +50,7 @@ class Run : public ::testing::Test {
     return loaded;
   }
 
-  void stop() const { ::eventfd_write(stop_.get(), 1); }
+  void stop() const { stop_.raise(); }
 
   bool said(const std::string& line) const { return count(line) > 0; }
   std::ptrdiff_t count(const std::string& line) const {
@@ -64,7 +63,7 @@ class Run : public ::testing::Test {
   RunOptions options_;
   std::function<void(std::string_view line)> heard_;
   std::string stop_at_;  // the line at which the graph is asked to end
-  internal::Descriptor stop_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
+  internal::Event stop_ = internal::Event::must_make();
   std::vector<std::string> lines_;
 };
 

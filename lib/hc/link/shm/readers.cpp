@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/shm/readers.h>
 
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -14,12 +13,12 @@ namespace hc::internal {
 Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
                                                      const SharedMemory& memory,
                                                      std::uint64_t keep) {
-  auto event = system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
+  auto event = Event::make();
   if (!event) return event.error();
   auto read_only = memory.read_only();
   if (!read_only) return read_only.error();
   std::unique_ptr<ShmReaders> readers(
-      new ShmReaders(std::move(socket), Descriptor(*event), std::move(*read_only)));
+      new ShmReaders(std::move(socket), std::move(*event), std::move(*read_only)));
   readers->head_ = reinterpret_cast<const Head*>(memory.data());
   readers->bytes_ = memory.size();
   readers->keep_ = keep;
@@ -54,7 +53,7 @@ void ShmReaders::remark(std::string line) {
   remarks_.add(std::move(line));
   std::lock_guard lock(mutex_);
   changed_.store(true, std::memory_order_seq_cst);
-  ::eventfd_write(event_.get(), 1);
+  event_.raise();
 }
 
 void ShmReaders::accept_all() {
@@ -156,7 +155,7 @@ void ShmReaders::let_go(ShmReader& reader) {
 /// With the lock, so that refresh() sees the flag and the event together.
 void ShmReaders::tell_change(const ShmReader& reader) {
   changed_.store(true, std::memory_order_seq_cst);
-  ::eventfd_write(event_.get(), 1);
+  event_.raise();
   futex_wake(reader.page().progress);  // the publisher may wait for room from this reader
 }
 
@@ -164,8 +163,7 @@ void ShmReaders::refresh() {
   std::vector<std::shared_ptr<ShmReader>> known;  // and then those before, who end outside the lock
   std::lock_guard lock(mutex_);
   changed_.store(false, std::memory_order_relaxed);
-  eventfd_t count = 0;
-  ::eventfd_read(event_.get(), &count);
+  event_.clear();
   std::copy_if(all_.begin(), all_.end(), std::back_inserter(known),
                [](const auto& reader) { return reader->is_known(); });
   current_.swap(known);

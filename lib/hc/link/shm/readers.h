@@ -12,6 +12,7 @@
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
 #include <hc/link/stream/remarks.h>
+#include <hc/os/event.h>
 #include <hc/os/reactor.h>
 #include <hc/os/socket.h>
 
@@ -80,10 +81,10 @@ class ShmReaders {
   bool wake();
 
   /// Readable when some have come or left, or something is to be logged, since refresh().
-  [[nodiscard]] int event() const { return event_.get(); }
+  [[nodiscard]] int event() const { return event_.descriptor(); }
 
  private:
-  ShmReaders(ListeningSocket socket, Descriptor event, Descriptor read_only)
+  ShmReaders(ListeningSocket socket, Event event, Descriptor read_only)
       : socket_(std::move(socket)), event_(std::move(event)), read_only_(std::move(read_only)) {}
 
   void accept_all();
@@ -95,7 +96,8 @@ class ShmReaders {
   void remark(std::string line);
 
   ListeningSocket socket_;
-  Descriptor event_, read_only_;
+  Event event_;
+  Descriptor read_only_;
   Remarks remarks_;
   const Head* head_ = nullptr;
   std::uint64_t bytes_ = 0, keep_ = 0;

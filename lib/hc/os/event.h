@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A flag that threads wait for as for a file. Internal.
+
+#include <sys/eventfd.h>
+
+#include <utility>
+
+#include <hc/base/check.h>
+#include <hc/os/descriptor.h>
+
+namespace hc::internal {
+
+/// A descriptor that is readable from raise() to clear(), both of which any thread may call.
+class Event {
+ public:
+  Event() = default;  ///< none: its descriptor is -1, and nothing can be waited for
+  /// Errors: System.
+  static Result<Event> make() {
+    auto number =
+        system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
+    if (!number) return number.error();
+    return Event(Descriptor(*number));
+  }
+
+  /// The same, where there is nobody to take an error: ends the program.
+  static Event must_make() {
+    auto made = make();
+    HC_CHECK(made, made.error().text());
+    return std::move(*made);
+  }
+
+  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
+  void raise() const { ::eventfd_write(descriptor_.get(), 1); }
+  /// Whether it was raised.
+  bool clear() const {
+    eventfd_t count = 0;
+    return ::eventfd_read(descriptor_.get(), &count) == 0;
+  }
+
+ private:
+  explicit Event(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
+
+  Descriptor descriptor_;
+};
+
+}  // namespace hc::internal
