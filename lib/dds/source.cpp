@@ -199,7 +199,7 @@ class DdsSource final : public Source {
   TimePoint give_up_ = TimePoint::max();  // while there is no writer
 
   internal::Watch timer_;
-  Cache cache_{*this};  // until the participant is gone
+  Cache cache_{*this};  // outlives the participant
   std::unique_ptr<Participant> participant_;
   Entity reader_;
 };

@@ -270,8 +270,8 @@ class Agent {
     auto& child = *children_.at(number);
     const auto status = child.process.poll_status();
     if (!status) return;
-    child.reports->take();  // lets in one that has just come,
-    child.reports->take();  // … and hears what it had to say
+    child.reports->take();  // accepts a connection that has just been made,
+    child.reports->take();  // and reads what came on it
     for (int i = 0; i < kLastPieces && child.said; ++i) hear(number);
     tell({{"what", "ended"}, {"number", number}, {"status", *status}});
     children_.erase(number);

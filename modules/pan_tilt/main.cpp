@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
                                {.min = 0, .max = 1000});
   auto age = module.parameter("age", 0.2, "s", "maximum age of a command; older ones are dropped",
                               {.min = 0.001, .max = 60});
-  auto hold = module.parameter("hold", 0.2, "s",
+  auto hold = module.parameter("hold", 0.15, "s",
                                "the unit is halted after this time without a command, 0: never",
                                {.min = 0, .max = 60});
   auto speed = module.parameter("speed", 0.0, "rad/s", "maximum of each axis, 0: the unit's own",

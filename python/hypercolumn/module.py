@@ -126,7 +126,7 @@ class Module(_hypercolumn.Module):
         return lambda handler: self._after(seconds, handler)
 
     def generate(self, handler: Handler) -> Handler:
-        """For a module that makes messages by itself: the function is called again and again while
+        """For a module that makes messages unasked: the function is called again and again while
         no message waits, until it gives False. The module ends then."""
         self._generate(handler)
         return handler

@@ -58,8 +58,8 @@ std::unique_ptr<hc::Sink> open_file_sink(const std::string& path);
 /// Takes the next message; false at the end, or when we are asked to stop.
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri);
 
-/// For --skip: goes on behind damaged bytes, which `failure` tells of, and says so. Everything else
-/// is thrown again, and so is the damage when it does not end.
+/// For --skip: continues behind damaged bytes, which `failure` describes, and says so. Everything
+/// else is thrown again, and so is the damage when it does not end.
 class Skipper {
  public:
   explicit Skipper(std::string verb) : verb_(std::move(verb)) {}

@@ -71,7 +71,7 @@ class Reader {
  public:
   explicit Reader(const NextMessage& next) : next_(next) {}
 
-  /// The next message, with the time that it stands for: its own, or that of the one before it.
+  /// The next message, with the time that it has: its own, or that of the one before it.
   std::optional<std::pair<std::int64_t, hc::Message>> take() {
     hc::Message message;
     if (!next_(message)) return std::nullopt;

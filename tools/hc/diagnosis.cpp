@@ -82,16 +82,16 @@ void add_limits(std::vector<Finding>& findings, const Facts& facts) {
 }
 
 Finding finding_of(const NeededPath& needed, const PathState& state) {
-  auto told = [&](Mark mark, std::string_view text) {
+  auto marked = [&](Mark mark, std::string_view text) {
     return Finding{mark, needed.module, hc::format("{}: {}{}", needed.what, needed.path, text)};
   };
-  if (!state.is_there) return told(Mark::Missing, " does not exist");
-  if (needed.is_written && !state.is_folder) return told(Mark::Missing, " is not a folder");
+  if (!state.is_there) return marked(Mark::Missing, " does not exist");
+  if (needed.is_written && !state.is_folder) return marked(Mark::Missing, " is not a folder");
   if (needed.is_written && !state.is_writable)
-    return told(Mark::Missing, " is not writable for this user");
+    return marked(Mark::Missing, " is not writable for this user");
   if (!needed.is_written && !state.is_readable)
-    return told(Mark::Missing, " is not readable for this user");
-  return told(Mark::Ok, "");
+    return marked(Mark::Missing, " is not readable for this user");
+  return marked(Mark::Ok, "");
 }
 
 std::string_view name(Mark mark) {

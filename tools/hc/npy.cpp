@@ -28,7 +28,7 @@ std::optional<hc::Scalar> scalar_of_descr(std::string_view descr) {
   return std::nullopt;
 }
 
-/// What stands behind `'key':` in the dictionary, which is a Python literal.
+/// What follows `'key':` in the dictionary, which is a Python literal.
 std::string_view entry(std::string_view dictionary, std::string_view key) {
   auto at = dictionary.find("'" + std::string(key) + "'");
   if (at == std::string_view::npos) return {};

@@ -112,8 +112,8 @@ class Settings {
   std::map<std::string, double> values_;
 };
 
-/// All that a module told of its messages while it was recorded; nothing where that is not known,
-/// or not all: events or messages of them were dropped, or the module was restarted.
+/// All that a module reported of its messages while it was recorded; nothing where that is not
+/// known, or not all: events or messages of them were dropped, or the module was restarted.
 std::vector<hc::TraceEvent> read_events(const GraphRecording& recording,
                                         const std::string& module) {
   const auto output = module + "." + hc::kTracePort;

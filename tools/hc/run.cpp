@@ -135,7 +135,7 @@ void check_record(const hc::Plan& plan, const hc::LoadOptions& load) {
                                             "; record into one file: --record FILE.mcap"});
 }
 
-/// A single file is written anew; numbered ones stay.
+/// A single file is overwritten; numbered ones stay.
 void remove_previous_file(const RunOptions& options, const hc::LoadOptions& load) {
   std::error_code failed;
   const bool is_numbered = load.recorder.contains("split") || load.recorder.contains("last");
@@ -143,7 +143,7 @@ void remove_previous_file(const RunOptions& options, const hc::LoadOptions& load
     std::filesystem::remove(options.record, failed);
 }
 
-/// Logs the reason as everything else was logged: its reader may be gone.
+/// Logs the reason as everything else was logged: its reader may have ended.
 [[noreturn]] void fail(StatusLine& status, const hc::Error& error) {
   status.say("hc run: " + error.text());
   throw Failure(Failure(error).status);

@@ -179,11 +179,11 @@ class PathFinder {
 
   [[nodiscard]] bool is_linked(const std::string& from, const std::string& to) const {
     return links_.empty() || std::ranges::find(links_, std::pair(from, to)) != links_.end() ||
-           // What `hc run` links by itself may not be among them.
+           // What `hc run` links on its own may not be among them.
            std::ranges::none_of(links_, [&](const auto& link) { return link.second == to; });
   }
 
-  /// A module that told nothing, or the world outside, has sent it.
+  /// A module that reported nothing, or the world outside, has sent it.
   void outside(const std::string& name, const Visit& visit, Step step) {
     std::string from;
     for (const auto& link : links_)
@@ -263,7 +263,7 @@ class PathFinder {
     return inputs;
   }
 
-  /// Goes on at each of the messages of which one that was sent was made.
+  /// Continues at each of the messages that a sent one was made of.
   void follow(const Sending& sending, const std::map<std::string, const Visit*>& inputs,
               bool renews) {
     if (inputs.empty()) return;

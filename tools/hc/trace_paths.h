@@ -13,7 +13,7 @@
 
 namespace tool {
 
-/// What was told, and by whom.
+/// What was reported, and by whom.
 struct Traced {
   std::map<std::string, std::vector<hc::TraceEvent>> events;  ///< by module, in their order
   /// "MODULE.PORT", from and to; a URI is the world outside. Without any, a module that tells
@@ -26,7 +26,7 @@ struct Step {
   std::string module;
   std::string in;               ///< empty: the message begins here, by its time
   std::string out;              ///< empty: the path ends here
-  bool is_outside = false;      ///< the module told nothing: all is `processing`
+  bool is_outside = false;      ///< the module reported nothing: all is `processing`
   std::int64_t link = 0;        ///< from the sender to the input, while the module was free
   std::int64_t waiting = 0;     ///< for the module, a partner message, or a timer that sends
   std::int64_t processing = 0;  ///< in handlers; of the first step from the message's time on
@@ -56,9 +56,9 @@ struct MessagePath {
 /// An output's message is derived from the last messages of the same time that its module took
 /// before (R43); where there is none, it begins there. Only the module that sends what the port
 /// takes, or whose output the port is, may have renewed the time, as controllers do: then the path
-/// goes on at the messages that it handled last within a second, and the one that was sensed first
-/// is critical. Where the port is an input, what its module does with the message after taking it
-/// is the last step, and no part of its age.
+/// continues at the messages that it handled last within a second, and the one that was sensed
+/// first is critical. Where the port is an input, what its module does with the message after
+/// taking it is the last step, and no part of its age.
 std::vector<MessagePath> find_paths(const Traced& traced, const std::string& port);
 inline constexpr std::size_t kMostPaths = 64;
 
@@ -82,8 +82,8 @@ struct PathSummary {
 /// Critical paths of the most messages first.
 std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths);
 
-/// All that was told as a trace of Chrome's JSON format, which Perfetto opens: a process for each
-/// module, a slice for each handler, an arrow for each message.
+/// All that was reported as a trace of Chrome's JSON format, which Perfetto opens: a process for
+/// each module, a slice for each handler, an arrow for each message.
 std::string to_chrome_trace(const Traced& traced);
 
 }  // namespace tool

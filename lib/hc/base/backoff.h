@@ -29,7 +29,7 @@ class Backoff {
 
   /// An attempt has failed.
   void fail(MonotonicTime now) { due_ = now + next(); }
-  /// The same, for who waits by itself: gives the pause.
+  /// The same, for who waits without a loop: gives the pause.
   MonotonicTime next() { return std::exchange(pause_, std::min(2 * pause_, longest_)); }
 
   /// The next attempt may be made at once, and pauses start over.

@@ -58,7 +58,7 @@ class Shrinking {
 
  private:
   void add(std::size_t y, float weight) {
-    // One that two rows share is made narrow once.
+    // Two rows may need the same row of the source: it is narrowed once.
     if (y != narrowed_) narrow(from_.row(y));
     narrowed_ = y;
     for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += weight * narrow_[i];

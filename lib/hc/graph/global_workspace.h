@@ -21,8 +21,8 @@ struct GlobalWorkspace {
 /// on some way which passes a task in focus and ends at an exclusive input. A module that works in
 /// other modes only is on none; nor are links that carry the focus.
 ///
-/// @param focus  of each workspace the name of its mode in focus; empty, or one that no task has:
-/// nothing of that workspace is in it.
+/// @param focus  of each workspace the name of its mode in focus; where that is empty or unknown,
+/// none of the workspace's modules is on the global workspace.
 /// Cost: linear in modules and links.
 GlobalWorkspace global_workspace(const Plan& plan, const std::map<std::string, std::string>& focus);
 

@@ -188,8 +188,8 @@ class FileLoader : public GraphLoader {
     return loaded;
   }
 
-  /// Connects to the hosts that modules run on, and has each say where its programs are, and what
-  /// they say of themselves. Nothing more is said of the modules of one that cannot be reached.
+  /// Connects to the hosts that modules run on, and asks each where its programs are and for their
+  /// descriptions. Modules on a host that cannot be reached cause no further problems.
   HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, Answers& described,
                                      int stop) {
     std::vector<GraphHost> wanted;

@@ -38,7 +38,7 @@ class Source {
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
-  /// Takes the next message; never waits. `message` keeps its elements alive by itself; what it
+  /// Takes the next message; never waits. `message` keeps its elements alive on its own; what it
   /// held before is let go of, whatever comes.
   ///
   /// Errors: those of StreamReader, Truncated, Closed (the peer has died or vanished), NotFound (it

@@ -207,7 +207,7 @@ bool send_to(internal::LinkedSink& link, const std::string& port, const Message&
 }
 
 /// Calls `send_one` with each link of an output, which may lose links meanwhile.
-/// @returns  whether one of them has ended by itself.
+/// @returns  whether one of them has ended unasked.
 template <typename SendOne>
 bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
   bool any_ended = false;

@@ -179,7 +179,7 @@ class Module {
   void on_start(std::function<void()> handler) { start_ = std::move(handler); }
   /// Called once, when all inputs have ended, before the outputs do. Not after an error.
   void on_end(std::function<void()> handler) { end_ = std::move(handler); }
-  /// For a module that makes messages by itself: called again and again while no message waits,
+  /// For a module that makes messages unasked: called again and again while no message waits,
   /// until it gives false. The module ends then.
   void generate(std::function<bool()> handler) { generate_ = std::move(handler); }
 
@@ -203,7 +203,7 @@ class Module {
   Timeout after(std::chrono::nanoseconds duration, std::function<void()> handler);
 
   /// Has the module run until it is stopped, or has no reader left, though its inputs have ended:
-  /// for a device that sends by itself. Not with `--clock messages`.
+  /// for a device that sends unasked. Not with `--clock messages`.
   void keep_running() { keeps_running_ = true; }
 
   /// Has the module, when it is asked to stop, first take what has come and what still comes from

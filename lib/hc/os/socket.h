@@ -95,10 +95,11 @@ constexpr std::chrono::milliseconds kVanishTime{3500};
 /// is said: it is asked after 1 and 2 s, and given up after 3 s. Harmless where the socket is not
 /// TCP.
 void set_up_connection(int socket);
-/// Has one that only receives go by the time too (TCP_USER_TIMEOUT), however few its own questions.
+/// Has a connection that only receives end by time too (TCP_USER_TIMEOUT), however few its own
+/// questions.
 ///
-/// Not for one that sends: there the kernel counts the time in which a reader that is there, and
-/// answers, but is slow, has no room, and would end the link to it. See look_at_peer().
+/// Not for a connection that sends: there the kernel also counts the time in which a slow reader
+/// has no room, and would end the link to it. See look_at_peer().
 void set_up_reader(int socket);
 
 /// What a socket's kernel knows of the peer's kernel.

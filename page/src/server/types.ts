@@ -113,5 +113,5 @@ export interface Recording {
 export type Connection =
   | { readonly status: "connecting" }
   | { readonly status: "open" }
-  /** `retry`: seconds until it is tried again; null: not again by itself. */
+  /** `retry`: seconds until it is tried again; null: not again unless asked. */
   | { readonly status: "lost"; readonly why: string; readonly retry: number | null };

@@ -9,7 +9,7 @@ export type Attributes = Handlers & { [name: string]: unknown };
 
 /**
  * An element: h("button", { class: "small", onclick: stop, "aria-label": "Stop" }, "Stop").
- * Functions become listeners, true an empty attribute; false, null and undefined are left out.
+ * Functions become listeners, true an empty attribute; false, null and undefined are dropped.
  */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K,

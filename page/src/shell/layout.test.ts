@@ -26,7 +26,7 @@ test("the text is short enough to be read", () => {
   );
 });
 
-test("what makes no sense is left out", () => {
+test("what makes no sense is dropped", () => {
   assert.deepEqual(layoutOf(""), []);
   assert.deepEqual(layoutOf("#|;|,x=1"), []);
   assert.deepEqual(layoutOf("a,b=%zz|graph*-3"), [

@@ -22,7 +22,7 @@ const shareText = (share: number) => (share === 1 ? "" : `*${Number(share.toFixe
 
 /**
  * The layout as the part of a URL after #: columns parted by "|", panels by ";", as in
- * `stream,port=head_eyes.left;stream,port=depth.depth*0.5|graph*2`. A column's share stands with
+ * `stream,port=head_eyes.left;stream,port=depth.depth*0.5|graph*2`. A column's share is with
  * "**" at its end.
  */
 export function layoutText(layout: Layout): string {
@@ -41,7 +41,7 @@ export function layoutText(layout: Layout): string {
     .join("|");
 }
 
-/** The layout of such a text; what makes no sense is left out. */
+/** The layout of such a text; what makes no sense is dropped. */
 export function layoutOf(text: string): Layout {
   const layout: Layout = [];
   for (const columnText of text.replace(/^#/, "").split("|")) {

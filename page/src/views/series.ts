@@ -32,7 +32,7 @@ export class Series {
     return this.times[this.count - 1]!;
   }
 
-  /** Adds numbers; what is older than the last one or ten minutes before is left out. */
+  /** Adds numbers; what is older than the last one or ten minutes before is dropped. */
   push(time: number, numbers: ArrayLike<number>): void {
     if (this.count > 0 && time <= this.lastTime) {
       if (time > this.lastTime - 1) return;

@@ -52,7 +52,7 @@ export interface View {
   readonly runsUnseen?: boolean;
   /** Of a view that keeps its past: stops or continues with the present. */
   setPaused?(paused: boolean): void;
-  /** What is shown now, as a message that can be shown again by itself. */
+  /** What is shown now, as a message that can be shown again. */
   snapshot?(): Promise<Arrival | undefined>;
   close?(): void;
 }

@@ -129,7 +129,7 @@ class LinkPlanner {
   }
 
   /// Whether a reader waits for the next process of its writer. One without `control` could not be
-  /// told that none will come.
+  /// informed that none will come.
   bool lasts(const GraphLink& link) const {
     return !planning_.planned(link.to.module)->control_uri.empty();
   }

@@ -167,7 +167,7 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
   process.life_ = std::move((*life)[1]);
   for (const auto* ours : {&process.output_, &process.errors_, &process.input_})
     if (*ours) ::fcntl(ours->get(), F_SETFL, O_NONBLOCK);
-  // The pipe closes by itself when exec succeeds.
+  // The pipe closes when exec succeeds.
   (*failure)[1].reset();
   int number = 0;
   auto size =
@@ -202,8 +202,8 @@ std::optional<int> Process::poll_status() {
 
 void Process::ask_to_end() const {
   if (status_) return;
-  // First, as one that is stopped could not; behind, it may undo the stop of a leak checker or a
-  // debugger that looks at one that is ending.
+  // First, as a stopped process could not end; later it may undo the stop of a leak checker or a
+  // debugger that looks at a process that is ending.
   ::kill(-number_, SIGCONT);
   ::kill(-number_, SIGTERM);
 }

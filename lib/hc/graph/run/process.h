@@ -4,8 +4,8 @@
 //
 // Between us and a program is its guard: a fork of us that starts the program, adopts what the
 // program's processes leave behind (PR_SET_CHILD_SUBREAPER), and ends as the program did. It kills
-// all that descends from the program when the program ends, when it is told to, and when we have
-// gone, however that came about: we hold a pipe to it that closes then. It leads a process group
+// all that descends from the program when the program ends, when it is asked to, and when we have
+// ended, however that came about: we hold a pipe to it that closes then. It leads a process group
 // that the program begins in, and blocks all signals, so Ctrl-C at a terminal does not end it.
 //
 // Out of reach are processes that somebody else starts for the program (a service manager), that we

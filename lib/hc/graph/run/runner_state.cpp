@@ -70,9 +70,9 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   const auto* counts = sender != nullptr ? sender : reader;
   if (counts != nullptr) state.traffic = counts->traffic;
   // What it carried is what its reader has taken; a sender may count what waits or is lost.
-  if (const auto* gone = reader != nullptr ? reader : counts; gone != nullptr) {
-    state.per_second = gone->per_second;
-    state.bytes_per_second = gone->bytes_per_second;
+  if (const auto* last = reader != nullptr ? reader : counts; last != nullptr) {
+    state.per_second = last->per_second;
+    state.bytes_per_second = last->bytes_per_second;
   }
   // Only problems of links are logged. Of a link between modules, their states show them.
   const bool is_outside = link.reader_uri.empty() || link.sender_uri.empty();

@@ -228,7 +228,7 @@ ModuleChange Supervised::adopt(PlannedModule plan) {
   reports_.set_ends(plan_.ends);
   restarts_.set_policy(plan_.restart);
   if (change.is_empty() && !needs_restart) return {};
-  // One that has done its work has more to do when it has something else to read.
+  // A module that has done its work has more to do when it has something else to read.
   const bool is_at_rest = status_ == ModuleStatus::Ended && change.inputs.empty();
   if (needs_restart || change.needs_restart || (!process_ && !is_at_rest)) {
     restart();
@@ -266,9 +266,9 @@ void Supervised::note_end() {
   if (!process_) return;
   auto status = process_->poll_status();
   if (!status) return;
-  manage_->take();  // lets in one that has just come,
-  manage_->take();  // … and hears what it had to say
-  // Its last words stand in the pipe; who else still holds that open may do so for ever.
+  manage_->take();  // accepts a connection that has just been made,
+  manage_->take();  // and reads what came on it
+  // Its last lines are in the pipe; who else still holds that open may do so for ever.
   for (int piece = 0; piece < kLastPieces && said_; ++piece) read_lines();
   lines_.finish(hear_.said);
   forget_process();
@@ -292,10 +292,10 @@ void Supervised::forget_process() {
 void Supervised::go_on(int status) {
   exit_ = status;
   auto words = end_in_words(status);
-  // One that did not come to heed our signal yet has done as it was asked all the same.
-  const bool is_as_told = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
-  if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_told) {
-    hear_.event(is_as_told ? end_in_words(0) : words);
+  // A process that the signal ended before it could handle it has done as it was asked.
+  const bool is_as_asked = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
+  if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_asked) {
+    hear_.event(is_as_asked ? end_in_words(0) : words);
     if (wish_ == Wish::Restart) {
       hear_.interrupted();
       return start_again();
@@ -313,7 +313,7 @@ void Supervised::go_on(int status) {
   decide(status);
 }
 
-/// Restarts a process that has ended by itself, or gives it up.
+/// Restarts a process that has ended unasked, or gives it up.
 void Supervised::decide(int status) {
   awaits_cause_ = false;
   const auto words = end_in_words(status);

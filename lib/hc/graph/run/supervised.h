@@ -61,7 +61,7 @@ class Supervised {
   void end();
   /// Ends it since nobody needs it any more. If it fails all the same, it has failed.
   void dismiss();
-  /// Ends it where it runs, and starts it; also one that has ended for good.
+  /// Ends it where it runs, and starts it, also if it has failed permanently.
   void restart();
 
   /// Takes another plan, and restarts where commands cannot make it so. @returns  what to tell()

@@ -49,7 +49,7 @@ class Waker {
     head_.unfenced.store(0, std::memory_order_release);
   }
 
-  static constexpr int kUndisturbed = 64;  // messages while nobody slept, until it is left out
+  static constexpr int kUndisturbed = 64;  // messages while nobody slept, until it is skipped
 
   Head& head_;
   const bool ordering_ = allow_ordering();

@@ -13,7 +13,7 @@ namespace hc::internal {
 constexpr std::size_t kMaxPeers = 256;
 
 /// Takes messages from all peers that connect, in the order in which they come. A peer that breaks
-/// a rule is closed, which is logged; the others notice nothing. Never ends by itself.
+/// a rule is closed, which is logged; the others notice nothing. Never ends on its own.
 ///
 /// When there are kMaxPeers, the one whose last message was longest ago makes room for who comes,
 /// unless it is inside a message: so peers that say nothing cannot keep others out.
