@@ -16,8 +16,12 @@
 doc/python.md is a tour of ten minutes.
 """
 
-from hypercolumn.errors import Error, Stopped, other_python
+import importlib.util
 
+from hypercolumn.errors import Error, Stopped, no_numpy, other_python
+
+if importlib.util.find_spec("numpy") is None:
+    raise ImportError(no_numpy())
 try:
     from hypercolumn._hypercolumn import (
         Frames,

@@ -36,3 +36,11 @@ def other_python() -> str:
         "the Python of that, or build with cmake -D Python_EXECUTABLE=%s"
         % (sys.executable, *sys.version_info[:2], folder, built, sys.executable)
     )
+
+
+def no_numpy() -> str:
+    """Says that this Python has no numpy."""
+    return (
+        "hypercolumn needs numpy, which %s does not have: start the program with a Python that does, "
+        "such as /usr/bin/python3 with Debian's python3-numpy" % sys.executable
+    )

@@ -69,6 +69,12 @@ class Fields(Package):
         with self.assertRaisesRegex(hc.Error, "no text: the message is a table"):
             table.text
 
+    def test_missing_numpy_is_named(self):
+        self.shell(
+            """python3 -c 'import sys; sys.modules["numpy"] = None; import hypercolumn'""", 1
+        )
+        self.assertIn("ImportError: hypercolumn needs numpy, which /", self.err.splitlines()[-1])
+
     def test_another_python_is_named(self):
         shutil.copytree(
             BUILD / "python/hypercolumn",
