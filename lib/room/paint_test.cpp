@@ -11,14 +11,20 @@ namespace hc::room {
 namespace {
 
 TEST(Paint, a_tag_is_found_by_its_detector) {
+  // cv::Ptr in OpenCV 4.6, a value in 4.7 and later.
+  const auto dictionary = [](const auto& each) -> cv::Ptr<cv::aruco::Dictionary> {
+    if constexpr (requires { each.get(); })
+      return each;
+    else
+      return cv::makePtr<cv::aruco::Dictionary>(each);
+  }(cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250));
   for (const auto& [name, id] : {std::pair("aruco", 23), std::pair("aruco", 40)}) {
     cv::Mat image, around(400, 400, CV_8UC3, cv::Scalar::all(255));
     cv::resize(paint_tag(name, id), image, {200, 200}, 0, 0, cv::INTER_NEAREST);
     image.copyTo(around(cv::Rect(100, 100, 200, 200)));
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;
-    cv::aruco::detectMarkers(around, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250),
-                             corners, ids);
+    cv::aruco::detectMarkers(around, dictionary, corners, ids);
     ASSERT_EQ(ids, std::vector<int>{id});
     EXPECT_NEAR(corners[0][0].x, 120, 1);  // a margin of one cell of ten
     EXPECT_NEAR(corners[0][0].y, 120, 1);

@@ -5,7 +5,11 @@
 #include <string>
 #include <vector>
 
+#if __has_include("rosPubSubTypes.hpp")  // of fastddsgen 4, for Fast DDS 3
+#include "rosPubSubTypes.hpp"
+#else
 #include "rosPubSubTypes.h"
+#endif
 
 #define M(member) member()
 #define TYPE(package, name) package::msg::dds_::name##_

@@ -20,14 +20,35 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
+#if __has_include(<fastdds/utils/IPLocator.hpp>)
+#define FAST_DDS 3
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#include <fastdds/utils/IPLocator.hpp>
+#else
+#define FAST_DDS 2
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#endif
 
 #include "samples.h"
 
 namespace fast = eprosima::fastdds::dds;
 
 namespace {
+
+#if FAST_DDS == 3
+using Locator = eprosima::fastdds::rtps::Locator_t;
+using eprosima::fastdds::rtps::IPLocator;
+bool is_ok(fast::ReturnCode_t code) {
+  return code == fast::RETCODE_OK;
+}
+#else
+using Locator = eprosima::fastrtps::rtps::Locator_t;
+using eprosima::fastrtps::rtps::IPLocator;
+bool is_ok(ReturnCode_t code) {
+  return code == ReturnCode_t::RETCODE_OK;
+}
+#endif
 
 void say(const std::string& line) {
   static std::set<std::string> said;
@@ -44,8 +65,10 @@ struct Ends {
   template <typename Support>
   std::string register_type() {
     fast::TypeSupport type(new Support);
+#if FAST_DDS == 2
     type->auto_fill_type_object(false);  // as rmw_fastrtps does
     type->auto_fill_type_information(false);
+#endif
     type.register_type(participant);
     return type.get_type_name();
   }
@@ -65,7 +88,7 @@ template <typename T, typename F>
 void take(fast::DataReader* reader, F each) {
   T sample;
   fast::SampleInfo info;
-  while (reader->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK)
+  while (is_ok(reader->take_next_sample(&sample, &info)))
     if (info.valid_data) each(sample);
 }
 
@@ -88,7 +111,7 @@ struct TopicOf : Topic {
     visit(fill, sample);
   }
   void write() override {
-    if (!writer->write(&sample)) say(name + ": not written");
+    if (!is_ok(writer->write(&sample, fast::HANDLE_NIL))) say(name + ": not written");
   }
   void read() override {
     take<T>(reader, [&](T& got) {
@@ -118,8 +141,8 @@ int main() {
   transport->maxInitialPeersRange = 32;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(transport);
-  eprosima::fastrtps::rtps::Locator_t here;
-  eprosima::fastrtps::rtps::IPLocator::setIPv4(here, 127, 0, 0, 1);
+  Locator here;
+  IPLocator::setIPv4(here, 127, 0, 0, 1);
   qos.wire_protocol().builtin.initialPeersList.push_back(here);
   Ends ends{factory->create_participant(domain, qos), nullptr, nullptr};
   if (ends.participant == nullptr) return 1;
