@@ -238,6 +238,18 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     assert.equal(await read.getAttribute("aria-pressed"), "false");
   });
 
+  test("a page that is too slow to drive says so", async () => {
+    await takeSeat();
+    await page.locator('[data-task="read"]').click();
+    await inFocus("read");
+    await page.evaluate(() => {
+      const end = performance.now() + 500; // longer than what is commanded lasts
+      while (performance.now() < end);
+    });
+    await page.locator(".seat-who", { hasText: "this page is too slow" }).waitFor();
+    await page.getByRole("button", { name: "Leave the seat" }).click();
+  });
+
   test("who leaves the page leaves the seat", async () => {
     await takeSeat();
     await page.evaluate(() => {

@@ -15,6 +15,11 @@ export type SeatState =
 const period = 33; // of the stick [ms]
 const bidPeriod = 100; // [ms]
 
+/** The server withdraws what a page has not repeated for so long [ms]. */
+const deadMan = 200;
+/** So long a page counts as slow after it was [ms]. */
+const slowFor = 3000;
+
 /** A head that is turned by less than this is at rest [rad]. */
 const still = 0.01;
 
@@ -33,6 +38,9 @@ export class Seat {
   private readonly tasks = new Signal<number>(0);
   private drive?: Drive;
   private steering = false;
+  /** When this page last could command, and when it last was too late [ms]. */
+  private lastTurn = -Infinity;
+  private lastLate = -Infinity;
   /** Where the person's head was when it last was seen to move. */
   private turned: Angles = { roll: 0, pitch: 0, yaw: 0 };
   private readonly timers: number[];
@@ -64,6 +72,11 @@ export class Seat {
 
   get isHeld(): boolean {
     return this.state.is === "held";
+  }
+
+  /** Whether commands come too late to last: the page has too much to draw, or the machine to do. */
+  get isSlow(): boolean {
+    return this.isHeld && performance.now() - this.lastLate < slowFor;
   }
 
   onState(listener: (state: SeatState) => void): () => void {
@@ -151,7 +164,11 @@ export class Seat {
 
   /** Sends the stick while it is pushed, and its middle once at the end. */
   private steer(): void {
+    const now = performance.now();
+    const isLate = now - this.lastTurn > deadMan;
+    this.lastTurn = now;
     if (!this.isHeld) return;
+    if (isLate && (this.steering || this.task)) this.lastLate = now;
     const { left, down } = this.stick.push;
     const pushed = left !== 0 || down !== 0;
     if (pushed && !this.steering && this.task) this.sendBid(this.task, 0); // the hand goes first

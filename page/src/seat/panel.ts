@@ -289,10 +289,12 @@ class SeatPanel {
   private driverText(session: Session | undefined): string {
     if (!session) return "";
     const { state } = this.seat;
-    if (state.is === "held")
-      return session.stopped
-        ? "You drive, but the robot is stopped."
-        : "You drive. Drag the disc or the image, or click where to look.";
+    if (state.is === "held") {
+      if (session.stopped) return "You drive, but the robot is stopped.";
+      if (this.seat.isSlow)
+        return "You drive, but this page is too slow: commands are dropped at times. Close some panels.";
+      return "You drive. Drag the disc or the image, or click where to look.";
+    }
     if (state.is === "waiting") return "Waiting for the seat…";
     const other = session.driver === "other" ? "Somebody else drives." : "Nobody drives.";
     if (session.right === "view") return `${other} You may look; ask for a URL that may drive.`;
