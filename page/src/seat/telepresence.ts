@@ -28,7 +28,9 @@ export class PhoneTracker {
     }
     const permission = await (DeviceOrientationEvent as WithPermission).requestPermission?.();
     if (permission === "denied") {
-      throw new Error("The browser may not say how the device is turned: allow it access to motion sensors.");
+      throw new Error(
+        "The browser may not say how the device is turned: allow it access to motion sensors.",
+      );
     }
     this.zero();
     addEventListener("deviceorientation", this.take);
