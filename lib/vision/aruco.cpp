@@ -47,6 +47,13 @@ cv::Ptr<aruco::Dictionary> pointer_to(const Given& given) {
     return cv::makePtr<aruco::Dictionary>(given);
 }
 
+/// Of outlines closer than `minMarkerDistanceRate`, OpenCV 4.6 keeps the outermost. With 0.05, the
+/// default, that is the edge of a white margin, which is no marker. Later ones try the others too.
+template <typename Parameters>
+void keep_inner_outlines(Parameters& parameters) {
+  if constexpr (!requires { parameters.minGroupDistance; }) parameters.minMarkerDistanceRate = 0.01;
+}
+
 }  // namespace
 
 struct ArucoFinder::Words {
@@ -65,9 +72,7 @@ Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
   if (named == std::end(kDictionaries))
     return Error{Code::NotFound, "there is no ArUco dictionary \"" + dictionary + "\""};
   auto words = std::make_unique<Words>();
-  // Of outlines closer than this, OpenCV keeps the outermost. With 0.05, the default, that is the
-  // edge of a white margin, which is no marker.
-  words->parameters->minMarkerDistanceRate = 0.01;
+  keep_inner_outlines(*words->parameters);
   words->dictionary = pointer_to(aruco::getPredefinedDictionary(named->number));
   return ArucoFinder(std::move(words));
 }
