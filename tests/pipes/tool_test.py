@@ -137,7 +137,7 @@ class Tool(Pipes):
         self.assertIn("brightness", self.shell(complete % ("hc br", 1)).split())
         self.assertEqual(self.shell(complete % ("hc cat --js", 2)).split(), ["--json"])
         self.assertIn("unlink", self.shell(complete % ("hc graph unl", 2)).split())
-        page = self.shell("hc man | tee hc.1 | man -l - 2>/dev/null || cat hc.1")
+        page = self.shell("hc man >hc.1; man -l hc.1 2>/dev/null || cat hc.1")
         for word in ("record", "MODULE.PORT", "HC_GRAPH"):
             self.assertIn(word, page)
         page = self.read("hc.1")
