@@ -248,7 +248,8 @@ function(hc_package_deb)
   set(CPACK_STRIP_FILES ON)
   set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-  # What no library says that it needs: voices, a dictionary of letters, drawing without a GPU.
-  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "espeak-ng-data, tesseract-ocr-eng, libgl1-mesa-dri, fonts-dejavu-core")
+  # What no library says that it needs: voices, a dictionary of letters, drawing without a GPU, arrays in
+  # Python.
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "espeak-ng-data, tesseract-ocr-eng, libgl1-mesa-dri, fonts-dejavu-core, python3-numpy")
   include(CPack)
 endfunction()

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 
+SSHD_SESSIONS = ("sshd:", "sshd-session:")  # before and since OpenSSH 9.8
 SSHD = """
 Port 22
 ListenAddress 0.0.0.0
@@ -102,7 +103,7 @@ class Host:
                 continue
             if is_here and words != [""] and int(path.name) != self.process.pid:
                 found[int(path.name)] = " ".join(words).strip()
-        return {number: text for number, text in found.items() if not text.startswith("sshd:")}
+        return {number: text for number, text in found.items() if not text.startswith(SSHD_SESSIONS)}
 
     def worsen(self, delay=0, loss=0, rate=0):
         """How its cable is from now on: late [ms], loses packets [1], slow [byte/s]."""
