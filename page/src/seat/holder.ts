@@ -15,7 +15,7 @@ export type SeatState =
 const period = 33; // of the stick [ms]
 const bidPeriod = 100; // [ms]
 
-/** The server withdraws what a page has not repeated for so long [ms]. */
+/** The server withdraws what a page commands when it has heard nothing of it for so long (W13) [ms]. */
 const deadMan = 200;
 /** So long a page counts as slow after it was [ms]. */
 const slowFor = 3000;
@@ -168,7 +168,7 @@ export class Seat {
     const isLate = now - this.lastTurn > deadMan;
     this.lastTurn = now;
     if (!this.isHeld) return;
-    if (isLate && (this.steering || this.task)) this.lastLate = now;
+    if (isLate) this.lastLate = now;
     const { left, down } = this.stick.push;
     const pushed = left !== 0 || down !== 0;
     if (pushed && !this.steering && this.task) this.sendBid(this.task, 0); // the hand goes first

@@ -148,7 +148,10 @@ class SeatPanel {
       (supported) => (this.xrButton.hidden = !supported),
       () => {},
     );
-    const timer = window.setInterval(() => this.showLatency(), 500);
+    const timer = window.setInterval(() => {
+      this.showLatency();
+      this.showWho();
+    }, 500);
     this.ends.push(() => clearInterval(timer));
   }
 

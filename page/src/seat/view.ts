@@ -10,6 +10,7 @@ import type { XrView } from "./xr";
 
 /** Images are asked for no wider than this [px]. */
 const widest = 1280;
+const waiting = "Waiting for the first image…";
 
 /** A pixel of an eye's sensor, in an image of a time [ns]. */
 export interface SeenPixel {
@@ -127,6 +128,7 @@ export class SeatView {
       this.problem.textContent = "The graph has no module that sends images left or right.";
       return;
     }
+    this.problem.textContent = waiting;
     this.way.disabled = pair.right === undefined;
     const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
     const first = wanted[0]!;
@@ -141,6 +143,7 @@ export class SeatView {
   }
 
   private take(side: Side, picture: Picture, measured: boolean): void {
+    if (this.problem.textContent === waiting) this.problem.textContent = "";
     this.xr?.show(side, picture);
     const thumbnail = measured ? thumbnailOf(picture.bitmap) : undefined;
     this.draw(() => {
@@ -183,6 +186,7 @@ export class SeatView {
     this.canvas.width = w;
     this.canvas.height = h;
     for (const eye of this.eyes.values()) eye.setWidth(this.width());
-    this.draw();
+    // At once, as a canvas of another size is empty.
+    drawPictures(this.canvas, this.shownWay, this.pictures());
   }
 }

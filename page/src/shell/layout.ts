@@ -22,7 +22,7 @@ const shareText = (share: number) => (share === 1 ? "" : `*${Number(share.toFixe
 
 /**
  * The layout as the part of a URL after #: columns parted by "|", panels by ";", as in
- * `stream,port=head_eyes.left;stream,port=depth.depth*0.5|graph*2`. A column's share is with
+ * `stream,port=head_eyes.left;stream,port=depth.depth*0.5|graph*2`. A column's share follows
  * "**" at its end.
  */
 export function layoutText(layout: Layout): string {

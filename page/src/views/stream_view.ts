@@ -24,7 +24,11 @@ const snapshotPeriod = 500; // [ms]
 export class StreamView {
   readonly element: HTMLElement;
   private readonly strip = new HeaderStrip();
-  private readonly body = h("div", { class: "stream-body" });
+  private readonly body = h(
+    "div",
+    { class: "stream-body" },
+    h("p", { class: "waiting" }, "Waiting for the first message…"),
+  );
   private readonly problem = h("p", { class: "problem", role: "status", hidden: true });
   private readonly choice = h("select", { "aria-label": "Shown as", hidden: true });
   private readonly pause = h("button", { "aria-pressed": "false" }, "Pause");
@@ -166,7 +170,7 @@ export class StreamView {
   private setPaused(paused: boolean): void {
     this.isPaused = paused;
     this.pause.setAttribute("aria-pressed", String(paused));
-    this.pause.textContent = paused ? "Go on" : "Pause";
+    this.pause.textContent = paused ? "Resume" : "Pause";
     if (!paused) this.release();
     this.view?.setPaused?.(paused);
     this.scroll.hidden = !paused || this.view?.keepsPast === true || this.past.length < 2;

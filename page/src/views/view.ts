@@ -52,7 +52,7 @@ export interface View {
   readonly runsUnseen?: boolean;
   /** Of a view that keeps its past: stops or continues with the present. */
   setPaused?(paused: boolean): void;
-  /** What is shown now, as a message that can be shown again. */
+  /** What is shown now, as a message that can be shown again without others. */
   snapshot?(): Promise<Arrival | undefined>;
   close?(): void;
 }
