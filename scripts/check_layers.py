@@ -30,7 +30,7 @@ ALLOWED = {
     "ros": {"base", "mtp", "contract", "compress", "frames"},
     "mcap": {"base", "os", "mtp", "link", "ros"},
     "tls": {"base", "os", "link"},
-    "dds": {"base", "os", "mtp", "link"},  # whose includes cannot be told from those of Cyclone DDS
+    "dds": {"base", "os", "mtp", "link"},
     "hosts": {"base", "os", "mtp", "contract", "link", "graph", "tls"},
     "drivers": {"base"},
     "modules": {
@@ -43,6 +43,7 @@ ALLOWED = {
         "observe",
         "ros",
         "mcap",
+        "dds",
         "drivers",
     }
     | PACKAGES,
@@ -95,6 +96,8 @@ def layer_of(path):
 
 def layer_of_include(name):
     inner = name[1:-1]
+    if inner.startswith("dds/"):  # as Cyclone DDS has them too
+        return "dds" if (pathlib.Path(__file__).parents[1] / "lib" / inner).exists() else None
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
         r"(frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|hosts|drivers)/", inner
     )

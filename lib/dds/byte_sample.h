@@ -3,7 +3,9 @@
 // Samples whose bytes Cyclone DDS carries without understanding them, and their topics' types,
 // which have no key and no type information. Internal.
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -19,13 +21,13 @@ namespace hc::dds {
 /// What Cyclone DDS calls for samples of class S, which has a base ddsi_serdata and
 ///
 ///     S(const ddsi_sertype& type, ddsi_serdata_kind kind);
-///     std::byte* allot(std::size_t size, std::span<const std::byte> first);
+///     std::byte* allocate(std::size_t size, std::span<const std::byte> first);
 ///     void copy(std::size_t at, std::span<std::byte> to) const;
 ///     std::size_t size;
 ///
-/// allot() makes room for a sample that is received, given its first bytes; null drops its bytes.
-/// copy() gives a part of it, which may reach up to 3 bytes beyond the end, as DDS sends words.
-/// The caller adds `to_ser_ref` and `to_ser_unref`.
+/// allocate() makes room for a sample that is received, given its first bytes; null drops its
+/// bytes. copy() gives a part of it, which may reach up to 3 bytes beyond the end, as DDS sends
+/// words. The caller adds `to_ser_ref` and `to_ser_unref`.
 template <class S>
 ddsi_serdata_ops byte_sample_ops() {
   static constexpr auto without_bytes = [](const ddsi_sertype* type) -> ddsi_serdata* {
@@ -44,7 +46,8 @@ ddsi_serdata_ops byte_sample_ops() {
           NN_RMSG_PAYLOADOFF(each->rmsg, NN_RDATA_PAYLOAD_OFF(each)));
     };
     if (fragment == nullptr) return sample.release();
-    std::byte* room = sample->allot(size, {payload_of(fragment), fragment->maxp1 - fragment->min});
+    std::byte* room =
+        sample->allocate(size, {payload_of(fragment), fragment->maxp1 - fragment->min});
     std::uint32_t at = 0;  // fragments may overlap
     for (; room != nullptr && fragment != nullptr; fragment = fragment->nextfrag) {
       const auto end = std::min<std::uint32_t>(fragment->maxp1, static_cast<std::uint32_t>(size));
@@ -59,7 +62,7 @@ ddsi_serdata_ops byte_sample_ops() {
     auto sample = std::make_unique<S>(*type, kind);
     if (count == 0) return sample.release();
     const std::span all(pieces, static_cast<std::size_t>(count));
-    std::byte* room = sample->allot(
+    std::byte* room = sample->allocate(
         size, {static_cast<const std::byte*>(all[0].iov_base), std::size_t{all[0].iov_len}});
     std::size_t at = 0;
     for (const auto& piece : all) {
@@ -97,7 +100,8 @@ ddsi_serdata_ops byte_sample_ops() {
   return ops;
 }
 
-/// What Cyclone DDS calls for a type of class T, derived from ddsi_sertype, of which two are equal.
+/// What Cyclone DDS calls for a type of class T, derived from ddsi_sertype, any two of which are
+/// equal.
 template <class T>
 ddsi_sertype_ops byte_type_ops() {
   ddsi_sertype_ops ops{};

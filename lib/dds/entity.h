@@ -3,9 +3,12 @@
 // Owners of what Cyclone DDS makes. Internal.
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <dds/dds.h>
+
+#include <hc/base/result.h>
 
 namespace hc::dds {
 
@@ -16,7 +19,9 @@ class Entity {
   explicit Entity(dds_entity_t handle) : handle_(handle) {}
   Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
   Entity& operator=(Entity&& other) noexcept {
-    std::swap(handle_, other.handle_);
+    const dds_entity_t handle = std::exchange(other.handle_, 0);
+    reset();
+    handle_ = handle;
     return *this;
   }
   ~Entity() { reset(); }
@@ -38,6 +43,11 @@ using QosOwner = std::unique_ptr<dds_qos_t, QosDelete>;
 struct ListenerDelete {
   void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
 };
-using Listener = std::unique_ptr<dds_listener_t, ListenerDelete>;
+using ListenerOwner = std::unique_ptr<dds_listener_t, ListenerDelete>;
+
+/// "writer: Cyclone DDS: Out of resources"
+inline Error failed(const std::string& what, dds_return_t code) {
+  return {Code::System, what + ": Cyclone DDS: " + dds_strretcode(code)};
+}
 
 }  // namespace hc::dds

@@ -85,10 +85,6 @@ Status take_from(int socket, const std::vector<unsigned>& interfaces) {
 
 }  // namespace
 
-Error failed(const std::string& what, dds_return_t code) {
-  return {Code::System, what + ": Cyclone DDS: " + dds_strretcode(code)};
-}
-
 QosOwner make_qos() {
   QosOwner qos(dds_create_qos());
   constexpr dds_duration_t kNever = 0;  // waits a writer for room

@@ -20,9 +20,6 @@ namespace hc::dds {
 /// link's policy says so.
 QosOwner make_qos();
 
-/// "writer: Cyclone DDS: Out of resources"
-Error failed(const std::string& what, dds_return_t code);
-
 class Participant {
  public:
   /// Errors: NotFound (no such interface), System.

@@ -25,7 +25,7 @@ struct MessageSample : ddsi_serdata {
   }
 
   /// Room in which what follows the first line feed is aligned.
-  std::byte* allot(std::size_t wanted, std::span<const std::byte> first) {
+  std::byte* allocate(std::size_t wanted, std::span<const std::byte> first) {
     constexpr std::size_t kAlignment = 64;
     size = wanted;
     const std::string_view start(reinterpret_cast<const char*>(first.data()),

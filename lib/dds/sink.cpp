@@ -46,7 +46,7 @@ class DdsSink final : public Sink {
     if (!participant) return participant.error();
     participant_ = std::move(*participant);
     const auto qos = make_qos();
-    const Listener listener(dds_create_listener(this));
+    const ListenerOwner listener(dds_create_listener(this));
     dds_lset_publication_matched(
         listener.get(),
         [](dds_entity_t, const dds_publication_matched_status_t status, void* self) {
@@ -184,8 +184,10 @@ class DdsSink final : public Sink {
   /// Hands a sample to Cyclone DDS; false where there is no room, or it has failed. With the mutex.
   bool write(ddsi_serdata& sample) {
     const auto written = dds_writecdr(writer_.handle(), ddsi_serdata_ref(&sample));
-    if (written != DDS_RETCODE_OK && written != DDS_RETCODE_TIMEOUT)
+    if (written != DDS_RETCODE_OK && written != DDS_RETCODE_TIMEOUT) {
       failed_ = failed("written", written);
+      event_.raise();  // for a sender that waits
+    }
     return written == DDS_RETCODE_OK;
   }
 

@@ -75,7 +75,7 @@ class DdsSource final : public Source {
     if (!participant) return participant.error();
     participant_ = std::move(*participant);
     const auto qos = make_qos();
-    const Listener listener(dds_create_listener(this));
+    const ListenerOwner listener(dds_create_listener(this));
     dds_lset_subscription_matched(
         listener.get(), [](dds_entity_t, const dds_subscription_matched_status_t status,
                            void* self) { static_cast<DdsSource*>(self)->count_writers(status); });

@@ -141,7 +141,7 @@ void Connection::tell(Json order) {
 }
 
 Result<Json> Connection::ask(Json question, int stop) {
-  auto answer = std::make_shared<Answer>();
+  auto answer = std::make_shared<Answer>(internal::Event::make());
   worker_.post([self = shared_from_this(), answer, question = std::move(question)]() mutable {
     auto take = [answer](Result<Json> value) { answer->give(std::move(value)); };
     if (!self->conversation_ || !self->is_open_) return take(not_connected());

@@ -65,12 +65,19 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   /// That somebody on another thread waits for.
   class Answer {
    public:
+    explicit Answer(Result<internal::Event> event) {
+      if (event)
+        event_ = std::move(*event);
+      else
+        value_ = event.error();
+    }
     void give(Result<Json> value) {
       const std::lock_guard lock(mutex_);
       value_ = std::move(value);
       event_.raise();
     }
     Result<Json> wait(int stop, std::chrono::milliseconds timeout) const {
+      if (event_.descriptor() < 0) return value_;
       const std::array<int, 1> wanted = {event_.descriptor()};
       auto ready = wait_readable(wanted, stop, timeout);
       if (!ready) return ready.error();
@@ -79,7 +86,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
     }
 
    private:
-    internal::Event event_ = internal::Event::must_make();
+    internal::Event event_;  // none where there was no descriptor for it
     mutable std::mutex mutex_;
     Result<Json> value_ = Error{Code::Closed, "no answer for 30 s"};
   };
@@ -107,7 +114,8 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
 
   Worker& worker_;
   const Parts parts_;
-  std::shared_ptr<Answer> first_ = std::make_shared<Answer>();  // whether it has been connected
+  std::shared_ptr<Answer> first_ =
+      std::make_shared<Answer>(internal::Event::make());  // whether it has been connected
 
   // On the worker's thread.
   std::optional<internal::Process> ssh_;

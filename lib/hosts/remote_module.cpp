@@ -20,6 +20,9 @@ Result<std::shared_ptr<RemoteModule>> RemoteModule::make(std::int64_t number,
                                                          const std::string& manage,
                                                          const std::string& control) {
   std::shared_ptr<RemoteModule> module(new RemoteModule(number));
+  auto has_ended = internal::Event::make();
+  if (!has_ended) return has_ended.error();
+  module->has_ended_ = std::move(*has_ended);
   int ends[2];
   auto made =
       internal::system_call("pipe2", "", [&] { return ::pipe2(ends, O_CLOEXEC | O_NONBLOCK); });

@@ -58,7 +58,7 @@ class RemoteModule {
 
   const std::int64_t number_;
   internal::Descriptor output_, says_;  // a pipe
-  internal::Event has_ended_ = internal::Event::must_make();
+  internal::Event has_ended_;
   std::string control_;
   std::atomic<int> status_ = -1;
   std::atomic<pid_t> process_ = 0;

@@ -21,7 +21,9 @@ class Worker {
   static Result<std::unique_ptr<Worker>> make() {
     auto loop = internal::Loop::make();
     if (!loop) return loop.error();
-    std::unique_ptr<Worker> worker(new Worker(std::move(*loop)));
+    auto posted = internal::Event::make();
+    if (!posted) return posted.error();
+    std::unique_ptr<Worker> worker(new Worker(std::move(*loop), std::move(*posted)));
     auto watched = worker->loop_->watch(worker->posted_.descriptor(), EPOLLIN,
                                         [self = worker.get()](auto) { self->do_jobs(); });
     if (!watched) return watched.error();
@@ -56,7 +58,8 @@ class Worker {
   [[nodiscard]] internal::Loop& loop() { return *loop_; }
 
  private:
-  explicit Worker(std::unique_ptr<internal::Loop> loop) : loop_(std::move(loop)) {}
+  Worker(std::unique_ptr<internal::Loop> loop, internal::Event posted)
+      : loop_(std::move(loop)), posted_(std::move(posted)) {}
 
   void do_jobs() {
     posted_.clear();
@@ -69,7 +72,7 @@ class Worker {
   }
 
   std::unique_ptr<internal::Loop> loop_;
-  internal::Event posted_ = internal::Event::must_make();
+  internal::Event posted_;
   std::mutex mutex_;
   std::vector<std::function<void()>> jobs_;
   bool is_stopped_ = false;  // of the thread

@@ -25,7 +25,7 @@ struct Capture::Queue {
   std::deque<Heard> pieces;
   std::size_t most = 1;
   std::int64_t lost = 0;
-  internal::Event event = internal::Event::must_make();  // while there are any
+  internal::Event event;  // while there are any
   SystemClock clock;
 
   void put(const void* bytes, std::size_t size) {
@@ -58,7 +58,10 @@ Result<std::unique_ptr<Capture>> Capture::open(const std::string& device, const 
                                                int frames) {
   auto system = AudioSystem::start();
   if (!system) return system.error();
+  auto event = internal::Event::make();
+  if (!event) return event.error();
   std::unique_ptr<Capture> capture(new Capture(std::move(*system), std::make_unique<Queue>()));
+  capture->queue_->event = std::move(*event);
   const auto per_second = static_cast<std::size_t>(format.rate) / static_cast<std::size_t>(frames);
   capture->queue_->most =
       std::max<std::size_t>(1, per_second * static_cast<std::size_t>(kMostKept.count()) / 1000);

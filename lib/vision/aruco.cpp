@@ -48,7 +48,8 @@ cv::Ptr<aruco::Dictionary> pointer_to(const Given& given) {
 }
 
 /// Of outlines closer than `minMarkerDistanceRate`, OpenCV 4.6 keeps the outermost. With 0.05, the
-/// default, that is the edge of a white margin, which is no marker. Later ones try the others too.
+/// default, that is the edge of a white margin, which is no marker. Versions with
+/// `minGroupDistance` (seen: 4.10) try the others too.
 template <typename Parameters>
 void keep_inner_outlines(Parameters& parameters) {
   if constexpr (!requires { parameters.minGroupDistance; }) parameters.minMarkerDistanceRate = 0.01;

@@ -19,7 +19,7 @@ struct Blob : ddsi_serdata {
     ddsi_serdata_init(this, &of, what);
   }
   /// Room for a message; null if it is too large.
-  std::byte* allot(std::size_t wanted, std::span<const std::byte> /*first*/) {
+  std::byte* allocate(std::size_t wanted, std::span<const std::byte> /*first*/) {
     is_too_large = wanted > static_cast<const BlobType*>(type)->max_bytes;
     if (is_too_large) return nullptr;
     size = wanted;
@@ -72,7 +72,7 @@ ddsi_sertype* make_blob_type(const std::string& name, std::size_t max_bytes) {
 
 ddsi_serdata* make_blob(const ddsi_sertype& type, const hc::ros::Pieces& pieces) {
   auto blob = std::make_unique<Blob>(type, SDK_DATA);
-  if (std::byte* to = blob->allot(pieces.size(), pieces.head)) {
+  if (std::byte* to = blob->allocate(pieces.size(), pieces.head)) {
     for (const auto piece : {pieces.head, pieces.body, pieces.tail})
       to = std::ranges::copy(piece, to).out;
   }

@@ -52,10 +52,6 @@ dds_guid_t guid_of(dds_entity_t entity) {
   return guid;
 }
 
-hc::Error failed(const std::string& what, dds_return_t code) {
-  return {hc::Code::System, what + ": Cyclone DDS: " + dds_strretcode(code)};
-}
-
 hc::dds::QosOwner make_qos(const Qos& qos, std::string_view hash) {
   hc::dds::QosOwner made(dds_create_qos());
   auto* to = made.get();
@@ -93,7 +89,7 @@ hc::Result<std::pair<hc::dds::Entity, const ddsi_sertype*>> open_topic(dds_entit
       dds_create_topic_sertype(participant, name.c_str(), &sertype, nullptr, nullptr, nullptr);
   if (topic < 0) {
     ddsi_sertype_unref(sertype);
-    return failed("topic " + name, topic);
+    return hc::dds::failed("topic " + name, topic);
   }
   return std::pair<hc::dds::Entity, const ddsi_sertype*>{hc::dds::Entity(topic), sertype};
 }
@@ -131,7 +127,7 @@ hc::Status Writer::write(const hc::ros::Pieces& pieces) {
   const auto written = dds_writecdr(writer_.handle(), make_blob(*type_, pieces));
   if (written == DDS_RETCODE_TIMEOUT)
     return hc::Error{hc::Code::System, "a subscriber reads too slowly"};
-  if (written != DDS_RETCODE_OK) return failed("written", written);
+  if (written != DDS_RETCODE_OK) return hc::dds::failed("written", written);
   return {};
 }
 
@@ -171,16 +167,16 @@ hc::Result<std::unique_ptr<Participant>> Participant::open(
   std::unique_ptr<Participant> made(new Participant);
   made->options_ = options;
   const auto domain = dds_create_domain(options.domain, config.c_str());
-  if (domain < 0) return failed("domain " + std::to_string(options.domain), domain);
+  if (domain < 0) return hc::dds::failed("domain " + std::to_string(options.domain), domain);
   made->domain_ = hc::dds::Entity(domain);
   const hc::dds::QosOwner qos(dds_create_qos());
   constexpr std::string_view kEnclave = "enclave=/;";
   dds_qset_userdata(qos.get(), kEnclave.data(), kEnclave.size());
   const auto participant = dds_create_participant(options.domain, qos.get(), nullptr);
   if (participant < 0)
-    return failed("no participant of domain " + std::to_string(options.domain) +
-                      ", which has 33 on a machine",
-                  participant);
+    return hc::dds::failed("no participant of domain " + std::to_string(options.domain) +
+                               ", which has 33 on a machine",
+                           participant);
   made->participant_ = hc::dds::Entity(participant);
   auto discovery = made->open_writer("ros_discovery_info",
                                      dds_type("rmw_dds_common/msg/ParticipantEntitiesInfo"),
@@ -207,7 +203,7 @@ hc::Result<Writer> Participant::open_writer(const std::string& topic, const std:
   std::tie(made.topic_, made.type_) = std::move(*opened);
   const auto writer =
       dds_create_writer(participant_.handle(), made.topic_.handle(), settings.get(), nullptr);
-  if (writer < 0) return failed("writer of " + topic, writer);
+  if (writer < 0) return hc::dds::failed("writer of " + topic, writer);
   made.writer_ = hc::dds::Entity(writer);
   return made;
 }
@@ -235,14 +231,14 @@ hc::Result<Reader> Participant::read(const std::string& topic, hc::ros::Type typ
   Reader made;
   made.depth_ = qos.depth;
   made.topic_ = std::move(opened->first);
-  const hc::dds::Listener listener(
+  const hc::dds::ListenerOwner listener(
       dds_create_listener(const_cast<std::function<void()>*>(&arrived)));
   dds_lset_data_available(listener.get(), [](dds_entity_t, void* call) {
     (*static_cast<const std::function<void()>*>(call))();
   });
   const auto reader = dds_create_reader(participant_.handle(), made.topic_.handle(), settings.get(),
                                         listener.get());
-  if (reader < 0) return failed("reader of " + topic, reader);
+  if (reader < 0) return hc::dds::failed("reader of " + topic, reader);
   made.reader_ = hc::dds::Entity(reader);
   {
     const std::lock_guard lock(mutex_);

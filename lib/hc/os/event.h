@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A flag that threads wait for as for a file. Internal.
+// A flag that threads can poll. Internal.
 
 #include <sys/eventfd.h>
 
@@ -11,7 +11,7 @@
 
 namespace hc::internal {
 
-/// A descriptor that is readable from raise() to clear(), both of which any thread may call.
+/// An eventfd: readable from raise() to clear(), both of which any thread may call.
 class Event {
  public:
   Event() = default;  ///< none: its descriptor is -1, and nothing can be waited for
@@ -23,7 +23,7 @@ class Event {
     return Event(Descriptor(*number));
   }
 
-  /// The same, where there is nobody to take an error: ends the program.
+  /// The same where a program begins, and cannot do without: ends it.
   static Event must_make() {
     auto made = make();
     HC_CHECK(made, made.error().text());
