@@ -103,7 +103,9 @@ class Host:
                 continue
             if is_here and words != [""] and int(path.name) != self.process.pid:
                 found[int(path.name)] = " ".join(words).strip()
-        return {number: text for number, text in found.items() if not text.startswith(SSHD_SESSIONS)}
+        return {
+            number: text for number, text in found.items() if not text.startswith(SSHD_SESSIONS)
+        }
 
     def worsen(self, delay=0, loss=0, rate=0):
         """How its cable is from now on: late [ms], loses packets [1], slow [byte/s]."""

@@ -107,6 +107,11 @@ class PanTilt(Necks):
         self.start_ready()
         self.assertLess(self.wait_rest(), 2.4)
 
+    def test_the_unit_stops_where_commands_end(self):
+        self.start_both()
+        self.drive(2.5, lambda pan: pan > 0.05)
+        self.assertLess(self.wait_rest(), 2.4)
+
     def test_garbage_does_not_keep_the_unit_from_being_stopped(self):
         self.start_both()
         self.drive(2.5, lambda pan: pan > 0.05)

@@ -304,6 +304,12 @@ class Watching(Graphs):
                     text, r"\n  %s TEXT( \.{3})?( REQUIRED)?\s+[a-z].* [a-z]" % re.escape(word)
                 )
 
+        self.assertIn("MODULE.PARAMETER=VALUE", self.hc("graph set --help"))
+        self.assertIn("PARAMETER=VALUE", self.hc("graph add --help"))
+        text = self.hc("graph link --help")
+        for key in "keep rate burst memory as quality scale".split():
+            self.assertRegex(text, r"KEY=VALUE: [^\n]*\b%s\b" % key)
+
     def test_who_asks_a_graph_is_no_graph(self):
         """Several may ask at once, each listening for its answer, and need not say which graph."""
         name, process = self.run_named("asked")

@@ -10,6 +10,7 @@ import unittest
 
 from package import BUILD, Package, ROOT, hc
 
+PRIVATE = ("__", "_pybind11_")
 EXAMPLE = """
 import hypercolumn as hc
 module = hc.Module("m", "a module")
@@ -62,12 +63,12 @@ class Types(Package):
         from hypercolumn import _hypercolumn
 
         for name in dir(_hypercolumn):
-            if name.startswith("_"):
+            if name.startswith(PRIVATE):
                 continue
             self.assertRegex(stub, r"(class|def) %s\b" % name)
             each = getattr(_hypercolumn, name)
             for member in dir(each) if inspect.isclass(each) else ():
-                if not member.startswith("_"):
+                if not member.startswith(PRIVATE):
                     self.assertRegex(stub, r"def %s\(" % member)
 
     def test_every_word_is_described(self):

@@ -41,7 +41,7 @@ void run(const CatOptions& options) {
       skipper.skip(*source, failure, options.uri);
       continue;
     }
-    // In JSON the header is as it came.
+    // In JSON the header is printed unchanged.
     bool is_read = options.raw    ? send(*raw, message, "-")
                    : options.json ? write_json(expanded, message.header, print)
                                   : print(to_readable(expanded));

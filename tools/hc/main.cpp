@@ -78,7 +78,7 @@ std::string meant_option(const CLI::App& app) {
 }
 
 /// Has the Python programs that this one starts find the package that came with it, where Python
-/// does not look anyway. What PYTHONPATH says comes first.
+/// does not look by default. What PYTHONPATH says comes first.
 void offer_python_package() {
   namespace fs = std::filesystem;
   const fs::path prefix = tool::module_folder().parent_path().parent_path();

@@ -53,7 +53,7 @@ void write_file(const fs::path& path, const std::string& text) {
                     fs::perm_options::add);
 }
 
-/// How CMake finds the library that came with this command, where it does not look anyway.
+/// How CMake finds the library that came with this command, where it does not look by default.
 std::string prefix_option() {
   const fs::path prefix = module_folder().parent_path().parent_path();
   if (prefix == "/usr" || prefix == "/usr/local") return "";
