@@ -281,6 +281,19 @@ exec sleep 1000
                 self.assertEqual(self.ask(process, "stop"), ["ok"])
                 self.assertEqual(process.wait(timeout=WATCHDOG), 0)
 
+    def test_results_are_in_the_order_of_the_file(self):
+        """Whichever module has its own first: here the second, for which the first waits."""
+        begin = """#!/bin/sh
+[ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
+"""
+        self.shell("mkfifo done")
+        self.write("first", begin + 'cat done; echo "result: one" >&2\n', 0o755)
+        self.write("second", begin + 'echo "result: two" >&2; echo >done\n', 0o755)
+        modules = "".join("[modules.%s]\nprogram = './%s'\n" % (n, n) for n in ("first", "second"))
+        self.write_graph("restart = 'never'\n" + modules)
+        out = self.shell("hc run g.toml --quiet")
+        self.assertIn("\n  first: one\n  second: two\n", out)
+
     def test_the_status_line_stands_below_all_others(self):
         self.write_graph(GRAPH)
         out = self.shell(

@@ -20,7 +20,7 @@ namespace hc {
 /// What a graph has done.
 struct RunReport {
   GraphState state;                  ///< at its end
-  std::vector<std::string> results;  ///< "MODULE: …", from lines `result: …` of modules
+  std::vector<std::string> results;  ///< "MODULE: …", of lines `result: …`, by module
   bool stopped = false;              ///< ended because it was asked to
 };
 

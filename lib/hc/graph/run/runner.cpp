@@ -30,7 +30,12 @@ Result<RunReport> Runner::run() {
   }
   refuse_changes();
   if (!outcome_) return outcome_.error();
-  return RunReport{state(), std::move(results_), is_stopped_};
+  auto end = state();
+  std::ranges::stable_sort(results_, {}, [&](const std::string& line) {
+    return std::ranges::find(end.modules, line.substr(0, line.find(':')), &ModuleState::name) -
+           end.modules.begin();
+  });
+  return RunReport{std::move(end), std::move(results_), is_stopped_};
 }
 
 Status Runner::begin() {
