@@ -30,7 +30,7 @@ namespace hc::dds {
 /// words. The caller adds `to_ser_ref` and `to_ser_unref`.
 template <class S>
 ddsi_serdata_ops byte_sample_ops() {
-  static constexpr auto without_bytes = [](const ddsi_sertype* type) -> ddsi_serdata* {
+  static constexpr auto kWithoutBytes = [](const ddsi_sertype* type) -> ddsi_serdata* {
     return std::make_unique<S>(*type, SDK_KEY).release();
   };
   ddsi_serdata_ops ops{};
@@ -74,17 +74,17 @@ ddsi_serdata_ops byte_sample_ops() {
     return sample.release();
   };
   ops.from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) {
-    return without_bytes(type);
+    return kWithoutBytes(type);
   };
   ops.from_sample = [](const ddsi_sertype* type, ddsi_serdata_kind, const void*) {
-    return without_bytes(type);  // samples are not made of structures
+    return kWithoutBytes(type);  // samples are not made of structures
   };
   ops.to_ser = [](const ddsi_serdata* data, std::size_t at, std::size_t size, void* to) {
     static_cast<const S*>(data)->copy(at, {static_cast<std::byte*>(to), size});
   };
   ops.to_sample = [](const ddsi_serdata*, void*, void**, void*) { return false; };
   ops.to_untyped = [](const ddsi_serdata* data) {
-    ddsi_serdata* untyped = without_bytes(data->type);
+    ddsi_serdata* untyped = kWithoutBytes(data->type);
     untyped->type = nullptr;
     return untyped;
   };
