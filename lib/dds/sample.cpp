@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kPrelude = 8;  // encapsulation, and the number of bytes
 
-/// Of a sample that is sent, the frame and the header's line are in `begin`, and the elements are
-/// the message's; of one that was received, all bytes are in `elements`.
+/// A sent sample has its frame and header line in `begin`, and the message's elements; a received
+/// sample has all its bytes in `elements`.
 struct MessageSample : ddsi_serdata {
   MessageSample(const ddsi_sertype& of, ddsi_serdata_kind what) : ddsi_serdata{} {
     ddsi_serdata_init(this, &of, what);

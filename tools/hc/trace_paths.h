@@ -56,8 +56,8 @@ struct MessagePath {
 /// An output's message is derived from the last messages of the same time that its module took
 /// before (R43); where there is none, it begins there. Only the module that sends what the port
 /// takes, or whose output the port is, may have renewed the time, as controllers do: then the path
-/// continues at the messages that it handled last within a second, and the one that was sensed
-/// first is critical. Where the port is an input, what its module does with the message after
+/// continues at the messages that it handled last within a second, of which the earliest sensed
+/// is critical. Where the port is an input, what its module does with the message after
 /// taking it is the last step, and no part of its age.
 std::vector<MessagePath> find_paths(const Traced& traced, const std::string& port);
 inline constexpr std::size_t kMostPaths = 64;
