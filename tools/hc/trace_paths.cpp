@@ -338,6 +338,7 @@ std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths) {
         std::ranges::count_if(same, [](const auto* path) { return path->is_critical; }));
     auto spread = [&](const auto& duration) {
       std::vector<std::int64_t> all;
+      all.reserve(same.size());
       for (const auto* path : same) all.push_back(duration(*path));
       return spread_of(std::move(all));
     };
