@@ -31,52 +31,26 @@ constexpr std::size_t round_up(std::size_t value, std::size_t unit) {
   return (value + unit - 1) / unit * unit;
 }
 
-/// The minimum of each block of 16, in all lanes of the block.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V min_of_blocks(D d, V v) {
-  const hn::Repartition<std::uint16_t, D> d16;
-  const hn::Repartition<std::uint32_t, D> d32;
-  v = hn::Min(v, hn::BitCast(d, hn::Shuffle1032(hn::BitCast(d32, v))));
-  v = hn::Min(v, hn::BitCast(d, hn::Shuffle2301(hn::BitCast(d32, v))));
-  v = hn::Min(v, hn::BitCast(d, hn::Reverse2(d16, hn::BitCast(d16, v))));
-  v = hn::Min(v, hn::BitCast(d, hn::ShiftRight<8>(hn::BitCast(d16, v))));
-  return hn::TableLookupBytes(v, hn::Zero(d));
-}
-
-/// The minimum of all lanes, in each lane.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V min_of_lanes(D d, V v) {
-  if constexpr (hn::MaxLanes(d) >= 64) v = hn::Min(v, hn::ReverseBlocks(d, v));
-  if constexpr (hn::MaxLanes(d) >= 32) v = hn::Min(v, hn::SwapAdjacentBlocks(v));
-  return min_of_blocks(d, v);
-}
-
-/// The same of four vectors at once, which takes fewer steps.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void min_of_lanes(D d, V& a, V& b, V& c, V& e) {
-  if constexpr (hn::MaxLanes(d) <= 16) {
-    for (V* v : {&a, &b, &c, &e}) *v = min_of_blocks(d, *v);
-    return;
+/// The minimum of a vector's lanes, in each lane of a vector of `d`. Halves are cheaper than
+/// whole vectors, so that it folds first.
+template <class D, class V>
+HWY_INLINE hn::Vec<D> min_of_lanes(D d, V v) {
+  const hn::DFromV<V> folded;
+  if constexpr (hn::MaxLanes(folded) > 16) {
+    const hn::Half<decltype(folded)> half;
+    return min_of_lanes(d, hn::Min(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
   } else {
-    // Halves of a and b, then of c and e, side by side.
-    const V ab = hn::Min(hn::ConcatLowerLower(d, b, a), hn::ConcatUpperUpper(d, b, a));
-    const V ce = hn::Min(hn::ConcatLowerLower(d, e, c), hn::ConcatUpperUpper(d, e, c));
-    if constexpr (hn::MaxLanes(d) == 32) {
-      const V of_ab = min_of_blocks(d, ab), of_ce = min_of_blocks(d, ce);
-      a = hn::ConcatLowerLower(d, of_ab, of_ab);
-      b = hn::ConcatUpperUpper(d, of_ab, of_ab);
-      c = hn::ConcatLowerLower(d, of_ce, of_ce);
-      e = hn::ConcatUpperUpper(d, of_ce, of_ce);
-    }
+    const hn::Repartition<std::uint16_t, decltype(folded)> d16;
+    const V pairs = hn::Min(v, hn::BitCast(folded, hn::ShiftRight<8>(hn::BitCast(d16, v))));
+#if HWY_TARGET <= HWY_AVX2
+    const __m128i min = _mm_minpos_epu16(pairs.raw);
+    if constexpr (hn::MaxLanes(d) == 32) return hn::Vec<D>{_mm256_broadcastb_epi8(min)};
 #if HWY_TARGET <= HWY_AVX3
-    if constexpr (hn::MaxLanes(d) == 64) {  // four blocks: of a, c, b, e
-      const V min = min_of_blocks(
-          d, hn::Min(hn::OddEvenBlocks(ce, ab), hn::SwapAdjacentBlocks(hn::OddEvenBlocks(ab, ce))));
-      a = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0x00)};
-      c = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0x55)};
-      b = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0xAA)};
-      e = V{_mm512_shuffle_i64x2(min.raw, min.raw, 0xFF)};
-    }
+    if constexpr (hn::MaxLanes(d) == 64) return hn::Vec<D>{_mm512_broadcastb_epi8(min)};
+#endif
+#else
+    const auto min = hn::MinOfLanes(d16, hn::BitCast(d16, pairs));
+    return hn::Set(d, static_cast<Byte>(hn::GetLane(min)));
 #endif
   }
 }
@@ -129,8 +103,7 @@ class Sweep {
                  {&north_east_, row + kBytes},
                  {&north_west_, row + rows * kBytes},
                  {&winners_, sizeof(Winner) * (width_ + kGroup)},
-                 {&best_, bytes},
-                 {&found_, bytes},
+                 {&best_, 2 * bytes},
                  {&down_, bytes},
                  {&down_right_, bytes},
                  {&down_left_, bytes}};
@@ -165,7 +138,7 @@ class Sweep {
  private:
   // Alignment, and room before and behind: vectors read one byte beyond the costs of a pixel.
   static constexpr std::size_t kGuard = 64;
-  static constexpr std::size_t kGroup = 4;  // pixels whose winners are found together
+  static constexpr std::size_t kGroup = 16;  // pixels whose winners are found together
 
   struct Winner {
     Byte disparity, cost, margin;
@@ -229,7 +202,7 @@ class Sweep {
       }
       costs.v[k] = sum;
     }
-    const auto count = static_cast<std::size_t>(options_.disparities);
+    const auto count = static_cast<std::size_t>(disparities_);
     if (x + 1 >= kBytes && count == kBytes) return costs;
     for (std::size_t k = 0; k < kVectors; ++k) {
       const V index = indices(k);
@@ -316,44 +289,45 @@ class Sweep {
     }
   }
 
-  V jump(Byte difference) const { return hn::Set(D(), options_.penalties.jump[difference]); }
+  V jump(Byte difference) const { return hn::Set(D(), jumps_[difference]); }
 
   /// Walks along a row to the right, and along the row above it to the left. Each has steps that
   /// wait for the step before; the other's fill the time.
   template <bool kRight, bool kLeft>
-  void sweep(const Row& right, const Row& left) {
+  void sweep(const Row& right, const Row& left) const {
+    // Of copies the compiler knows that no store of costs changes them.
+    const Sweep copy = *this;
+    const Row to_right = right, to_left = left;
     C west, east;
     for (std::size_t k = 0; k < kVectors; ++k) west.v[k] = east.v[k] = hn::Zero(D());
-    for (std::size_t i = 0; i < width_; ++i) {
-      if constexpr (kRight) step_right(right, i, west);
+    for (std::size_t i = 0; i < copy.width_; ++i) {
+      if constexpr (kRight) copy.step_right(to_right, i, west);
       if constexpr (kLeft) {
-        const std::size_t x = width_ - 1 - i;
-        step_left(left, x, east);
-        if (x % kGroup == 0) find_winners(left, x);
+        const std::size_t x = copy.width_ - 1 - i;
+        copy.step_left(to_left, x, east);
+        if (x % kGroup == 0) copy.find_winners(to_left, x, std::min(x + kGroup, copy.width_));
       }
     }
   }
 
   /// The matching costs of a pixel, and the paths to it from the west and from the row above.
-  HWY_INLINE void step_right(const Row& row, std::size_t x, C& west) {
+  HWY_INLINE void step_right(const Row& row, std::size_t x, C& west) const {
     const D d;
-    const V slope = hn::Set(d, options_.penalties.slope);
     const std::size_t at = x * kBytes;
     const C costs = matching_costs(x);
     store(costs, row.costs + at);
     C to, north, north_west, north_east, sums;
     for (auto& v : sums.v) v = hn::Zero(d);
-    const V min = arrive(costs, west, next_to(west), slope, jump(row.along[x]), to);
+    const V min = arrive(costs, west, next_to(west), slope_, jump(row.along[x]), to);
     settle(to, min_of_lanes(d, min), sums);
     west = to;
-    V min_n = arrive(costs, north_ + at, slope, jump(down_[x]), north);
-    V min_nw = arrive(costs, north_west_ + at, slope, jump(down_right_[x]), north_west);
-    V min_ne = arrive(costs, north_east_ + at + kBytes, slope, jump(down_left_[x]), north_east);
-    V none = min_n;
-    min_of_lanes(d, min_n, min_nw, min_ne, none);
-    settle(north, min_n, sums);
-    settle(north_west, min_nw, sums);
-    settle(north_east, min_ne, sums);
+    const V min_n = arrive(costs, north_ + at, slope_, jump(down_[x]), north);
+    const V min_nw = arrive(costs, north_west_ + at, slope_, jump(down_right_[x]), north_west);
+    const V min_ne =
+        arrive(costs, north_east_ + at + kBytes, slope_, jump(down_left_[x]), north_east);
+    settle(north, min_of_lanes(d, min_n), sums);
+    settle(north_west, min_of_lanes(d, min_nw), sums);
+    settle(north_east, min_of_lanes(d, min_ne), sums);
     store(north, north_ + at);
     store(north_west, north_west_ + at);
     store(north_east, north_east_ + at);
@@ -361,62 +335,53 @@ class Sweep {
   }
 
   /// The path to a pixel from the east, which makes its sums complete.
-  HWY_INLINE void step_left(const Row& row, std::size_t x, C& east) {
+  HWY_INLINE void step_left(const Row& row, std::size_t x, C& east) const {
     const D d;
-    const V slope = hn::Set(d, options_.penalties.slope);
     const std::size_t at = x * kBytes;
     C to, sums = load(row.sums + at);
     const V min =
-        arrive(load(row.costs + at), east, next_to(east), slope, jump(row.along[x + 1]), to);
+        arrive(load(row.costs + at), east, next_to(east), slope_, jump(row.along[x + 1]), to);
     settle(to, min_of_lanes(d, min), sums);
     east = to;
     store(sums, row.sums + at);
   }
 
-  /// The disparities of minimal cost, the smallest of several, of kGroup pixels.
-  HWY_INLINE void find_winners(const Row& row, std::size_t begin) {
+  /// The winners of some pixels. Nothing here waits for the pixel before, so that a processor works
+  /// at several of them at once; from the steps of paths it would see one or two.
+  HWY_INLINE void find_winners(const Row& row, std::size_t begin, std::size_t end) const {
+    auto* winners = reinterpret_cast<Winner*>(winners_);
+    for (std::size_t x = begin; x < end; ++x) winners[x] = winner_of(row.sums + x * kBytes);
+  }
+
+  /// The disparity of minimal cost of a pixel, the smallest of several.
+  HWY_INLINE Winner winner_of(const Byte* sums) const {
     const D d;
     const V never = hn::Set(d, kNever);
-    const Byte* sums[kGroup];
-    V min[kGroup], first[kGroup], other[kGroup];
-    for (std::size_t i = 0; i < kGroup; ++i) {
-      sums[i] = row.sums + (begin + i) * kBytes;
-      min[i] = hn::Load(d, sums[i]);
-      for (std::size_t k = 1; k < kVectors; ++k)
-        min[i] = hn::Min(min[i], hn::Load(d, sums[i] + k * kLanes));
+    const C costs = load(sums);
+    V min = costs.v[0];
+    for (std::size_t k = 1; k < kVectors; ++k) min = hn::Min(min, costs.v[k]);
+    min = min_of_lanes(d, min);
+    std::size_t first = 0;
+    for (std::size_t k = kVectors; k-- > 0;) {
+      const auto lane = hn::FindFirstTrue(d, hn::Eq(costs.v[k], min));
+      if (lane >= 0) first = k * kLanes + static_cast<std::size_t>(lane);
     }
-    min_of_lanes(d, min[0], min[1], min[2], min[3]);
-    for (std::size_t i = 0; i < kGroup; ++i) {
-      first[i] = never;
-      for (std::size_t k = 0; k < kVectors; ++k) {
-        const auto is_min = hn::Eq(hn::Load(d, sums[i] + k * kLanes), min[i]);
-        first[i] = hn::Min(first[i], hn::IfThenElse(is_min, indices(k), never));
-      }
+    V other = never;
+    const V below = hn::Set(d, static_cast<Byte>(first - 1));
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      // Unsigned: the disparities next to the first and itself come to 0, 1, 2.
+      const auto is_far = hn::Gt(hn::Sub(indices(k), below), hn::Set(d, Byte{2}));
+      other = hn::Min(other, hn::IfThenElse(is_far, costs.v[k], never));
     }
-    min_of_lanes(d, first[0], first[1], first[2], first[3]);
-    for (std::size_t i = 0; i < kGroup; ++i) {
-      other[i] = never;
-      for (std::size_t k = 0; k < kVectors; ++k) {
-        // Unsigned: the disparities next to the first and itself come to 0, 1, 2.
-        const V away = hn::Add(hn::Sub(indices(k), first[i]), hn::Set(d, Byte{1}));
-        const auto is_far = hn::Gt(away, hn::Set(d, Byte{2}));
-        other[i] =
-            hn::Min(other[i], hn::IfThenElse(is_far, hn::Load(d, sums[i] + k * kLanes), never));
-      }
-    }
-    min_of_lanes(d, other[0], other[1], other[2], other[3]);
-    for (std::size_t i = 0; i < kGroup; ++i) {
-      Winner& winner = reinterpret_cast<Winner*>(winners_)[begin + i];
-      winner.cost = hn::GetLane(min[i]);
-      winner.disparity = hn::GetLane(first[i]);
-      winner.margin = static_cast<Byte>(hn::GetLane(other[i]) - winner.cost);
-      winner.fraction = fraction(sums[i], winner.disparity);
-    }
+    const Byte cost = hn::GetLane(min);
+    const auto disparity = static_cast<Byte>(first);
+    return {disparity, cost, static_cast<Byte>(hn::GetLane(min_of_lanes(d, other)) - cost),
+            fraction(sums, disparity)};
   }
 
   /// Where between its neighbours the minimum of a V through the three costs is [1/64 px].
   HWY_INLINE std::int8_t fraction(const Byte* sums, int disparity) const {
-    if (disparity == 0 || disparity + 1 >= options_.disparities) return 0;
+    if (disparity == 0 || disparity + 1 >= disparities_) return 0;
     const int below = sums[disparity - 1], at = sums[disparity], above = sums[disparity + 1];
     const int rise = std::max(below, above) - at;
     if (rise <= 0 || std::max(below, above) == kNever) return 0;
@@ -424,35 +389,40 @@ class Sweep {
   }
 
   /// The disparities that the right image agrees with: there each pixel has the disparity of the
-  /// left pixel that matches it best.
+  /// left pixel that matches it best. Without branches, which no processor could predict here.
   void write_row(std::uint16_t* disparity, Byte* margin) {
+    constexpr std::uint16_t kNone = 0xFFFF;
     const auto* winners = reinterpret_cast<const Winner*>(winners_);
-    std::memset(best_, kNever, width_);
+    auto* best = reinterpret_cast<std::uint16_t*>(best_);
+    std::fill_n(best, width_, kNone);
+    const auto is_clear = [this](const Winner& winner, std::size_t x) {
+      return winner.margin >= margin_ && winner.disparity <= x && winner.cost != kNever;
+    };
     for (std::size_t x = 0; x < width_; ++x) {
-      const Winner& winner = winners[x];
-      if (winner.margin < options_.margin || winner.disparity > x) continue;
-      const std::size_t partner = x - winner.disparity;
-      if (winner.cost >= best_[partner]) continue;
-      best_[partner] = winner.cost;
-      found_[partner] = winner.disparity;
+      const Winner winner = winners[x];
+      const bool clear = is_clear(winner, x);
+      const auto match = static_cast<std::uint16_t>(winner.cost << 8 | winner.disparity);
+      auto& partner = best[clear ? x - winner.disparity : x];
+      partner = std::min(partner, clear ? match : kNone);
     }
     for (std::size_t x = 0; x < width_; ++x) {
-      const Winner& winner = winners[x];
-      disparity[x] = 0;
-      margin[x] = 0;
-      if (winner.margin < options_.margin || winner.disparity > x || winner.cost == kNever)
-        continue;
-      const int other = found_[x - winner.disparity];
-      if (std::abs(other - winner.disparity) > options_.left_right) continue;
-      disparity[x] =
-          static_cast<std::uint16_t>(std::max(1, winner.disparity * kSubPixels + winner.fraction));
-      margin[x] = winner.margin;
+      const Winner winner = winners[x];
+      const bool clear = is_clear(winner, x);
+      const int other = best[clear ? x - winner.disparity : x] & 0xFF;
+      const bool agrees = clear && std::abs(other - winner.disparity) <= left_right_;
+      const int found = std::max(1, winner.disparity * kSubPixels + winner.fraction);
+      disparity[x] = static_cast<std::uint16_t>(agrees ? found : 0);
+      margin[x] = agrees ? winner.margin : Byte{0};
     }
   }
 
   const Stripe& stripe_;
   const SemiGlobal& options_;
   const std::size_t width_, plane_;
+  const int disparities_ = options_.disparities, margin_ = options_.margin;
+  const int left_right_ = options_.left_right;
+  const Byte* const jumps_ = options_.penalties.jump.data();
+  const V slope_ = hn::Set(D(), options_.penalties.slope);
   const V before_first_ = hn::VecFromMask(D(), hn::FirstN(D(), 1));
   const V after_last_ =
       hn::VecFromMask(D(), hn::Eq(hn::Iota(D(), Byte{0}), hn::Set(D(), Byte{kLanes - 1})));
@@ -463,8 +433,7 @@ class Sweep {
   Byte* north_east_ = nullptr;
   Byte* north_west_ = nullptr;
   Byte* winners_ = nullptr;
-  Byte* best_ = nullptr;   // cost of each pixel of the right image,
-  Byte* found_ = nullptr;  // and its disparity
+  Byte* best_ = nullptr;  // of each pixel of the right image, its cost · 256 + its disparity, u16
   // How the grey levels of a row differ from those of the row above.
   Byte* down_ = nullptr;
   Byte* down_right_ = nullptr;

@@ -9,7 +9,7 @@
 
 namespace hc::vision {
 
-/// Keeps its memory between images; for one thread at a time.
+/// Keeps its memory between images; for one thread at a time, but works on all cores.
 class SpeckleFilter {
  public:
   /// Clears the patches of fewer than `min_size` pixels. Two pixels that are one above or beside
@@ -23,15 +23,28 @@ class SpeckleFilter {
   /// Pixels of a row that belong together.
   struct Run {
     int begin, end;       // columns
-    std::uint32_t patch;  // a run of the same patch: itself for the one that stands for it
-    std::int32_t pixels;  // of the patch, in the run that stands for it
+    std::uint32_t patch;  // a run of the same patch: itself for the patch's first one
+    std::int32_t pixels;  // of the patch, in its first run
   };
 
-  std::uint32_t patch_of(std::uint32_t run);
-  void join(std::uint32_t a, std::uint32_t b);
+  /// The patches of some rows.
+  struct Patches {
+    std::vector<Run> runs;
+    std::vector<std::uint32_t> rows;  // where the runs of a row begin, and those of the last end
 
-  std::vector<Run> runs_;
-  std::vector<std::uint32_t> rows_;  // where the runs of a row begin
+    void clear();
+    void add_row(const std::uint16_t* row, int width, int range);
+    void append(const Patches& below);
+    /// Joins the patches of the row at `index` with those of the row above it.
+    void join_rows(const cv::Mat& disparity, int y, std::size_t index, int range);
+    std::uint32_t patch_of(std::uint32_t run) const;
+
+   private:
+    void join(std::uint32_t a, std::uint32_t b);
+  };
+
+  std::vector<Patches> bands_;
+  Patches all_;
 };
 
 }  // namespace hc::vision
