@@ -21,6 +21,12 @@ struct Eyes {
   cv::Mat left, right;
 };
 
+/// An image for a file, in blue, green, red.
+struct Picture {
+  std::filesystem::path path;
+  cv::Mat bgr;
+};
+
 bool is_right(const hc::Header& header) {
   return header.coord == hc::Coord::kRightImage || header.coord == hc::Coord::kRightRectified;
 }
@@ -48,7 +54,8 @@ int main(int argc, char** argv) {
                               hc::intensity_image<std::uint16_t>(), hc::intensity_image<float>()),
                    "an image; other than u8 in colours, blue for small values");
   auto save = module.parameter("save", "", "",
-                               "PNG file for the latest image, or folder/ for all as SRC_SEQ.png",
+                               "PNG file for the latest image, replaced once a second and at the "
+                               "end, or folder/ for all as SRC_SEQ.png",
                                {.positional = true});
   auto window = module.parameter("window", "auto", "", "show a window",
                                  {.choices = {"auto", "yes", "no"}, .fixed = true});
@@ -71,7 +78,9 @@ int main(int argc, char** argv) {
   std::unique_ptr<hc::vision::Display> display;
   int seen = 0;
   Eyes eyes;
-  fs::path last;  // that was saved
+  fs::path last;          // that was saved
+  Picture unsaved;        // the latest, where the file has an older one
+  bool is_fresh = false;  // the file was replaced less than a pause ago
   module.on_start([&] {
     if (*min > *max) throw hc::ModuleError("min is above max");
     if (*window == "yes" || (*window == "auto" && save->empty())) {
@@ -100,14 +109,29 @@ int main(int argc, char** argv) {
     if (!*legend) return bgr;
     return hc::vision::with_legend(bgr, span.least, span.most, unit_of(header));
   };
+  auto write = [&](const Picture& picture) {
+    if (auto saved = hc::vision::save_image(picture.path, picture.bgr); !saved)
+      throw hc::ModuleError(saved.error());
+    last = picture.path;
+  };
+  // To compress an image takes longer than to compute most.
+  auto write_latest = [&] {
+    if (!unsaved.bgr.empty()) write(unsaved);
+    unsaved = {};
+  };
+  hc::Timeout pause = module.after(std::chrono::seconds(1), [&] {
+    is_fresh = !unsaved.bgr.empty();
+    write_latest();
+    if (is_fresh) pause.restart();
+  });
   auto show = [&](const hc::Header& header, const cv::Mat& bgr) {
-    if (!save->empty()) {
-      const bool all = save->ends_with('/');
+    if (save->ends_with('/')) {
       const std::string file =
           std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";
-      last = all ? fs::path(*save) / file : fs::path(*save);
-      if (auto saved = hc::vision::save_image(last, bgr); !saved)
-        throw hc::ModuleError(saved.error());
+      write({fs::path(*save) / file, bgr});
+    } else if (!save->empty()) {
+      unsaved = {*save, bgr.clone()};
+      if (!is_fresh) pause.restart(std::chrono::nanoseconds(0));
     }
     if (display) {
       display->show("hypercolumn " + std::to_string(header.src), bgr);
@@ -132,7 +156,9 @@ int main(int argc, char** argv) {
     show(eyes.header, hc::vision::join_eyes(eyes.left, eyes.right, *stereo));
     eyes = {};
   });
+  module.finish_when_stopped();
   module.on_end([&] {
+    write_latest();
     constexpr std::chrono::milliseconds kPause{20};  // between looks for a signal
     while (display && *stay && !hc::stop_requested() && display->any_open())
       std::this_thread::sleep_for(kPause);
