@@ -163,8 +163,8 @@ void compare_speed(const Pair& pair, int rounds) {
     Disparities found;
     for (int round = 0; round <= rounds; ++round) {
       crowd.match(pair);  // caches fill, here and below
-      const double time = milliseconds([&] { crowd.match(pair); });
-      if (round > 0) together.push_back(time);
+      const double crowded = milliseconds([&] { crowd.match(pair); });
+      if (round > 0) together.push_back(crowded);
       for (std::size_t i = 0; i < all.size(); ++i)
         for (const bool is_many : {false, true}) {
           cv::setNumThreads(is_many ? cores : 1);
