@@ -37,6 +37,7 @@ void Conversation::begin(MonotonicTime now) {
 void Conversation::end() {
   phase_ = Phase::Closed;
   awaited_.clear();
+  looks_.clear();
   bytes_.clear();
   written_ = {};
   wanted_.reset();
@@ -160,10 +161,11 @@ std::chrono::nanoseconds Conversation::on_line(std::size_t bytes) const {
 }
 
 /// When the unit was where its answers of so many bytes say.
-MonotonicTime Conversation::seen_at(MonotonicTime now, std::size_t answered) const {
-  const auto earliest = asked_place_, latest = now - on_line(answered);
+MonotonicTime Conversation::seen_at(MonotonicTime now, const Look& look,
+                                    std::size_t answered) const {
+  const auto earliest = look.sent, latest = now - on_line(answered);
   if (latest >= earliest) return earliest + (latest - earliest) / 2;
-  return looked_ + (now - looked_) / 2;  // a faster line
+  return look.time + (now - look.time) / 2;  // a faster line
 }
 
 bool Conversation::awaits(Awaits answer) const {
@@ -171,10 +173,10 @@ bool Conversation::awaits(Awaits answer) const {
 }
 
 void Conversation::look(MonotonicTime now) {
-  if (phase_ != Phase::Ready || awaits(Awaits::Tilt)) return;
-  looked_ = now;
+  // The tilt of the look before may still be on the line, which is idle in this direction.
+  if (phase_ != Phase::Ready || awaits(Awaits::Pan)) return;
   say(now, pan_tilt::command(kAskPan), {Awaits::Pan});
-  asked_place_ = written_;
+  looks_.push_back({now, written_});
   say(now, pan_tilt::command(kAskTilt), {Awaits::Tilt});
 }
 
@@ -273,12 +275,14 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   constexpr std::size_t kFrame = 4;  // "* " before it, the end of the line after it
   heard_bytes_ = (axis == 0 ? 0 : heard_bytes_) + text.size() + kFrame;
   if (axis == 0) return;
+  const Look look = looks_.front();
+  looks_.pop_front();
   place_ = heard_;
-  place_time_ = looked_;
+  place_time_ = look.time;
   // An answer to a query so long ago has waited to be read: its time is unknown.
-  if (now - looked_ >= kTimeOut) return;
-  gaze_ = Gaze{heard_[0] * step(0), tilt_at(seen_at(now, heard_bytes_), -heard_[1] * step(1)),
-               seen_at(now, heard_bytes_)};
+  if (now - look.time >= kTimeOut) return;
+  const auto time = seen_at(now, look, heard_bytes_);
+  gaze_ = Gaze{heard_[0] * step(0), tilt_at(time, -heard_[1] * step(1)), time};
 }
 
 /// Where the tilt was when the pan was seen: its own question arrived a little later.

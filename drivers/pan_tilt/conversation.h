@@ -99,7 +99,9 @@ class Conversation {
   void send_pace(MonotonicTime now);
   [[nodiscard]] bool awaits(Awaits answer) const;
   [[nodiscard]] std::chrono::nanoseconds on_line(std::size_t bytes) const;
-  [[nodiscard]] MonotonicTime seen_at(MonotonicTime now, std::size_t answered) const;
+  struct Look;
+  [[nodiscard]] MonotonicTime seen_at(MonotonicTime now, const Look& look,
+                                      std::size_t answered) const;
   [[nodiscard]] double tilt_at(MonotonicTime time, double seen);
   [[nodiscard]] bool arrived() const;
   [[nodiscard]] bool is_late(MonotonicTime now) const;
@@ -127,10 +129,15 @@ class Conversation {
 
   std::deque<Awaits> awaited_;
   MonotonicTime overdue_{0};  // when the oldest answer is
-  MonotonicTime looked_{0}, heading_since_{0}, commanded_{0};
+  MonotonicTime heading_since_{0}, commanded_{0};
   double bytes_per_second_ = 0;
-  MonotonicTime written_{0};      // when all bytes are sent
-  MonotonicTime asked_place_{0};  // when the query of the place was sent
+  MonotonicTime written_{0};  // when all bytes are sent
+  /// A question for the place.
+  struct Look {
+    MonotonicTime time;  // when it was asked,
+    MonotonicTime sent;  // and when it had left
+  };
+  std::deque<Look> looks_;  // without an answer
   std::optional<Places> wanted_, heading_, place_;
   MonotonicTime wanted_until_{0};
   bool is_heading_sure_ = false;  // the unit has taken the command
