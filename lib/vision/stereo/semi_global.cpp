@@ -69,6 +69,8 @@ HWY_INLINE V blocks_from(D d, V low, V high) {
 /// The costs of all disparities of a pixel.
 template <class D, std::size_t kVectors>
 struct Costs {
+  // Not left to GCC, which compiles an implicit one without the instructions of NEON's vectors.
+  Costs() = default;
   hn::Vec<D> v[kVectors];
 };
 
