@@ -33,7 +33,7 @@ class ModuleFrames {
   struct Options {
     frames::Memory memory = {};  ///< of each joint that moves
     /// After so long without a pose none is awaited: the frame is at rest, or its sender has ended.
-    std::chrono::nanoseconds silence = std::chrono::milliseconds(200);
+    std::chrono::nanoseconds silence = std::chrono::milliseconds(100);
     std::chrono::nanoseconds first{0};  ///< how long the first pose of all is awaited
     bool input = true;                  ///< take poses by an input; false: feed() alone
   };
