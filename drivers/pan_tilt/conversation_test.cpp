@@ -231,7 +231,7 @@ TEST(Conversation, garbage_is_reported_and_skipped) {
     line.step();
     if (line.host.phase() == Phase::Ready) ++most;
   }
-  EXPECT_GT(most, 35U);  // of 30,000 ms
+  EXPECT_GT(most, 3000U);  // of 30,000 ms
   ASSERT_FALSE(line.faults.empty());
   EXPECT_TRUE(line.faults[0].starts_with("garbage: ")) << line.faults[0];
   check_recovery(line);
