@@ -89,7 +89,7 @@ class Sweep {
         plane_(round_up(width_ + kBytes + std::size_t{2} * kReadBeyond, kLanes)) {
     const auto rows =
         static_cast<std::size_t>(stripe.end - std::max(0, stripe.begin - kWarmUpRows));
-    const std::size_t row = (width_ + kGroup) * kBytes, bytes = width_ + 1 + kLanes;
+    const std::size_t row = width_ * kBytes, bytes = width_ + 1 + kLanes;
     const struct {
       Byte** memory;
       std::size_t size;
@@ -104,7 +104,7 @@ class Sweep {
                  {&north_, row},
                  {&north_east_, row + kBytes},
                  {&north_west_, row + rows * kBytes},
-                 {&winners_, sizeof(Winner) * (width_ + kGroup)},
+                 {&winners_, sizeof(Winner) * width_},
                  {&best_, 2 * bytes},
                  {&down_, bytes},
                  {&down_right_, bytes},
