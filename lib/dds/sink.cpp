@@ -56,7 +56,7 @@ class DdsSink final : public Sink {
         dds_create_writer(participant_->handle(), participant_->topic(), qos.get(), listener.get());
     if (writer < 0) return failed("writer of " + place.topic, writer);
     writer_ = Entity(writer);
-    return {};
+    return keep_instance(writer, place.topic);
   }
 
   Status send(const Message& message) override {
@@ -130,6 +130,14 @@ class DdsSink final : public Sink {
   }
 
  private:
+  /// A topic without a key has one instance. Cyclone DDS would make it for each sample again, and
+  /// wake a thread to delete it.
+  static Status keep_instance(dds_entity_t writer, const std::string& topic) {
+    dds_instance_handle_t handle = 0;
+    const auto kept = dds_register_instance(writer, &handle, &handle);  // whatever the data
+    return kept == DDS_RETCODE_OK ? Status() : failed("writer of " + topic, kept);
+  }
+
   /// How many readers the next message wants.
   [[nodiscard]] std::uint32_t needed() const {
     if (has_begun_ || wanted_ < 0) return 1;

@@ -3,9 +3,11 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <dds/dds.h>
 #include <dds/ddsc/dds_rhc.h>
+#include <dds/ddsi/ddsi_tkmap.h>
 
 #include <dds/participant.h>
 #include <dds/source.h>
@@ -30,6 +32,7 @@ class DdsSource;
 struct Cache : dds_rhc {
   explicit Cache(DdsSource& to);
   DdsSource& source;
+  ddsi_tkmap_instance* instance = nullptr;  // kept until the domain ends
 };
 
 /// A sample that waits, and who has sent it.
@@ -110,7 +113,7 @@ class DdsSource final : public Source {
 
   /// Takes a sample, on a thread of Cyclone's; false where there is no room for it now.
   bool store(dds_instance_handle_t writer, ddsi_serdata& sample) {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     if (is_closing_ || sample.kind != SDK_DATA) return true;
     const auto octets = octets_of(sample);
     if (octets == 0) {
@@ -118,8 +121,10 @@ class DdsSource final : public Source {
       return true;
     }
     if (loses_nothing_ && queue_.bytes() >= kWindow) return false;
-    if (queue_.empty()) event_.raise();
+    const bool is_first = queue_.empty();
     queue_.push({Sample(ddsi_serdata_ref(&sample)), writer}, octets + kBesides, losses_);
+    lock.unlock();
+    if (is_first) event_.raise();
     return true;
   }
 
@@ -207,8 +212,12 @@ class DdsSource final : public Source {
 dds_rhc_ops make_cache_ops() {
   dds_rhc_ops ops{};
   ops.rhc_ops.store = [](ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* sample,
-                         ddsi_tkmap_instance*) {
-    return reinterpret_cast<Cache*>(cache)->source.store(writer->iid, *sample);
+                         ddsi_tkmap_instance* instance) {
+    auto& own = *reinterpret_cast<Cache*>(cache);
+    // The topic's only one. Cyclone DDS would make it for each sample again, and wake a thread to
+    // delete it.
+    if (std::exchange(own.instance, instance) == nullptr) ddsi_tkmap_instance_ref(instance);
+    return own.source.store(writer->iid, *sample);
   };
   ops.rhc_ops.unregister_wr = [](ddsi_rhc*, const ddsi_writer_info*) {};
   ops.rhc_ops.relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {};
