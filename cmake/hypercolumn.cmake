@@ -233,7 +233,7 @@ function(hc_install_package)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/hypercolumn)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/graphs ${PROJECT_BINARY_DIR}/share/hypercolumn/graphs SYMBOLIC)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/graphs DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn)
-  install(FILES ${PROJECT_SOURCE_DIR}/spec/mtp-1.md
+  install(FILES ${PROJECT_SOURCE_DIR}/spec/mtp-1.md ${PROJECT_SOURCE_DIR}/spec/message.idl
           DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn/spec)
 endfunction()
 

@@ -86,6 +86,21 @@ TEST(Dds, AllReadersGetEachMessage) {
   sender.join();
 }
 
+TEST(Dds, WhatIsSentInABurstArrivesThoughNoMoreFollows) {
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri);
+  const auto sink = sink_of(uri + "&readers=1");
+  Message message;
+  for (const int count : {1, 2, 10, 1000, 1}) {
+    for (int i = 0; i < count; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 500)));
+    for (int i = 0; i < count; ++i) {
+      ASSERT_TRUE(*receive(*source, message));
+      EXPECT_EQ(message.header.seq, i);
+      EXPECT_EQ(message.characters(), numbered(i, i % 500).characters());
+    }
+  }
+}
+
 TEST(Dds, AllWritersAreRead) {
   const auto uri = fresh_topic();
   const auto source = source_of(uri);
