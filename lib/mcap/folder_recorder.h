@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Records streams into a folder: a file STREAM.mtp for each, of its messages and nothing else.
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/link/link.h>
+
+namespace hc::mcap {
+
+/// Writes as messages come. Ends at the first failure: then all files hold whole messages alone.
+class FolderRecorder {
+ public:
+  /// Makes the folder where it is not there. Where it holds one of these files, which an earlier
+  /// process of the module has written, it is FOLDER_2 instead, and so on.
+  /// @param streams  names of files, each another.
+  ///
+  /// Errors: Invalid (names that cannot be those of files), System.
+  static Result<std::unique_ptr<FolderRecorder>> make(const std::string& folder,
+                                                      const std::vector<std::string>& streams);
+
+  /// Errors: System (the disk, with the file's path); each later call gives the same.
+  Status record(std::size_t stream, const Message& message);
+
+  /// Writes what is left. Errors: System; also what went wrong before.
+  Status close();
+
+  /// Where the files are.
+  [[nodiscard]] const std::string& folder() const { return folder_; }
+  /// Messages that record() was given.
+  [[nodiscard]] std::uint64_t messages() const { return messages_; }
+  /// Those of them that are in no file; after close().
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+
+ private:
+  struct Stream {
+    std::string path;
+    std::unique_ptr<Sink> sink;            // null: closed
+    std::deque<std::uint64_t> ends = {0};  // of the last messages, in the file [byte]
+  };
+
+  explicit FolderRecorder(std::string folder) : folder_(std::move(folder)) {}
+  void end(Stream& stream);
+
+  const std::string folder_;
+  std::vector<Stream> streams_;
+  Status status_;
+  std::uint64_t messages_ = 0, lost_ = 0;
+};
+
+}  // namespace hc::mcap
