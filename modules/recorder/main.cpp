@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records all that comes into MCAP. `hc run --record FILE.mcap` adds it to a graph, with an input
-// for each output that it records.
+// Records all that comes, into MCAP or a folder. `hc run --record FILE.mcap` adds it to a graph,
+// with an input for each output that it records, and `--record FOLDER` where modules run on other
+// hosts.
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <hc/os/descriptor.h>
+#include <mcap/folder_recorder.h>
 
 #include "graph_metadata.h"
 
@@ -75,13 +77,17 @@ int main(int argc, char** argv) {
   ::pthread_sigmask(SIG_BLOCK, &saves, nullptr);
   const hc::internal::Descriptor signals(::signalfd(-1, &saves, SFD_NONBLOCK | SFD_CLOEXEC));
 
-  hc::Module module{"recorder", "Records streams into a file of MCAP, which viewers read."};
+  hc::Module module{"recorder",
+                    "Records streams into a file of MCAP, which viewers read, or into a folder."};
   const auto names = stream_names(argc, argv);
   std::vector<hc::Input<hc::AnyKind>> inputs;
   inputs.reserve(names.size());
   for (const auto& [input, name] : names)
     inputs.push_back(module.input(input, hc::anything(), "recorded as " + name));
-  auto file = module.parameter("file", "recording.mcap", "", "output file", {.fixed = true});
+  auto file = module.parameter("file", "", "", "output file, of MCAP", {.fixed = true});
+  auto folder = module.parameter("folder", "", "",
+                                 "in place of `file`: a file STREAM.mtp for each stream goes there",
+                                 {.fixed = true});
   auto streams = module.parameter(
       "streams", "", "", "inputs and names of their streams, INPUT=NAME …", {.fixed = true});
   auto split = module.parameter(
@@ -98,15 +104,17 @@ int main(int argc, char** argv) {
   auto frames = module.parameter("frames", "", "", "frames of the graph, as text", {.fixed = true});
 
   std::unique_ptr<hc::mcap::Recorder> recorder;
+  std::unique_ptr<hc::mcap::FolderRecorder> folder_recorder;  // one of the two
   std::unique_ptr<GraphMetadata> metadata;
   std::string path;
   bool has_failed = false, was_set = false;
   std::uint64_t unrecorded = 0;
 
+  auto close = [&] { return recorder ? recorder->close() : folder_recorder->close(); };
   auto fail_once = [&](const hc::Status& status) {
     if (status || has_failed) return;
     has_failed = true;
-    static_cast<void>(recorder->close());
+    static_cast<void>(close());
     module.log("error: recording ended: " + status.error().detail + "; " + path +
                " holds what came before");
   };
@@ -121,6 +129,21 @@ int main(int argc, char** argv) {
     options.keep = bytes_of("keep", *keep);
     options.last =
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*last));
+    if (file->empty() == folder->empty())
+      throw hc::ModuleError(
+          hc::Error{hc::Code::Invalid, "either `file` or `folder` is to be given"});
+    if (!folder->empty()) {
+      if (options.split > 0 || options.keep > 0 || *last > 0 || !when->empty())
+        throw hc::ModuleError(
+            hc::Error{hc::Code::Invalid, "`split`, `keep`, `last` and `when` are for `file`"});
+      std::vector<std::string> streams_of_folder;
+      streams_of_folder.reserve(names.size());
+      for (const auto& [input, name] : names) streams_of_folder.push_back(name);
+      folder_recorder =
+          hc::value_or_end(hc::mcap::FolderRecorder::make(*folder, streams_of_folder));
+      path = folder_recorder->folder();
+      return;
+    }
     options.file = options.split == 0 && *last == 0 ? free_name(*file) : *file;
     path = options.file;
     recorder = hc::value_or_end(hc::mcap::Recorder::make(options));
@@ -135,7 +158,8 @@ int main(int argc, char** argv) {
         ++unrecorded;
         return;
       }
-      fail_once(recorder->record(i, message, module.now()));
+      fail_once(recorder ? recorder->record(i, message, module.now())
+                         : folder_recorder->record(i, message));
       if (names[i].name != *when || *last == 0) return;
       const bool is_set = message.plain() && !message.elements.empty() &&
                           hc::visit_scalar(message.header.info.scalar, [&](auto zero) {
@@ -147,23 +171,26 @@ int main(int argc, char** argv) {
   module.on_readable([&] { return signals.get(); },
                      [&] {
                        signalfd_siginfo info{};
-                       while (::read(signals.get(), &info, sizeof info) > 0) save();
+                       while (::read(signals.get(), &info, sizeof info) > 0)
+                         if (recorder != nullptr) save();
                      });
   module.on_readable(
       [&] { return metadata != nullptr && !has_failed ? metadata->descriptor() : -1; },
       [&] { metadata->record(*recorder, module.now()); });
   module.every(std::chrono::milliseconds(250), [&] {
     if (metadata != nullptr && !has_failed) metadata->record(*recorder, module.now());
-    if (!has_failed) fail_once(recorder->poll());
+    if (recorder != nullptr && !has_failed) fail_once(recorder->poll());
   });
   module.finish_when_stopped();
   module.on_end([&] {
     metadata.reset();
-    if (!has_failed) fail_once(recorder->close());
-    const std::uint64_t recorded = recorder->messages() - recorder->lost();
+    if (!has_failed) fail_once(close());
+    const std::uint64_t lost = recorder ? recorder->lost() : folder_recorder->lost();
+    const std::uint64_t recorded =
+        (recorder ? recorder->messages() : folder_recorder->messages()) - lost;
     std::string text =
         hc::format("result: {} message{} in {}", recorded, recorded == 1 ? "" : "s", path);
-    if (has_failed) text += hc::format(", {} not recorded", unrecorded + recorder->lost());
+    if (has_failed) text += hc::format(", {} not recorded", unrecorded + lost);
     module.log(text);
   });
   return module.run(argc, argv);
