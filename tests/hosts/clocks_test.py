@@ -12,6 +12,7 @@ import time
 import unittest
 
 from hosts import BRIGHTNESS, BUILD, CAMERA, FULL, HC, HostsTest, WATCHDOG, wait_until
+from recordings import read_messages
 
 # Until a clock that was set is logged [s].
 TO_NOTICE = 1 if FULL else WATCHDOG
@@ -60,7 +61,8 @@ class Clocks(HostsTest):
         )
         for hours in (1, -1):
             self.write("offset", str(3600 * hours))
-            process = self.run_graph("", "here: started")
+            begin = time.time()
+            process = self.run_graph("--record kept", "here: started")
             messages = self.observe(process)
             state = self.state(
                 messages, lambda state: self.rate(state, "camera.left", "here.image")
@@ -75,6 +77,13 @@ class Clocks(HostsTest):
             self.ages_are_right(messages)
             self.clock_is(self.state(messages, lambda s: abs(s["hosts"][0]["offset"]) > 7000), 7200)
             self.stop(process)
+            recorded = [
+                each.time / 1e9 for each in read_messages(self.path("kept/camera.left.mtp"))
+            ]
+            self.assertGreater(len(recorded), 10)
+            self.assertEqual(recorded, sorted(recorded))
+            self.assertGreater(recorded[0], begin - 0.002)
+            self.assertLess(recorded[-1], time.time() + 0.002)
 
     def clock_is(self, state, offset):
         host = state["hosts"][0]

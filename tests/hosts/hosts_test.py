@@ -11,6 +11,7 @@ to the times that doc/hosts.md promises.
 import os
 import pathlib
 import re
+import resource
 import signal
 import socket
 import subprocess
@@ -19,8 +20,32 @@ import time
 import unittest
 
 from hosts import BRIGHTNESS, BUILD, CAMERA, FULL, HC, HostsTest, ROOT, WATCHDOG, wait_until
+from recordings import read_messages
 
 TIMES = 50 if FULL else 2
+# What one module sends passes both hosts, there and back.
+DELAYS = """
+[modules.source]
+program = "{0}/bidder"
+parameters = {{ script = "0:1 2:end", rate = 5 }}
+[modules.one]
+program = "{0}/delay"
+host = "h1"
+inputs.in = "source.command"
+[modules.two]
+program = "{0}/delay"
+host = "h2"
+inputs.in = "one.out"
+[modules.three]
+program = "{0}/delay"
+host = "h1"
+inputs.in = "two.out"
+[modules.four]
+program = "{0}/delay"
+inputs.in = "three.out"
+""".format(
+    BUILD / "tests/programs"
+)
 
 
 class Hosts(HostsTest):
@@ -118,6 +143,100 @@ class Hosts(HostsTest):
         self.stop(process)
         self.assert_empty(first, second, third)
         self.assertRegex(self.shell("hc info all.mcap"), "camera.left")
+
+    def test_a_recording_into_a_folder(self):
+        first, second = self.network.add(2)
+        self.write_graph(self.tables(first, second) + DELAYS)
+        self.shell("mkdir kept; echo old >kept/one.out.mtp; echo other >kept/other.mtp")
+        self.shell("timeout %d hc run g.toml --quiet --record kept" % WATCHDOG)
+        self.assert_empty(first, second)
+        # What is linked, and the traces, of all modules, and nothing else.
+        outputs = ["source.command", "one.out", "two.out", "three.out"]
+        traces = [name + ".trace" for name in ("source", "one", "two", "three", "four")]
+        files = sorted(name + ".mtp" for name in [*outputs, *traces, "other"])
+        self.assertEqual(sorted(os.listdir(self.path("kept"))), files)
+        kept = {name: read_messages(self.path("kept/%s.mtp" % name)) for name in outputs}
+        count = len(kept["source.command"])
+        self.assertGreater(count, 5)
+        self.assertEqual({len(each) for each in kept.values()}, {count})
+        # An output has the time of what it was made from.
+        times = [message.time for message in kept["source.command"]]
+        self.assertEqual([message.time for message in kept["three.out"]], times)
+        self.assertIn("%d messages" % count, self.shell("hc info kept/two.out.mtp"))
+        out = self.shell("hc replay kept --graph g.toml --check")
+        for name in ("one.out", "two.out", "three.out"):
+            self.assertIn("%s: %d messages, the same\n" % (name, count), out)
+        out = self.shell("hc trace four.in --graph g.toml --recording kept")
+        self.assertIn("critical path of %d of %d" % (count, count), out)
+        self.assert_empty(first, second)
+
+    def recorder(self, messages):
+        """The number of its process, once it has one."""
+        state = self.state(
+            messages, lambda state: (self.module(state, "recorder") or {}).get("pid")
+        )
+        return self.module(state, "recorder")["pid"]
+
+    def test_a_full_disk_ends_a_recording_into_a_folder_and_not_the_robot(self):
+        (host,) = self.network.add()
+        self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % "")
+        self.shell("mkdir -p kept/camera.left.mtp/x")
+        self.shell("timeout %d hc run g.toml --record kept" % WATCHDOG, 1)
+        self.assertIn("hc run: System: kept/camera.left.mtp: Directory not empty\n", self.err)
+        self.assertNotIn("started", self.err)
+        self.shell("rm -r kept")
+        process = self.run_graph("--record kept")
+        messages = self.observe(process)
+        self.flows(messages)
+        resource.prlimit(self.recorder(messages), resource.RLIMIT_FSIZE, (2 << 20, 2 << 20))
+        lines = self.await_lines(process, "error: recording ended")
+        self.assertRegex(
+            lines[-1],
+            r"ended: kept/camera\.left\.mtp: write\(\): File too large; kept holds what came before",
+        )
+        state = self.state(messages)
+        self.flows(messages, state["links"][0]["messages"] + 50)
+        out, err = self.stop(process)
+        self.assertNotIn("recording ended", err)  # once is enough
+        said = re.search(r"recorder: (\d+) messages in kept, (\d+) not recorded", out)
+        self.assertGreater(int(said[2]), 0)
+        kept = {
+            name: read_messages(self.path("kept/" + name)) for name in os.listdir(self.path("kept"))
+        }
+        self.assertEqual(int(said[1]), sum(map(len, kept.values())))
+        self.assertGreater(len(kept["camera.left.mtp"]), 100)
+        self.assert_empty(host)
+
+    def test_a_recording_goes_on_in_another_folder(self):
+        """Where the first host comes into the graph, and when the recorder is restarted."""
+        (host,) = self.network.add()
+        self.write_graph(self.tables(host) + CAMERA.replace('host = "%s"', "") + BRIGHTNESS % "")
+        process = self.run_graph("--record kept")
+        messages = self.observe(process)
+        self.state(messages, lambda state: self.rate(state, "camera.left", "brightness.image"))
+        self.assertEqual(self.ask(process, "add more@h1 brightness"), ["ok"])
+        wait_until(lambda: self.count("kept_2") > 50)
+        before = self.count("kept")
+        self.assertGreater(before, 0)
+        self.kill(self.recorder(messages))
+        wait_until(lambda: self.count("kept_3") > 50)
+        # A module that is restarted is recorded into the same file.
+        before_kill = self.count("kept_3")
+        self.kill(self.module(self.state(messages), "camera")["pid"])
+        wait_until(lambda: self.count("kept_3") > before_kill + 50)
+        self.assertEqual(self.ask(process, "remove more"), ["ok"])
+        wait_until(lambda: self.count("kept_4") > 50)
+        self.stop(process)
+        self.assertEqual(self.count("kept"), before)
+        self.assertIn("seq restarted 1 time", self.shell("hc info kept_3/camera.left.mtp"))
+        for folder, has_more in (("kept", 0), ("kept_2", 1), ("kept_3", 1), ("kept_4", 0)):
+            self.assertEqual(("more.trace.mtp" in os.listdir(self.path(folder))), has_more, folder)
+        self.assert_empty(host)
+
+    def count(self, folder):
+        """How many images a recording has by now."""
+        path = pathlib.Path(self.path(folder), "camera.left.mtp")
+        return path.stat().st_size // (80 * 60 * 3) if path.exists() else 0
 
     def refuses_who_has_no_key(self, host):
         """All ports that modules listen at speak TLS alone, and close before a byte of MTP."""

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings in MCAP wherever a recording goes, and a recorder that is killed, full or too slow. In
-full, with 200 kills, by HC_FULL=1."""
+"""Recordings in MCAP wherever a recording goes, those of the module recorder in folders, and a recorder
+that is killed, full or too slow. In full, with 200 kills, by HC_FULL=1."""
 
 import json
 import os
@@ -15,7 +15,7 @@ import struct
 import subprocess
 import unittest
 
-from harness import Pipes, WATCHDOG, wait_until
+from harness import BUILD, Pipes, WATCHDOG, wait_until
 
 KILLS = 200 if os.environ.get("HC_FULL") else 20
 CAMERA = "hc camera $HC_DATA/aloeL.jpg --width 80 --height 60 --loop --rate 50"
@@ -81,6 +81,43 @@ class Recordings(Pipes):
             self.shell("hc send 1 | hc recorder --file=x.mcap --streams%s'a=eye.left'" % equals)
             self.assertRegex(self.shell("hc info x.mcap"), r"\neye\.left +1 ")
             self.shell("rm x.mcap")
+
+    def test_the_recorder_writes_a_folder_instead(self):
+        self.shell(CAMERA + " --count 5 >in.mtp")
+        for kept in ("kept", "kept_2"):
+            self.shell("hc recorder --folder kept <in.mtp")
+            self.assertIn("5 messages in %s\n" % kept, self.err)
+            self.shell("cmp in.mtp %s/in.mtp" % kept)
+        for options in ("", "--file x.mcap --folder kept"):
+            self.shell("hc recorder %s <in.mtp" % options, 2)
+            self.assertIn("either `file` or `folder` is to be given", self.err)
+        for option in ("--split 1G", "--last 3", "--when a.b"):
+            self.shell("hc recorder --folder kept %s <in.mtp" % option, 2)
+            self.assertIn("`split`, `keep`, `last` and `when` are for `file`", self.err)
+
+    def test_a_folder_that_cannot_be_written_is_an_error_before_anything_starts(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        for made in ("true", "mkdir disk/kept"):
+            text = made + " && mount -o remount,ro disk && hc run g.toml --record disk/kept"
+            self.assertEqual(self.on_a_small_disk(text), 1, self.err)
+            self.assertEqual(self.err, "hc run: System: disk/kept: Read-only file system\n")
+            self.shell("rmdir disk")
+
+    def test_a_recorder_that_is_not_installed_is_named(self):
+        self.shell("mkdir -p own/bin own/libexec/hypercolumn; cp %s/bin/hc own/bin" % BUILD)
+        for name in ("camera", "brightness", "view"):
+            module = "libexec/hypercolumn/" + name
+            os.symlink(BUILD / module, self.path("own/" + module))
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        self.shell("own/bin/hc run g.toml --record x.mcap", 2)
+        self.assertEqual(self.err, 'hc run: error: --record: no program "recorder"\n')
+
+    def test_a_module_that_writes_its_file_itself_fails_on_a_full_disk(self):
+        text = GRAPH.replace("ends_graph = true", 'restart = "never"')
+        self.write("g.toml", text % (self.environment["HC_DATA"], 100))
+        run = "hc run g.toml --record disk/kept --set camera.width=640 --set camera.height=480"
+        self.assertEqual(self.on_a_small_disk(run), 1, self.err)
+        self.assertIn("camera: System: left: write(): No space left on device\n", self.err)
 
     def test_a_graph_is_recorded_into_one_file(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 30))

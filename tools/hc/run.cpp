@@ -3,9 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <map>
+#include <system_error>
 #include <utility>
 
 #include <hc/base/format.h>
@@ -120,27 +122,29 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
     throw Failure({hc::Code::Invalid, "--" + load.recorder.begin()->first +
                                           " is for recordings in MCAP: --record FILE.mcap"});
   } else if (!place.empty()) {
-    load.record = place;
+    load.record = load.recorder["folder"] = place;
     std::filesystem::create_directories(place, failed);
+    if (!failed && ::access(place.c_str(), W_OK | X_OK) != 0)
+      failed.assign(errno, std::generic_category());
     if (failed) throw Failure({hc::Code::System, place + ": " + failed.message()});
   }
 }
 
-/// A module writes a file of a folder itself, and so on its own host.
-void check_record(const hc::Plan& plan, const hc::LoadOptions& load) {
-  for (const auto& module : plan.modules)
-    if (!load.record.empty() && !module.host.empty())
-      throw Failure({hc::Code::Invalid, "--record " + load.record + ": " + module.name +
-                                            " runs on host " + module.host +
-                                            "; record into one file: --record FILE.mcap"});
-}
-
-/// A single file is overwritten; numbered ones stay.
-void remove_previous_file(const RunOptions& options, const hc::LoadOptions& load) {
+/// A single file is overwritten; numbered ones stay. So are those of a folder: the module that
+/// records leaves what it finds, since it may have been restarted.
+void remove_previous_files(const RunOptions& options, const hc::LoadOptions& load,
+                           const hc::LoadedGraph& graph) {
+  namespace fs = std::filesystem;
   std::error_code failed;
   const bool is_numbered = load.recorder.contains("split") || load.recorder.contains("last");
-  if (options.record.ends_with(".mcap") && !is_numbered)
-    std::filesystem::remove(options.record, failed);
+  if (options.record.ends_with(".mcap") && !is_numbered) fs::remove(options.record, failed);
+  if (load.record.empty() || graph.recorder.empty()) return;
+  for (const auto& link : graph.plan->links) {
+    if (!link.to.starts_with(graph.recorder + ".")) continue;
+    const auto file = (fs::path(load.record) / (link.from + ".mtp")).string();
+    fs::remove(file, failed);
+    if (failed) throw Failure({hc::Code::System, file + ": " + failed.message()});
+  }
 }
 
 /// Logs the reason as everything else was logged: its reader may have ended.
@@ -159,8 +163,7 @@ void run(const RunOptions& options) {
   load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
-  check_record(*graph.plan, load_options);
-  remove_previous_file(options, load_options);
+  remove_previous_files(options, load_options, graph);
   StatusLine status(!options.quiet);
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
     std::string list;

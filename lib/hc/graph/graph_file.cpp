@@ -254,7 +254,7 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
   constexpr const char* kKept = "1024";  // messages, while the recorder waits for the disk
   GraphModule recorder;
   recorder.name = "recorder";
-  while (graph.find(recorder.name) != nullptr) recorder.name += "_mcap";
+  while (graph.find(recorder.name) != nullptr) recorder.name += "_added";
   recorder.program.value = program;
   for (const auto& [name, value] : parameters) recorder.parameters[name] = {value, {}};
   std::vector<std::string> inputs;

@@ -165,8 +165,9 @@ Status check_policy(Uri policy);
 void record_outputs(Graph& graph, const std::vector<std::string>& traced,
                     const std::string& folder);
 
-/// The same in one file of MCAP: adds a module `recorder`, which makes no other wait.
-/// @param parameters  of it.
+/// The same by a module `recorder`, which makes no other wait: into one file of MCAP, or into a
+/// folder on the host of `hc run`.
+/// @param parameters  of it: `file` or `folder`, and more.
 /// @returns  its inputs, one for each output, which `--describe` of its program does not say.
 std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
                                       const std::string& program,

@@ -254,6 +254,24 @@ from = "tcp:7000"
             "w.focus file:kept/w.focus.mtp");
 }
 
+TEST(GraphFile, ARecorderHasAnInputForEveryLinkedOutput) {
+  auto graph = parse(R"([modules.a]
+[modules.recorder]
+inputs.in = "a.out"
+)");
+  ASSERT_TRUE(graph);
+  const auto inputs = add_recorder(*graph, {"a"}, "/bin/recorder", {{"folder", "kept"}});
+  EXPECT_EQ(inputs, (std::vector<std::string>{"stream_0", "stream_1"}));
+  const auto& recorder = graph->modules.back();
+  EXPECT_EQ(recorder.name, "recorder_added");  // the other name is taken
+  EXPECT_EQ(recorder.parameters.at("folder").value, "kept");
+  EXPECT_EQ(recorder.parameters.at("streams").value, "stream_0=a.out stream_1=a.trace");
+  ASSERT_EQ(graph->links.size(), 3U);
+  EXPECT_EQ(graph->links[2].from.text() + " " + graph->links[2].to.text(),
+            "a.trace recorder_added.stream_1");
+  EXPECT_EQ(graph->links[2].policy.at("keep").value, "1024");
+}
+
 TEST(GraphFile, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {
   auto graph = parse(R"(speed = 3
 [modules.Eye]

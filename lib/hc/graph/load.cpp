@@ -154,7 +154,8 @@ class FileLoader : public GraphLoader {
     Answers described;
     const HostPlaces places = find_programs_elsewhere(graph, problems, described, stop);
     LoadedGraph loaded{graph, {}, {}, {}};
-    const std::string recorder = options_.recorder.empty() ? "" : find_program("recorder");
+    const bool has_recorder = needs_recorder(graph);
+    const std::string recorder = has_recorder ? find_program("recorder") : "";
     std::vector<std::string> recorded;
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {
@@ -171,11 +172,16 @@ class FileLoader : public GraphLoader {
         return with_inputs(*known->second, recorded);
       return known->second;
     };
-    if (!options_.record.empty())
-      record_outputs(graph, traced_modules(graph, describe), options_.record);
-    if (!options_.recorder.empty()) {
+    if (has_recorder && recorder.empty()) {
+      loaded.problems = problems.lines();
+      loaded.problems.push_back("--record: " + why_no_program("recorder", "recorder"));
+      return loaded;
+    }
+    if (has_recorder) {
       recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
       loaded.recorder = graph.modules.back().name;
+    } else if (!options_.record.empty()) {
+      record_outputs(graph, traced_modules(graph, describe), options_.record);
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
       const auto there = host.empty() ? nullptr : options_.hosts->find(host);
@@ -184,8 +190,19 @@ class FileLoader : public GraphLoader {
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? hold_port : HoldPort(), places);
     loaded.problems = problems.lines();
-    if (problems.empty()) loaded.plan = std::move(plan);
+    if (problems.empty()) {
+      loaded.plan = std::move(plan);
+      has_recorder_ = has_recorder;
+    }
     return loaded;
+  }
+
+  /// Whether a module is to record, and not each module what it sends, which it would do on its own
+  /// host. Once it is so it remains so, lest a module begins a file again.
+  [[nodiscard]] bool needs_recorder(const Graph& graph) const {
+    const bool spans_hosts = std::ranges::any_of(
+        graph.modules, [](const auto& module) { return !module.host.value.empty(); });
+    return !options_.recorder.empty() && (options_.record.empty() || has_recorder_ || spans_hosts);
   }
 
   /// Connects to the hosts that modules run on, and asks each where its programs are and for their
@@ -288,6 +305,7 @@ class FileLoader : public GraphLoader {
 
   LoadOptions options_;
   std::map<std::string, Described> described_;  // by program
+  bool has_recorder_ = false;                   // in the last plan
 };
 
 }  // namespace
