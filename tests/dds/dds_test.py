@@ -68,7 +68,9 @@ class Dds(unittest.TestCase):
         reader = self.start(self.peer("read"))
         path = pathlib.Path(self.folder.name, "both")
         path.write_bytes(b"".join(MESSAGES))
-        self.output(self.start([HC, "play", "--speed", "max", "--out", self.uri + "&readers=1", path]))
+        self.output(
+            self.start([HC, "play", "--speed", "max", "--out", self.uri + "&readers=1", path])
+        )
         self.assertEqual(self.output(reader), b"".join(MESSAGES))
 
 
