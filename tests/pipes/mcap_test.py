@@ -172,16 +172,22 @@ class Recordings(Pipes):
         resource.setrlimit(resource.RLIMIT_FSIZE, (10 << 20, 10 << 20))
 
     def test_a_full_disk_ends_the_recording_and_not_the_robot(self):
-        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 200))
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 0))
         runner = self.start(
-            "exec hc run g.toml --record x.mcap --set camera.width=640 --set camera.height=480"
+            "exec hc run g.toml --as full --record x.mcap --set camera.width=640"
+            " --set camera.height=480 2>log"
         )
         for pid in wait_until(self.recorders):
             resource.prlimit(pid, resource.RLIMIT_FSIZE, (8 << 20, 8 << 20))
-        out, err = (text.decode() for text in runner.communicate(timeout=WATCHDOG))
-        self.assertEqual(runner.returncode, 0, err)
-        self.assertEqual(err.count("error: recording ended"), 1, err)
-        self.assertIn("File too large", err)
+        wait_until(lambda: "error: recording ended" in self.read("log"))
+        sent = lambda: self.sent("full", "camera.left", "brightness.image")
+        before = sent()
+        wait_until(lambda: sent() > before + 10)  # the robot continues
+        runner.send_signal(signal.SIGTERM)
+        out = runner.communicate(timeout=WATCHDOG)[0].decode()
+        self.assertEqual(runner.returncode, 0, self.read("log"))
+        self.assertEqual(self.read("log").count("error: recording ended"), 1, self.read("log"))
+        self.assertIn("File too large", self.read("log"))
         said = re.search(r"recorder: (\d+) messages in x\.mcap, (\d+) not recorded", out)
         self.assertEqual(int(said[1]), len(self.seqs("x.mcap")))
         self.assertGreater(int(said[2]), 0)
