@@ -115,13 +115,12 @@ try {
     await node.waitFor({ timeout: watchdog });
     await node.evaluate((element) => {
       new MutationObserver(() => {
-        if (element.classList.contains("broken"))
-          window.red ??= performance.timeOrigin + performance.now();
+        if (element.classList.contains("broken")) window.red ??= Date.now();
       }).observe(element, { attributes: true });
       window.red = undefined;
     });
     const { pid } = graph.module(name);
-    const killed = performance.timeOrigin + performance.now();
+    const killed = Date.now();
     process.kill(pid, "SIGKILL");
     const red = await page.waitForFunction(() => window.red, null, { timeout: watchdog });
     reds.push((await red.jsonValue()) - killed);

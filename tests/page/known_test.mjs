@@ -110,6 +110,17 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     assert.match(header.join(" "), /^1 \d+ 0 \d+ 8 \d{19} 30301 0 7 160 120$/);
   });
 
+  test("a page knows how old an image is although its machine has slept", async () => {
+    const slept = await context.newPage();
+    await slept.addInitScript(() => {
+      const now = performance.now.bind(performance);
+      performance.now = () => now() - 7_200_000; // this clock does not count sleep
+    });
+    await show("stream,port=known.image", slept);
+    await slept.locator(".header-strip", { hasText: /\d ms old/ }).waitFor();
+    await slept.close();
+  });
+
   test("depth has the colours of its legend, and its value is under the pointer", async () => {
     await show("stream,port=known.depth");
     await drawn(".picture");

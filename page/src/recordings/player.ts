@@ -78,7 +78,7 @@ export class ReplaySource implements Source {
     const kind = `${header.info} ${header.coord} ${header.width} ${header.height}`;
     if (kind !== this.kind || index === this.shown) this.headers.set(headerLine(header));
     this.kind = kind;
-    const at = performance.timeOrigin + performance.now();
+    const at = Date.now();
     const arrival = { message, at, bytes: message.elements.byteLength };
     await Promise.all([...this.messages].map((consumer) => consumer(arrival)));
   }

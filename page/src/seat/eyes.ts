@@ -130,7 +130,7 @@ export class Eye {
       width: sensor.width,
       height: sensor.height,
       arrived: at,
-      decoded: performance.timeOrigin + performance.now(),
+      decoded: Date.now(),
     };
     this.shown(this.picture);
   }

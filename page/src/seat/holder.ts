@@ -23,11 +23,6 @@ const slowFor = 3000;
 /** A head that is turned by less than this is at rest [rad]. */
 const still = 0.01;
 
-/** The time of the wall clock, finer than a millisecond [ms since the Unix epoch]. */
-export function wallClock(): number {
-  return performance.timeOrigin + performance.now();
-}
-
 /**
  * The supervisor's seat. It is left when the page is hidden: a person who does not see the robot
  * does not drive it.
@@ -130,7 +125,7 @@ export class Seat {
 
   /** The person's head is turned so, since it was zeroed. */
   turn({ roll, pitch, yaw }: Angles): void {
-    const time = wallClock();
+    const time = Date.now();
     const message = numbersMessage("rotation", [roll, pitch, yaw], {
       coord: Coord.supervisor,
       time: nanoseconds(time),
@@ -150,7 +145,7 @@ export class Seat {
    */
   lookAt(x: number, y: number, coord: number, time: bigint): void {
     const message = numbersMessage("position", [x, y, 0], { coord, time });
-    if (this.drive?.send("target", message)) this.commanded(wallClock());
+    if (this.drive?.send("target", message)) this.commanded(Date.now());
   }
 
   /**
@@ -178,7 +173,7 @@ export class Seat {
 
   private sendStick(): void {
     const { left, down } = this.isHeld ? this.stick.push : { left: 0, down: 0 };
-    const time = wallClock();
+    const time = Date.now();
     if (this.drive?.send("stick", stickMessage(left, down, nanoseconds(time))) && !this.steering)
       this.commanded(time);
   }
@@ -208,5 +203,5 @@ function stickMessage(left: number, down: number, time: bigint): Message {
 }
 
 function nanoseconds(ms: number): bigint {
-  return BigInt(Math.round(ms * 1e3)) * 1000n;
+  return BigInt(ms) * 1_000_000n;
 }

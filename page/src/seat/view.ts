@@ -153,7 +153,7 @@ export class SeatView {
         sensed: Number(picture.time / 1000n) / 1000,
         arrived: picture.arrived,
         decoded: picture.decoded,
-        drawn: performance.timeOrigin + performance.now(),
+        drawn: Date.now(),
       });
     });
   }

@@ -12,7 +12,7 @@ export interface StreamOptions {
   rate?: number;
 }
 
-/** A message, and when it came [ms, performance.timeOrigin + performance.now()]. */
+/** A message, and when it came [ms since the Unix epoch]. */
 export interface Arrival {
   readonly message: Message;
   readonly at: number;
@@ -111,7 +111,7 @@ export class Stream {
   }
 
   private async receive(bytes: Uint8Array<ArrayBuffer>): Promise<void> {
-    const at = performance.timeOrigin + performance.now();
+    const at = Date.now();
     try {
       const arrival = { message: readMessage(bytes), at, bytes: bytes.length };
       this.arrivals.set(arrival);

@@ -69,7 +69,7 @@ export class HeaderStrip {
     this.drawn = performance.now();
     const { sent, times } = this;
     if (!sent) return;
-    const now = performance.timeOrigin + this.drawn;
+    const now = Date.now();
     const recent = times.filter((time) => time > now - period * 1000);
     const size = `${sent.width} × ${sent.height} of ${sent.components} × ${sent.scalar}`;
     const parts = [
