@@ -122,6 +122,7 @@ def targets(results):
     yield "latency_96", ["tls"], ["bare_tls"], 1.2
     yield "images", ["tls"], ["bare_tls"], 0.85
     yield "latency_96_one", ["dds"], ["ddsperf_waitset"], 1 / 0.9
+    yield "messages", ["dds"], ["ddsperf", "ddsperf_waitset"], 0.9
     yield "images", ["dds"], ["ddsperf", "ddsperf_waitset"], 0.9
 
 

@@ -101,6 +101,21 @@ TEST(Dds, WhatIsSentInABurstArrivesThoughNoMoreFollows) {
   }
 }
 
+TEST(Dds, OfABurstWhoKeepsTheLatestGetsTheLast) {
+  constexpr int kCount = 1000;
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri + "&keep=latest");
+  const auto sink = sink_of(uri + "&readers=1");
+  for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
+  ASSERT_TRUE(sink->close());
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, kCount - 1);
+  EXPECT_EQ(source->traffic().superseded, kCount - 1U);
+  EXPECT_FALSE(*receive(*source, message));
+  EXPECT_EQ(sink->traffic().messages, std::uint64_t{kCount});
+}
+
 TEST(Dds, AllWritersAreRead) {
   const auto uri = fresh_topic();
   const auto source = source_of(uri);

@@ -24,9 +24,9 @@ namespace {
 class Log {
  public:
   void add(std::uint32_t domain, std::shared_ptr<internal::Remarks> remarks) {
-    const std::lock_guard lock(mutex_);
-    dds_set_log_sink(
+    dds_set_log_sink(  // whose lock Cyclone DDS has when it calls take()
         [](void* log, const dds_log_data_t* line) { static_cast<Log*>(log)->take(*line); }, this);
+    const std::lock_guard lock(mutex_);
     readers_[domain] = {std::move(remarks), {}};
   }
   void remove(std::uint32_t domain) {

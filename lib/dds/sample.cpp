@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kPrelude = 8;  // encapsulation, and the number of bytes
 
-/// A sent sample has its frame and header line in `begin`, and the message's elements; a received
+/// A sent sample has its frame and header line in `begin`, and the message's elements, or all where
+/// these are copied; a received
 /// sample has all its bytes in `elements`.
 struct MessageSample : ddsi_serdata {
   MessageSample(const ddsi_sertype& of, ddsi_serdata_kind what) : ddsi_serdata{} {
@@ -49,6 +50,15 @@ struct MessageSample : ddsi_serdata {
       at -= skipped;
     }
     std::ranges::fill(to, std::byte{0});
+  }
+
+  /// Writes the encapsulation and the number of bytes, of which `size` is one.
+  void write_prelude() {
+    const auto count = static_cast<std::uint32_t>(size - kPrelude);
+    const auto padding = static_cast<unsigned char>(-size % 4);
+    std::array<unsigned char, kPrelude> prelude = {0, 1, 0, padding};
+    for (std::size_t i = 0; i < 4; ++i) prelude[4 + i] = static_cast<unsigned char>(count >> 8 * i);
+    std::memcpy(begin.data(), prelude.data(), kPrelude);
   }
 
   std::size_t size = 0;
@@ -120,15 +130,18 @@ Result<std::span<const std::byte>> sequence_of(const MessageSample& sample) {
   return std::span<const std::byte>(sample.bytes.get() + kPrelude, count);
 }
 
-Error surplus() {
-  return {Code::Malformed, "its message is followed by more"};
-}
 Error cut() {
   return {Code::Truncated, "it ends inside its message"};
 }
 
+/// A message, and how many bytes it takes.
+struct Read {
+  Message message;
+  std::size_t bytes = 0;
+};
+
 /// By way of a stream, which copies.
-Result<Message> read_rows(std::span<const std::byte> octets, const Limits& limits) {
+Result<Read> read_rows(std::span<const std::byte> octets, const Limits& limits) {
   StreamReader reader(limits);
   Message message;
   while (!octets.empty()) {
@@ -139,11 +152,45 @@ Result<Message> read_rows(std::span<const std::byte> octets, const Limits& limit
     octets = octets.subspan(count);
     auto got = reader.next(message);
     if (!got) return got.error();
-    if (!*got) continue;
-    if (!octets.empty() || !reader.finish()) return surplus();
-    return message;
+    if (*got) return Read{std::move(message), reader.bytes()};
   }
   return cut();
+}
+
+/// Reads the message that begins at `at`.
+Result<Read> read_message(const MessageSample& sample, std::span<const std::byte> octets,
+                          std::size_t begin, const Limits& limits, internal::HeaderMemo& memo) {
+  const auto rest = octets.subspan(begin);
+  const std::string_view text(reinterpret_cast<const char*>(rest.data()), rest.size());
+  auto line = internal::read_header_line(text, limits, begin, memo);
+  if (!line) return line.error();
+  if (line->bytes == 0) return cut();
+  if (internal::has_rows(line->header)) return read_rows(rest, limits);
+  std::size_t at = line->bytes;
+  std::uint64_t length = line->header.element_bytes();
+  if (internal::is_compressed(line->header)) {
+    auto part = internal::read_length_line(text.substr(at), limits, begin + at);
+    if (!part) return part.error();
+    if (part->bytes == 0) return cut();
+    at += part->bytes;
+    length = part->length;
+  }
+  if (length > text.size() - at) return cut();
+  auto closing =
+      internal::read_closing(line->header, text.substr(at + length), begin + at + length);
+  if (!closing) return closing.error();
+  if (*closing == 0) return cut();
+  const std::size_t size = at + length + *closing;
+  Message message{line->header, rest.subspan(at, length), sample.bytes, begin + at};
+  const std::size_t scalar =
+      internal::is_compressed(line->header) ? 1 : size_of(line->header.info.scalar);
+  // Of another program a fragment's end may be inside the header.
+  const bool is_aligned = reinterpret_cast<std::uintptr_t>(message.elements.data()) % scalar == 0;
+  if (size != octets.size() || !is_aligned) {
+    message.owner.reset();
+    message = message.keep();
+  }
+  return Read{std::move(message), size};
 }
 
 }  // namespace
@@ -155,17 +202,11 @@ ddsi_sertype* make_type() {
 Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message& message) {
   auto sample = std::make_unique<MessageSample>(type, SDK_DATA);
   const auto& [head, elements, end] = pieces;
-  const auto count = static_cast<std::uint32_t>(head.size() + elements.size() + end.size());
-  sample->size = kPrelude + count;
-  const auto padding = static_cast<unsigned char>(-sample->size % 4);
-  std::array<unsigned char, kPrelude> prelude = {0, 1, 0, padding};
-  for (std::size_t i = 0; i < 4; ++i) prelude[4 + i] = static_cast<unsigned char>(count >> 8 * i);
-  constexpr std::size_t kMostCopied = 4096;  // a piece more costs as much
+  sample->size = kPrelude + head.size() + elements.size() + end.size();
   const bool is_copied = elements.size() <= kMostCopied;
   auto& begin = sample->begin;
   begin.reserve(kPrelude + head.size() + (is_copied ? elements.size() + end.size() : 0));
-  const auto* prelude_bytes = reinterpret_cast<const std::byte*>(prelude.data());
-  begin.assign(prelude_bytes, prelude_bytes + kPrelude);
+  begin.resize(kPrelude);
   begin.insert(begin.end(), head.begin(), head.end());
   if (is_copied) {
     begin.insert(begin.end(), elements.begin(), elements.end());
@@ -176,14 +217,27 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
     sample->owner = kept.owner;
     sample->end = end;  // a constant
   }
+  sample->write_prelude();
   return Sample(sample.release());
+}
+
+bool join(ddsi_serdata& sample, const ddsi_serdata& more) {
+  constexpr std::size_t kMost = 16 << 10;
+  auto& first = static_cast<MessageSample&>(sample);
+  const auto& next = own(&more);
+  const bool are_copied = first.elements.empty() && next.elements.empty();
+  if (!are_copied || first.size + next.size > kMost) return false;
+  first.begin.insert(first.begin.end(), next.begin.begin() + kPrelude, next.begin.end());
+  first.size = first.begin.size();
+  first.write_prelude();
+  return true;
 }
 
 Sample make_end(const ddsi_sertype& type) {
   auto sample = std::make_unique<MessageSample>(type, SDK_DATA);
   sample->size = kPrelude;
-  sample->begin = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0},
-                   std::byte{0}, std::byte{0}, std::byte{0}, std::byte{0}};
+  sample->begin.resize(kPrelude);
+  sample->write_prelude();
   return Sample(sample.release());
 }
 
@@ -192,38 +246,22 @@ std::uint64_t octets_of(const ddsi_serdata& sample) {
   return size > kPrelude ? size - kPrelude : 0;
 }
 
-Result<Message> read_message(const ddsi_serdata& data, const Limits& limits,
-                             internal::HeaderMemo& memo) {
+Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::HeaderMemo& memo,
+                     const std::function<void(Message, std::uint64_t)>& take) {
   const auto& sample = own(&data);
   auto octets = sequence_of(sample);
   if (!octets) return octets.error();
-  std::string_view text(reinterpret_cast<const char*>(octets->data()), octets->size());
-  auto line = internal::read_header_line(text, limits, 0, memo);
-  if (!line) return line.error();
-  if (line->bytes == 0) return cut();
-  if (internal::has_rows(line->header)) return read_rows(*octets, limits);
-  std::size_t at = line->bytes;
-  std::uint64_t length = line->header.element_bytes();
-  if (internal::is_compressed(line->header)) {
-    auto part = internal::read_length_line(text.substr(at), limits, at);
-    if (!part) return part.error();
-    if (part->bytes == 0) return cut();
-    at += part->bytes;
-    length = part->length;
-  }
-  if (length > text.size() - at) return cut();
-  auto closing = internal::read_closing(line->header, text.substr(at + length), at + length);
-  if (!closing) return closing.error();
-  if (*closing == 0) return cut();
-  if (at + length + *closing != text.size()) return surplus();
-  Message message{line->header, octets->subspan(at, length), sample.bytes, at};
-  const std::size_t scalar =
-      internal::is_compressed(line->header) ? 1 : size_of(line->header.info.scalar);
-  if (reinterpret_cast<std::uintptr_t>(message.elements.data()) % scalar != 0) {
-    message.owner.reset();  // of another program, with a fragment's end inside the header
-    message = message.keep();
-  }
-  return message;
+  constexpr std::size_t kMost = 10'000;  // messages, that a sample of small ones fills no memory
+  std::size_t at = 0, count = 0;
+  do {
+    if (count++ == kMost)
+      return Error{Code::TooLarge, "it has more than " + std::to_string(kMost) + " messages"};
+    auto read = read_message(sample, *octets, at, limits, memo);
+    if (!read) return read.error();
+    at += read->bytes;
+    take(std::move(read->message), read->bytes);
+  } while (at < octets->size());
+  return {};
 }
 
 }  // namespace hc::dds

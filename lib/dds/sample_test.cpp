@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string>
 
+#include <hc/testing/decode.h>
 #include <hc/testing/link_conformance.h>
 
 namespace hc::dds {
@@ -42,14 +43,36 @@ class DdsSample : public ::testing::Test {
         ddsi_serdata_from_ser_iov(type_, SDK_DATA, pieces.size(), pieces.data(), bytes.size()));
   }
 
+  /// The messages of a sample, and what is wrong with it behind them.
+  std::vector<Message> read_all(const ddsi_serdata& sample, Error* error = nullptr,
+                                const Limits& limits = {}) {
+    std::vector<Message> messages;
+    std::uint64_t bytes = 0;
+    const auto read =
+        read_messages(sample, limits, memo_, [&](Message message, std::uint64_t size) {
+          messages.push_back(std::move(message));
+          bytes += size;
+        });
+    if (error) *error = read ? Error{} : read.error();
+    EXPECT_LE(read ? octets_of(sample) - bytes : 0, 3U);
+    return messages;
+  }
+  Result<Message> read(const ddsi_serdata& sample) {
+    Error error;
+    auto messages = read_all(sample, &error);
+    if (messages.size() != 1) return error;
+    return std::move(messages[0]);
+  }
+
   /// What is wrong with a sample of these octets.
   std::string refusal(const std::string& octets) {
     const Pieces pieces = {std::as_bytes(std::span(octets)), {}, {}};
     return refusal_of(in_pieces(*make_sample(*type_, pieces, {}), octets.size() + 20));
   }
   std::string refusal_of(const std::string& bytes, const Limits& limits = {}) {
-    auto read = read_message(*come(bytes), limits, memo_);
-    return read ? "" : read.error().text();
+    Error error;
+    const auto messages = read_all(*come(bytes), &error, limits);
+    return error.detail.empty() ? "" : error.text();
   }
 
   ddsi_sertype* type_ = make_type();
@@ -73,14 +96,14 @@ TEST_F(DdsSample, GoesAndComesInPiecesOfAnySize) {
     const auto sample = make(message);
     std::string whole(ddsi_serdata_size(sample.get()), '\0');
     ddsi_serdata_to_ser(sample.get(), 0, whole.size(), whole.data());
-    for (const std::size_t piece : {4, 100, 4096, 65'000, 1 << 20}) {
+    for (const std::size_t piece : {4U, 100U, 4096U, 65'000U, 1U << 20}) {
       const std::string bytes = in_pieces(*sample, piece);
       ASSERT_EQ(bytes.substr(0, whole.size()), whole);
       for (const auto& each : {bytes, whole}) {
-        auto read = read_message(*come(each, piece), {}, memo_);
-        ASSERT_TRUE(read) << read.error().text();
-        EXPECT_EQ(read->header, message.header);
-        EXPECT_EQ(read->characters(), message.characters());
+        auto got = read(*come(each, piece));
+        ASSERT_TRUE(got) << got.error().text();
+        EXPECT_EQ(got->header, message.header);
+        EXPECT_EQ(got->characters(), message.characters());
       }
     }
   }
@@ -95,9 +118,9 @@ TEST_F(DdsSample, MayHaveRowsOfNumbers) {
   for (std::size_t i = 0; i < draft.elements().size(); ++i)
     draft.elements()[i] = static_cast<std::byte>(i * 7);
   const Message message = std::move(draft).finish();
-  auto read = read_message(*come(in_pieces(*make(message), 1000), 1000), {}, memo_);
-  ASSERT_TRUE(read) << read.error().text();
-  EXPECT_EQ(read->characters(), message.characters());
+  auto got = read(*come(in_pieces(*make(message), 1000), 1000));
+  ASSERT_TRUE(got) << got.error().text();
+  EXPECT_EQ(got->characters(), message.characters());
 }
 
 TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
@@ -109,12 +132,12 @@ TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
     header.seq = seq;
     const Message message = Draft::make(header).finish();
     const std::string bytes = in_pieces(*make(message), 65'000);
-    for (const std::size_t piece : {4, 65'000}) {  // of 4 bytes the header's line is not known
+    for (const std::size_t piece : {4U, 65'000U}) {  // of 4 bytes the header's line is not known
       const auto sample = come(bytes, piece);
-      auto read = read_message(*sample, {}, memo_);
-      ASSERT_TRUE(read) << read.error().text();
-      EXPECT_TRUE(read->view<double>());
-      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(read->elements.data()) % alignof(double), 0U);
+      auto got = read(*sample);
+      ASSERT_TRUE(got) << got.error().text();
+      EXPECT_TRUE(got->view<double>());
+      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(got->elements.data()) % alignof(double), 0U);
     }
   }
 }
@@ -124,17 +147,68 @@ TEST_F(DdsSample, WithoutOctetsIsTheEndOfItsWriter) {
   EXPECT_GT(octets_of(*come(in_pieces(*make(testing::numbered(0, 0)), 100))), 0U);
 }
 
+TEST_F(DdsSample, MayHaveSeveralMessages) {
+  const std::string rows = "1 1 0 0 8 0 40100 0 0 2 2\n1 2\n3 4\n";
+  Header header;
+  header.info = {MatrixType::Table, 1, Scalar::F64, Encoding::Binary};
+  header.width = 3;
+  header.height = 1;
+  std::vector<Message> sent;
+  for (int i = 0; i < 20; ++i) sent.push_back(testing::numbered(i, i));
+  sent.push_back(Draft::make(header).finish());
+  Message table;
+  ASSERT_TRUE(decode(std::as_bytes(std::span(rows)), table));
+  sent.push_back(table.keep());
+  for (int i = 0; i < 3; ++i) sent.push_back(testing::numbered(i, 3 * i));
+  const auto joined = make(sent[0]);
+  for (std::size_t i = 1; i < sent.size(); ++i) ASSERT_TRUE(join(*joined, *make(sent[i])));
+  for (const std::size_t piece : {4U, 1000U}) {
+    const auto got = read_all(*come(in_pieces(*joined, piece), piece));
+    ASSERT_EQ(got.size(), sent.size());
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+      EXPECT_EQ(encode(got[i]), encode(sent[i]));
+      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(got[i].elements.data()) %
+                    size_of(got[i].header.info.scalar),
+                0U);
+    }
+  }
+}
+
+TEST_F(DdsSample, GrowsByWhatIsSmall) {
+  const auto small = make(testing::numbered(0, 4000)), large = make(testing::numbered(1, 4097));
+  EXPECT_FALSE(join(*small, *large));
+  EXPECT_FALSE(join(*large, *small));
+  int count = 0;
+  while (join(*small, *make(testing::numbered(count, 4000)))) ++count;
+  EXPECT_EQ(count, 3);  // 16 KiB
+  EXPECT_EQ(read_all(*come(in_pieces(*small, 1000))).size(), 4U);
+}
+
+TEST_F(DdsSample, HasMessagesOfABoundedNumber) {
+  const std::string message = encode(testing::numbered(0, 0));
+  std::string octets;
+  for (int i = 0; i < 10'001; ++i) octets += message;
+  EXPECT_EQ(refusal(octets.substr(message.size())), "");
+  EXPECT_EQ(refusal(octets), "TooLarge: it has more than 10000 messages");
+}
+
 TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
   const std::string message = encode(testing::numbered(7, 3));
   EXPECT_EQ(refusal(message), "");
   EXPECT_EQ(refusal("GET / HTTP/1.1\r\n"),
             "Malformed: R5 version: \"GET\" is not an integer, at byte 0");
-  EXPECT_EQ(refusal(message + message), "Malformed: its message is followed by more");
+  EXPECT_EQ(refusal(message + message), "");
+  EXPECT_EQ(refusal(message + "GET / HTTP/1.1\r\n"),
+            "Malformed: R5 version: \"GET\" is not an integer, at byte 30");
   for (std::size_t size = 1; size < message.size(); ++size)
-    EXPECT_EQ(refusal(message.substr(0, size)), "Truncated: it ends inside its message") << size;
+    for (const std::string& before : {std::string(), message})
+      EXPECT_EQ(refusal(before + message.substr(0, size)), "Truncated: it ends inside its message")
+          << size;
   const std::string rows = "1 1 0 0 8 0 40100 0 0 2 2\n1 2\n3 4\n";
   EXPECT_EQ(refusal(rows), "");
-  EXPECT_EQ(refusal(rows + "5 6\n"), "Malformed: its message is followed by more");
+  EXPECT_EQ(refusal(rows + rows), "");
+  EXPECT_EQ(refusal(rows + "5 6\n"),
+            "Unsupported: R6 version: this reader knows version 1, not 5, at byte 34");
   EXPECT_EQ(refusal(rows.substr(0, rows.size() - 4)), "Truncated: it ends inside its message");
   EXPECT_EQ(refusal_of(in_pieces(*make(testing::numbered(7, 30)), 100), {20}),
             "TooLarge: R24 width: 30 x 1 x 1 bytes are over the limit of 20, at byte 22");

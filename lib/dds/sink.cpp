@@ -21,11 +21,18 @@ using internal::SendQueue;
 using internal::TimePoint;
 using std::chrono::steady_clock;
 
-constexpr std::size_t kCapacity = 64;  // messages that wait before a sender that loses none does
+constexpr std::size_t kCapacity = 1000;  // messages that wait before a sender that loses none does
+
+/// Messages make a burst where so many follow each other as soon as this: sooner than any could be
+/// answered, or another be computed.
+constexpr std::size_t kBurst = 8;
+constexpr std::chrono::microseconds kBurstGap{2};
+constexpr std::chrono::microseconds kGather{20};  // between two samples of a burst
 
 /// Writes at once where Cyclone DDS takes a message. Where it does not, since readers have not
 /// acknowledged what went before, or the pace says so, the message waits by the link's policy, and
-/// a thread writes it as soon as may be.
+/// a thread writes it as soon as may be. So it is with small messages that come in a burst: what
+/// comes while the thread writes goes together in the next sample.
 class DdsSink final : public Sink {
  public:
   DdsSink(const Policy& policy, LinkOptions options, std::int64_t readers, bool stays)
@@ -88,7 +95,9 @@ class DdsSink final : public Sink {
       if (auto waited = wait(lock); !waited) return waited;
     }
     auto sample = make_sample(participant_->type(), pieces, message);
-    if (is_paced_ || !queue_.empty() || !write(*sample)) {
+    const bool joins = waits_ && size <= kMostCopied && steady_clock::now() - sent_ < kBurstGap;
+    burst_ = joins ? burst_ + 1 : 0;
+    if (is_paced_ || burst_ >= kBurst || !queue_.empty() || joined_ || !write(*sample)) {
       if (failed_) return *failed_;
       queue_.push(std::move(sample), size, losses_);
       if (!thread_.joinable()) thread_ = std::thread([this] { write_all(); });
@@ -96,6 +105,7 @@ class DdsSink final : public Sink {
     }
     ++messages_;
     bytes_ += size;
+    sent_ = steady_clock::now();
     return {};
   }
 
@@ -103,7 +113,7 @@ class DdsSink final : public Sink {
     Status outcome;
     std::unique_lock lock(mutex_);
     if (wanted_ > 0 && !has_begun_ && !has_ended_) outcome = await_readers(lock);
-    while (outcome && !queue_.empty() && readers_ > 0 && !failed_ && !has_ended_)
+    while (outcome && (!queue_.empty() || joined_) && readers_ > 0 && !failed_ && !has_ended_)
       outcome = wait(lock);
     lock.unlock();
     // Cyclone DDS throws away what its receiving thread holds while a reader has no room, when the
@@ -159,7 +169,8 @@ class DdsSink final : public Sink {
   /// Sends no more. With the mutex.
   void give_up() {
     has_ended_ = true;
-    losses_.cut += queue_.clear(losses_);
+    losses_.cut += queue_.clear(losses_) + std::exchange(joined_messages_, 0);
+    losses_.bytes -= std::exchange(joined_bytes_, 0);
     event_.raise();
     changed_.notify_one();
   }
@@ -190,8 +201,13 @@ class DdsSink final : public Sink {
   }
 
   /// Hands a sample to Cyclone DDS; false where there is no room, or it has failed. With the mutex.
-  bool write(ddsi_serdata& sample) {
-    const auto written = dds_writecdr(writer_.handle(), ddsi_serdata_ref(&sample));
+  bool write(ddsi_serdata& sample) { return is_written(hand_over(sample)); }
+
+  dds_return_t hand_over(ddsi_serdata& sample) const {
+    return dds_writecdr(writer_.handle(), ddsi_serdata_ref(&sample));
+  }
+
+  bool is_written(dds_return_t written) {
     if (written != DDS_RETCODE_OK && written != DDS_RETCODE_TIMEOUT) {
       failed_ = failed("written", written);
       event_.raise();  // for a sender that waits
@@ -199,14 +215,52 @@ class DdsSink final : public Sink {
     return written == DDS_RETCODE_OK;
   }
 
+  /// Takes what is ready at the front of the queue as one sample, of which nothing is lost.
+  void join_first(TimePoint now) {
+    const auto take = [&] {
+      const auto before = queue_.bytes();
+      auto sample = queue_.pop(now);
+      ++joined_messages_;
+      joined_bytes_ += before - queue_.bytes();
+      return sample;
+    };
+    joined_ = take();
+    while (queue_.ready_at(now, losses_) <= now && join(*joined_, *queue_.front())) take();
+  }
+
+  /// Writes the first that waits; false where there is no room for it. The lock is free meanwhile
+  /// where nothing may be dropped.
+  bool write_first(std::unique_lock<std::mutex>& lock, TimePoint now) {
+    if (!waits_) {
+      if (!write(*queue_.front())) return false;
+      queue_.pop(now);
+      return true;
+    }
+    if (!joined_) join_first(now);
+    lock.unlock();
+    const auto written = hand_over(*joined_);
+    lock.lock();
+    if (!is_written(written)) return false;
+    joined_.reset();
+    joined_messages_ = joined_bytes_ = 0;
+    return true;
+  }
+
   /// What the thread does: writes what waits.
   void write_all() {
     constexpr std::chrono::microseconds kShortest{100}, kLongest{10'000};
     auto pause = kShortest;
+    bool gathers = false;
     std::unique_lock lock(mutex_);
     while (!has_ended_ && !failed_) {
       const auto now = steady_clock::now();
-      if (const auto ready = queue_.ready_at(now, losses_); ready > now) {
+      if (queue_.empty() && std::exchange(gathers, false)) {
+        lock.unlock();
+        std::this_thread::sleep_for(kGather);
+        lock.lock();
+        continue;
+      }
+      if (const auto ready = queue_.ready_at(now, losses_); !joined_ && ready > now) {
         if (ready == TimePoint::max())
           changed_.wait(lock);
         else
@@ -220,8 +274,8 @@ class DdsSink final : public Sink {
       if (readers_ == 0) {
         losses_.cut += 1;
         queue_.pop(now);
-      } else if (write(*queue_.front())) {
-        queue_.pop(now);
+      } else if (write_first(lock, now)) {
+        gathers = waits_;
         pause = kShortest;
       } else {
         lock.unlock();
@@ -278,6 +332,10 @@ class DdsSink final : public Sink {
   mutable std::mutex mutex_;  // of what follows
   std::condition_variable changed_;
   SendQueue<Sample> queue_;
+  Sample joined_;  // taken out of the queue to be written, of so many messages and bytes
+  std::uint64_t joined_messages_ = 0, joined_bytes_ = 0;
+  TimePoint sent_{};       // when the last message was
+  std::size_t burst_ = 0;  // how many messages there were in the burst that is now
   Traffic losses_;
   std::uint64_t messages_ = 0, bytes_ = 0;
   std::uint32_t readers_ = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <dds/dds.h>
 #include <dds/ddsc/dds_rhc.h>
@@ -35,17 +35,17 @@ struct Cache : dds_rhc {
   ddsi_tkmap_instance* instance = nullptr;  // kept until the domain ends
 };
 
-/// A sample that waits, and who has sent it.
+/// A message that waits, and its size [byte].
 struct Arrived {
-  Sample sample;
-  dds_instance_handle_t writer = 0;
+  Message message;
+  std::uint64_t bytes = 0;
 };
 
 class DdsSource final : public Source {
  public:
   /// What waits for a reader that loses nothing; then its writers wait. [byte]
   static constexpr std::uint64_t kWindow = std::uint64_t{2} << 20;
-  static constexpr std::uint64_t kBesides = 256;  // of a sample [byte]
+  static constexpr std::uint64_t kBesides = 256;  // of a message [byte]
   /// What a writer that vanishes has sent may be on its way for so long.
   static constexpr std::chrono::seconds kPatience{1};
 
@@ -92,38 +92,37 @@ class DdsSource final : public Source {
   Result<Got> take(Message& message) override {
     message = {};
     participant_->tell_log(options_.log);
-    while (true) {
-      Arrived arrived;
-      {
-        std::lock_guard lock(mutex_);
-        if (queue_.empty()) return nothing();
-        arrived = queue_.pop({});  // it has no pace
-      }
-      auto read = read_message(*arrived.sample, options_.limits, memo_);
-      if (!read) {
-        drop(arrived.writer, read.error());
-        continue;
-      }
-      message = std::move(*read);
-      ++traffic_.messages;
-      traffic_.bytes += octets_of(*arrived.sample);
-      return Got::Message;
-    }
+    const std::lock_guard lock(mutex_);
+    if (queue_.empty()) return nothing();
+    auto [next, bytes] = queue_.pop({});  // it has no pace
+    message = std::move(next);
+    ++traffic_.messages;
+    traffic_.bytes += bytes;
+    return Got::Message;
   }
 
   /// Takes a sample, on a thread of Cyclone's; false where there is no room for it now.
   bool store(dds_instance_handle_t writer, ddsi_serdata& sample) {
     std::unique_lock lock(mutex_);
     if (is_closing_ || sample.kind != SDK_DATA) return true;
-    const auto octets = octets_of(sample);
-    if (octets == 0) {
+    if (octets_of(sample) == 0) {
       if (closed_.insert(writer).second && alive() == 0) await_next(std::chrono::seconds(0));
       return true;
     }
     if (loses_nothing_ && queue_.bytes() >= kWindow) return false;
-    const bool is_first = queue_.empty();
-    queue_.push({Sample(ddsi_serdata_ref(&sample)), writer}, octets + kBesides, losses_);
     lock.unlock();
+    const std::lock_guard reading(reading_);
+    const auto read =
+        read_messages(sample, options_.limits, memo_, [&](Message message, std::uint64_t bytes) {
+          read_.push_back({std::move(message), bytes});
+        });
+    if (!read) drop(writer, read.error());
+    lock.lock();
+    const bool is_first = queue_.empty();
+    for (auto& [message, bytes] : read_)
+      queue_.push({std::move(message), bytes}, bytes + kBesides, losses_);
+    lock.unlock();
+    read_.clear();
     if (is_first) event_.raise();
     return true;
   }
@@ -179,23 +178,26 @@ class DdsSource final : public Source {
     return Got::End;
   }
 
-  /// One line for each writer, however much it sends.
+  /// One line for each writer, however much it sends. With the mutex `reading_`.
   void drop(dds_instance_handle_t writer, const Error& why) {
     constexpr std::size_t kMost = 1000;
-    if (strangers_.size() >= kMost || !strangers_.insert(writer).second || !options_.log) return;
-    options_.log(Severity::Warning, "dropped a sample: " + why.text() +
-                                        "; further ones of this writer are dropped in silence");
+    if (strangers_.size() >= kMost || !strangers_.insert(writer).second) return;
+    participant_->warn("dropped a sample: " + why.text() +
+                       "; further ones of this writer are dropped in silence");
   }
 
   const bool loses_nothing_;
   const LinkOptions options_;
   const std::chrono::seconds reconnect_;
-  internal::HeaderMemo memo_;
-  std::set<dds_instance_handle_t> strangers_;
-  Traffic traffic_;
   internal::Event event_;
 
+  std::mutex reading_;  // of what follows; before the other one
+  internal::HeaderMemo memo_;
+  std::vector<Arrived> read_;  // out of a sample
+  std::set<dds_instance_handle_t> strangers_;
+
   mutable std::mutex mutex_;  // of what follows
+  Traffic traffic_;
   SendQueue<Arrived> queue_;
   Traffic losses_;
   std::size_t matched_ = 0;                 // writers

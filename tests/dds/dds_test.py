@@ -64,6 +64,14 @@ class Dds(unittest.TestCase):
         self.assertEqual(self.output(reader), b"".join(MESSAGES))
         self.output(writer)
 
+    def test_a_sample_may_have_several_messages(self):
+        path = pathlib.Path(self.folder.name, "both")
+        path.write_bytes(b"".join(MESSAGES))
+        reader = self.start([HC, "cat", "--raw", self.uri])
+        writer = self.start(self.peer("write", path, path))
+        self.assertEqual(self.output(reader), b"".join(MESSAGES) * 2)
+        self.output(writer)
+
     def test_a_program_from_the_idl_is_written(self):
         reader = self.start(self.peer("read"))
         path = pathlib.Path(self.folder.name, "both")
