@@ -37,7 +37,8 @@ class AllHosts final : public Hosts {
                                                      int stop) override {
     std::vector<Result<std::shared_ptr<Connection>>> begun;
     begun.reserve(declared.size());
-    for (const auto& each : declared) begun.push_back(begin_connecting(each));
+    const auto made = key_ ? Status() : make_key();
+    for (const auto& each : declared) begun.push_back(made ? begin_connecting(each) : made.error());
     std::vector<Result<std::shared_ptr<Host>>> hosts;
     for (std::size_t i = 0; i < declared.size(); ++i)
       hosts.push_back(wait(begun[i], declared[i], stop));
@@ -60,8 +61,6 @@ class AllHosts final : public Hosts {
   Result<std::shared_ptr<Connection>> begin_connecting(const GraphHost& declared) {
     if (auto there = find_connection(declared.name); there && there->is_of(declared)) return there;
     if (auto begun = begin(); !begun) return begun.error();
-    if (!key_)
-      if (auto made = make_key(); !made) return made.error();
     auto key = tls::make_key_text();
     if (!key) return key.error();
     auto fingerprint = tls::fingerprint_of_text(*key);

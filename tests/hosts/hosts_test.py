@@ -86,6 +86,20 @@ class Hosts(HostsTest):
         self.stop(process)
         self.assert_empty(host)
 
+    def test_the_first_link_to_a_host_may_come_later(self):
+        (host,) = self.network.add()
+        self.write_graph(self.tables(host) + CAMERA.replace('host = "%s"', "") + BRIGHTNESS % "")
+        process = self.run_graph("")
+        messages = self.observe(process)
+        self.state(messages, lambda state: self.rate(state, "camera.left", "brightness.image"))
+        asked = "add more@h1 brightness", "link camera.left more.image"
+        self.assertEqual(self.ask(process, *asked), ["ok"])
+        state = self.state(messages, lambda state: self.rate(state, "camera.left", "more.image"))
+        self.assertEqual(self.link(state, "camera.left", "more.image")["transport"], "tls")
+        self.assertEqual(self.module(state, "camera")["restarts"], 0)
+        self.stop(process)
+        self.assert_empty(host)
+
     def test_who_reads_no_more_makes_nobody_wait(self):
         (host,) = self.network.add()
         for writes, reads in (("", "h1"), ("h1", "")):

@@ -123,6 +123,8 @@ class Host:
         if self.cable is not None:
             self.cable.stdout.close()
             self.cable.stdin.close()
+        else:
+            run("ip link delete " + self.name)  # it would end with the namespace, but later
         for process in (self.sshd, self.process, self.cable):
             if process is not None:
                 process.kill()

@@ -25,6 +25,12 @@ Restarts::Decision Restarts::ended(int status, MonotonicTime now) {
   return {Next::Again, std::chrono::nanoseconds(within(random_))};
 }
 
+Restarts::Decision Restarts::lost() {
+  if (policy_ == Restart::Never) return {Next::GiveUp, {}};
+  if (!starts_.empty()) starts_.pop_back();
+  return {Next::Again, {}};
+}
+
 void Restarts::reset() {
   starts_.clear();
   delayed_ = 0;

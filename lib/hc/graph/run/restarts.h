@@ -42,6 +42,10 @@ class Restarts {
   /// Says what follows its end. Status 2, bad arguments, would be the same again.
   Decision ended(int status, MonotonicTime now);
 
+  /// Says what follows where it was lost with its host: the start does not count, as it has not
+  /// failed.
+  Decision lost();
+
   /// Forgets all starts: somebody has changed what made it fail.
   void reset();
   void set_policy(Restart policy) { policy_ = policy; }

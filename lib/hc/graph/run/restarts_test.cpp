@@ -56,6 +56,26 @@ TEST_F(RestartsTest, FiveAtOnceThenDelayedThenGivenUp) {
   EXPECT_EQ(run(restarts, 1ms).next, Next::GiveUp);
 }
 
+TEST_F(RestartsTest, WhatIsLostWithItsHostHasNotFailed) {
+  Restarts restarts(Restart::Failure, {}, 1);
+  const auto lose = [&] {
+    restarts.started(now_);
+    return restarts.lost();
+  };
+  for (int failures = 1; failures <= 4; ++failures) {
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(lose().next, Next::Again);
+    const auto decision = run(restarts, 1ms);
+    EXPECT_EQ(decision.next, Next::Again);
+    EXPECT_EQ(decision.delay, 0s);
+  }
+  EXPECT_GT(run(restarts, 1ms).delay, 0s);
+  EXPECT_EQ(lose().delay, 0s);
+  EXPECT_GT(run(restarts, 1ms).delay, 0s);
+  Restarts once(Restart::Never, {}, 1);
+  once.started(now_);
+  EXPECT_EQ(once.lost().next, Next::GiveUp);
+}
+
 TEST_F(RestartsTest, DelaysStayBelowTheLongest) {
   Restarts restarts(Restart::Failure, {.starts_at_once = 1, .delayed_starts = 100}, 1);
   for (int start = 0; start < 100; ++start) EXPECT_LE(run(restarts, 0s).delay, 30s);

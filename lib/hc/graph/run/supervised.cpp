@@ -318,7 +318,9 @@ void Supervised::decide(int status) {
   awaits_cause_ = false;
   const auto words = end_in_words(status);
   const bool is_cut_off = status == 0 && is_interrupted_ && hear_.has_work();
-  auto decision = restarts_.ended(is_cut_off ? kCutOff : status, now());
+  const auto decision = status == Host::kHostLost
+                            ? restarts_.lost()
+                            : restarts_.ended(is_cut_off ? kCutOff : status, now());
   using Next = Restarts::Next;
   if (decision.next == Next::Again) hear_.interrupted();
   if (decision.next == Next::Again && decision.delay.count() == 0) {
