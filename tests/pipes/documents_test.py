@@ -22,6 +22,8 @@ BOUNDS = [
     (r", ([\d.]+) s at most", 0, 8),
 ]
 SEPARATOR = "---- end of a session"
+# What `hc run` says besides on a machine that has no time for a module.
+OF_LOAD = re.compile(r"\S+: (unresponsive: busy|resumed)|  \d+ dropped \(--links: at which links\)")
 
 
 def shown_sessions(block):
@@ -50,6 +52,10 @@ def is_like(shown, line):
     return re.fullmatch(re.escape(shown).replace("…", ".*"), line)
 
 
+def lines_of(text):
+    return [line for line in text.splitlines() if not OF_LOAD.fullmatch(line)]
+
+
 def are_like(shown, lines):
     """Whether the lines are those that are shown, in their order; a line "…" stands for any lines."""
     if not shown:
@@ -73,6 +79,15 @@ class Comparison(unittest.TestCase):
         self.assertTrue(are_like(["…", "b"], ["a", "a", "b"]))
         self.assertTrue(are_like(["a", "…"], ["a"]))
         self.assertFalse(are_like(["a", "…", "c"], ["a", "b"]))
+
+    def test_what_a_busy_machine_adds_is_not_compared(self):
+        said = (
+            "a: started\na: unresponsive: busy\na: resumed\n  2 dropped (--links: at which links)\n"
+        )
+        self.assertEqual(lines_of(said), ["a: started"])
+        self.assertEqual(
+            lines_of("a: unresponsive: stopped by a signal\n  2 dropped\n")[1:], ["  2 dropped"]
+        )
 
     def test_figures_are_within_bounds(self):
         shown = "track_score: RMS error 0.5°, acquired after 0.6 s, …"
@@ -104,17 +119,29 @@ class Documents(Pipes):
         pathlib.Path(self.path("data")).symlink_to(DATA)
         for block in self.commands(name):
             with self.subTest(block):
-                sessions = shown_sessions(block)
-                separate = "echo %s; echo %s >&2\n" % (SEPARATOR, SEPARATOR)
-                script = separate.join(commands for commands, _ in sessions)
-                outputs = self.shell("set -e\n" + script).split(SEPARATOR + "\n")
-                errors = self.err.split(SEPARATOR + "\n")
-                for (commands, shown), out, err in zip(sessions, outputs, errors, strict=True):
-                    # The two come at the same time, when several programs write them.
-                    if shown and not any(
-                        are_like(shown, both.splitlines()) for both in (out + err, err + out)
-                    ):
-                        self.fail("\n".join([commands, "shown:", *shown, "printed:", out, err]))
+                # Figures are measured again where the machine may have been too busy.
+                has_figures = any(re.search(pattern, block) for pattern, _, _ in BOUNDS)
+                for _ in range(3 if has_figures else 1):
+                    wrong = Documents.run_block(self, block)
+                    if not wrong:
+                        break
+                else:
+                    self.fail(wrong)
+
+    def run_block(self, block):
+        """What it prints other than it shows, in words."""
+        sessions = shown_sessions(block)
+        separate = "echo %s; echo %s >&2\n" % (SEPARATOR, SEPARATOR)
+        script = separate.join(commands for commands, _ in sessions)
+        outputs = self.shell("set -e\n" + script).split(SEPARATOR + "\n")
+        errors = self.err.split(SEPARATOR + "\n")
+        for (commands, shown), out, err in zip(sessions, outputs, errors, strict=True):
+            # The two come at the same time, when several programs write them.
+            if shown and not any(
+                are_like(shown, lines_of(both)) for both in (out + err, err + out)
+            ):
+                return "\n".join([commands, "shown:", *shown, "printed:", out, err])
+        return ""
 
     def test_readme(self):
         self.run_document("README.md")
@@ -177,8 +204,9 @@ class Documents(Pipes):
             self.assertAlmostEqual(v, height / 2, delta=2)
             return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
-        # As many pixels in all. A finder that copies the image at each pixel takes four times as long.
-        self.assertLess(seconds(800, 600, 6), 2.2 * seconds(400, 300, 24))
+        # As many pixels in all. A finder that copies the image at each pixel takes four times as long;
+        # so may any on a busy machine, now and then.
+        self.assertTrue(any(seconds(800, 600, 6) < 2.2 * seconds(400, 300, 24) for _ in range(3)))
 
 
 if __name__ == "__main__":
