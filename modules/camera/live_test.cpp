@@ -45,8 +45,9 @@ class FakeDevice final : public Device {
 
 LiveCamera camera(const std::string& name, Plug& plug) {
   return {name, [&plug]() -> hc::Result<std::unique_ptr<Device>> {
+            const bool is_in = plug.is_in;  // before a test hears that it is being opened
             ++plug.opened;
-            if (!plug.is_in) return hc::Error{hc::Code::NotFound, "no such camera"};
+            if (!is_in) return hc::Error{hc::Code::NotFound, "no such camera"};
             return std::unique_ptr<Device>(std::make_unique<FakeDevice>(plug));
           }};
 }

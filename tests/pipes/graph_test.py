@@ -80,13 +80,17 @@ from = "camera.left"
         return [int(word) for word in path.read_text().split()] if path.exists() else []
 
     def guards_and_modules(self, pid):
-        """The processes of hc run: a guard for each module, and the module below it."""
-        guards = self.children(pid)
-        modules = [module for guard in guards for module in self.children(guard)]
-        for module in modules:
-            program = os.readlink("/proc/%d/exe" % module)
-            self.assertEqual(os.path.dirname(program), str(BUILD / "libexec/hypercolumn"))
-        return guards, modules
+        """The processes of hc run: a guard for each module, and the module below it, once it runs."""
+
+        def found():
+            guards = self.children(pid)
+            modules = [module for guard in guards for module in self.children(guard)]
+            programs = [os.readlink("/proc/%d/exe" % module) for module in modules]
+            folders = {os.path.dirname(program) for program in programs}
+            run = len(modules) == 2 and folders == {str(BUILD / "libexec/hypercolumn")}
+            return run and (guards, modules)
+
+        return wait_until(found)
 
     def test_what_was_lost_is_reported_with_its_reason(self):
         self.write(

@@ -37,6 +37,12 @@ def wait_until(condition):
     return result
 
 
+def succeeds_once(attempt, times=5):
+    """Whether one of some attempts succeeds: of what is done in real time, and fails where the
+    machine has no time for it. What is broken fails each time."""
+    return any(attempt() for _ in range(times))
+
+
 def listens(port):
     """Whether somebody listens on a port, asked of the kernel and not by connecting."""
     wanted = "0100007F:%04X 00000000:0000 0A" % port

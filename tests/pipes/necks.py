@@ -11,6 +11,7 @@ from harness import BUILD, Pipes, wait_until
 
 STEP = math.radians(185.1428 / 3600)  # of the unit [rad]
 PROGRAMS = os.path.join(BUILD, "libexec/hypercolumn/")
+SLOWLY = "--speed 0.2"  # [rad/s]: to 2.5 rad it is a long way, also while a process is held up
 
 
 class Reader:
@@ -144,10 +145,19 @@ class Necks(Pipes):
         """Commands a pan again and again until something is so."""
         wait_until(lambda: self.command(pan, 0.0) or condition(self.motion.angles()[-1][1]))
 
-    def wait_motion(self, pan, tilt=0.0):
+    def go(self, pan, tilt=0.0, limited=None):
+        """Commands a gaze until the unit is there, or where it is limited to: not once alone, since
+        what was commanded is forgotten when the unit answers too late, as on a busy machine."""
+        end_pan, end_tilt = limited or (pan, tilt)
+        commanded = 0
+
         def is_there():
+            nonlocal commanded
+            if time.monotonic() > commanded + 1:
+                self.command(pan, tilt)
+                commanded = time.monotonic()
             now_tilt, now_pan = self.motion.angles()[-1]
-            return abs(now_pan - pan) < STEP and abs(now_tilt - tilt) < STEP
+            return abs(now_pan - end_pan) < STEP and abs(now_tilt - end_tilt) < STEP
 
         wait_until(is_there)
 
@@ -163,6 +173,10 @@ class Necks(Pipes):
         wait_until(stands)
         return self.motion.angles()[-1][1]
 
-    def answers_again(self, begin):
+    def answers_again(self, begin, most):
+        """Waits for it, and that no more was said than so many lines for each time."""
         self.neck.wait_line("reconnected", begin)
         self.gaze.wait(3)
+        said = self.neck.lines[begin:]
+        times = sum("reconnected" in line for line in said)
+        self.assertLessEqual(len(said), most * times, said)

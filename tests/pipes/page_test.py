@@ -320,7 +320,7 @@ class Streams(Page):
         for _ in range(20):
             self.assertIn(raw.next()[0], (TEXT, BINARY))
             raw.send("ok")
-        sequences = []
+        sequences = [header[3]]
         for _ in range(3):
             kind, data = vp8.next()
             while kind == TEXT:

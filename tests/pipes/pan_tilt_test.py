@@ -10,8 +10,8 @@ import signal
 import time
 import unittest
 
-from harness import wait_until
-from necks import Necks, PROGRAMS, STEP
+from harness import succeeds_once, wait_until
+from necks import Necks, PROGRAMS, SLOWLY, STEP
 
 
 class PanTilt(Necks):
@@ -19,8 +19,7 @@ class PanTilt(Necks):
         self.start_both("--hold 0", "--pan 0.3 --tilt -0.1")
         self.assertAlmostEqual(self.gaze.angles()[0][1], 0.3, delta=STEP)
         self.assertAlmostEqual(self.gaze.angles()[0][0], -0.1, delta=STEP)
-        self.command(-0.5, 0.2)
-        self.wait_motion(-0.5, 0.2)
+        self.go(-0.5, 0.2)
         stamp, coord, ((roll, tilt, pan),) = self.gaze.wait(3)
         self.assertEqual((coord, roll), (13, 0))
         self.assertAlmostEqual(pan, -0.5, delta=STEP)
@@ -38,22 +37,22 @@ class PanTilt(Necks):
 
     def test_gaze_on_the_way_is_of_its_time(self):
         self.start_both("--hold 0 --rate 100", "--bytes_per_second 960")
-        self.command(1.0, 0.0)
-        self.wait_motion(1.0)
-        self.gaze.wait(2)
-        truth = [(stamp, rows[0][2]) for stamp, _, rows in self.motion.messages]
-        errors = []
-        for stamp, _, ((_, _, pan),) in self.gaze.messages:
-            nearest = min(truth, key=lambda each: abs(each[0] - stamp))
-            if abs(nearest[0] - stamp) < 6e6 and 0.1 < pan < 0.9:
-                errors.append(abs(nearest[1] - pan))
-        self.assertGreater(len(errors), 3)
+        errors, goal = [], 1.0
+        while len(errors) <= 3:  # and back, and so on, where it was held up on its way
+            self.go(goal)
+            self.gaze.wait(2)
+            goal = 1.0 - goal
+            truth = [(stamp, rows[0][2]) for stamp, _, rows in self.motion.messages]
+            errors.clear()
+            for stamp, _, ((_, _, pan),) in self.gaze.messages:
+                nearest = min(truth, key=lambda each: abs(each[0] - stamp))
+                if abs(nearest[0] - stamp) < 6e6 and 0.1 < pan < 0.9:
+                    errors.append(abs(nearest[1] - pan))
         self.assertLess(sorted(errors)[len(errors) // 2], 0.1)  # 0.1 s at its speed
 
     def test_commands_beyond_the_limits_go_to_the_limit(self):
         self.start_both("--hold 0 --speed 2.5")
-        self.command(9.0, 9.0)
-        self.wait_motion(3090 * STEP, 907 * STEP)
+        self.go(9.0, 9.0, limited=(3090 * STEP, 907 * STEP))
         self.assertEqual(self.neck.count("refused"), 0)
 
     def test_stale_commands_and_wrong_ones_are_not_carried_out(self):
@@ -62,12 +61,12 @@ class PanTilt(Necks):
         self.command(-1.0, 0.0, +30)
         self.command(float("nan"), 0.0)
         self.command(-1.0, 0.0, timed=False)
-        self.command(0.3, 0.0)
-        self.wait_motion(0.3)
+        self.go(0.3)
         self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), 0)
-        self.assertEqual(self.neck.count("further ones are counted"), 3)
+        counted = self.neck.count("further ones are counted")
+        self.assertEqual(counted - self.neck.count("not connected (further"), 3)
         self.neck.process.terminate()
-        self.neck.wait_line("total: 1 not finite, 2 stale, 1 without a time")
+        self.neck.wait_line("1 not finite, 2 stale, 1 without a time")
         self.assertEqual(self.neck.process.wait(), 0)
 
     def stop_for(self, nanoseconds, program, meanwhile):
@@ -93,14 +92,26 @@ class PanTilt(Necks):
         pans = set(re.findall(r"pp(-?\d+)", pathlib.Path(self.path("received")).read_text()))
         self.assertEqual(pans, {str(round(0.3 / STEP))})
         self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), -STEP)
+        for reason in ("(old|in the future)", "it has no time"):
+            said = [line for line in self.neck.lines if re.search(reason + r" \(further", line)]
+            self.assertEqual(len(said), 1, self.neck.lines)
+
         # And there is no talk of a fault: the answers have waited too.
-        self.assertEqual(self.neck.count("further ones are counted"), 2)
-        self.assertEqual(len(self.neck.lines), 3, self.neck.lines)
+        def says_nothing():
+            begin = len(self.neck.lines)
+            self.stop_for(600_000_000, self.neck, lambda: None)
+            self.gaze.wait(3)
+            return len(self.neck.lines) == begin
+
+        self.assertTrue(len(self.neck.lines) == 3 or succeeds_once(says_nothing), self.neck.lines)
         self.neck.process.terminate()
-        self.neck.wait_line("total: 40 stale, 20 without a time")
+        # Of those to 0.3 rad, too, some may have waited on a busy machine.
+        self.neck.wait_line(" stale, 20 without a time")
+        stale = re.search(r"total: .*?(\d+) stale, 20 without a time", "\n".join(self.neck.lines))
+        self.assertGreaterEqual(int(stale[1]), 40)
 
     def test_the_unit_stops_when_the_driver_is_killed_and_started_again(self):
-        self.start_both()
+        self.start_both(SLOWLY)
         self.drive(2.5, lambda pan: pan > 0.05)
         self.neck.process.send_signal(signal.SIGKILL)
         self.neck.process.wait()
@@ -108,12 +119,12 @@ class PanTilt(Necks):
         self.assertLess(self.wait_rest(), 2.4)
 
     def test_the_unit_stops_where_commands_end(self):
-        self.start_both()
+        self.start_both(SLOWLY)
         self.drive(2.5, lambda pan: pan > 0.05)
         self.assertLess(self.wait_rest(), 2.4)
 
     def test_garbage_does_not_keep_the_unit_from_being_stopped(self):
-        self.start_both()
+        self.start_both(SLOWLY)
         self.drive(2.5, lambda pan: pan > 0.05)
         self.fake.set("garbage=1")
         self.neck.wait_line("garbage")
@@ -151,20 +162,18 @@ class PanTilt(Necks):
             before = len(devices())
             self.fake.set("unplugged=false")
             plug(before)
-            self.answers_again(begin)
-            self.assertLessEqual(len(self.neck.lines) - begin, 3, self.neck.lines)
-            self.command(pan, 0.0)
-            self.wait_motion(pan)
+            self.answers_again(begin, 3)
+            self.go(pan)
 
     def test_the_unit_stops_when_commands_end(self):
-        self.start_both()
+        self.start_both(SLOWLY)
         self.drive(2.5, lambda pan: pan > 0.05)
         self.assertLess(self.wait_rest(), 2.4)
         self.drive(-2.5, lambda pan: pan < -0.05)
         self.assertGreater(self.wait_rest(), -2.4)
 
     def test_the_unit_stops_when_the_driver_ends(self):
-        self.start_both("--hold 0")
+        self.start_both("--hold 0 " + SLOWLY)
         self.command(2.5, 0.0)
         wait_until(lambda: self.motion.angles()[-1][1] > 0.05)
         self.neck.process.terminate()
@@ -176,15 +185,13 @@ class PanTilt(Necks):
         for _ in range(2):
             begin = len(self.neck.lines)
             self.fake.set("unplugged=true")
-            wait_until(lambda: len(self.neck.lines) > begin)
-            self.assertRegex(self.neck.lines[begin], "disconnected|removed")
+            gone = re.compile("disconnected|removed")
+            wait_until(lambda: any(map(gone.search, self.neck.lines[begin:])))
             self.command(1.0, 0.0)
             self.fake.set("unplugged=false")
-            self.answers_again(begin)
+            self.answers_again(begin, 4)
             self.assertLess(max(abs(pan) for _, pan in self.motion.angles()), STEP)
-            self.assertLessEqual(len(self.neck.lines) - begin, 4, self.neck.lines)
-        self.command(0.2, 0.0)
-        self.wait_motion(0.2)
+        self.go(0.2)
 
     def test_silent(self):
         self.start_both()
@@ -195,22 +202,25 @@ class PanTilt(Necks):
         self.neck.wait_line("reopening", begin)
         self.command(1.0, 0.0)
         self.fake.set("silent=false")
-        self.answers_again(begin)
+        self.answers_again(begin, 4)
         self.assertLess(max(pan for _, pan in self.motion.angles()), 0.1 + STEP)
-        self.assertEqual(len(self.neck.lines) - begin, 4, self.neck.lines)
 
     def test_late(self):
         self.start_both("--hold 0")
-        begin = len(self.neck.lines)
         self.fake.set("answer_delay=0.2")
-        self.gaze.wait(4)
-        self.command(0.2, 0.0)
-        self.wait_motion(0.2)
-        self.assertEqual(self.neck.lines[begin:], [])
+
+        def is_no_fault():
+            begin = len(self.neck.lines)
+            self.gaze.wait(4)
+            self.go(0.2)
+            return len(self.neck.lines) == begin
+
+        self.assertTrue(succeeds_once(is_no_fault), self.neck.lines)
+        begin = len(self.neck.lines)
         self.fake.set("answer_delay=0.8")
         self.neck.wait_line("does not answer", begin)
         self.fake.set("answer_delay=0")
-        self.answers_again(begin)
+        self.answers_again(begin, 10)
         for tilt, pan in self.gaze.angles():
             self.assertTrue(-STEP <= pan <= 0.2 + STEP and abs(tilt) <= STEP, (pan, tilt))
 
@@ -220,11 +230,9 @@ class PanTilt(Necks):
         self.fake.set("garbage=0.02")
         self.neck.wait_line("garbage", begin)
         self.gaze.wait(20)
-        self.assertLess(len(self.neck.lines) - begin, 10, self.neck.lines)
         self.fake.set("garbage=0")
-        self.answers_again(begin)
-        self.command(0.2, 0.0)
-        self.wait_motion(0.2)
+        self.answers_again(begin, 10)
+        self.go(0.2)
 
     def test_no_device(self):
         process = self.start("exec %span_tilt --device /dev/null --in - --out gaze.mtp" % PROGRAMS)
@@ -239,14 +247,13 @@ class PanTilt(Necks):
         self.neck.process.send_signal(signal.SIGKILL)
         self.neck.process.wait()
         self.start_ready("--hold 0")
-        self.command(0.2, 0.0)
-        self.wait_motion(0.2)
+        self.go(0.2)
         begin = len(self.neck.lines)
         self.fake.process.send_signal(signal.SIGKILL)
         self.fake.process.wait()
         self.neck.wait_line("disconnected", begin)
         self.start_fake("--pan -0.4")
-        self.answers_again(begin)
+        self.answers_again(begin, 10)
         self.assertAlmostEqual(self.gaze.angles()[-1][1], -0.4, delta=STEP)
         for each in self.fake, self.neck:
             each.process.send_signal(signal.SIGKILL)

@@ -18,6 +18,7 @@ nothing to be fed with. The stream `device` is not fed to pan_tilt: it names a p
 has gone, or is somebody else's by now.
 """
 
+import functools
 import math
 import os
 import pathlib
@@ -31,7 +32,32 @@ from recordings import Task, numbers, read_messages, share_within
 DEGREE = math.pi / 180
 
 
+class Late(AssertionError):
+    """What was recorded differs by more than a replay on a machine that has time for the robot."""
+
+
+def record_again(test):
+    """Does a test anew, twice at most, where a module was late; what is broken fails each time."""
+
+    @functools.wraps(test)
+    def tried(self):
+        for _ in range(2):
+            try:
+                return test(self)
+            except Late as late:
+                print("late: %s" % late, flush=True)
+                self.doCleanups()
+                self.setUp()
+        return test(self)
+
+    return tried
+
+
 class Recording(Pipes):
+    def assert_at_least(self, value, least, what):
+        if value < least:
+            raise Late("%s: %g is less than %g" % (what, value, least))
+
     def record(self, task, *settings):
         """Runs the task to the end of its score; gives the line of figures of it."""
         self.task = Task(task, settings)
@@ -61,9 +87,11 @@ class Recording(Pipes):
         kept = {message.time: message for message in self.messages("kept", output)}
         again = self.messages("again", output)
         common = [message for message in again if message.time in kept]
-        self.assertGreaterEqual(len(common), at_least, output)
+        self.assert_at_least(len(common), at_least, output)
         same = [message for message in common if kept[message.time] == message]
-        self.assertGreaterEqual(len(same), share * len(common), output)
+        if share == 1:
+            self.assertEqual(len(same), len(common), output)
+        self.assert_at_least(len(same), share * len(common), output)
 
     def assert_close(self, output, seconds, difference, share, begin=0.0):
         """As a function of time, either way, from so many seconds behind the first message on. Of
@@ -71,8 +99,8 @@ class Recording(Pipes):
         less."""
         kept, again = self.messages("kept", output), self.messages("again", output)
         later = [each for each in kept if each.time >= kept[0].time + begin * 1e9]
-        self.assertGreaterEqual(share_within(later, again, seconds, difference), share, output)
-        self.assertGreaterEqual(share_within(again, kept, seconds, difference), 0.5, output)
+        self.assert_at_least(share_within(later, again, seconds, difference), share, output)
+        self.assert_at_least(share_within(again, kept, seconds, difference), 0.5, output)
 
     def replay_workspace(self):
         """Who has the focus: changes may be a decision (50 ms) and a stall earlier or later."""
@@ -120,10 +148,11 @@ class Recording(Pipes):
             ]
             for f in ("kept", "again")
         )
-        self.assertGreaterEqual(len(again), 1)
+        self.assert_at_least(len(again), 1, "places where the head stood")
         for one, other in zip(kept, again):
-            for a, b in zip(one, other):
-                self.assertAlmostEqual(a, b, delta=0.05 * DEGREE)
+            # One that was cut short by a stall is missing on one side.
+            most = max(abs(a - b) for a, b in zip(one, other))
+            self.assert_at_least(0.05 * DEGREE, most, "places where the head stood differ")
 
     def replay_hearing(self):
         """What the ears hear of the room's loudspeaker: from the right, while it sounds."""
@@ -154,6 +183,7 @@ class Recording(Pipes):
                 places.append(at)
         return places
 
+    @record_again
     def test_calibrate(self):
         line = self.record("calibrate", "head_eyes.rate=5")
         self.replay_workspace()
@@ -171,6 +201,7 @@ class Recording(Pipes):
         self.fed.add("head_hearing")  # test_read
         self.assert_all_were_fed()
 
+    @record_again
     def test_point(self):
         line = self.record("point", "point_score.count=4")
         self.replay_workspace()
@@ -189,11 +220,12 @@ class Recording(Pipes):
         self.assertEqual(len(pushes[0]), 8)  # and let go
         for (kept, stick), (replayed, other) in zip(*pushes):
             self.assertEqual(stick, other)
-            self.assertAlmostEqual(kept, replayed, delta=0.3e9)
+            self.assert_at_least(0.3e9, abs(kept - replayed), "pushes differ in time")
         self.fed.update(["head_neck", "head_hearing"])  # test_calibrate, test_read
         self.fed.add("head_eyes")  # without an image that any module takes
         self.assert_all_were_fed()
 
+    @record_again
     def test_telepresence(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             probe.bind(("127.0.0.1", 0))
@@ -208,6 +240,7 @@ class Recording(Pipes):
         self.fed.update(["head_neck", "head_eyes", "head_hearing"])
         self.assert_all_were_fed()
 
+    @record_again
     def test_track(self):
         line = self.record("track", "track_score.duration=2", "head_eyes.rate=10")
         self.replay_workspace()
@@ -220,6 +253,7 @@ class Recording(Pipes):
         self.fed.update(["head_neck", "head_hearing"])
         self.assert_all_were_fed()
 
+    @record_again
     def test_read(self):
         # Read six times over, so that the head is given to `read` before the first text is sure.
         settings = ["head_eyes.rate=10", "read.repeat=6", "speak.rate=450", "speaker.save=said.wav"]

@@ -4,6 +4,7 @@
 
 import os
 import pathlib
+import re
 import signal
 import unittest
 
@@ -265,9 +266,10 @@ exec sleep 1000
 
             return wait_until(is_so)
 
-        is_silent = lambda talker: pathlib.Path("/proc/%d/comm" % talker["pid"]).read_text() == (
-            "sleep\n"
-        )
+        def is_silent(talker):
+            path = pathlib.Path("/proc/%d/comm" % talker["pid"])
+            return talker["pid"] and path.exists() and path.read_text() == "sleep\n"
+
         for reads_again in (False, True):
             process = self.run_graph(last="talker: started")
             talker = await_state(process, is_silent)
@@ -296,12 +298,13 @@ exec sleep 1000
 
     def test_the_status_line_stands_below_all_others(self):
         self.write_graph(GRAPH)
-        out = self.shell(
-            'script -qec "hc run g.toml --set camera.count=40" /dev/null | tr -d "\\r"'
-        )
-        self.assertIn("\x1b[K2 running | ", out)
-        self.assertIn("messages/s", out)
-        self.assertRegex(out, r"\x1b\[Kg\.toml ran for ")
+        name = "shown_%d" % os.getpid()
+        run = 'exec script -qefc "hc run g.toml --as %s" /dev/null >shown' % name
+        process = self.start(run)
+        wait_until(lambda: re.search(r"\x1b\[K2 running \| \d+ messages/s", self.read("shown")))
+        self.shell("hc graph stop --of " + name)
+        self.assertEqual(process.wait(timeout=WATCHDOG), 0)
+        self.assertRegex(self.read("shown"), r"\x1b\[Kg\.toml ran for ")
         plain = self.shell("hc run g.toml --set camera.count=4 2>&1")
         self.assertNotIn("\x1b", plain)
 

@@ -35,9 +35,17 @@ class Watching(Graphs):
     def test_a_graph_is_listed_shown_and_drawn(self):
         name, process = self.run_named("seen")
         wait_until(lambda: re.search(name + " .* 2/2 .* running", self.hc("ps")))
-        top = self.hc("top " + name)
-        self.assertRegex(top, name + ": running .*, 2/2 modules up, .* messages/s")
-        self.assertRegex(top, r"camera +[0-9.]+% +[0-9.]+ MB +0 +running")
+
+        def running():
+            top = self.hc("top " + name)
+            is_so = re.search(r"camera +[0-9.]+% +[0-9.]+ MB +0 +running", top)
+            return (
+                is_so
+                and re.search(name + ": running .*, 2/2 modules up, .* messages/s", top)
+                and top
+            )
+
+        top = wait_until(running)
         self.assertRegex(top, "RESTARTS +MODE +STATUS\n")
         self.assertRegex(top, "THROTTLED +DROPPED +IGNORED\n")
         self.assertRegex(top, "camera.left → brightness.image .*[0-9][kM]?B")
@@ -360,15 +368,17 @@ class Watching(Graphs):
             text.replace("version = 1\n", "").replace("2:0.9 4:0 ", "").replace("5:end", "600:end")
         )  # tracking wins for good
         name, process = self.run_named("contest", text, "actor: started")
-        wait_until(
-            lambda: re.search(
-                '"tracking":.* -> "actor":.*penwidth=3', self.hc("graph --dot --of " + name)
-            )
-        )
-        dot = self.hc("graph --dot --of " + name)
-        self.assertNotRegex(dot, '"looking":.* -> "actor":.*penwidth')
-        self.assertIn("focus: track", dot)
-        self.assertIn("focus track", self.hc("top " + name))
+
+        def is_bold():
+            dot = self.hc("graph --dot --of " + name)
+            if not re.search('"tracking":.* -> "actor":.*penwidth=3', dot):
+                return False
+            self.assertNotRegex(dot, '"looking":.* -> "actor":.*penwidth')
+            self.assertIn("focus: track", dot)
+            return True
+
+        wait_until(is_bold)
+        wait_until(lambda: "focus track" in self.hc("top " + name))
         self.stop_named(name, process)
 
 
