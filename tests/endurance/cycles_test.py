@@ -51,7 +51,7 @@ class Cycles(Endurance):
         def stays():
             time.sleep(0.5)
             seen.append(counted())
-            return seen[-2] == seen[-1]
+            return len(seen) > 3 and len(set(seen[-4:])) == 1
 
         wait_until(stays)
         return seen[-1]
