@@ -24,18 +24,28 @@ async function show(panels) {
 const gaze = () => page.evaluate(() => window.gaze);
 
 /** Waits until the head has turned from where it is by more than 3 degrees in a direction. */
-async function turned(axis, sign, from) {
+async function turned(axis, sign, from, timeout = watchdog) {
   await page.waitForFunction(
     ([axis, sign, from]) => sign * (window.gaze[axis] - from) > 0.05,
     [axis, sign, from],
-    { timeout: watchdog },
+    { timeout },
   );
 }
 
-async function inFocus(task) {
-  await page
-    .locator(".seat-who", { hasText: `Task in focus: ${task}` })
-    .waitFor({ timeout: watchdog });
+async function inFocus(task, timeout = watchdog) {
+  await page.locator(".seat-who", { hasText: `Task in focus: ${task}` }).waitFor({ timeout });
+}
+
+/** Does again what counts once and not for long, as on a busy machine it may have come too late. */
+function untilDone(what, act, ...results) {
+  return until(what, async () => {
+    await act();
+    const all = Promise.all(results.map((result) => result(3_000)));
+    return all.then(
+      () => true,
+      () => false,
+    );
+  });
 }
 
 async function takeSeat(panels = "seat") {
@@ -116,12 +126,19 @@ describe("the page", { timeout: 10 * watchdog }, () => {
           broken: element.classList.contains("broken"),
           text: element.querySelector("title").textContent,
         });
-      }).observe(element, { attributes: true });
+      }).observe(element, {
+        attributes: true,
+        childList: true,
+        characterData: true,
+        subtree: true,
+      });
     });
     const { restarts, pid } = graph.module("left_ball");
     process.kill(pid, "SIGKILL");
-    const told = await page.waitForFunction(() => window.seen.find(({ broken }) => broken));
-    assert.match((await told.jsonValue()).text, /left_ball.*signal 9/);
+    // It may have been red before, where it had no processor for long.
+    await page.waitForFunction(() =>
+      window.seen.find(({ broken, text }) => broken && /left_ball.*signal 9/.test(text)),
+    );
     await page.waitForFunction(() => window.seen.length > 0 && !window.seen.at(-1).broken);
     assert.equal(graph.module("left_ball").restarts, restarts + 1);
   });
@@ -187,9 +204,13 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     });
     const { pan } = await gaze();
     const aside = Math.sign(pan || 1) * 0.3 * Math.min(image.width, (image.height * 4) / 3);
-    await page.mouse.click(image.x + image.width / 2 + aside, image.y + image.height / 2);
-    await turned("pan", -Math.sign(aside), pan);
-    await inFocus("point");
+    const [x, y] = [image.x + image.width / 2 + aside, image.y + image.height / 2];
+    await untilDone(
+      "the head looks there",
+      () => page.mouse.click(x, y),
+      (timeout) => turned("pan", -Math.sign(aside), pan, timeout),
+      (timeout) => inFocus("point", timeout),
+    );
   });
 
   test("a phone that is turned turns the head", async () => {
@@ -201,9 +222,12 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await page.getByRole("button", { name: "Turn with this phone" }).click();
     await inFocus("telepresence");
     await page.waitForFunction(() => Math.abs(window.gaze.pan) < 0.05);
-    await turn(20, 80);
-    await page.waitForFunction(
-      () => Math.abs(window.gaze.pan - 0.349) < 0.05 && Math.abs(window.gaze.tilt - 0.175) < 0.05,
+    const isThere = () =>
+      Math.abs(window.gaze.pan - 0.349) < 0.05 && Math.abs(window.gaze.tilt - 0.175) < 0.05;
+    await untilDone(
+      "the head has turned",
+      () => turn(20, 80),
+      (timeout) => page.waitForFunction(isThere, null, { timeout }),
     );
     await phone.send("DeviceOrientation.clearDeviceOrientationOverride");
     await phone.detach();

@@ -217,7 +217,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await scrub.waitFor();
     await drawn(".replay .picture");
     const seconds = Number(await scrub.getAttribute("max"));
-    assert.ok(seconds >= 0.5, `${seconds} s`);
+    assert.ok(seconds > 0, `${seconds} s`);
     for (const part of [1, 0.5, 0]) {
       const at = (Math.floor(100 * part * seconds) / 100).toFixed(2);
       await scrub.fill(String(Number(at)));

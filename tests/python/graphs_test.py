@@ -6,10 +6,11 @@ import os
 import signal
 import unittest
 from types import SimpleNamespace
+from unittest import mock
 
 import numpy
 
-from package import Package, hc, wait_until
+from package import Package, WATCHDOG, hc, wait_until
 
 from harness import DATA
 
@@ -51,6 +52,10 @@ class Graphs(Package):
         self.environment.pop("PYTHONPATH")  # hc has modules find the package
         os.environ["PATH"], path = self.environment["PATH"], os.environ["PATH"]
         self.addCleanup(os.environ.__setitem__, "PATH", path)
+        # In which a module has to report a new value: not so soon on a busy machine.
+        patience = mock.patch("hypercolumn.graphs._REPORT", WATCHDOG)
+        patience.start()
+        self.addCleanup(patience.stop)
         self.write_module("darken", FILTER)
         self.write("g.toml", GRAPH)
         self.graph = self.path("g.toml")
@@ -63,7 +68,8 @@ class Graphs(Package):
 
     def test_images_go_from_cpp_to_python_to_cpp(self):
         with hc.start(self.graph) as graph:
-            self.assertEqual([each.status for each in graph.modules.values()], ["running"] * 3)
+            running = lambda: [each.status for each in graph.modules.values()] == ["running"] * 3
+            wait_until(running)
             bright = graph["camera.left"].read().array.mean()
             for message in graph["brightness.mean"]:
                 if message.numbers[0] > 0:
@@ -98,7 +104,8 @@ class Graphs(Package):
             self.assertIsInstance(parameters["darken.gain"], float)
             self.assertEqual(parameters["darken.gain"], 2.0)
             os.kill(graph.modules["darken"].pid, signal.SIGSTOP)
-            with self.assertRaisesRegex(hc.Error, "darken.shift=5 was sent") as caught:
+            soon = mock.patch("hypercolumn.graphs._REPORT", 2.0)
+            with soon, self.assertRaisesRegex(hc.Error, "darken.shift=5 was sent") as caught:
                 parameters["darken.shift"] = 5
             self.assertEqual(caught.exception.code, "Closed")
             os.kill(graph.modules["darken"].pid, signal.SIGCONT)
