@@ -117,7 +117,8 @@ bool WaitSet::look() const {
 /// Looks for so long, and now and then at the descriptors.
 Result<bool> WaitSet::spin(nanoseconds time) {
   last_wait_ = nanoseconds(0);
-  if (look()) return true;
+  was_short_ = look();
+  if (was_short_) return true;
   const auto begin = Clock::now();
   auto next_poll = kPollPeriod;
   for (nanoseconds passed(0); passed < time; passed = Clock::now() - begin) {
@@ -125,8 +126,12 @@ Result<bool> WaitSet::spin(nanoseconds time) {
       next_poll += kPollPeriod;
       if (auto ready = sleep(nanoseconds(0)); !ready || *ready) return ready;
     }
-    if (passed > kSpinAlone) ::sched_yield();
-    if (look()) return true;
+    const bool is_long = passed > kSpinAlone;
+    if (is_long) ::sched_yield();
+    if (look()) {
+      was_short_ = !is_long;
+      return true;
+    }
   }
   return false;
 }
@@ -152,6 +157,7 @@ Result<bool> WaitSet::sleep(nanoseconds timeout) {
 Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int> descriptors,
                            nanoseconds timeout) {
   woken_by_.clear();
+  was_short_ = false;
   if (sources.size() == 1 && descriptors.empty() && sources[0]->wake_descriptor() < 0) {
     woken_by_.push_back(sources[0]->number_);
     return internal::wait_for(

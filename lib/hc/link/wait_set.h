@@ -41,6 +41,10 @@ class WaitSet {
   /// Whether the last wait slept, and a descriptor of this source ended it.
   [[nodiscard]] bool was_woken_by(const Source& source) const;
 
+  /// Whether the last wait took about a microsecond at most: a message was there when memory was
+  /// looked at. Who has read the clock before it need not read it again.
+  [[nodiscard]] bool was_short() const { return was_short_; }
+
   /// The descriptor that ends a wait.
   [[nodiscard]] int stop() const { return stop_; }
 
@@ -60,6 +64,7 @@ class WaitSet {
   std::vector<std::uint64_t> woken_by_;  // the sources whose events ended the last sleep
   std::vector<Source::Spin> spins_;
   std::chrono::nanoseconds last_wait_{0};
+  bool was_short_ = false;
 };
 
 }  // namespace hc

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include <hc/compress/compress.h>
 #include <hc/os/program.h>
@@ -208,10 +209,10 @@ void Module::Loop::run() {
   for (auto& timeout : module_.timeouts_)
     if (timeout->due) *timeout->due += time();
   if (module_.start_) module_.start_();
-  while (true) {
+  for (bool is_now = false; true;) {
     if (stop_requested()) throw Stopped();
     // What was waited for comes first.
-    now_ = module_.clock_.monotonic();
+    if (!std::exchange(is_now, false)) now_ = module_.clock_.monotonic();
     if (moments_) {
       if (!repeat_next()) break;
       serve();
@@ -233,7 +234,7 @@ void Module::Loop::run() {
     } else if (all_ended()) {
       break;
     } else {
-      wait(true, next_timer());
+      is_now = wait(true, next_timer());
     }
   }
   for (const auto& together : module_.together_)
@@ -290,6 +291,7 @@ void Module::Loop::fire_timers() {
     note(TraceEvent::What::Began, kNoPort, {}, number);
     timeout->handler();
     note(TraceEvent::What::Ended, kNoPort, {}, number);
+    now_ = module_.clock_.monotonic();
   }
 }
 
@@ -297,7 +299,9 @@ void Module::Loop::fire_timers() {
 void Module::Loop::read_watched() {
   for (auto& watch : module_.watches_) {
     pollfd watched{watch.descriptor(), POLLIN, 0};
-    if (watched.fd >= 0 && ::poll(&watched, 1, 0) > 0) watch.handler();
+    if (watched.fd < 0 || ::poll(&watched, 1, 0) <= 0) continue;
+    watch.handler();
+    now_ = module_.clock_.monotonic();
   }
 }
 
@@ -343,8 +347,10 @@ void Module::Loop::handle_newest() {
 bool Module::Loop::take_one(Inlet& link) {
   Message message;
   if (take(link, message) != Got::Message) return false;
-  if (management_.is_heard()) measure(link, message);
+  const auto come = now_;
+  const auto sensed = message.header.time;  // a handler may move the message away
   handle(link, message);
+  if (management_.is_heard()) measure(link, sensed, come);  // what is sent does not wait for it
   return true;
 }
 
@@ -475,15 +481,15 @@ void Module::Loop::call(const internal::InputState& input, Inlet& link, Message&
 }
 
 /// Notes how old a message is, and how long after the one before it came.
-void Module::Loop::measure(Inlet& link, const Message& message) {
-  if (message.header.time != 0) link.ages.add(now_.count() + wall_offset_ - message.header.time);
-  if (link.last_come.count() != 0) link.gaps.add((now_ - link.last_come).count());
-  link.last_come = now_;
+void Module::Loop::measure(Inlet& link, std::int64_t sensed, MonotonicTime come) {
+  if (sensed != 0) link.ages.add(come.count() + wall_offset_ - sensed);
+  if (link.last_come.count() != 0) link.gaps.add((come - link.last_come).count());
+  link.last_come = come;
 }
 
 /// Waits for a command, a report that is due, or a time; and, perhaps, for messages and what else
-/// the module reads.
-void Module::Loop::wait(bool for_messages, MonotonicTime until) {
+/// the module reads. Whether it was so short that now_ is the time still.
+bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   waited_for_.clear();
   watched_.clear();
   if (for_messages) {
@@ -505,6 +511,7 @@ void Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (!ready) fail("wait", ready.error());
   if (management_.commands() != nullptr && waits.was_woken_by(*management_.commands()))
     attended_ = {};
+  return waits.was_short();
 }
 
 void Module::Loop::pause(const std::function<MonotonicTime()>& due) {

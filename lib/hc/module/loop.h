@@ -103,7 +103,7 @@ struct Module::Loop {
   void end_unlinked();
   void end_unneeded();
   void log_dropped();
-  void measure(internal::Inlet& link, const Message& message);
+  void measure(internal::Inlet& link, std::int64_t sensed, MonotonicTime come);
   void handle(internal::Inlet& link, Message& message);
   void deliver(internal::Inlet& link, Message& message);
   [[noreturn]] void refuse(const internal::Inlet& link, const Message& message) const;
@@ -111,7 +111,7 @@ struct Module::Loop {
   void fire_timers();
   void read_watched();
   [[nodiscard]] MonotonicTime next_timer() const;
-  void wait(bool for_messages, MonotonicTime until);
+  bool wait(bool for_messages, MonotonicTime until);
 
   // loop_messages.cpp
   [[nodiscard]] bool is_generators_turn() const;
