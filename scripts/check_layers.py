@@ -99,7 +99,7 @@ def layer_of_include(name):
     if inner.startswith("dds/"):  # as Cyclone DDS has them too
         return "dds" if (pathlib.Path(__file__).parents[1] / "lib" / inner).exists() else None
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|hosts|drivers)/", inner
+        r"(graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|hosts|drivers)/", inner
     )
     return match[1] if match else None
 

@@ -101,7 +101,7 @@ TEST(GraphFrames, ErrorsNameTheFrameAndWhatWouldBeRight) {
   EXPECT_EQ(refusal(many), "TooLarge: frames: 1001 frames are more than 1000");
 }
 
-/// As lib/hc/graph writes it (G31), which has no Eigen.
+/// As lib/graph writes it (G31), which has no Eigen.
 std::string text_of(const Eigen::Isometry3d& joint) {
   std::ostringstream text;
   text.precision(17);

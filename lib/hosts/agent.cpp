@@ -11,13 +11,13 @@
 #include <memory>
 #include <sstream>
 
+#include <graph/plan.h>
+#include <graph/programs.h>
+#include <graph/run/announcer.h>
+#include <graph/run/aside.h>
+#include <graph/run/intake.h>
+#include <graph/run/process.h>
 #include <hc/base/suggestion.h>
-#include <hc/graph/plan.h>
-#include <hc/graph/programs.h>
-#include <hc/graph/run/announcer.h>
-#include <hc/graph/run/aside.h>
-#include <hc/graph/run/intake.h>
-#include <hc/graph/run/process.h>
 #include <hc/os/procfs.h>
 #include <hc/os/program.h>
 #include <hc/os/socket.h>

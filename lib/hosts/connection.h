@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/hosts.h>
-#include <hc/graph/run/process.h>
+#include <graph/hosts.h>
+#include <graph/run/process.h>
 #include <hosts/clock_estimate.h>
 #include <hosts/conversation.h>
 #include <hosts/remote_module.h>

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include <hc/graph/hosts.h>
+#include <graph/hosts.h>
 
 namespace hc::hosts {
 

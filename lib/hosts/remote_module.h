@@ -9,8 +9,8 @@
 #include <mutex>
 #include <string>
 
-#include <hc/graph/run/intake.h>
-#include <hc/graph/run/module_process.h>
+#include <graph/run/intake.h>
+#include <graph/run/module_process.h>
 #include <hc/link/link.h>
 #include <hosts/worker.h>
 

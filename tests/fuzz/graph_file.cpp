@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any text: a graph, or lines that say what is wrong with it; and any graph: a plan, or lines. The
 // file may include itself under other names.
-#include <hc/graph/global_workspace.h>
-#include <hc/graph/plan.h>
+#include <graph/global_workspace.h>
+#include <graph/plan.h>
 
 namespace {
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""hc check on broken graphs: what it says of them is pinned beside lib/hc/graph, and here where."""
+"""hc check on broken graphs: what it says of them is pinned beside lib/graph, and here where."""
 
 import os
 import re

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <hc/graph/programs.h>
+#include <graph/programs.h>
 #include <hc/link/link.h>
 
 namespace tool {

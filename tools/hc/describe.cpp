@@ -2,8 +2,8 @@
 // hc describe: a module's ports and parameters.
 #include <nlohmann/json.hpp>
 
+#include <graph/run.h>
 #include <hc/base/suggestion.h>
-#include <hc/graph/run.h>
 
 #include "common.h"
 #include "verbs.h"

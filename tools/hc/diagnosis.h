@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <hc/graph/plan.h>
+#include <graph/plan.h>
 
 #include "facts.h"
 

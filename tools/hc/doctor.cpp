@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc doctor: checks this machine, and the requirements of a graph.
-#include <hc/graph/run.h>
+#include <graph/run.h>
 #include <hosts/hosts.h>
 
 #include "common.h"

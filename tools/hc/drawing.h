@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/plan.h>
-#include <hc/graph/state.h>
+#include <graph/plan.h>
+#include <graph/state.h>
 
 namespace tool {
 

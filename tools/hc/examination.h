@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/hosts.h>
-#include <hc/graph/plan.h>
+#include <graph/hosts.h>
+#include <graph/plan.h>
 
 #include "diagnosis.h"
 

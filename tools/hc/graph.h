@@ -2,7 +2,7 @@
 #pragma once
 // What the verbs that take a graph file share.
 
-#include <hc/graph/load.h>
+#include <graph/load.h>
 
 #include "verbs.h"
 

@@ -11,9 +11,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <graph/run.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
-#include <hc/graph/run.h>
 
 #include "common.h"
 #include "observer.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/state.h>
+#include <graph/state.h>
 #include <hc/observe/running.h>
 
 namespace tool {

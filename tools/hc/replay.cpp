@@ -16,12 +16,12 @@
 #include <span>
 #include <tuple>
 
+#include <graph/run/process.h>
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/compress/compress.h>
 #include <hc/contract/trace.h>
-#include <hc/graph/run/process.h>
 #include <hc/os/program.h>
 
 #include "common.h"

@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include <graph/run.h>
 #include <hc/base/format.h>
-#include <hc/graph/run.h>
 #include <hc/os/program.h>
 #include <hosts/hosts.h>
 

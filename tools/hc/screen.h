@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/graph/state.h>
+#include <graph/state.h>
 
 namespace tool {
 

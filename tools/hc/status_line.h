@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <hc/graph/state.h>
+#include <graph/state.h>
 
 #include "outbox.h"
 

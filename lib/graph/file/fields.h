@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Reads the tables of a document: a table's reader is a list of its keys, each with what takes its
+// value. Internal to graph.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <graph/file/document.h>
+
+namespace hc::internal {
+
+/// `"NAME"`
+std::string quoted_name(std::string_view name);
+
+/// MODULE.PORT, or a URI where it may be one. Errors: Invalid.
+Result<GraphPort> parse_port(const std::string& text, bool may_be_uri);
+
+class Fields {
+ public:
+  using Take = std::function<void(const Node& value)>;
+  struct Key {
+    std::string_view name;
+    Take take;
+    bool is_required = false;
+  };
+
+  explicit Fields(Problems& problems) : problems_(problems) {}
+
+  void add(const Node& node, std::string what) const { problems_.add(node.place, std::move(what)); }
+
+  /// Hands the values of a table to their keys. Problems: it is no table, has another key, or lacks
+  /// one that is required.
+  ///
+  /// @param where  for messages: "in module camera".
+  void read(const Node& table, const std::string& where, const std::vector<Key>& keys) const;
+
+  /// Problems: a name that is not snake_case. @param what  "module".
+  bool check_name(const Node& node, const std::string& what, std::string_view name) const;
+
+  // What takes a value of that type; of another type it is a problem.
+  [[nodiscard]] Take text(Lined<std::string>& to) const;
+  [[nodiscard]] Take text(std::optional<Lined<std::string>>& to) const;
+  /// The same, which may be empty.
+  [[nodiscard]] Take any_text(Lined<std::string>& to) const;
+  [[nodiscard]] Take texts(std::vector<Lined<std::string>>& to) const;
+  [[nodiscard]] Take integer(Lined<std::int64_t>& to, std::int64_t min, std::int64_t max) const;
+  [[nodiscard]] Take flag(bool& to) const;
+  [[nodiscard]] Take numbers(std::array<double, 3>& to) const;
+  /// One of some words, by its place among them.
+  [[nodiscard]] Take choice(std::vector<std::string> words,
+                            std::function<void(const Node&, std::size_t)> take) const;
+  /// A table with names of one's own.
+  [[nodiscard]] Take each(Take take) const;
+  /// One value, or a list of them.
+  [[nodiscard]] static Take one_or_more(Take take);
+
+  /// A string, number or boolean as text; nothing where it is something else.
+  static std::optional<std::string> scalar(const Node& node);
+
+ private:
+  Problems& problems_;
+};
+
+}  // namespace hc::internal

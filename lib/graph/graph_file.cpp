@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/graph_file.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include <graph/file/tables.h>
+#include <graph/programs.h>
+#include <hc/base/suggestion.h>
+#include <hc/contract/conversion.h>
+#include <hc/contract/description.h>
+#include <hc/contract/trace.h>
+#include <hc/link/policy.h>
+
+namespace hc {
+namespace {
+
+using internal::Node;
+using internal::quoted_name;
+
+constexpr std::size_t kMaxIncludedDepth = 16;                  // of files that include files
+constexpr std::size_t kMaxIncludedBytes = 4 * kMaxGraphBytes;  // of all that is included
+
+/// Reads a file and those that it includes, and continues after what is wrong.
+class GraphReader {
+ public:
+  GraphReader(const Environment& environment, Problems& problems, const ReadFile& read_file)
+      : fields_(problems), environment_(environment), problems_(problems), read_file_(read_file) {}
+
+  Graph read(std::string_view text, int file) {
+    Graph graph;
+    graph.file = problems_.file(file);
+    auto root = internal::read_document(text, file, environment_, problems_);
+    if (!root || !check_version(*root)) return graph;
+    including_.push_back(std::filesystem::path(graph.file).lexically_normal().string());
+    Restart restart = Restart::Failure;
+    auto module = [&](const Node& node) { add_module(graph, node); };
+    auto included = [&](const Node& node) { include(graph, node); };
+    const std::size_t before = problems_.size();
+    fields_.read(*root, "at the top of the file",
+                 {{"version", [](const Node&) {}},
+                  {"restart", internal::read_restart(fields_, restart)},
+                  {"modules", fields_.each(module)},
+                  {"hosts", internal::read_hosts(fields_, graph)},
+                  {"modes", internal::read_modes(fields_, graph)},
+                  {"workspace", internal::read_workspace(fields_, graph)},
+                  {"frames", internal::read_frames(fields_, graph)},
+                  {"graphs", [](const Node&) {}}});
+    const bool has_modules = root->find("modules") != nullptr || root->find("graphs") != nullptr;
+    if (!has_modules && problems_.size() == before)
+      fields_.add(*root, "a graph needs a table [modules.NAME] for each of its modules");
+    for (auto& each : graph.modules)  // of those that do not say it themselves
+      if (const Node* table = root->find("modules")->find(each.name); !table->find("restart"))
+        each.restart = restart;
+    if (const Node* graphs = root->find("graphs")) fields_.each(included)(*graphs);
+    including_.pop_back();
+    if (root->find("workspace") != nullptr)
+      for (auto& each : graph.modules)
+        if (each.workspace.empty()) each.workspace = graph.workspaces.front().value;
+    limit(graph);
+    return graph;
+  }
+
+ private:
+  bool check_version(const Node& root) {
+    const Node* version = root.find("version");
+    const auto* number = version == nullptr ? nullptr : version->as<std::int64_t>();
+    if (number != nullptr && *number == kGraphVersion) return true;
+    const std::string known = "version = " + std::to_string(kGraphVersion);
+    if (version == nullptr)
+      fields_.add(root, "a graph file begins with \"" + known + "\"");
+    else if (number != nullptr && *number > kGraphVersion)
+      fields_.add(*version, "this file has version " + std::to_string(*number) + ", and this hc " +
+                                "reads version " + std::to_string(kGraphVersion) + ": update hc");
+    else
+      fields_.add(*version, "a graph file has \"" + known + "\"");
+    return false;
+  }
+
+  void add_module(Graph& graph, const Node& node) {
+    GraphModule& module = graph.modules.emplace_back();
+    module.name = node.key;
+    module.place = node.place;
+    if (fields_.check_name(node, "module", node.key) && node.find("program") == nullptr)
+      module.program = {node.key, node.place};
+    internal::read_module(fields_, node, node.key, graph);
+  }
+
+  void limit(Graph& graph) {
+    if (including_.empty() && graph.modules.size() > kMaxModules)
+      problems_.add(graph.modules[kMaxModules].place,
+                    "a graph has at most " + std::to_string(kMaxModules) + " modules");
+    const std::size_t most = including_.empty() ? kMaxModules : kMaxModules + 1;
+    if (graph.modules.size() > most) graph.modules.resize(most);
+  }
+
+  void include(Graph& graph, const Node& node) {
+    const std::string& name = node.key;
+    Lined<std::string> file, host;
+    const Node* overrides = nullptr;
+    fields_.check_name(node, "graph", name);
+    fields_.read(node, "in graph " + name,
+                 {{"file", fields_.text(file), true},
+                  {"host", fields_.any_text(host)},
+                  {"modules", [&](const Node& modules) { overrides = &modules; }}});
+    if (file.value.empty()) return;
+    auto text = read_included(graph.file, file);
+    if (!text) {
+      graph.is_whole = false;
+      return;
+    }
+    Graph included = internal::with_prefix(
+        read(*text, problems_.add_file(path_of(graph.file, file.value))), name);
+    for (auto& module : included.modules)
+      if (module.host.place.line == 0) module.host = host;
+    if (overrides != nullptr)
+      fields_.each([&](const Node& module) { override_module(included, name, module); })(
+          *overrides);
+    for (const auto& module : included.modules)
+      if (is_name(name) && !is_name(module.name) && module.name.size() > 64)
+        fields_.add(node, "the name " + module.name + " has more than 64 letters");
+    internal::append(graph, std::move(included), problems_);
+  }
+
+  void override_module(Graph& included, const std::string& prefix, const Node& node) {
+    const std::string name = prefix + "_" + node.key;
+    if (included.find(name) != nullptr) return internal::read_module(fields_, node, name, included);
+    if (included.modules.empty() && !problems_.empty()) return;  // nothing was read
+    auto known = included.module_names();
+    for (auto& each : known) each.erase(0, prefix.size() + 1);
+    fields_.add(node, "graph " + prefix + " has no module " + quoted_name(node.key) +
+                          suggestion(node.key, known));
+  }
+
+  static std::string path_of(const std::string& from, const std::string& file) {
+    namespace fs = std::filesystem;
+    std::error_code missing;
+    const auto path = (fs::path(from).parent_path() / file).lexically_normal();
+    const auto shipped = graph_folder() / file;
+    const bool is_name = file.find('/') == std::string::npos;
+    return is_name && !fs::exists(path, missing) && fs::exists(shipped, missing) ? shipped : path;
+  }
+
+  std::optional<std::string> read_included(const std::string& from,
+                                           const Lined<std::string>& file) {
+    const std::string path = path_of(from, file.value);
+    auto refuse = [&](const std::string& what) {
+      problems_.add(file.place, what);
+      return std::nullopt;
+    };
+    if (std::find(including_.begin(), including_.end(), path) != including_.end())
+      return refuse(path + " includes itself");
+    if (including_.size() > kMaxIncludedDepth)
+      return refuse("at most " + std::to_string(kMaxIncludedDepth) + " nested includes");
+    if (++included_ > kMaxIncluded) {
+      if (included_ > kMaxIncluded + 1) return std::nullopt;  // it has been reported
+      return refuse("at most " + std::to_string(kMaxIncluded) + " files are included");
+    }
+    Result<std::string> text = Error{Code::NotFound, path + ": cannot be read"};
+    if (read_file_) text = read_file_(path);
+    if (!text) return refuse(text.error().detail);
+    included_bytes_ += text->size();
+    if (included_bytes_ > kMaxIncludedBytes)
+      return refuse("all included files together have at most " +
+                    std::to_string(kMaxIncludedBytes) + " bytes");
+    return std::move(*text);
+  }
+
+  internal::Fields fields_;
+  const Environment& environment_;
+  Problems& problems_;
+  const ReadFile& read_file_;
+  std::vector<std::string> including_;  // the files being read, each included by the one before
+  int included_ = 0;
+  std::size_t included_bytes_ = 0;
+};
+
+}  // namespace
+
+GraphModule* Graph::find(std::string_view name) {
+  auto found = std::find_if(modules.begin(), modules.end(),
+                            [&](const GraphModule& module) { return module.name == name; });
+  return found == modules.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Graph::module_names() const {
+  std::vector<std::string> names;
+  for (const auto& module : modules) names.push_back(module.name);
+  return names;
+}
+
+std::vector<std::string> Graph::host_names() const {
+  std::vector<std::string> names;
+  for (const auto& host : hosts) names.push_back(host.name);
+  return names;
+}
+
+Status check_policy(Uri policy) {
+  if (auto conversion = take_conversion(policy); !conversion) return conversion.error();
+  auto valid = internal::parse_policy(policy);
+  return valid ? Status() : valid.error();
+}
+
+Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
+                  const ReadFile& read_file) {
+  Graph graph = GraphReader(environment, problems, read_file).read(text, 0);
+  graph.files = problems.files();
+  // Any of the files may declare a host, so this is known when all have been read.
+  const auto hosts = graph.host_names();
+  for (const auto& module : graph.modules)
+    if (const auto& [host, place] = module.host;
+        !host.empty() && std::find(hosts.begin(), hosts.end(), host) == hosts.end())
+      problems.add(place, "no host " + quoted_name(host) + suggestion(host, hosts));
+  return graph;
+}
+
+namespace {
+
+/// What is recorded of a graph, and where it is named first.
+std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
+    const Graph& graph, const std::vector<std::string>& traced) {
+  std::map<std::pair<std::string, std::string>, Place> outputs;
+  for (const auto& link : graph.links)
+    if (link.from.uri.empty())
+      outputs.emplace(std::pair(link.from.module, link.from.port), link.place);
+  for (const auto& workspace : graph.workspaces)
+    outputs.emplace(std::pair(workspace.value, "focus"), workspace.place);
+  for (const auto& frame : graph.frames)
+    if (frame.moved_by)
+      outputs.emplace(std::pair(frame.moved_by->value.module, frame.moved_by->value.port),
+                      frame.moved_by->place);
+  for (const auto& module : graph.modules)
+    if (std::ranges::find(traced, module.name) != traced.end())
+      outputs.emplace(std::pair(module.name, kTracePort), module.place);
+  return outputs;
+}
+
+}  // namespace
+
+void record_outputs(Graph& graph, const std::vector<std::string>& traced,
+                    const std::string& folder) {
+  for (const auto& [output, place] : recorded_outputs(graph, traced)) {
+    GraphLink link;
+    link.from = {output.first, output.second, ""};
+    link.to.uri = "file:" + folder + "/" + link.from.text() + ".mtp";
+    link.place = place;
+    graph.links.push_back(std::move(link));
+  }
+}
+
+std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
+                                      const std::string& program,
+                                      const std::map<std::string, std::string>& parameters) {
+  constexpr const char* kKept = "1024";  // messages, while the recorder waits for the disk
+  GraphModule recorder;
+  recorder.name = "recorder";
+  while (graph.find(recorder.name) != nullptr) recorder.name += "_added";
+  recorder.program.value = program;
+  for (const auto& [name, value] : parameters) recorder.parameters[name] = {value, {}};
+  std::vector<std::string> inputs;
+  std::string streams;
+  for (const auto& [output, place] : recorded_outputs(graph, traced)) {
+    GraphLink link;
+    link.from = {output.first, output.second, ""};
+    link.to = {recorder.name, "stream_" + std::to_string(inputs.size()), ""};
+    link.place = place;
+    link.policy["keep"] = {kKept, {}};
+    streams += (streams.empty() ? "" : " ") + link.to.port + "=" + link.from.text();
+    inputs.push_back(link.to.port);
+    graph.links.push_back(std::move(link));
+  }
+  recorder.parameters["streams"] = {streams, {}};
+  graph.modules.push_back(std::move(recorder));
+  return inputs;
+}
+
+void set_parameter(Graph& graph, std::string_view assignment, Problems& problems) {
+  auto dot = assignment.find('.'), equals = assignment.find('=');
+  if (dot == std::string_view::npos || equals == std::string_view::npos || dot > equals)
+    return problems.add({}, quoted_name(assignment) + " is not MODULE.PARAMETER=VALUE");
+  std::string name{assignment.substr(0, dot)};
+  GraphModule* module = graph.find(name);
+  if (module == nullptr && graph.modules.empty() && !problems.empty()) return;  // nothing was read
+  if (module == nullptr)
+    return problems.add({}, "no module " + quoted_name(name) + " in " + graph.file +
+                                suggestion(name, graph.module_names()));
+  module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] = {
+      std::string(assignment.substr(equals + 1)), {}};
+}
+
+}  // namespace hc

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/load.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include <graph/commands.h>
+#include <graph/programs.h>
+#include <hc/base/suggestion.h>
+#include <hc/contract/description.h>
+#include <hc/contract/trace.h>
+#include <hc/os/socket.h>
+
+namespace hc {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<std::string> read_text(const std::string& name) {
+  std::error_code missing;
+  if (fs::is_directory(name, missing))
+    return Error{Code::NotFound, name + ": is a folder, not a file"};
+  std::ifstream file(name, std::ios::binary);
+  if (!file)
+    return Error{Code::NotFound,
+                 name + ": cannot be read: " + std::generic_category().message(errno)};
+  std::string text(kMaxGraphBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+/// Only files, so that nothing is waited for, as a pipe would be. Errors have the whole path.
+Result<std::string> read_file(const std::string& name) {
+  std::error_code missing;
+  const std::string path = fs::absolute(name, missing).lexically_normal().string();
+  if (!fs::is_regular_file(path, missing) && !fs::is_directory(path, missing))
+    return Error{Code::NotFound,
+                 path + ": cannot be read: " +
+                     (fs::exists(path, missing) ? "not a file" : "No such file or directory")};
+  return read_text(path);
+}
+
+/// @param path  what `program` stands for, where it has a slash.
+std::string why_no_program(const std::string& program, const std::string& path) {
+  std::error_code missing;
+  if (path.find('/') == std::string::npos)
+    return "no program \"" + program + "\"" + suggestion(program, module_names());
+  if (fs::is_directory(path, missing)) return path + " is a folder, not a program";
+  if (fs::exists(path, missing)) return path + " is not executable";
+  return "no program \"" + program + "\"";
+}
+
+/// Replaces names of programs by paths; one with a slash is relative to the file that names it.
+void find_programs(Graph& graph, Problems& problems) {
+  for (auto& module : graph.modules) {
+    auto& [given, place] = module.program;
+    if (given.empty() || !module.host.value.empty()) continue;  // what is wrong has been reported
+    std::string name = given;
+    if (name.find('/') != std::string::npos && !name.starts_with('/'))
+      name = (fs::path(problems.file(place.file)).parent_path() / name).string();
+    std::string program = find_program(name);
+    if (program.empty()) problems.add(place, why_no_program(given, name));
+    given = program;
+  }
+}
+
+/// Has a graph serve a page: by its module `web`, or by a new one, which can stop the robot and
+/// choose its task where the graph has a workspace.
+void add_page(Graph& graph, const std::string& listen, Problems& problems) {
+  auto obey = [&](const std::string& line) {
+    apply_command(graph, parse_command(line).value(), problems);
+  };
+  auto runs = [](const GraphModule& module, std::string_view program) {
+    return fs::path(module.program.value).filename() == program;
+  };
+  std::string page = "web";
+  const auto known = std::ranges::find_if(
+      graph.modules, [&](const GraphModule& module) { return runs(module, "web"); });
+  if (known != graph.modules.end()) {
+    page = known->name;
+  } else {
+    while (graph.find(page) != nullptr) page += "_page";
+    obey("add " + page + " web");
+    const std::string arbiter = graph.workspaces.empty() ? "" : graph.workspaces.front().value;
+    if (const auto* workspace = graph.find(arbiter);
+        workspace != nullptr && runs(*workspace, "workspace")) {
+      obey("link " + page + ".stop " + arbiter + ".stop");
+      obey("link " + page + ".bid " + arbiter + ".person");
+      obey("link " + arbiter + ".stopped " + page + ".stopped rate=20");
+    }
+  }
+  obey("set " + page + ".browser=true");
+  if (!listen.empty()) obey("set " + page + ".listen=" + listen);
+}
+
+/// The modules that have an output `trace` of their messages.
+std::vector<std::string> traced_modules(const Graph& graph, const Describe& describe) {
+  std::vector<std::string> traced;
+  for (const auto& module : graph.modules) {
+    if (module.program.value.empty()) continue;
+    const auto text = describe(module.program.value, module.host.value);
+    const auto description = text ? parse_description(*text) : std::nullopt;
+    if (description && find_output(*description, kTracePort) == &trace_output())
+      traced.push_back(module.name);
+  }
+  return traced;
+}
+
+/// A description with inputs of anything.
+Result<std::string> with_inputs(const std::string& text, const std::vector<std::string>& inputs) {
+  auto description = parse_description(text);
+  if (!description) return text;
+  for (const auto& name : inputs) description->inputs.push_back({name, "a stream", {}, false});
+  return to_json(*description);
+}
+
+class FileLoader : public GraphLoader {
+ public:
+  explicit FileLoader(LoadOptions options) : options_(std::move(options)) {}
+
+  Result<LoadedGraph> load(const Plan* running, int stop) override {
+    // A graph that runs is read from files again: nobody writes into a pipe once more.
+    auto text = running == nullptr ? read_text(options_.file) : read_file(options_.file);
+    if (!text) return text.error();
+    Problems problems(options_.file);
+    auto environment = [](const char* name) -> const char* { return std::getenv(name); };
+    Graph graph = parse_graph(*text, environment, problems, read_file);
+    if (options_.page) add_page(graph, options_.listen, problems);
+    for (const auto& setting : options_.settings) set_parameter(graph, setting, problems);
+    return planned(std::move(graph), problems, running, stop);
+  }
+
+  LoadedGraph plan(Graph graph, const Plan& running, int stop) override {
+    Problems problems(graph.files, "");
+    return planned(std::move(graph), problems, &running, stop);
+  }
+
+ private:
+  using Answers = std::map<std::pair<std::string, std::string>, Result<std::string>>;
+
+  LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
+    find_programs(graph, problems);
+    Answers described;
+    const HostPlaces places = find_programs_elsewhere(graph, problems, described, stop);
+    LoadedGraph loaded{graph, {}, {}, {}};
+    const bool has_recorder = needs_recorder(graph);
+    const std::string recorder = has_recorder ? find_program("recorder") : "";
+    std::vector<std::string> recorded;
+    auto describe = [&](const std::string& program,
+                        const std::string& host) -> Result<std::string> {
+      auto known = described.find({host, program});
+      if (known == described.end()) {  // a failure is not tried twice
+        const auto there = host.empty() ? nullptr : options_.hosts->find(host);
+        known =
+            described
+                .emplace(std::pair(host, program), there ? there->describe_program(program, stop)
+                                                         : describe_once(program, stop))
+                .first;
+      }
+      if (program == recorder && host.empty() && !recorder.empty() && known->second)
+        return with_inputs(*known->second, recorded);
+      return known->second;
+    };
+    if (has_recorder && recorder.empty()) {
+      loaded.problems = problems.lines();
+      loaded.problems.push_back("--record: " + why_no_program("recorder", "recorder"));
+      return loaded;
+    }
+    if (has_recorder) {
+      recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
+      loaded.recorder = graph.modules.back().name;
+    } else if (!options_.record.empty()) {
+      record_outputs(graph, traced_modules(graph, describe), options_.record);
+    }
+    auto hold_port = [&](const std::string& host, bool is_for_others) {
+      const auto there = host.empty() ? nullptr : options_.hosts->find(host);
+      return there ? there->hold_port(is_for_others, stop) : internal::hold_port(is_for_others);
+    };
+    Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
+                          options_.holds_ports ? hold_port : HoldPort(), places);
+    loaded.problems = problems.lines();
+    if (problems.empty()) {
+      loaded.plan = std::move(plan);
+      has_recorder_ = has_recorder;
+    }
+    return loaded;
+  }
+
+  /// Whether a module is to record, and not each module what it sends, which it would do on its own
+  /// host. Once it is so it remains so, lest a module begins a file again.
+  [[nodiscard]] bool needs_recorder(const Graph& graph) const {
+    const bool spans_hosts = std::ranges::any_of(
+        graph.modules, [](const auto& module) { return !module.host.value.empty(); });
+    return !options_.recorder.empty() && (options_.record.empty() || has_recorder_ || spans_hosts);
+  }
+
+  /// Connects to the hosts that modules run on, and asks each where its programs are and for their
+  /// descriptions. Modules on a host that cannot be reached cause no further problems.
+  HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, Answers& described,
+                                     int stop) {
+    std::vector<GraphHost> wanted;
+    for (const auto& declared : graph.hosts)
+      if (!declared.ssh.empty() &&
+          std::any_of(graph.modules.begin(), graph.modules.end(),
+                      [&](const auto& module) { return module.host.value == declared.name; }))
+        wanted.push_back(declared);
+    std::map<std::string, std::shared_ptr<Host>> hosts;
+    HostPlaces places;
+    if (!wanted.empty() && options_.hosts == nullptr)
+      problems.add(wanted.front().place, "this program runs graphs on one host alone");
+    if (!graph.hosts.empty() && options_.hosts != nullptr) {
+      const auto connected = options_.hosts->connect(wanted, stop);
+      for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const auto& name = wanted[i].name;
+        if (connected[i]) {
+          hosts[name] = *connected[i];
+          places[name] = hosts[name]->place();
+        } else {
+          problems.add(wanted[i].place, "host " + name + ": " + connected[i].error().detail);
+        }
+      }
+      places[""].fingerprint = options_.hosts->fingerprint();
+    }
+    const auto found = ask_all(graph, hosts, described, stop);
+    for (auto& module : graph.modules) {
+      auto& [program, place] = module.program;
+      const std::string& name = module.host.value;
+      if (name.empty() || program.empty()) continue;
+      if (!hosts.contains(name)) {
+        program.clear();
+        continue;
+      }
+      const auto& known = found.at({name, program});
+      if (!known) problems.add(place, "host " + name + ": " + known.error().detail);
+      program = known ? *known : "";
+    }
+    return places;
+  }
+
+  /// Asks all hosts at the same time, each on a thread: where its programs are, by host and name,
+  /// and what these say of themselves.
+  static Answers ask_all(const Graph& graph,
+                         const std::map<std::string, std::shared_ptr<Host>>& hosts,
+                         Answers& described, int stop) {
+    struct Of {
+      Answers found, described;
+    };
+    std::vector<std::future<Of>> asked;
+    for (const auto& each : hosts) {
+      const auto name = each.first;
+      const auto host = each.second;
+      std::set<std::string> programs;
+      for (const auto& module : graph.modules)
+        if (module.host.value == name && !module.program.value.empty())
+          programs.insert(module.program.value);
+      asked.push_back(std::async(std::launch::async, [name, host, programs, stop] {
+        Of of;
+        for (const auto& program : programs) {
+          auto path = host->find_program(program, stop);
+          if (path)
+            of.described.emplace(std::pair(name, *path), host->describe_program(*path, stop));
+          of.found.emplace(std::pair(name, program), std::move(path));
+        }
+        return of;
+      }));
+    }
+    Answers found;
+    for (auto& each : asked) {
+      auto of = each.get();
+      found.merge(of.found);
+      described.merge(of.described);
+    }
+    return found;
+  }
+
+  Result<std::string> describe_once(const std::string& program, int stop) {
+    std::error_code missing;
+    const auto time = fs::last_write_time(program, missing);
+    const auto size = fs::file_size(program, missing);
+    auto known = described_.find(program);
+    if (!missing && known != described_.end() && known->second.time == time &&
+        known->second.size == size)
+      return known->second.description;
+    auto description = describe_program(program, stop);
+    if (!missing && description) described_[program] = {time, size, *description};
+    return description;
+  }
+
+  struct Described {
+    fs::file_time_type time;
+    std::uintmax_t size;
+    std::string description;
+  };
+
+  LoadOptions options_;
+  std::map<std::string, Described> described_;  // by program
+  bool has_recorder_ = false;                   // in the last plan
+};
+
+}  // namespace
+
+std::string graph_token() {
+  // Two graphs of one process may run side by side, and process numbers come back.
+  return "hc-" + std::to_string(::getpid()) + "-" +
+         std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
+}
+
+std::unique_ptr<GraphLoader> make_loader(LoadOptions options) {
+  return std::make_unique<FileLoader>(std::move(options));
+}
+
+}  // namespace hc

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be wrong with a link, and with links together.
+#include <algorithm>
+#include <map>
+
+#include <graph/plan/planning.h>
+#include <hc/base/format.h>
+#include <hc/base/uri.h>
+#include <hc/contract/conversion.h>
+#include <hc/link/link.h>
+#include <hc/link/transports.h>
+
+namespace hc::internal {
+namespace {
+
+/// A link's check; it wants to be asked once for each, in their order.
+class LinkCheck {
+ public:
+  explicit LinkCheck(Planning& planning) : planning_(planning), problems_(planning.problems) {}
+
+  /// Whether more may be said of it.
+  bool check(const GraphLink& link) {
+    if (!linked_.insert(link.from.text() + " " + link.to.text()).second) {
+      problems_.add(link.place,
+                    "duplicate link from " + link.from.text() + " to " + link.to.text());
+      return false;
+    }
+    const PortDescription* from = end(link, link.from, false);
+    const PortDescription* to = end(link, link.to, true);
+    if (link.route) check_route(link);
+    if (!link.from.uri.empty() || !link.to.uri.empty()) check_outer_policy(link);
+    if (from != nullptr && to == nullptr) check_conversion(link, from->types, {});
+    if (from == nullptr || to == nullptr) return true;
+    bool right = fits(from->types, to->types);
+    if (!right)
+      problems_.add(link.place, link.from.text() + " sends " + in_words(from->types) + ", " +
+                                    link.to.text() + " takes " + in_words(to->types));
+    if (!link.via.value.empty() && !planning_.is_between_hosts(link))
+      problems_.add(link.via.place, "\"via\" is for a link between hosts, and " + link.from.module +
+                                        " and " + link.to.module + " run on the same");
+    const auto transport = transport_of(planning_, link);
+    if (transport.empty()) {
+      right = false;
+      add_no_transport(link);
+    }
+    if (auto memory = link.policy.find("memory");
+        memory != link.policy.end() && !memory->second.value.empty() && transport == "shm")
+      if (auto enough = check_shm_memory({"shm", "", {{"memory", memory->second.value}}}); !enough)
+        problems_.add(memory->second.place, enough.error().detail);
+    check_conversion(link, from->types, to->types);
+    return right;
+  }
+
+ private:
+  /// The schemes that links to and from outside may have.
+  static std::vector<std::string> schemes_of(const Description& description) {
+    std::vector<std::string> schemes = {"file", "tcp", "tcp-listen", "unix", "unix-listen"};
+    if (description.transports) schemes = *description.transports;
+    std::erase_if(schemes, [](const auto& each) { return each == "-" || each == "inproc"; });
+    return schemes;
+  }
+
+  void add_no_transport(const GraphLink& link) {
+    auto supported = [this](const std::string& module) {
+      std::string list;
+      for (const auto& scheme : schemes_of(*planning_.description_of(module)))
+        list += (list.empty() ? "" : ", ") + scheme;
+      return "module " + module + " supports " + (list.empty() ? "none" : list);
+    };
+    const std::string &from = link.from.module, &to = link.to.module;
+    std::string takes = "shm at both ends, or tcp-listen at " + from + " and tcp at " + to +
+                        ", or unix-listen and unix";
+    if (planning_.is_between_hosts(link)) {
+      const bool is_plain = link.via.value == "tcp", is_dds = link.via.value == "dds";
+      const std::string scheme = is_plain ? "tcp" : "tls";
+      takes = is_dds ? "dds at both ends"
+                     : scheme + "-listen at " + from + " and " + scheme + " at " + to;
+      if (!is_plain && !is_dds)
+        takes += "; via = \"tcp\" would be neither encrypted nor authenticated";
+    }
+    problems_.add(link.place, "no transport from " + link.from.text() + " to " + link.to.text() +
+                                  ": " + supported(from) + ", " + supported(to) + "; it takes " +
+                                  takes);
+  }
+
+  /// Null where there is none, or where nobody knows since the module is not described.
+  const PortDescription* end(const GraphLink& link, const GraphPort& port, bool is_input) {
+    if (!port.uri.empty()) {
+      check_uri(link, port, is_input);
+      return nullptr;
+    }
+    return find_port(planning_, link.place, port, is_input);
+  }
+
+  /// The world outside; its other end is a module.
+  void check_uri(const GraphLink& link, const GraphPort& outside, bool is_input) {
+    const Uri uri = *parse_uri(outside.uri);
+    // In shared memory, it is the writer whose name others find.
+    const bool is_writer = is_input && uri.scheme == "shm";
+    if ((is_writer || uri.scheme.ends_with("-listen")) && !may_listen(uri))
+      problems_.add(link.place, hc::format("another link {} {} too",
+                                           is_writer ? "writes to" : "listens at", outside.uri));
+    for (const auto& [key, value] : link.policy)
+      if (!uri.option(key, "").empty() && !value.value.empty())
+        problems_.add(value.place, key + " is also given in " + outside.uri);
+    const std::string& module = is_input ? link.from.module : link.to.module;
+    const Description* description = planning_.description_of(module);
+    if (description == nullptr) return;
+    const auto known = schemes_of(*description);
+    if (std::find(known.begin(), known.end(), uri.scheme) == known.end())
+      problems_.add(link.place, "module " + module + " does not support " + uri.scheme + ": links" +
+                                    suggest(planning_, uri.scheme, known));
+    else if (auto checked = is_input ? check_outlet(uri) : check_source(uri);
+             !checked && is_ours(uri))
+      problems_.add(link.place, outside.uri + ": " + checked.error().detail);
+  }
+
+  /// The same of what a module's output can have.
+  static Status check_outlet(Uri uri) {
+    auto conversion = take_conversion(uri);
+    return conversion ? check_sink(uri) : conversion.error();
+  }
+
+  /// Whether nobody else listens there. A TCP port alone is that of the loopback address, and
+  /// 0.0.0.0 takes the port of all.
+  bool may_listen(const Uri& uri) {
+    if (uri.scheme != "tcp-listen") return listening_.insert(uri.scheme + ":" + uri.rest).second;
+    const auto colon = uri.rest.rfind(':');
+    std::string host = colon == std::string::npos ? "127.0.0.1" : uri.rest.substr(0, colon);
+    if (host == "localhost") host = "127.0.0.1";
+    auto& hosts = tcp_hosts_[colon == std::string::npos ? uri.rest : uri.rest.substr(colon + 1)];
+    const auto all = [](const std::string& each) { return each == "0.0.0.0"; };
+    const bool is_free =
+        all(host) ? hosts.empty()
+                  : !hosts.contains(host) && std::none_of(hosts.begin(), hosts.end(), all);
+    hosts.insert(host);
+    return is_free;
+  }
+
+  /// A program in another language may know transports that we do not.
+  static bool is_ours(const Uri& uri) {
+    const auto schemes = transports();
+    return std::find(schemes.begin(), schemes.end(), uri.scheme) != schemes.end();
+  }
+
+  /// The policy of a link is its sender's affair but for `memory`, of shared memory its reader's;
+  /// of a topic of DDS each end has its own.
+  void check_outer_policy(const GraphLink& link) {
+    const bool is_input = !link.from.uri.empty();
+    const std::string& uri = (is_input ? link.from : link.to).uri;
+    if (uri.starts_with("dds:")) return;
+    const bool is_shared = uri.starts_with("shm:");
+    for (const auto& [key, value] : link.policy) {
+      if (value.value.empty()) continue;
+      const bool is_pace = key == "rate" || key == "burst";
+      if (is_input && !(is_shared && (is_pace || key == "keep")))
+        problems_.add(value.place,
+                      "a link from outside cannot have " + key + ": its sender sets it");
+      if (!is_input && is_shared && is_pace)
+        problems_.add(value.place, "a link to shm: cannot have " + key + ": its reader sets it");
+    }
+  }
+
+  /// What the sender is to make of messages, and whether it can and the reader takes it.
+  void check_conversion(const GraphLink& link, const std::vector<PortType>& given,
+                        const std::vector<PortType>& taken) {
+    Uri options;
+    const Lined<std::string>* first = nullptr;
+    for (const auto key : kConversionOptions) {
+      const auto option = link.policy.find(std::string(key));
+      if (option == link.policy.end()) continue;
+      if (option->second.value.empty()) return;
+      options.options.emplace_back(key, option->second.value);
+      if (first == nullptr) first = &option->second;
+    }
+    if (first == nullptr) return;
+    if (!planning_.description_of(link.from.module)->control)
+      return problems_.add(first->place, "module " + link.from.module + " cannot have \"" +
+                                             options.options.front().first + needs_control());
+    const auto conversion = take_conversion(options);
+    if (!conversion) return;  // it has been reported
+    if (const auto what = hindrance(*conversion, given, taken); !what.empty())
+      problems_.add(first->place, link.from.text() + ": " + what);
+  }
+
+  static std::string needs_control() {
+    return "\": its program does not support --control; see spec/module.md, sections 3 and 6";
+  }
+
+  void check_route(const GraphLink& link) {
+    const Description* sender = planning_.description_of(link.from.module);
+    if (sender != nullptr && !sender->control)
+      problems_.add(link.route->place,
+                    "module " + link.from.module + " cannot have \"route" + needs_control());
+    else if (!link.from.uri.empty())
+      problems_.add(link.route->place,
+                    "a link from outside cannot have a route: its sender sets it");
+  }
+
+  Planning& planning_;
+  Problems& problems_;
+  std::set<std::string> linked_, listening_;
+  std::map<std::string, std::set<std::string>> tcp_hosts_;  // by port, where a link listens
+};
+
+bool is_paced(const GraphLink& link) {
+  return link.policy.contains("rate");
+}
+
+std::string way_in_words(const std::vector<const GraphLink*>& way, const std::string& last) {
+  std::string text = last;
+  auto begin = std::find_if(way.begin(), way.end(),
+                            [&](const GraphLink* link) { return link->from.module == last; });
+  for (auto link = begin; link != way.end(); ++link) text += " -> " + (*link)->to.module;
+  return text + " -> " + last;
+}
+
+}  // namespace
+
+void check_links(Planning& planning) {
+  LinkCheck check(planning);
+  std::erase_if(planning.graph.links, [&](const auto& link) { return !check.check(link); });
+}
+
+/// A message that comes back to where it came from, and makes another, does so as fast as the
+/// machine can, unless a link on its way has a rate. Behind a router it goes where its address
+/// leads, which is not known here.
+void check_loops(Planning& planning) {
+  std::map<std::string, std::vector<const GraphLink*>> leaving;
+  for (const auto& link : planning.graph.links) {
+    const Description* from = planning.description_of(link.from.module);
+    const Description* to = planning.description_of(link.to.module);
+    // One at a port that does not exist has been reported.
+    if ((from != nullptr && find_named(from->outputs, link.from.port) == nullptr) ||
+        (to != nullptr && find_input(*to, link.to.port) == nullptr))
+      continue;
+    const bool is_focus = to != nullptr && find_input(*to, link.to.port) == &focus_input();
+    const bool is_frames = link.to.port == "frames" && takes_frames(planning, link.to.module);
+    if (link.from.uri.empty() && link.to.uri.empty() && !is_paced(link) && !is_focus &&
+        !is_frames && !planning.routes(link.from))
+      leaving[link.from.module].push_back(&link);
+  }
+  enum class Visit { Begun = 1, Done };
+  std::map<std::string, Visit> visits;
+  std::vector<const GraphLink*> way;
+  // Depth first, without recursion: each step of the way, and which of its links is next.
+  for (const auto& module : planning.graph.modules) {
+    if (visits.contains(module.name)) continue;
+    std::vector<std::pair<std::string, std::size_t>> steps = {{module.name, 0}};
+    visits[module.name] = Visit::Begun;
+    while (!steps.empty()) {
+      auto& [name, next] = steps.back();
+      const auto& links = leaving[name];
+      if (next == links.size()) {
+        visits[name] = Visit::Done;
+        steps.pop_back();
+        if (!way.empty()) way.pop_back();
+        continue;
+      }
+      const GraphLink* link = links[next++];
+      auto visit = visits.find(link->to.module);
+      if (visit == visits.end()) {
+        visits[link->to.module] = Visit::Begun;
+        way.push_back(link);
+        steps.emplace_back(link->to.module, 0);
+      } else if (visit->second == Visit::Begun) {
+        planning.problems.add(link->place,
+                              "loop without a rate: " + way_in_words(way, link->to.module) +
+                                  "; give one of its links a rate, for example rate = 30");
+      }
+    }
+  }
+}
+
+/// Of inputs whose messages are taken together, all are linked or none. Commands link one after the
+/// other, so this is asked of a graph that does not run yet.
+void check_together(Planning& planning) {
+  if (planning.before != nullptr) return;
+  std::set<std::string> linked;
+  for (const auto& link : planning.graph.links) linked.insert(link.to.text());
+  for (const auto& module : planning.graph.modules) {
+    const Description* description = planning.description_of(module.name);
+    if (description == nullptr) continue;
+    for (const auto& group : description->together) {
+      std::string there, missing;
+      for (const auto& input : group) {
+        auto& list = linked.contains(module.name + "." + input) ? there : missing;
+        list += (list.empty() ? "" : ", ") + input;
+      }
+      if (!there.empty() && !missing.empty())
+        planning.problems.add(module.place, "module " + module.name + " takes " + there +
+                                                " together with " + missing +
+                                                ", which has no link");
+    }
+  }
+}
+
+/// Two writers to an actor work against each other, unless one at a time is let through: by an
+/// input that is exclusive, or by who routes.
+void check_actors(Planning& planning) {
+  std::map<std::string, std::string> writers;  // by input, the first
+  for (const auto& link : planning.graph.links) {
+    const Description* description = planning.description_of(link.to.module);
+    if (description == nullptr || planning.routes(link.from)) continue;
+    const PortDescription* input = find_named(description->inputs, link.to.port);
+    const PlannedModule* planned = planning.planned(link.to.module);
+    if (input == nullptr || !input->actor || planned->exclusive.contains(link.to.port)) continue;
+    auto [first, is_first] = writers.emplace(link.to.text(), link.from.text());
+    if (!is_first)
+      planning.problems.add(link.place, link.to.text() +
+                                            " is an actor's input and gets commands from " +
+                                            first->second + " and " + link.from.text() +
+                                            "; make it exclusive, or put a router before it");
+  }
+}
+
+}  // namespace hc::internal

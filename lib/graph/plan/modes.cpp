@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// System modes: which there are, who works in them, and who receives the focus.
+#include <graph/plan/planning.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr const char* kFocus = "focus";  // a workspace's output, and everybody's input
+
+class Modes {
+ public:
+  explicit Modes(Planning& planning)
+      : planning_(planning), graph_(planning.graph), problems_(planning.problems) {}
+
+  void run() {
+    take_modes();
+    for (const auto& workspace : graph_.workspaces)
+      if (publishes_focus(workspace)) {
+        planning_.plan.workspaces.insert(workspace.value);
+        name_modes(workspace.value);
+      }
+    for (const auto& module : graph_.modules)
+      if (PlannedModule* planned = planning_.planned(module.name)) {
+        if (planning_.description_of(module.name)->control) add_options(module, *planned);
+        if (!planning_.plan.workspaces.contains(module.workspace)) continue;
+        planned->workspace = module.workspace;
+        if (module.name != module.workspace && wants_focus(module)) link_focus(module);
+      }
+  }
+
+ private:
+  void take_modes() {
+    std::map<std::int64_t, std::string> names;
+    std::set<std::string> tasks;
+    for (const auto& module : graph_.modules)
+      if (module.mode) tasks.insert(module.mode->value);
+    for (const auto& mode : graph_.modes) {
+      names_.push_back(mode.name);
+      auto [other, is_new] = names.emplace(mode.number, mode.name);
+      if (!is_new)
+        problems_.add(mode.place,
+                      "modes " + other->second + " and " + mode.name + " have the same number");
+      if (!planning_.plan.modes.emplace(mode.name, mode.number).second)
+        problems_.add(mode.place, "mode " + mode.name + " has two numbers");
+      else if (!tasks.contains(mode.name))
+        problems_.add(mode.place, "mode " + mode.name + " has no task: no module has mode = \"" +
+                                      mode.name + "\"");
+    }
+  }
+
+  bool publishes_focus(const Lined<std::string>& workspace) {
+    const auto& [name, place] = workspace;
+    if (name.empty()) return false;
+    const PortDescription* output = find_port(planning_, place, {name, kFocus, {}}, false);
+    if (output == nullptr) return false;
+    const bool is_right = fits(output->types, focus_input().types);
+    if (!is_right)
+      problems_.add(place, name + ".focus sends " + in_words(output->types) + ", not " +
+                               in_words(focus_input().types));
+    return is_right;
+  }
+
+  /// Gives a workspace that has a parameter `modes` their names, for its log lines.
+  void name_modes(const std::string& workspace) {
+    constexpr const char* kModes = "modes";
+    PlannedModule* planned = planning_.planned(workspace);
+    if (find_named(planning_.description_of(workspace)->parameters, kModes) == nullptr ||
+        planned == nullptr || planned->parameters.contains(kModes))
+      return;
+    std::string& text = planned->parameters[kModes];
+    for (const auto& [name, number] : planning_.plan.modes)
+      text += (text.empty() ? "" : ",") + name + "=" + std::to_string(number);
+  }
+
+  static bool wants_focus(const GraphModule& module) {
+    return !module.modes.empty() || !module.exclusive.empty();
+  }
+
+  void link_focus(const GraphModule& module) {
+    GraphLink link;
+    link.from = {module.workspace, kFocus, {}};
+    link.to = {module.name, kFocus, {}};
+    link.policy["keep"] = {"latest", {}};  // a slow reader must not hold the others up
+    link.place = module.place;
+    if (!planning_.is_linked(link.to)) planning_.graph.links.push_back(std::move(link));
+  }
+
+  std::optional<std::int64_t> number_of(const Lined<std::string>& mode) {
+    auto found = planning_.plan.modes.find(mode.value);
+    if (found != planning_.plan.modes.end()) return found->second;
+    problems_.add(mode.place,
+                  "no mode \"" + mode.value + "\"" + suggest(planning_, mode.value, names_));
+    return std::nullopt;
+  }
+
+  /// The modes of a module, in its command.
+  void add_options(const GraphModule& module, PlannedModule& planned) {
+    if (module.mode) {
+      planned.mode = module.mode->value;
+      if (auto number = number_of(*module.mode))
+        planned.add_option("--mode", std::to_string(*number));
+    }
+    std::string numbers;
+    for (const auto& mode : module.modes) {
+      planned.modes.push_back(mode.value);
+      if (auto number = number_of(mode))
+        numbers += (numbers.empty() ? "" : ",") + std::to_string(*number);
+    }
+    if (!numbers.empty()) planned.add_option("--modes", numbers);
+    const Description& description = *planning_.description_of(module.name);
+    for (const auto& input : module.exclusive) {
+      if (find_named(description.inputs, input.value) == nullptr)
+        add_no_port(planning_, input.place, {module.name, input.value, {}}, "input",
+                    description.inputs);
+      else if (!planned.exclusive.insert(input.value).second)
+        continue;
+      else if (module.workspace.empty() && !has_wrong_workspace())
+        problems_.add(input.place,
+                      "exclusive inputs require a [workspace] table: add it with module = "
+                      "\"workspace\", and [modules.workspace]; or set exclusive = []");
+      planned.add_option("--exclusive", input.value);
+    }
+  }
+
+  [[nodiscard]] bool has_wrong_workspace() const {
+    return std::any_of(graph_.workspaces.begin(), graph_.workspaces.end(),
+                       [](const auto& workspace) { return workspace.value.empty(); });
+  }
+
+  Planning& planning_;
+  const Graph& graph_;
+  Problems& problems_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+void plan_modes(Planning& planning) {
+  Modes(planning).run();
+}
+
+/// A mode gets the focus by the bids of a module that has it, which go to a workspace, perhaps
+/// through routers. One of a graph that runs may be linked later.
+void check_bids(Planning& planning) {
+  const Graph& graph = planning.graph;
+  if (planning.before != nullptr || !planning.problems.empty()) return;
+  std::set<std::string> bidding = planning.plan.workspaces;  // they, and who sends to them
+  if (bidding.empty()) return;
+  for (bool is_more = true; is_more;) {
+    is_more = false;
+    for (const auto& link : graph.links) {
+      const bool passes =
+          planning.plan.workspaces.contains(link.to.module) || planning.is_router(link.to.module);
+      if (!passes || !bidding.contains(link.to.module)) continue;
+      if (!link.from.uri.empty()) return;  // who bids from outside is not known
+      is_more = bidding.insert(link.from.module).second || is_more;
+    }
+  }
+  for (const auto& mode : graph.modes) {
+    auto bids = [&](const GraphModule& module) {
+      return module.mode && module.mode->value == mode.name && bidding.contains(module.name);
+    };
+    if (std::none_of(graph.modules.begin(), graph.modules.end(), bids))
+      planning.problems.add(mode.place, "mode " + mode.name +
+                                            " never gets the focus: no module with mode = \"" +
+                                            mode.name + "\" sends bids to a workspace");
+  }
+}
+
+}  // namespace hc::internal

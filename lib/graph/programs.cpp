@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/programs.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+
+#include <graph/run/process.h>
+#include <hc/link/link.h>
+
+namespace hc {
+
+namespace fs = std::filesystem;
+using internal::Process;
+using std::chrono::milliseconds;
+using MonotonicClock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr std::chrono::seconds kDescribeTime{10};
+constexpr std::size_t kMaxDescription = std::size_t{1} << 20;
+constexpr std::size_t kMaxLine = 300;
+
+bool is_program(const fs::path& path) {
+  std::error_code missing;
+  return fs::is_regular_file(path, missing) && ::access(path.c_str(), X_OK) == 0;
+}
+
+struct Described {
+  int status = 0;
+  std::string text;  // what was captured
+};
+
+/// Runs `program --describe` to its end.
+Result<Described> run_describe(const std::string& program, Process::Capture capture, int stop) {
+  auto process = Process::start({program, "--describe"}, capture);
+  if (!process) return process.error();
+  Described described;
+  auto give_up = MonotonicClock::now() + kDescribeTime;
+  auto wait = [&](int descriptor) -> Status {
+    auto left = std::chrono::ceil<milliseconds>(give_up - MonotonicClock::now());
+    std::array<int, 1> descriptors = {descriptor};
+    auto ready = wait_readable(descriptors, stop, std::max(left, milliseconds(0)));
+    if (!ready) return ready.error();
+    if (*ready == 1) return Error{Code::System, program + " --describe does not end"};
+    return {};
+  };
+  while (described.text.size() <= kMaxDescription) {
+    if (auto ready = wait(process->output()); !ready) return ready.error();
+    char piece[4096];
+    ssize_t size = ::read(process->output(), piece, sizeof piece);
+    if (size > 0) described.text.append(piece, static_cast<std::size_t>(size));
+    if (size != 0) continue;
+    if (auto ended = wait(process->ended()); !ended) return ended.error();
+    described.status = process->poll_status().value_or(0);
+    return described;
+  }
+  return Error{Code::System, program + " --describe prints more than a MiB"};
+}
+
+std::string last_line(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();
+  return text.substr(text.rfind('\n') + 1, kMaxLine);
+}
+
+}  // namespace
+
+fs::path module_folder() {
+  std::error_code unknown;
+  fs::path self = fs::read_symlink("/proc/self/exe", unknown);
+  return self.parent_path().parent_path() / "libexec" / "hypercolumn";
+}
+
+fs::path graph_folder() {
+  return module_folder().parent_path().parent_path() / "share" / "hypercolumn" / "graphs";
+}
+
+std::vector<std::string> module_names() {
+  std::vector<std::string> names;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(module_folder(), missing))
+    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string find_program(const std::string& name) {
+  if (name.find('/') != std::string::npos) return is_program(name) ? name : "";
+  fs::path own = module_folder() / name;
+  if (is_program(own)) return own.string();
+  const char* variable = std::getenv("PATH");
+  std::string_view path = variable == nullptr ? "" : variable;
+  while (!path.empty()) {
+    auto colon = std::min(path.find(':'), path.size());
+    fs::path candidate = fs::path(path.substr(0, colon)) / name;
+    if (is_program(candidate)) return candidate.string();
+    path.remove_prefix(std::min(colon + 1, path.size()));
+  }
+  return "";
+}
+
+Result<std::string> describe_program(const std::string& program, int stop) {
+  auto described = run_describe(program, Process::Capture::Output, stop);
+  if (!described) return described.error();
+  if (described->status == 0) return std::move(described->text);
+  // Run once more for why: one stream of a process is captured.
+  const auto said = run_describe(program, Process::Capture::Errors, stop);
+  const auto line = said ? last_line(said->text) : "";
+  return Error{Code::System, program + " --describe failed with status " +
+                                 std::to_string(described->status) +
+                                 (line.empty() ? "" : ": " + line) +
+                                 "; how a program describes itself is in spec/module.md"};
+}
+
+}  // namespace hc

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Runs a planned graph: starts its processes and supervises them, has them changed while they run,
+// reports what they do, and takes all of them down together.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <graph/hosts.h>
+#include <graph/limits.h>
+#include <graph/load.h>
+#include <graph/state.h>
+#include <hc/base/result.h>
+
+namespace hc {
+
+/// What a graph has done.
+struct RunReport {
+  GraphState state;                  ///< at its end
+  std::vector<std::string> results;  ///< "MODULE: …", of lines `result: …`, by module
+  bool stopped = false;              ///< ended because it was asked to
+};
+
+struct RunOptions {
+  int stop = -1;  ///< descriptor that is readable when the graph is to end
+  /// Hears one line for each event, and what modules say; each begins with a module's name, or
+  /// "graph".
+  std::function<void(std::string_view line)> event;
+  bool tells_lines = true;  ///< that modules say; otherwise the last ones of a module that fails
+  /// Hears what the graph does, twice a second.
+  std::function<void(const GraphState& state)> state;
+  /// Where others find the graph: it has two links of that name (spec/graph.md). Empty: none.
+  std::string name;
+  std::string file;  ///< what its state calls the graph file
+  /// Loads the graph again when its files change, and plans what commands change in it, on another
+  /// thread. Null: only parameters can be changed. Must outlive the run.
+  GraphLoader* loader = nullptr;
+  /// Other hosts, those of the plan connected to; null: there are none. Must outlive the run.
+  Hosts* hosts = nullptr;
+  SupervisionLimits limits;
+};
+
+/// Runs a loaded graph, which has a plan, to its end: until all modules have ended, one fails that
+/// is never restarted, or `stop` is readable. Nothing that it started is left then.
+///
+/// Errors: NotFound (a program), System; Closed when a module failed, with its name and status.
+Result<RunReport> run_graph(LoadedGraph graph, const RunOptions& options);
+
+}  // namespace hc

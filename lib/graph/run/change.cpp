@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/change.h>
+
+#include <algorithm>
+
+#include <hc/base/uri.h>
+#include <hc/contract/command.h>
+
+namespace hc::internal {
+namespace {
+
+using Verb = ModuleCommand::Verb;
+
+const PlannedEnd* find_same(const std::vector<PlannedEnd>& ends, const PlannedEnd& wanted) {
+  auto found = std::find_if(ends.begin(), ends.end(),
+                            [&](const auto& end) { return is_same_end(end, wanted); });
+  return found == ends.end() ? nullptr : &*found;
+}
+
+/// A URI without what is said to a writer alone before its first message: the same while readers
+/// come and go.
+std::string without_readers(const std::string& uri) {
+  auto parsed = parse_uri(uri);
+  if (!parsed) return uri;
+  std::erase_if(parsed->options, [](const auto& option) { return option.first == "readers"; });
+  return parsed->text();
+}
+
+std::string place(const PlannedEnd& end) {
+  return end.port + "=" + end.uri;
+}
+
+/// Sets what is new or has another value. The default of what is not given any more is known to the
+/// module alone.
+void add_settings(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
+  for (const auto& [key, value] : before.parameters)
+    if (!after.parameters.contains(key)) change.needs_restart = true;
+  for (const auto& [key, value] : after.parameters) {
+    auto found = before.parameters.find(key);
+    if (found != before.parameters.end() && found->second == value) continue;
+    auto known = after.known.find(key);
+    if (known != after.known.end() && known->second.options.fixed) change.needs_restart = true;
+    change.outputs.push_back(text({Verb::Set, true, key, value}));
+  }
+}
+
+void add_links(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
+  for (const auto& end : before.ends)
+    if (find_same(after.ends, end) == nullptr)
+      change.unlinks.push_back(text({Verb::Unlink, end.is_input, place(end), {}}));
+  for (const auto& end : after.ends) {
+    auto& commands = end.is_input ? change.inputs : change.outputs;
+    const PlannedEnd* old = find_same(before.ends, end);
+    if (old == nullptr) commands.push_back(text({Verb::Link, end.is_input, place(end), {}}));
+    if (end.route != (old == nullptr ? "" : old->route))
+      commands.push_back(text({Verb::Route, end.is_input, place(old == nullptr ? end : *old),
+                               end.route.empty() ? "to=*" : end.route}));
+  }
+}
+
+}  // namespace
+
+bool is_same_end(const PlannedEnd& one, const PlannedEnd& other) {
+  return one.is_input == other.is_input && one.port == other.port &&
+         without_readers(one.uri) == without_readers(other.uri);
+}
+
+ModuleChange change_between(const PlannedModule& before, const PlannedModule& after) {
+  ModuleChange change;
+  add_settings(before, after, change);
+  add_links(before, after, change);
+  if (after.control_uri.empty() && !change.is_empty()) change.needs_restart = true;
+  if (before.program != after.program || before.host != after.host ||
+      before.options != after.options || before.control_uri != after.control_uri)
+    change.needs_restart = true;
+  if (change.needs_restart) change.unlinks = change.outputs = change.inputs = {};
+  return change;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/intake.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hc::internal {
+
+Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri, Take take,
+                                             const LinkOptions& options) {
+  auto parsed = parse_uri(uri);
+  if (!parsed) return parsed.error();
+  auto source = open_source(*parsed, options);
+  if (!source) return source.error();
+  std::unique_ptr<Intake> intake(new Intake(loop, std::move(*source), std::move(take)));
+  auto watched = loop.watch(intake->source_->descriptor(), EPOLLIN,
+                            [self = intake.get()](auto) { self->take(); });
+  if (!watched) return watched.error();
+  intake->watch_ = std::move(*watched);
+  if (const int wakes = intake->source_->wake_descriptor(); wakes >= 0) {
+    auto woken =
+        loop.watch(wakes, EPOLLIN | EPOLLET, [self = intake.get()](auto) { self->take(); });
+    if (!woken) return woken.error();
+    intake->woken_ = std::move(*woken);
+  }
+  // A source may have something before its descriptor has ever been asked to tell.
+  intake->again_ = loop.call_at({}, [self = intake.get()] { self->take(); });
+  return intake;
+}
+
+void Intake::take() {
+  Message message;
+  for (int i = 0; i < kMostInATurn; ++i) {
+    auto got = source_->take(message);
+    if (!got || *got == Got::End) {
+      watch_.reset();
+      woken_.reset();
+      again_.reset();
+      return;
+    }
+    if (*got == Got::Message)
+      take_(message);
+    else if (source_->prepare_wait())
+      return;
+  }
+  again_ = loop_.call_at(std::chrono::steady_clock::now(), [this] { take(); });
+}
+
+Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri) {
+  auto uri = parse_uri(reader_uri);
+  if (!uri) return uri.error();
+  constexpr std::array<std::string_view, 4> kWhoMay = {"same_user", "key", "peer", "interface"};
+  std::erase_if(uri->options, [&](const auto& option) {
+    return std::find(kWhoMay.begin(), kWhoMay.end(), option.first) == kWhoMay.end();
+  });
+  uri->options.emplace_back("reconnect", "86400");
+  if (uri->scheme == "shm" || uri->scheme == "dds") uri->options.emplace_back("keep", "latest");
+  return Intake::make(loop, uri->text(), [](const Message&) {});
+}
+
+}  // namespace hc::internal

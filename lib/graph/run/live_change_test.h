@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A graph that runs and is changed, for tests: the commands it gets, and what it is planned as
+// then.
+
+#include <poll.h>
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <graph/run/running_test.h>
+#include <hc/mtp/rows.h>
+
+namespace hc {
+
+using Lines = std::vector<std::string>;
+
+inline std::string peer_of(const std::string& listening) {
+  return "unix" + listening.substr(listening.find(':'));
+}
+
+/// A graph that is loaded again when it is asked to be, as the plan that a test gave it.
+class LiveChange : public Run, private GraphLoader {
+ protected:
+  LiveChange() {
+    options_.name = "live";
+    options_.loader = this;
+  }
+
+  PlannedModule& add(const std::string& name, const std::string& script = "exec sleep 1000") {
+    auto& module = Run::add(name, script);
+    module.restart = Restart::Failure;
+    module.control_uri = "unix-listen:@" + token_ + "." + name + ".control";
+    module.options = {"-c", script + "; # "};
+    return module;
+  }
+
+  static std::map<std::string, ParameterState> rate() {
+    ParameterState state;
+    state.name = "rate";
+    state.value = 30.0;
+    return {{"rate", state}};
+  }
+
+  /// Asks the graph that runs; gives its answer.
+  static Lines ask(const Lines& commands, const std::string& who = "answer") {
+    // A process that is being forked beside this may hold the socket of the last call for a moment.
+    static std::atomic<int> calls = 0;
+    const std::string place =
+        "@live-" + who + "-" + std::to_string(::getpid()) + "-" + std::to_string(++calls);
+    auto answers = open_source({"unix-listen", place, {}});
+    HC_CHECK(answers, answers.error().detail);
+    Lines rows = {"reply unix:" + place};
+    rows.insert(rows.end(), commands.begin(), commands.end());
+    auto graph = open_sink(
+        {"unix", "@hypercolumn.live." + std::to_string(::getpid()) + ".ask", {{"wait", "60"}}});
+    HC_CHECK(graph, graph.error().detail);
+    HC_CHECK((*graph)->send(make_rows(rows)));
+    Message answer;
+    HC_CHECK(receive(**answers, answer));
+    return rows_of(answer);
+  }
+
+  /// Does something beside the graph, and ends it then.
+  void beside(std::function<void()> what) {
+    thread_ = std::thread([this, what = std::move(what)] {
+      what();
+      stop();
+    });
+  }
+
+  Result<RunReport> run() {
+    auto report = Run::run();
+    if (thread_.joinable()) thread_.join();
+    return report;
+  }
+
+  void plan_next(Plan plan) {
+    std::lock_guard lock(mutex_);
+    next_ = std::move(plan);
+  }
+  bool was_reloaded() {
+    std::lock_guard lock(mutex_);
+    return was_reloaded_;
+  }
+
+  std::function<void(int stop)> plans_;  // hears that it is planned
+  std::thread thread_;
+
+ private:
+  Result<LoadedGraph> load(const Plan*, int stop) override {
+    auto next = plan({}, {}, stop);
+    std::lock_guard lock(mutex_);
+    was_reloaded_ = true;
+    return next;
+  }
+  LoadedGraph plan(Graph, const Plan&, int stop) override {
+    if (plans_) plans_(stop);
+    std::lock_guard lock(mutex_);
+    was_reloaded_ = false;
+    LoadedGraph next = loaded(next_.value_or(Plan()));
+    if (!next_) {
+      next.plan.reset();
+      next.problems = {"one problem", "another"};
+    }
+    return next;
+  }
+
+  std::mutex mutex_;
+  std::optional<Plan> next_;
+  bool was_reloaded_ = false;
+};
+
+/// Waits until somebody does not want to wait any more.
+inline void await(int stop) {
+  pollfd polled{stop, POLLIN, 0};
+  HC_CHECK(::poll(&polled, 1, -1) == 1, "poll");
+}
+
+}  // namespace hc

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/process.h>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <csignal>
+
+#include <graph/plan.h>
+
+namespace hc::internal {
+namespace {
+
+/// What a guard and its program get from us. Between fork and exec, and in a guard all its life,
+/// nothing may allocate: another thread of ours may have held a lock when we forked.
+struct Start {
+  char* const* arguments;
+  int input, output, errors;  // of the program; -1: none
+  int failure;                // for the errno of what fails
+  int life;                   // at its end when we have ended
+  int key;                    // that the program gets; -1: none
+};
+
+[[noreturn]] void fail(const Start& start) {
+  int number = errno;
+  [[maybe_unused]] auto written = ::write(start.failure, &number, sizeof number);
+  ::_exit(kCannotExecute);
+}
+
+/// Becomes the program.
+[[noreturn]] void become(Start start, pid_t parent, const sigset_t& signals) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(kCannotExecute);  // it died before it could be noticed
+  int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  ::dup2(start.input >= 0 ? start.input : null, STDIN_FILENO);
+  ::dup2(start.output >= 0 ? start.output : null, STDOUT_FILENO);
+  ::dup2(start.errors >= 0 ? start.errors : null, STDERR_FILENO);
+  if (start.key >= 0) {
+    // The descriptor it becomes may be the one for failures.
+    start.failure = ::fcntl(start.failure, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
+    if (start.key == kKeyDescriptor)
+      ::fcntl(start.key, F_SETFD, 0);
+    else
+      ::dup2(start.key, kKeyDescriptor);
+  }
+  std::signal(SIGPIPE, SIG_DFL);
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+  ::execvp(start.arguments[0], start.arguments);
+  fail(start);
+}
+
+/// Signals every child of ours to die; whether there was one that can be.
+bool kill_children() {
+  int list = ::open("/proc/thread-self/children", O_RDONLY | O_CLOEXEC);
+  bool any = false;
+  pid_t child = 0;
+  char piece[4096];
+  for (ssize_t size = 0; (size = ::read(list, piece, sizeof piece)) > 0;)
+    for (ssize_t i = 0; i < size; ++i) {
+      if (piece[i] >= '0' && piece[i] <= '9') {
+        child = child * 10 + (piece[i] - '0');
+      } else if (child != 0) {
+        any = ::kill(child, SIGKILL) == 0 || any;
+        child = 0;
+      }
+    }
+  ::close(list);
+  return any;
+}
+
+/// The guard between us and a program: see process.h.
+[[noreturn]] void guard(const Start& start) {
+  sigset_t all, before, ended;
+  ::sigfillset(&all);
+  ::sigprocmask(SIG_SETMASK, &all, &before);
+  std::signal(SIGCHLD, SIG_DFL);  // were it ignored, nothing could be waited for
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_NAME, "guard");
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  pid_t self = ::getpid();
+  pid_t program = ::fork();
+  if (program < 0) fail(start);
+  if (program == 0) become(start, self, before);
+
+  // All pipes of other processes are open here too, and would not close when we go.
+  ::dup2(start.life, 0);
+  ::close_range(1, ~0U, 0);
+  ::sigemptyset(&ended);
+  ::sigaddset(&ended, SIGCHLD);
+  pollfd polled[] = {{0, POLLIN, 0}, {::signalfd(-1, &ended, SFD_NONBLOCK), POLLIN, 0}};
+  int status = 0;
+  bool has_ended = false;
+  while (!has_ended && polled[0].revents == 0) {
+    ::poll(polled, 2, -1);
+    signalfd_siginfo signal;
+    while (::read(polled[1].fd, &signal, sizeof signal) > 0) {
+    }
+    int each = 0;
+    for (pid_t child = 0; (child = ::waitpid(-1, &each, WNOHANG)) > 0;) {
+      if (child != program) continue;
+      has_ended = true;
+      status = WIFSIGNALED(each) ? 128 + WTERMSIG(each) : WEXITSTATUS(each);
+    }
+  }
+  // Orphans become our children, so this continues until no process is left.
+  while (kill_children()) ::waitpid(-1, nullptr, 0);
+  // Those that the system would not list, where it lists none, and this process itself.
+  if (!has_ended) ::kill(0, SIGKILL);
+  ::_exit(status);
+}
+
+Result<std::array<Descriptor, 2>> make_pipe() {
+  int ends[2];
+  auto made = system_call("pipe2", "", [&] { return ::pipe2(ends, O_CLOEXEC); });
+  if (!made) return made.error();
+  return std::array<Descriptor, 2>{Descriptor(ends[0]), Descriptor(ends[1])};
+}
+
+}  // namespace
+
+Result<Process> Process::start(const std::vector<std::string>& command, Capture capture, int key) {
+  std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
+  for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  auto output = make_pipe();
+  if (!output) return output.error();
+  auto failure = make_pipe();
+  if (!failure) return failure.error();
+  auto life = make_pipe();
+  if (!life) return life.error();
+  std::array<Descriptor, 2> input, errors;
+  if (capture == Capture::Both)
+    for (auto* ends : {&input, &errors}) {
+      auto made = make_pipe();
+      if (!made) return made.error();
+      *ends = std::move(*made);
+    }
+
+  const int captured = (*output)[1].get();
+  const bool is_both = capture == Capture::Both;
+  const Start start{arguments.data(),
+                    input[0].get(),
+                    capture == Capture::Errors ? -1 : captured,
+                    is_both                      ? errors[1].get()
+                    : capture == Capture::Errors ? captured
+                                                 : -1,
+                    (*failure)[1].get(),
+                    (*life)[0].get(),
+                    key};
+  pid_t child = ::fork();
+  if (child < 0) return system_error("fork", command[0]);
+  if (child == 0) guard(start);
+
+  Process process;
+  process.number_ = child;
+  process.handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
+  process.output_ = std::move((*output)[0]);
+  process.errors_ = std::move(errors[0]);
+  process.input_ = std::move(input[1]);
+  process.life_ = std::move((*life)[1]);
+  for (const auto* ours : {&process.output_, &process.errors_, &process.input_})
+    if (*ours) ::fcntl(ours->get(), F_SETFL, O_NONBLOCK);
+  // The pipe closes when exec succeeds.
+  (*failure)[1].reset();
+  int number = 0;
+  auto size =
+      system_call("read", "", [&] { return ::read((*failure)[0].get(), &number, sizeof number); });
+  if (size && *size == sizeof number) return system_error("exec", command[0], number);
+  if (!process.handle_) return system_error("pidfd_open", command[0]);
+  return process;
+}
+
+Process::~Process() {
+  if (!owned_.flag || number_ < 0 || status_) return;
+  kill();
+  siginfo_t ended{};
+  while (::waitid(P_PID, static_cast<id_t>(number_), &ended, WEXITED | WNOWAIT) < 0 &&
+         errno == EINTR) {
+  }
+  poll_status();
+}
+
+std::optional<int> Process::poll_status() {
+  siginfo_t ended{};
+  if (status_ || ::waitid(P_PID, static_cast<id_t>(number_), &ended, WEXITED | WNOHANG | WNOWAIT) ||
+      ended.si_pid != number_)
+    return status_;
+  // What a guard that was killed could not see to. Until it is reaped, the number is nobody else's.
+  ::kill(-number_, SIGKILL);
+  int status = 0;
+  ::waitpid(number_, &status, 0);
+  status_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  return status_;
+}
+
+void Process::ask_to_end() const {
+  if (status_) return;
+  // First, as a stopped process could not end; later it may undo the stop of a leak checker or a
+  // debugger that looks at a process that is ending.
+  ::kill(-number_, SIGCONT);
+  ::kill(-number_, SIGTERM);
+}
+
+}  // namespace hc::internal

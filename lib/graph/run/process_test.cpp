@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/process.h>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <csignal>
+#include <fstream>
+
+#include <hc/link/link.h>
+
+namespace hc::internal {
+namespace {
+
+using Capture = Process::Capture;
+
+Process shell(const std::string& script, Capture capture = Capture::Output) {
+  auto process = Process::start({"/bin/sh", "-c", script}, capture);
+  HC_CHECK(process, process.error().detail);
+  return std::move(*process);
+}
+
+void wait_for(int descriptor) {
+  std::array<int, 1> descriptors = {descriptor};
+  EXPECT_TRUE(wait_readable(descriptors));
+}
+
+/// What a process says until `end` is said, or all is.
+std::string listen(const Process& process, char end = '\0') {
+  std::string text;
+  while (true) {
+    wait_for(process.output());
+    char letter = 0;
+    if (::read(process.output(), &letter, 1) <= 0 || letter == end) return text;
+    text += letter;
+  }
+}
+
+int status_of(Process& process) {
+  wait_for(process.ended());
+  return process.poll_status().value_or(-1);
+}
+
+/// Whether a process is there and runs.
+bool runs(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string number, name, state;
+  return file >> number >> name >> state && state != "Z";
+}
+
+/// A shell's words that leave a process in a session of its own behind and say its number.
+const std::string kLeaveBehind = "echo $(setsid sh -c 'echo $$; exec sleep 1000 >&2' &); ";
+
+TEST(Process, IsHeardAndHasAStatus) {
+  auto process = shell("echo said; echo dropped >&2; exit 7");
+  EXPECT_EQ(listen(process), "said\n");
+  EXPECT_EQ(status_of(process), 7);
+  EXPECT_EQ(process.poll_status(), 7);
+  auto errors = shell("echo dropped; echo said >&2; read line || exit 1", Capture::Errors);
+  EXPECT_EQ(listen(errors), "said\n");
+  EXPECT_EQ(status_of(errors), 1);  // standard input is empty
+}
+
+TEST(Process, WhatCannotBeExecutedIsNamed) {
+  auto missing = Process::start({"/nowhere/program"}, Capture::Output);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Code::NotFound);
+  EXPECT_EQ(missing.error().detail, "exec(/nowhere/program): No such file or directory");
+  auto folder = Process::start({"/"}, Capture::Output);
+  ASSERT_FALSE(folder);
+  EXPECT_EQ(folder.error().detail, "exec(/): Permission denied");
+}
+
+TEST(Process, ASignalCountsFrom128) {
+  auto process = shell("kill -SEGV $$");
+  EXPECT_EQ(status_of(process), 128 + SIGSEGV);
+}
+
+TEST(Process, IsAskedToEndWithItsGroup) {
+  auto process = shell("trap 'wait; echo both; exit 5' TERM; sh -c 'echo; exec sleep 1000' & wait");
+  EXPECT_EQ(listen(process, '\n'), "");
+  process.ask_to_end();
+  EXPECT_EQ(listen(process), "both\n");
+  EXPECT_EQ(status_of(process), 5);
+  process.ask_to_end();  // to nobody
+}
+
+TEST(Process, NothingIsLeftBehindWhenItEnds) {
+  auto process = shell(kLeaveBehind + "sleep 1000 & exit 3");
+  pid_t left = std::stoi(listen(process, '\n'));
+  EXPECT_EQ(status_of(process), 3);
+  EXPECT_FALSE(runs(left));
+}
+
+TEST(Process, NothingIsLeftBehindWhenItIsKilled) {
+  auto process = shell("trap '' TERM; " + kLeaveBehind + "sleep 1000");
+  pid_t left = std::stoi(listen(process, '\n'));
+  EXPECT_TRUE(runs(left));
+  process.kill();
+  EXPECT_EQ(status_of(process), 128 + SIGKILL);
+  EXPECT_FALSE(runs(left));
+}
+
+TEST(Process, NothingIsLeftBehindWhenItGoesOutOfScope) {
+  pid_t left = 0;
+  {
+    auto process = shell(kLeaveBehind + "sleep 1000");
+    auto moved = std::move(process);
+    left = std::stoi(listen(moved, '\n'));
+  }
+  EXPECT_FALSE(runs(left));
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);  // no child is left either
+}
+
+TEST(Process, OthersDoNotKeepAGuardAlive) {
+  auto first = shell("exec sleep 1000");
+  auto second = shell("exec sleep 1000");  // its guard was forked with the pipe of the first open
+  first.kill();
+  EXPECT_EQ(status_of(first), 128 + SIGKILL);
+}
+
+TEST(Process, AGuardThatIsKilledTakesItsGroupAlong) {
+  auto process = shell("sleep 1000 & echo $PPID $!; wait");
+  std::string numbers = listen(process, '\n');
+  ASSERT_EQ(::kill(std::stoi(numbers), SIGKILL), 0);
+  EXPECT_EQ(status_of(process), 128 + SIGKILL);
+  EXPECT_EQ(listen(process), "");  // all who could write have ended
+}
+
+TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  pid_t runner = ::fork();
+  if (runner == 0) {
+    ::close(ends[0]);
+    auto process = shell(kLeaveBehind + "sleep 1000");
+    std::string left = listen(process, '\n') + "\n";
+    if (::write(ends[1], left.data(), left.size()) < 0) ::_exit(1);
+    while (true) ::pause();
+  }
+  ::close(ends[1]);
+  char left[32] = {};
+  ASSERT_GT(::read(ends[0], left, sizeof left - 1), 0);
+  EXPECT_TRUE(runs(std::stoi(left)));
+  ASSERT_EQ(::kill(runner, SIGKILL), 0);
+  ASSERT_EQ(::waitpid(runner, nullptr, 0), runner);
+  // What is left gives no notice of its end, but for the watchdog of the test.
+  while (runs(std::stoi(left))) ::sched_yield();
+  ::close(ends[0]);
+}
+
+}  // namespace
+}  // namespace hc::internal

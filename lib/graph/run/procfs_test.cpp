@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/os/procfs.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include <graph/run/process.h>
+#include <hc/link/link.h>
+
+namespace hc::internal {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A shell that has said that it is ready.
+Process shell(const std::string& script) {
+  auto process = Process::start({"/bin/sh", "-c", script}, Process::Capture::Output);
+  HC_CHECK(process, process.error().detail);
+  HC_CHECK(wait_readable(std::array{process->output()}));
+  return std::move(*process);
+}
+
+TEST(ProcessLook, FindsAllThatDescends) {
+  auto process = shell("setsid sh -c 'echo; sleep 1000; true' & exec sleep 1000");
+  const pid_t program = first_child(process.guard_number());
+  EXPECT_EQ(::kill(program, 0), 0);
+  // The shell's own child is forked behind the line that was heard.
+  std::vector<pid_t> all;
+  while (all.size() < 3) all = descendants(process.guard_number());
+  EXPECT_EQ(all.front(), program);
+  EXPECT_GT(usage_of(all, true).memory, usage_of({program}, true).memory);
+}
+
+TEST(ProcessLook, TellsWhatIsUsed) {
+  auto process = shell("echo; while :; do :; done");
+  auto all = descendants(process.guard_number());
+  while (usage_of(all, false).processor < 50ms) ::sched_yield();
+  auto usage = usage_of(all, true);
+  EXPECT_GT(usage.memory, std::uint64_t{10} << 10);
+  EXPECT_FALSE(usage.is_stopped);
+  ASSERT_EQ(::kill(all[0], SIGSTOP), 0);
+  while (!usage_of(all, false).is_stopped) ::sched_yield();
+}
+
+TEST(ProcessLook, WhoHasGoneUsesNothing) {
+  auto process = shell("echo");
+  ASSERT_TRUE(wait_readable(std::array{process.ended()}));
+  process.poll_status();
+  EXPECT_EQ(first_child(process.guard_number()), 0);
+  EXPECT_TRUE(descendants(process.guard_number()).empty());
+  EXPECT_EQ(usage_of({process.guard_number()}, true).memory, 0U);
+}
+
+}  // namespace
+}  // namespace hc::internal

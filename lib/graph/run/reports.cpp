@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/reports.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <hc/base/uri.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::size_t kMostKey = 4096;  // of an end [byte]
+
+/// The end of a link without its options: the same while its policy changes, and readers come and
+/// go.
+std::string end_key(bool is_input, const std::string& port, const std::string& uri) {
+  std::string key = (is_input ? "in " : "out ") + port + " ";
+  auto parsed = parse_uri(uri);
+  if (!parsed) return key + uri;
+  parsed->options.clear();
+  return key + parsed->text();
+}
+
+/// Adds what another link, or process, of the same end has counted.
+void add(const LinkCounters& row, LinkCounters& sum) {
+  sum.traffic += row.traffic;
+  sum.ignored += row.ignored;
+  if (row.age.back() < sum.age.back()) return;
+  sum.age = row.age;
+  sum.gap = row.gap;
+}
+
+}  // namespace
+
+/// Has what comes next count from 0.
+void Reports::Counted::end() {
+  add(std::exchange(now, {}), past);
+  report.per_second = report.bytes_per_second = 0;
+  arrived = MonotonicTime(0);
+  past.age = past.gap = report.age = report.gap = {-1, -1, -1};
+}
+
+void Reports::set_ends(const std::vector<PlannedEnd>& ends) {
+  auto before = std::exchange(ends_, {});
+  std::vector<std::string> order;
+  for (bool is_input : {true, false})
+    for (const auto& end : ends) {
+      if (end.is_input != is_input) continue;
+      order.push_back(end_key(end.is_input, end.port, end.uri));
+      ends_[order.back()] = before[order.back()];
+    }
+  if (!has_links_) order_ = std::move(order);
+}
+
+bool Reports::take(const Message& message, MonotonicTime now) {
+  switch (static_cast<Report>(message.header.src)) {
+    case Report::Links:
+      return message.header.info.type == MatrixType::String && take_links(message);
+    case Report::Parameters: {
+      if (message.header.info.type != MatrixType::String) return false;
+      auto parameters = read_parameters(message, kMostParameters);
+      return std::exchange(parameters_, parameters) != parameters;
+    }
+    case Report::State: {
+      const auto state = read_state(message);
+      return state && take_state(*state);
+    }
+    case Report::Refusal:
+      return false;
+    case Report::Counters:
+      break;
+  }
+  // A program that is no module of ours may leave src out.
+  if (message.header.src <= static_cast<int>(Report::Counters))
+    take_counters(read_counters(message), now);
+  return false;
+}
+
+void Reports::take_counters(const std::vector<LinkCounters>& rows, MonotonicTime now) {
+  if (rows.empty()) return;
+  std::map<std::string, LinkCounters> sums;
+  for (std::size_t i = 0; i < std::min(rows.size(), order_.size()); ++i)
+    add(rows[i], sums[order_[i]]);
+  for (auto& [key, counted] : ends_)
+    if (auto sum = sums.find(key); sum != sums.end())
+      count(counted, sum->second, key.starts_with("in "), now);
+    else
+      counted.report.per_second = counted.report.bytes_per_second = 0;
+}
+
+void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, MonotonicTime now) {
+  constexpr double kSilent = 5;  // after which nothing comes any more [s]
+  const Traffic& traffic = row.traffic;
+  if (traffic.messages < counted.now.traffic.messages) counted.end();  // the link was replaced
+  const Traffic& before = counted.now.traffic;
+  EndReport report;
+  report.per_second = counted.report.per_second;
+  report.bytes_per_second = counted.report.bytes_per_second;
+  const double seconds = std::chrono::duration<double>(now - counted.arrived).count();
+  // A sender also counts messages that it drops.
+  auto carried = [&](const Traffic& all) {
+    return all.messages - (is_input ? 0 : std::min(all.messages, all.lost()));
+  };
+  const auto carried_now = carried(traffic);
+  const auto messages = static_cast<double>(carried_now - std::min(carried_now, carried(before)));
+  const auto bytes = static_cast<double>(traffic.bytes - std::min(traffic.bytes, before.bytes));
+  if (counted.arrived == MonotonicTime(0) || messages > 0) {
+    const bool is_measured = counted.arrived != MonotonicTime(0);
+    report.per_second = is_measured ? messages / seconds : 0;
+    report.bytes_per_second = is_measured ? bytes / seconds : 0;
+    counted.arrived = now;
+  } else if (report.per_second * seconds > 1) {  // less than one in the time since the last
+    const double slower = seconds > kSilent ? 0 : 1 / (seconds * report.per_second);
+    report.per_second *= slower;
+    report.bytes_per_second *= slower;
+  }
+  counted.now = row;
+  counted.has_row = true;
+  add(counted.past, report);
+  add(row, report);
+  report.age = row.age;
+  report.gap = row.gap;
+  counted.report = report;
+}
+
+bool Reports::take_links(const Message& message) {
+  std::vector<std::string> order;
+  for (const auto& link : read_links(message)) {
+    if (order.size() == kMostEnds) break;
+    order.push_back(end_key(link.is_input, link.port, link.uri).substr(0, kMostKey));
+  }
+  has_links_ = true;
+  for (auto& [key, counted] : ends_)
+    if (std::find(order.begin(), order.end(), key) == order.end()) counted.end();
+  return std::exchange(order_, order) != order;
+}
+
+bool Reports::take_state(const StateReport& state) {
+  StateReport before = std::exchange(state_, state);
+  before.blocked_row = state.blocked_row;  // no change yet: it may be short
+  return before != state;
+}
+
+std::string Reports::blocked_output() const {
+  const auto row = static_cast<std::size_t>(state_.blocked_row);
+  if (state_.blocked_row <= 0 || row > order_.size()) return "";
+  const auto& key = order_[row - 1];  // "out PORT URI"
+  return key.starts_with("out ") ? key.substr(4, key.find(' ', 4) - 4) : "";
+}
+
+void Reports::end() {
+  for (auto& [key, counted] : ends_) counted.end();
+  has_links_ = false;
+  state_.blocked_row = 0;
+}
+
+const EndReport* Reports::find(const PlannedEnd& end) const {
+  auto found = ends_.find(end_key(end.is_input, end.port, end.uri));
+  return found == ends_.end() || !found->second.has_row ? nullptr : &found->second.report;
+}
+
+}  // namespace hc::internal

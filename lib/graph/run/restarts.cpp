@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/restarts.h>
+
+#include <algorithm>
+
+namespace hc::internal {
+
+void Restarts::started(MonotonicTime now) {
+  std::erase_if(starts_, [&](MonotonicTime start) { return now - start >= limits_.window; });
+  starts_.push_back(now);
+}
+
+Restarts::Decision Restarts::ended(int status, MonotonicTime now) {
+  if (status == 0 && policy_ != Restart::Always) return {Next::End, {}};
+  if (policy_ == Restart::Never || status == kBadArguments) return {Next::GiveUp, {}};
+  if (!starts_.empty() && now - starts_.back() >= limits_.window) reset();
+  std::erase_if(starts_, [&](MonotonicTime start) { return now - start >= limits_.window; });
+  if (delayed_ == 0 && starts_.size() < limits_.starts_at_once) return {Next::Again, {}};
+  if (delayed_ == limits_.delayed_starts) return {Next::GiveUp, {}};
+  auto whole = limits_.first_delay;
+  for (int i = 0; i < delayed_ && whole < limits_.longest_delay; ++i) whole *= 2;
+  whole = std::min(whole, limits_.longest_delay);
+  ++delayed_;
+  std::uniform_int_distribution<std::int64_t> within(whole.count() / 2, whole.count());
+  return {Next::Again, std::chrono::nanoseconds(within(random_))};
+}
+
+Restarts::Decision Restarts::lost() {
+  if (policy_ == Restart::Never) return {Next::GiveUp, {}};
+  if (!starts_.empty()) starts_.pop_back();
+  return {Next::Again, {}};
+}
+
+void Restarts::reset() {
+  starts_.clear();
+  delayed_ = 0;
+}
+
+}  // namespace hc::internal

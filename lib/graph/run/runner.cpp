@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/runner.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include <graph/run/lines.h>
+
+namespace hc::internal {
+namespace {
+
+using MonotonicClock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kTick{250};
+constexpr int kTicksOfState = 2, kTicksOfMemory = 8;
+
+/// A line with its module's name before it, where that is not there yet.
+std::string with_name(const std::string& module, const std::string& line) {
+  const std::string prefix = module + ": ";
+  return line.starts_with(prefix) ? line : prefix + line;
+}
+
+}  // namespace
+
+Result<RunReport> Runner::run() {
+  if (auto begun = begin(); !begun) return begun.error();
+  while (!is_over()) {
+    if (auto turned = loop_->turn(); !turned) return turned.error();
+    settle();
+  }
+  refuse_changes();
+  if (!outcome_) return outcome_.error();
+  auto end = state();
+  std::ranges::stable_sort(results_, {}, [&](const std::string& line) {
+    return std::ranges::find(end.modules, line.substr(0, line.find(':')), &ModuleState::name) -
+           end.modules.begin();
+  });
+  return RunReport{std::move(end), std::move(results_), is_stopped_};
+}
+
+Status Runner::begin() {
+  begun_ = now();
+  auto loop = Loop::make();
+  if (!loop) return loop.error();
+  loop_ = std::move(*loop);
+  if (!options_.name.empty()) {
+    auto observation = Observation::make(
+        *loop_, options_.name,
+        {[this] { return state(); },
+         [this](const auto& lines, auto answer) { obey(lines, std::move(answer)); },
+         [this](const auto& port) { return observe(port); },
+         [this](const auto& module) { return describe(module); }});
+    if (!observation) return observation.error();
+    observation_ = std::move(*observation);
+  }
+  if (options_.stop >= 0) {
+    auto watched = loop_->watch(options_.stop, EPOLLIN, [this](auto) {
+      stop_.reset();
+      is_stopped_ = true;
+      end_all();
+    });
+    if (!watched) return watched.error();
+    stop_ = std::move(*watched);
+  }
+  if (options_.hosts != nullptr) {
+    auto watched =
+        loop_->watch(options_.hosts->descriptor(), EPOLLIN, [this](auto) { look_at_hosts(); });
+    if (!watched) return watched.error();
+    hosts_ = std::move(*watched);
+  }
+  if (options_.loader != nullptr) {
+    auto planning = Aside::make(*loop_);
+    if (!planning) return planning.error();
+    planning_ = std::move(*planning);
+  }
+  if (options_.loader != nullptr && !graph_.files.empty()) {
+    auto files = FileWatch::make(*loop_, [this] { reload(); });
+    if (!files) return files.error();
+    files_ = std::move(*files);
+    files_->set_files(graph_.files);
+  }
+  // All listen before one starts: who comes early finds its peers.
+  for (const auto& planned : plan_.modules) {
+    auto module = make(planned);
+    if (!module) return module.error();
+    modules_[planned.name] = std::move(*module);
+  }
+  for (const auto& planned : plan_.modules)
+    if (auto started = find(planned.name)->start(); !started) return started;
+  tick();
+  return {};
+}
+
+Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
+  const std::string& name = module.name;
+  Supervised::Hear hear;
+  hear.event = [this, name](const std::string& line) { say(with_name(name, line)); };
+  hear.said = [this, name](const std::string& line) { this->hear(with_name(name, line)); };
+  hear.failed = [this, name](const std::deque<std::string>& last_words) {
+    if (!options_.tells_lines)
+      for (const auto& line : last_words) tell(with_name(name, line));
+  };
+  hear.changed = [this] {
+    is_unsettled_ = true;
+    if (observation_) observation_->changed();
+  };
+  hear.ended = [this, name] {
+    const Supervised* ended = find(name);
+    if (ended == nullptr || ended->status() != ModuleStatus::GivenUp || is_stopping_) return;
+    const bool is_failure = ended->plan().restart == Restart::Never;
+    if (is_failure) failures_.push_back({name, ended->exit().value_or(0)});
+  };
+  hear.interrupted = [this, name] {
+    for (auto* each : cut_off_by(name)) each->note_interruption();
+  };
+  hear.has_work = [this, name] {
+    bool has_writers = false, is_written_to = false, is_read = false;
+    for (const auto& link : plan_.links) {
+      const Supervised *from = at(link.from), *to = at(link.to);
+      if (from == nullptr || to == nullptr || from == to) continue;
+      has_writers = has_writers || to->plan().name == name;
+      is_written_to = is_written_to || (to->plan().name == name && !from->is_over());
+      is_read = is_read || (from->plan().name == name && !to->is_over());
+    }
+    return !is_stopping_ && (has_writers ? is_written_to : is_read);
+  };
+  return Supervised::make(*loop_, module, options_.limits, std::move(hear), options_.hosts);
+}
+
+Supervised* Runner::find(const std::string& name) const {
+  auto found = modules_.find(name);
+  return found == modules_.end() ? nullptr : found->second.get();
+}
+
+Supervised* Runner::at(const std::string& end) const {
+  return find(end.substr(0, end.find('.')));
+}
+
+/// The modules that a module is linked to, but for itself.
+std::set<Supervised*> Runner::neighbours_of(const std::string& name) const {
+  std::set<Supervised*> neighbours;
+  for (const auto& link : plan_.links) {
+    Supervised *from = at(link.from), *to = at(link.to);
+    if (from == nullptr || to == nullptr || from == to) continue;
+    if (from->plan().name == name) neighbours.insert(to);
+    if (to->plan().name == name) neighbours.insert(from);
+  }
+  return neighbours;
+}
+
+/// Who ends when a module does, though not for good: its neighbours without `control`, and theirs,
+/// which may have ended before these have.
+std::set<Supervised*> Runner::cut_off_by(const std::string& name) const {
+  std::set<Supervised*> cut_off;
+  std::vector<std::string> way = {name};
+  while (!way.empty()) {
+    const std::string last = std::move(way.back());
+    way.pop_back();
+    for (auto* each : neighbours_of(last))
+      if (each->plan().control_uri.empty() && each->plan().name != name &&
+          cut_off.insert(each).second)
+        way.push_back(each->plan().name);
+  }
+  return cut_off;
+}
+
+void Runner::tell(const std::string& line) const {
+  if (options_.event) options_.event(line);
+}
+
+void Runner::say(const std::string& line) {
+  tell(line);
+  if (observation_) observation_->log(line);
+}
+
+/// Takes a line of a module's log, with its name before it.
+void Runner::hear(std::string line) {
+  constexpr std::string_view kResult = ": result: ";
+  // Its peers are stopping too.
+  if (is_stopping_ && (line.ends_with("reconnecting") || line.ends_with("connecting again")))
+    return;
+  line = with_link_names(std::move(line));
+  if (const auto found = line.find(Lines::kNotice); found != std::string::npos)
+    return tell(line.erase(found + 2, Lines::kNotice.size() - 2));
+  if (auto found = line.find(kResult); found != std::string::npos) {
+    line.erase(found, kResult.size() - 2);
+    if (results_.size() < kMaxResults) results_.push_back(line);
+  }
+  if (options_.tells_lines) tell(line);
+  if (observation_) observation_->log(line);
+}
+
+/// Puts "MODULE.PORT → MODULE.PORT" in the place of a link's URI.
+std::string Runner::with_link_names(std::string line) const {
+  const bool has_token = !plan_.token.empty() && line.find(plan_.token) != std::string::npos;
+  if (!has_token && plan_.ports.empty()) return line;
+  for (const auto& link : plan_.links)
+    for (const auto* uri : {&link.reader_uri, &link.sender_uri}) {
+      const bool is_inside = !link.reader_uri.empty() && !link.sender_uri.empty();
+      const auto found = is_inside ? line.find(*uri) : std::string::npos;
+      if (found != std::string::npos)
+        return line.replace(found, uri->size(), link.from + " → " + link.to);
+    }
+  return line;
+}
+
+void Runner::tick() {
+  const auto time = now();
+  for (auto& [name, module] : modules_) module->look(time);
+  if (ticks_++ % kTicksOfState == 0) {
+    if (observation_ && observation_->is_heard()) {
+      for (auto& [name, module] : modules_)
+        module->measure(time, (ticks_ - 1) % kTicksOfMemory == 0);
+      observation_->tell_state();
+    }
+    if (options_.state) options_.state(state());
+  }
+  tick_ = loop_->call_at(MonotonicClock::now() + kTick, [this] { tick(); });
+}
+
+/// A host has been lost, or is there again.
+void Runner::look_at_hosts() {
+  for (const auto& line : options_.hosts->take_events()) say(line);
+  for (auto& [name, module] : modules_) module->look_at_host();
+  is_unsettled_ = true;
+  if (observation_) observation_->changed();
+}
+
+bool Runner::is_over() const {
+  return leaving_.empty() && std::all_of(modules_.begin(), modules_.end(),
+                                         [](const auto& entry) { return entry.second->is_over(); });
+}
+
+/// Does what follows of what has happened in a turn.
+void Runner::settle() {
+  if (!failures_.empty()) settle_failures();
+  for (const auto& [name, module] : modules_)
+    if (module->plan().ends_graph && module->status() == ModuleStatus::Ended) end_all();
+  while (std::exchange(is_unsettled_, false)) settle_links();
+  std::erase_if(leaving_, [](const auto& entry) { return entry.second->is_over(); });
+}
+
+/// Ends the graph. Who was killed is the cause of what others say of their links.
+void Runner::settle_failures() {
+  // A copy, since what is noted may add to them; and behind the others, so that none is blamed for
+  // our own signal.
+  for (auto& [name, module] : modules_) module->note_end();
+  auto cause = std::find_if(failures_.begin(), failures_.end(),
+                            [](const Failure& each) { return each.status > kSignal; });
+  if (cause == failures_.end()) cause = failures_.begin();
+  outcome_ = Error{Code::Closed, "module " + cause->module + ": " + end_in_words(cause->status)};
+  failures_.clear();
+  end_all();
+}
+
+void Runner::end_all() {
+  if (std::exchange(is_stopping_, true)) return;
+  if (is_stopped_) say("graph: stopping");
+  refuse_changes();
+  for (auto& [name, module] : modules_) module->end();
+}
+
+/// Sees to it that no writer waits for a reader that has ended for good, and no reader for a
+/// writer.
+void Runner::settle_links() {
+  if (is_stopping_) return;
+  std::map<LinkName, const PlannedLink*> to_read;  // in the place of their readers
+  for (const auto& link : plan_.links) {
+    const Supervised* writer = at(link.from);
+    Supervised* reader = at(link.to);
+    if (writer == nullptr || reader == nullptr) continue;
+    if (reader->is_over() && !writer->is_over()) to_read[{link.from, link.to}] = &link;
+    if (reader->is_over() || !link.lasts) continue;
+    const std::string port = link.to.substr(link.to.find('.') + 1);
+    reader->finish_input({true, port, link.reader_uri, {}},
+                         writer->status() == ModuleStatus::Ended);
+  }
+  std::erase_if(stand_ins_, [&](const auto& entry) { return !to_read.contains(entry.first); });
+  for (const auto& [name, link] : to_read) {
+    if (stand_ins_.contains(name)) continue;
+    auto stand_in = stand_in_for(at(link->to)->plan(), link->reader_uri);
+    if (!stand_in) say("graph: " + link->reader_uri + ": " + stand_in.error().text());
+    stand_ins_[name] = stand_in ? std::move(*stand_in) : nullptr;
+  }
+  end_unneeded();
+}
+
+/// What reads in the place of a module that is over, on its host.
+Result<std::shared_ptr<void>> Runner::stand_in_for(const PlannedModule& reader,
+                                                   const std::string& uri) const {
+  if (!reader.host.empty() && options_.hosts != nullptr)
+    if (auto host = options_.hosts->find(reader.host)) return host->read_in_place(uri);
+  // Modules find the key of this host at another descriptor.
+  std::string ours = uri;
+  if (const auto key = ours.find(kKeyFile); key != std::string::npos && options_.hosts != nullptr)
+    ours.replace(key, kKeyFile.size(), "/proc/self/fd/" + std::to_string(options_.hosts->key()));
+  auto intake = make_stand_in(*loop_, ours);
+  if (!intake) return intake.error();
+  return std::shared_ptr<void>(std::move(*intake));
+}
+
+/// A module all of whose readers have done their work has nothing left to do.
+void Runner::end_unneeded() {
+  std::map<std::string, bool> is_needed;  // of writers
+  for (const auto& link : plan_.links) {
+    const Supervised* reader = at(link.to);
+    const bool is_done = reader != nullptr && reader->status() == ModuleStatus::Ended;
+    bool& needed = is_needed[link.from.substr(0, link.from.find('.'))];
+    needed = needed || !is_done;
+  }
+  for (const auto& [name, needed] : is_needed) {
+    Supervised* writer = find(name);
+    if (needed || writer == nullptr || writer->is_over() || writer->is_to_end() ||
+        writer->plan().restart == Restart::Always)
+      continue;
+    writer->dismiss();
+  }
+}
+
+}  // namespace hc::internal
+
+namespace hc {
+
+Result<RunReport> run_graph(LoadedGraph graph, const RunOptions& options) {
+  return internal::Runner(std::move(graph), options).run();
+}
+
+}  // namespace hc

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A graph at work: its modules, the links between them, and what others ask of it. Internal to
+// graph.
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <graph/commands.h>
+#include <graph/run.h>
+#include <graph/run/aside.h>
+#include <graph/run/observation.h>
+#include <graph/run/supervised.h>
+#include <hc/os/file_watch.h>
+#include <hc/os/loop.h>
+
+namespace hc::internal {
+
+class Runner {
+ public:
+  Runner(LoadedGraph graph, const RunOptions& options)
+      : options_(options), graph_(std::move(graph.graph)), plan_(std::move(graph.plan.value())) {}
+
+  Result<RunReport> run();
+
+ private:
+  using LinkName = std::pair<std::string, std::string>;  // from, to
+  struct Failure {
+    std::string module;
+    int status;
+  };
+  struct Change {                   // that is wanted
+    std::vector<Command> commands;  // none: a file was edited
+    Observation::Answer answer;
+  };
+
+  Status begin();
+  Result<std::unique_ptr<Supervised>> make(const PlannedModule& module);
+  [[nodiscard]] Supervised* find(const std::string& name) const;
+  /// The module of "MODULE.PORT"; null where it is the world outside.
+  [[nodiscard]] Supervised* at(const std::string& end) const;
+
+  [[nodiscard]] std::set<Supervised*> neighbours_of(const std::string& name) const;
+  [[nodiscard]] std::set<Supervised*> cut_off_by(const std::string& name) const;
+
+  void tell(const std::string& line) const;
+  void say(const std::string& line);
+  void hear(std::string line);
+  [[nodiscard]] std::string with_link_names(std::string line) const;
+
+  void tick();
+  void look_at_hosts();
+  void settle();
+  void settle_failures();
+  void settle_links();
+  void end_unneeded();
+  void end_all();
+  [[nodiscard]] bool is_over() const;
+
+  void reload();
+  void obey(const std::vector<std::string>& lines, Observation::Answer answer);
+  Result<std::string> observe(const std::string& port);
+  [[nodiscard]] Result<std::string> describe(const std::string& module) const;
+  void carry_out(const std::vector<Command>& commands);
+  void begin_changes();
+  void begin_planning(std::function<Result<LoadedGraph>(int stop)> plan);
+  void take_planned(Result<LoadedGraph>& loaded);
+  void end_change(const std::vector<std::string>& wrong);
+  void refuse_changes();
+  std::vector<std::string> set_parameters(const std::vector<Command>& commands);
+  void change_to(Plan plan);
+  void add(const PlannedModule& module);
+
+  [[nodiscard]] GraphState state() const;
+  [[nodiscard]] LinkState state_of(const PlannedLink& link) const;
+
+  [[nodiscard]] Result<std::shared_ptr<void>> stand_in_for(const PlannedModule& reader,
+                                                           const std::string& uri) const;
+
+  static constexpr std::size_t kMaxResults = 100;
+
+  const RunOptions& options_;
+  Graph graph_;  // as `plan_` was made of it
+  Plan plan_;
+  MonotonicTime begun_{0};
+  int ticks_ = 0;
+  bool is_stopping_ = false, is_stopped_ = false;
+  bool is_file_gone_ = false;  // the graph's own
+  bool is_unsettled_ = false;  // a module has started or ended, or links have changed
+  std::vector<Failure> failures_;
+  std::vector<std::string> results_;  // lines
+  Status outcome_;
+  std::deque<Change> changes_;           // the first of them may be being planned
+  std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers
+  std::unique_ptr<Loop> loop_;
+  std::unique_ptr<Observation> observation_;
+  std::unique_ptr<FileWatch> files_;
+  std::unique_ptr<Aside> planning_;
+  // In the place of readers that are over; null: it failed.
+  std::map<LinkName, std::shared_ptr<void>> stand_ins_;
+  std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
+  Loop::Handle stop_, tick_, hosts_;
+};
+
+}  // namespace hc::internal

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a running graph is changed: by its files, and by commands.
+#include <graph/commands.h>
+#include <graph/run/runner.h>
+#include <hc/base/suggestion.h>
+#include <hc/contract/trace.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace hc::internal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kIsStopping = "the graph is stopping";
+
+using Commands = std::vector<Command>;
+
+bool has_edits(const Commands& commands) {
+  return std::any_of(commands.begin(), commands.end(),
+                     [](const Command& command) { return command.is_edit(); });
+}
+
+/// Whether commands leave modules and links as they are.
+bool only_set(const Commands& commands) {
+  return std::all_of(commands.begin(), commands.end(), [](const Command& command) {
+    return !command.is_edit() || command.verb == Command::Verb::Set;
+  });
+}
+
+}  // namespace
+
+/// Loads the graph again, as its files have changed.
+void Runner::reload() {
+  if (is_stopping_) return;
+  const auto& file = graph_.files.front();
+  std::error_code failed;
+  const bool is_gone = fs::status(file, failed).type() == fs::file_type::not_found;
+  if (is_gone && !is_file_gone_)
+    say("graph: " + file + " has been removed; keeping the running version");
+  is_file_gone_ = is_gone;
+  if (is_gone) return;
+  auto is_reload = [](const Change& change) { return change.commands.empty(); };
+  // A queued reload reads the newest files; one in progress is out of date.
+  if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_reload)) return;
+  if (!changes_.empty() && is_reload(changes_.front())) planning_->stop();
+  changes_.push_back({});
+  begin_changes();
+}
+
+/// Does all of some commands, or none.
+void Runner::obey(const std::vector<std::string>& lines, Observation::Answer answer) {
+  std::vector<std::string> wrong;
+  Commands commands;
+  for (const auto& line : lines) {
+    auto command = parse_command(line);
+    if (!command)
+      wrong.push_back(command.error().detail);
+    else if (command->verb == Command::Verb::Restart && find(command->words[0]) == nullptr)
+      wrong.push_back("no module \"" + command->words[0] + "\"");
+    else
+      commands.push_back(std::move(*command));
+  }
+  if (is_stopping_) wrong.emplace_back(kIsStopping);
+  if (!wrong.empty()) return answer(wrong);
+  if (!has_edits(commands)) {
+    carry_out(commands);
+    return answer({});
+  }
+  changes_.push_back({std::move(commands), std::move(answer)});
+  begin_changes();
+}
+
+/// Opens an output to observers; of an input, the output that it is linked to.
+Result<std::string> Runner::observe(const std::string& port) {
+  std::vector<std::string> known, writers;
+  for (const auto& [output, address] : plan_.sources) known.push_back(output);
+  for (const auto& link : plan_.links) {
+    if (at(link.to) != nullptr) known.push_back(link.to);
+    // An input may have an output's name: that output is meant.
+    if (link.to == port && !plan_.sources.contains(port)) writers.push_back(link.from);
+  }
+  if (writers.size() > 1) {
+    std::string list;
+    for (const auto& writer : writers) list += (list.empty() ? "" : ", ") + writer;
+    return Error{Code::Invalid, port + " has several writers; observe one of them: " + list};
+  }
+  const std::string& output = writers.empty() ? port : writers.front();
+  const bool is_output =
+      plan_.sources.contains(output) || output.ends_with("." + std::string(kTracePort));
+  Supervised* module = is_output ? at(output) : nullptr;
+  if (module == nullptr && !writers.empty())
+    return Error{Code::Invalid,
+                 port + " is fed by " + output + ", which no module of the graph is"};
+  if (module == nullptr)
+    return Error{Code::Invalid, "no port \"" + port + "\"" + suggestion(port, known)};
+  if (module->plan().control_uri.empty())
+    return Error{Code::Invalid,
+                 module->plan().name + " cannot be observed: its program takes no commands"};
+  const int number =
+      observed_.try_emplace(output, static_cast<int>(observed_.size())).first->second;
+  return module->observe(output.substr(output.find('.') + 1),
+                         plan_.token + ".watch." + std::to_string(number));
+}
+
+Result<std::string> Runner::describe(const std::string& module) const {
+  std::vector<std::string> known;
+  for (const auto& each : plan_.modules) {
+    if (each.name == module) return each.description;
+    known.push_back(each.name);
+  }
+  return Error{Code::Invalid, "no module \"" + module + "\"" + suggestion(module, known)};
+}
+
+/// Does what commands say that change nothing in the plan.
+void Runner::carry_out(const Commands& commands) {
+  for (const auto& command : commands) {
+    if (command.verb == Command::Verb::Restart) {
+      if (auto* module = find(command.words[0])) module->restart();
+    } else if (command.verb == Command::Verb::Stop) {
+      is_stopped_ = true;
+      end_all();
+    }
+  }
+}
+
+/// Does the changes that are wanted, up to the first that has to be planned: that is done on
+/// another thread, as a new program may be slow to describe itself.
+void Runner::begin_changes() {
+  while (!changes_.empty() && !is_stopping_ && !(planning_ && planning_->is_busy())) {
+    const Commands& commands = changes_.front().commands;
+    if (commands.empty())
+      return begin_planning([this](int stop) { return options_.loader->load(&plan_, stop); });
+    Graph graph = graph_;
+    Problems problems(graph.files, "");
+    for (const auto& command : commands) apply_command(graph, command, problems);
+    std::vector<std::string> wrong = problems.lines();
+    if (wrong.empty() && only_set(commands))
+      wrong = set_parameters(commands);
+    else if (wrong.empty() && options_.loader != nullptr)
+      return begin_planning([this, graph = std::move(graph)](int stop) {
+        return options_.loader->plan(graph, plan_, stop);
+      });
+    else if (wrong.empty())
+      wrong.emplace_back("this graph cannot be changed");
+    if (wrong.empty()) graph_ = std::move(graph);
+    end_change(wrong);
+  }
+}
+
+void Runner::begin_planning(std::function<Result<LoadedGraph>(int stop)> plan) {
+  auto loaded = std::make_shared<Result<LoadedGraph>>(Error{});
+  planning_->begin([loaded, plan = std::move(plan)](int stop) { *loaded = plan(stop); },
+                   [this, loaded] { take_planned(*loaded); });
+}
+
+void Runner::take_planned(Result<LoadedGraph>& loaded) {
+  if (is_stopping_) return;
+  const bool is_reload = changes_.front().commands.empty();
+  std::vector<std::string> wrong;
+  if (!loaded)
+    wrong.push_back(loaded.error().detail);
+  else if (!loaded->plan)
+    wrong = loaded->problems;
+  if (wrong.empty()) {
+    graph_ = std::move(loaded->graph);
+    change_to(std::move(*loaded->plan));
+  } else if (is_reload && !planning_->is_stopped()) {  // else there is a newer edit
+    for (const auto& line : wrong) say("graph: " + line);
+    say("graph: keeping the running version");
+  }
+  if (is_reload && loaded)
+    files_->set_files(loaded->graph.files.empty() ? graph_.files : loaded->graph.files);
+  end_change(wrong);
+  begin_changes();
+}
+
+/// Does the rest of the first change, and answers who asked for it.
+void Runner::end_change(const std::vector<std::string>& wrong) {
+  const Change change = std::move(changes_.front());
+  changes_.pop_front();
+  if (wrong.empty()) carry_out(change.commands);
+  if (change.answer) change.answer(wrong);
+}
+
+/// Answers who has asked for changes that will not be made.
+void Runner::refuse_changes() {
+  if (planning_) planning_->stop();
+  for (const auto& change : std::exchange(changes_, {}))
+    if (change.answer) change.answer({kIsStopping});
+}
+
+/// Sets all parameters that commands name, or none. @returns  what is wrong.
+std::vector<std::string> Runner::set_parameters(const Commands& commands) {
+  std::vector<std::string> wrong;
+  std::map<std::string, PlannedModule> changed;
+  for (const auto& command : commands) {
+    if (command.verb != Command::Verb::Set) continue;
+    const std::string& word = command.words[0];  // MODULE.PARAMETER=VALUE, as apply_command() found
+    const auto dot = word.find('.'), equals = word.find('=');
+    const std::string name = word.substr(0, dot), value = word.substr(equals + 1);
+    const std::string parameter = word.substr(dot + 1, equals - dot - 1);
+    auto& module = changed.emplace(name, find(name)->plan()).first->second;
+    if (auto checked = module.check_parameter(parameter, value); !checked)
+      wrong.push_back(checked.error().detail);
+    module.parameters[parameter] = value;
+  }
+  if (!wrong.empty()) return wrong;
+  for (auto& planned : plan_.modules) {
+    auto module = changed.find(planned.name);
+    if (module == changed.end()) continue;
+    planned = module->second;
+    auto* supervised = find(planned.name);
+    supervised->tell(supervised->adopt(planned).outputs);
+  }
+  return {};
+}
+
+/// Makes the running graph as another plan says: links are removed before any are added, and
+/// outputs are there before inputs.
+void Runner::change_to(Plan plan) {
+  plan_ = std::move(plan);
+  is_unsettled_ = true;
+  std::vector<std::pair<Supervised*, ModuleChange>> changes;
+  std::vector<const PlannedModule*> added;
+  std::set<std::string> names;
+  for (const auto& module : plan_.modules) {
+    names.insert(module.name);
+    if (auto* there = find(module.name))
+      changes.emplace_back(there, there->adopt(module));
+    else
+      added.push_back(&module);
+  }
+  bool has_changed = !added.empty();
+  for (auto& [module, change] : changes) {
+    has_changed = has_changed || !change.is_empty();
+    module->tell(change.unlinks);
+  }
+  for (auto entry = modules_.begin(); entry != modules_.end();) {
+    auto module = entry++;
+    if (names.contains(module->first)) continue;
+    has_changed = true;
+    module->second->end();
+    leaving_.insert(modules_.extract(module));
+  }
+  for (auto& [module, change] : changes) module->tell(change.outputs);
+  for (const auto* module : added) add(*module);
+  for (auto& [module, change] : changes) module->tell(change.inputs);
+  say(has_changed ? "graph: changed" : "graph: unchanged");
+}
+
+void Runner::add(const PlannedModule& module) {
+  if (auto back = leaving_.extract(module.name)) {
+    auto& there = *modules_.insert(std::move(back)).position->second;
+    there.adopt(module);
+    return there.restart();
+  }
+  auto made = make(module);
+  if (!made) return say(module.name + ": " + made.error().text());
+  auto& added = *(modules_[module.name] = std::move(*made));
+  added.restart();
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a graph that runs does, put together of what its modules report.
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+
+#include <graph/global_workspace.h>
+#include <graph/run/runner.h>
+
+namespace hc::internal {
+
+GraphState Runner::state() const {
+  GraphState state;
+  state.name = options_.name;
+  state.file = options_.file;
+  state.process = ::getpid();
+  state.uptime = std::chrono::duration<double>(SystemClock().monotonic() - begun_).count();
+  state.is_stopping = is_stopping_;
+  for (const auto& workspace : plan_.workspaces) state.focus[workspace] = 0;
+  state.modes = plan_.modes;
+  state.addresses = plan_.addresses;
+  for (const auto& declared : graph_.hosts)
+    if (const auto host = options_.hosts == nullptr ? nullptr : options_.hosts->find(declared.name))
+      state.hosts.push_back(host->state());
+  for (const auto& planned : plan_.modules) {
+    const auto* module = find(planned.name);
+    if (module == nullptr) continue;
+    state.modules.push_back(module->state());
+    // Reported by modules that receive the focus or decide it; stale unless they run.
+    if (module->status() != ModuleStatus::Running) continue;
+    const bool decides = plan_.workspaces.contains(planned.name);
+    const auto focus = state.focus.find(decides ? planned.name : planned.workspace);
+    if (focus != state.focus.end() && focus->second == 0)
+      focus->second = module->reports().state().focus;
+  }
+  for (const auto& link : plan_.links) state.links.push_back(state_of(link));
+  std::map<std::string, std::string> focus;
+  for (const auto& [name, number] : state.focus) focus[name] = state.mode_name(number);
+  const auto workspace = global_workspace(plan_, focus);
+  for (auto& module : state.modules) module.in_workspace = workspace.modules.contains(module.name);
+  for (auto number : workspace.links) state.links.at(number).in_workspace = true;
+  return state;
+}
+
+LinkState Runner::state_of(const PlannedLink& link) const {
+  LinkState state;
+  state.from = link.from;
+  state.to = link.to;
+  state.keep = link.keep;
+  const std::string& inside = link.reader_uri.empty() ? link.sender_uri : link.reader_uri;
+  state.transport = inside.substr(0, inside.find_first_of("-:"));
+  if (auto rate = link.policy.find("rate"); rate != link.policy.end())
+    state.rate = std::atof(rate->second.c_str());
+  for (const auto* module : {at(link.from), at(link.to)}) {
+    const auto status = module == nullptr ? ModuleStatus::Running : module->status();
+    const bool is_up = status == ModuleStatus::Running || status == ModuleStatus::Ended;
+    if (!is_up && !is_stopping_)
+      state.status = module->plan().name + ": " + std::string(name(status));
+  }
+  auto report_of = [&](const std::string& end, bool is_input, const std::string& uri) {
+    const auto* module = at(end);
+    return module == nullptr
+               ? nullptr
+               : module->reports().find({is_input, end.substr(end.find('.') + 1), uri, {}});
+  };
+  const auto* sender = report_of(link.from, false, link.sender_uri);
+  const auto* reader = report_of(link.to, true, link.reader_uri);
+  const auto* counts = sender != nullptr ? sender : reader;
+  if (counts != nullptr) state.traffic = counts->traffic;
+  // What it carried is what its reader has taken; a sender may count what waits or is lost.
+  if (const auto* last = reader != nullptr ? reader : counts; last != nullptr) {
+    state.per_second = last->per_second;
+    state.bytes_per_second = last->bytes_per_second;
+  }
+  // Only problems of links are logged. Of a link between modules, their states show them.
+  const bool is_outside = link.reader_uri.empty() || link.sender_uri.empty();
+  if (is_outside && state.status.empty() && state.per_second == 0)
+    if (const auto* module = at(link.reader_uri.empty() ? link.from : link.to))
+      state.status = module->said_of(link.reader_uri + link.sender_uri);
+  if (reader == nullptr) return state;
+  if (counts != reader) {
+    Traffic lost = reader->traffic;
+    lost.messages = lost.bytes = 0;
+    state.traffic += lost;
+  }
+  state.ignored = reader->ignored;
+  auto seconds = [](const std::array<std::int64_t, 3>& times) {
+    std::optional<std::array<double, 3>> result;
+    if (times[0] < 0) return result;
+    result.emplace();
+    std::transform(times.begin(), times.end(), result->begin(), [](std::int64_t time) {
+      return std::chrono::duration<double>(std::chrono::nanoseconds(time)).count();
+    });
+    return result;
+  };
+  state.age = seconds(reader->age);
+  state.gap = seconds(reader->gap);
+  return state;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the tests of graphs that run share: a graph of shells, and what is heard of it. Internal.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <graph/run.h>
+#include <hc/os/event.h>
+
+namespace hc {
+
+/// A graph of shells, each with the script that it runs; what is said of it is in `lines`.
+class Run : public ::testing::Test {
+ protected:
+  PlannedModule& add(const std::string& name, const std::string& script) {
+    PlannedModule module;
+    module.name = name;
+    module.program = "/bin/sh";
+    module.options = {"-c", script};
+    module.restart = Restart::Never;
+    module.manage_uri = "unix-listen:@" + token_ + "." + name + ".manage";
+    plan_.modules.push_back(std::move(module));
+    return plan_.modules.back();
+  }
+
+  Result<RunReport> run() {
+    options_.stop = stop_.descriptor();
+    options_.event = [this](std::string_view line) {
+      lines_.emplace_back(line);
+      if (line == stop_at_) stop();
+      if (heard_) heard_(line);
+    };
+    return run_graph(loaded(plan_), options_);
+  }
+
+  /// A plan as if it had been loaded from `files_`.
+  LoadedGraph loaded(const Plan& plan) const {
+    LoadedGraph loaded{{}, plan, {}, {}};
+    loaded.graph.files = files_;
+    for (const auto& module : plan.modules) {
+      loaded.graph.modules.emplace_back().name = module.name;
+      for (const auto& [key, value] : module.parameters)
+        loaded.graph.modules.back().parameters[key] = {value, {}};
+    }
+    return loaded;
+  }
+
+  void stop() const { stop_.raise(); }
+
+  bool said(const std::string& line) const { return count(line) > 0; }
+  std::ptrdiff_t count(const std::string& line) const {
+    return std::count(lines_.begin(), lines_.end(), line);
+  }
+
+  std::string token_ = graph_token();
+  Plan plan_;
+  std::vector<std::string> files_;
+  RunOptions options_;
+  std::function<void(std::string_view line)> heard_;
+  std::string stop_at_;  // the line at which the graph is asked to end
+  internal::Event stop_ = internal::Event::must_make();
+  std::vector<std::string> lines_;
+};
+
+}  // namespace hc

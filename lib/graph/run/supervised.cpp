@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the start of a module to its end, and its commands.
+#include <graph/run/supervised.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+
+#include <graph/run/process.h>
+#include <hc/base/check.h>
+#include <hc/contract/command.h>
+#include <hc/mtp/rows.h>
+
+namespace hc::internal {
+namespace {
+
+using MonotonicClock = std::chrono::steady_clock;
+
+constexpr int kLastPieces = 16;  // a pipe can be made to hold a MiB; source: man 7 pipe
+constexpr int kCutOff = 1;       // a failure, as far as restarts go
+constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
+constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
+
+std::string seconds_in_words(std::chrono::nanoseconds time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g s", std::chrono::duration<double>(time).count());
+  return text;
+}
+
+Message command_message(const std::string& command) {
+  return make_rows(std::array{command});
+}
+
+}  // namespace
+
+std::string end_in_words(int status) {
+  if (status == 0) return "ended";
+  if (status == Host::kHostLost) return "lost, with the connection to its host";
+  if (status == Restarts::kBadArguments) return "failed with status 2 (bad arguments)";
+  if (status > kSignal) return "killed by signal " + std::to_string(status - kSignal);
+  return "failed with status " + std::to_string(status);
+}
+
+Supervised::Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear,
+                       Hosts* hosts)
+    : loop_(loop),
+      plan_(std::move(plan)),
+      told_(plan_),
+      limits_(limits),
+      hear_(std::move(hear)),
+      hosts_(hosts),
+      restarts_(plan_.restart, limits.restarts,
+                static_cast<std::uint32_t>(std::hash<std::string>()(plan_.manage_uri))),
+      reports_(plan_.ends) {}
+
+Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule plan,
+                                                     const SupervisionLimits& limits, Hear hear,
+                                                     Hosts* hosts) {
+  std::unique_ptr<Supervised> module(
+      new Supervised(loop, std::move(plan), limits, std::move(hear), hosts));
+  auto& self = *module;
+  LinkOptions options;
+  options.limits.element_bytes = kMostReported;
+  auto manage = Intake::make(
+      loop, self.plan_.manage_uri, [&self](const Message& message) { self.take_report(message); },
+      options);
+  if (!manage) return manage.error();
+  self.manage_ = std::move(*manage);
+  if (auto opened = self.open_control(); !opened) return opened.error();
+  return module;
+}
+
+/// Listens for the module to connect, if the plan says that it takes commands.
+Status Supervised::open_control() {
+  if (plan_.control_uri.empty()) control_.reset();
+  if (plan_.control_uri.empty() || control_) return {};
+  auto control = Announcer::make(loop_, plan_.control_uri, [this] {
+    std::vector<Message> messages;
+    for (const auto& command : catch_up()) messages.push_back(command_message(command));
+    return messages;
+  });
+  if (!control) return control.error();
+  control_ = std::move(*control);
+  return {};
+}
+
+/// The commands for a process that has just connected: what has changed since it was started.
+std::vector<std::string> Supervised::catch_up() {
+  const auto change = change_between(told_, plan_);
+  std::vector<std::string> commands;
+  for (const auto* some : {&change.unlinks, &change.outputs, &change.inputs})
+    commands.insert(commands.end(), some->begin(), some->end());
+  for (const auto& input : finished_)
+    commands.push_back(text({ModuleCommand::Verb::Finish, true, input, {}}));
+  for (const auto& [port, observed] : observed_) commands.push_back(observed.command());
+  if (wall_offset_ != 0)
+    commands.push_back(
+        text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset_), {}}));
+  set_told();
+  return commands;
+}
+
+/// Notes that the process knows all that the plan says. It continues to know links by the
+/// URIs that it has them by.
+void Supervised::set_told() {
+  auto ends = std::exchange(told_, plan_).ends;
+  for (auto& end : told_.ends)
+    for (const auto& before : ends)
+      if (is_same_end(end, before)) end.uri = before.uri;
+}
+
+void Supervised::change(ModuleStatus status, const std::string& detail) {
+  if (status_ == status && detail_ == detail) return;
+  status_ = status;
+  detail_ = detail;
+  hear_.changed();
+}
+
+std::shared_ptr<Host> Supervised::host() const {
+  return hosts_ == nullptr || plan_.host.empty() ? nullptr : hosts_->find(plan_.host);
+}
+
+void Supervised::look_at_host() {
+  const auto there = awaits_host_ ? host() : nullptr;
+  if (there && there->state().is_connected) start_again();
+}
+
+/// Has a module on another host go by the time here.
+void Supervised::tell_time() {
+  constexpr std::int64_t kNear = 20'000;  // [ns]
+  const auto there = control_ && process_ ? host() : nullptr;
+  if (!there || !there->state().is_connected) return;
+  const auto wall_offset = there->wall_offset();
+  if (std::abs(wall_offset - wall_offset_) < kNear) return;
+  wall_offset_ = wall_offset;
+  if (is_heard())
+    tell({text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset), {}})});
+}
+
+Status Supervised::start() {
+  timer_.reset();
+  wish_ = Wish::None;
+  const auto there = host();
+  HC_CHECK(there != nullptr || plan_.host.empty(), plan_.name, plan_.host);
+  awaits_host_ = there && !there->state().is_connected;
+  if (awaits_host_) {
+    change(ModuleStatus::Waiting, "host " + plan_.host + " is not connected");
+    return {};
+  }
+  is_interrupted_ = awaits_cause_ = false;
+  finished_.clear();
+  lines_.forget();
+  if (auto opened = open_control(); !opened) return opened;
+  restarts_.started(now());
+  ++starts_;
+  wall_offset_ = there && control_ ? there->wall_offset() : 0;
+  if (there) {
+    PlannedModule plan = plan_;
+    if (control_) plan.add_option("--wall_offset", std::to_string(wall_offset_));
+    process_ = there->start(plan);
+    if (!process_) return Error{Code::System, plan_.name + ": it cannot be listened to"};
+  } else {
+    auto process = start_here(plan_.command(), hosts_ == nullptr ? -1 : hosts_->key());
+    if (!process) return Error{process.error().code, plan_.name + ": " + process.error().detail};
+    process_ = std::move(*process);
+  }
+  told_ = plan_;
+  auto said = loop_.watch(process_->output(), EPOLLIN, [this](auto) { read_lines(); });
+  if (!said) return said.error();
+  said_ = std::move(*said);
+  auto ended = loop_.watch(process_->ended(), EPOLLIN, [this](auto) { note_end(); });
+  if (!ended) return ended.error();
+  ended_ = std::move(*ended);
+  hear_.event("started");
+  change(control_ ? ModuleStatus::Starting : ModuleStatus::Running);
+  return {};
+}
+
+void Supervised::start_again() {
+  auto started = start();
+  if (started) return;
+  hear_.event(started.error().detail);
+  forget_process();
+  go_on(kCannotExecute);
+}
+
+void Supervised::end() {
+  if (is_over()) return;
+  wish_ = Wish::End;
+  ask_to_end();
+}
+
+void Supervised::dismiss() {
+  if (is_over()) return;
+  wish_ = Wish::Dismissal;
+  ask_to_end();
+}
+
+void Supervised::restart() {
+  restarts_.reset();
+  if (!process_) return start_again();
+  wish_ = Wish::Restart;
+  hear_.interrupted();
+  ask_to_end();
+}
+
+/// Of one without a process, what follows its end follows at once.
+void Supervised::ask_to_end() {
+  if (!process_) {
+    timer_.reset();
+    awaits_cause_ = awaits_host_ = false;
+    change(ModuleStatus::Ended);
+    hear_.ended();
+    return;
+  }
+  if (status_ == ModuleStatus::Stopping) return;
+  process_->ask_to_end();
+  change(ModuleStatus::Stopping);
+  timer_ = loop_.call_at(MonotonicClock::now() + limits_.grace, [this] { process_->kill(); });
+}
+
+ModuleChange Supervised::adopt(PlannedModule plan) {
+  // A connected one has got all commands so far; another catches up, and only this plan's part is
+  // new.
+  auto change = change_between(is_heard() ? told_ : plan_, plan);
+  const bool needs_restart = change_between(told_, plan).needs_restart;
+  plan_ = std::move(plan);
+  reports_.set_ends(plan_.ends);
+  restarts_.set_policy(plan_.restart);
+  if (change.is_empty() && !needs_restart) return {};
+  // A module that has done its work has more to do when it has something else to read.
+  const bool is_at_rest = status_ == ModuleStatus::Ended && change.inputs.empty();
+  if (needs_restart || change.needs_restart || (!process_ && !is_at_rest)) {
+    restart();
+    ModuleChange restarted;
+    restarted.needs_restart = true;
+    return restarted;
+  }
+  if (is_heard()) set_told();
+  for (const auto& command : change.outputs)
+    if (command.starts_with("set ")) hear_.event(command);
+  return change;
+}
+
+bool Supervised::is_heard() const {
+  return process_ && control_ && control_->is_heard();
+}
+
+void Supervised::tell(const std::vector<std::string>& commands) {
+  for (const auto& command : commands) {
+    if (!is_heard() || wish_ == Wish::Restart || control_->say(command_message(command))) continue;
+    hear_.event("does not accept commands; restarting");
+    restart();
+  }
+}
+
+void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
+  std::string what = end.port + "=" + end.uri;
+  if (is_finished && finished_.insert(what).second)
+    tell({text({ModuleCommand::Verb::Finish, true, what, {}})});
+  if (!is_finished && finished_.erase(what) != 0)
+    tell({text({ModuleCommand::Verb::Link, true, what, {}})});
+}
+
+void Supervised::note_end() {
+  if (!process_) return;
+  auto status = process_->poll_status();
+  if (!status) return;
+  manage_->take();  // accepts a connection that has just been made,
+  manage_->take();  // and reads what came on it
+  // Its last lines are in the pipe; who else still holds that open may do so for ever.
+  for (int piece = 0; piece < kLastPieces && said_; ++piece) read_lines();
+  lines_.finish(hear_.said);
+  forget_process();
+  go_on(*status);
+}
+
+void Supervised::forget_process() {
+  reports_.end();
+  heard_ = MonotonicTime(0);
+  said_.reset();
+  ended_.reset();
+  timer_.reset();
+  process_.reset();
+  usage_ = {};
+  measured_ = MonotonicTime(0);
+  processor_ = 0;
+  if (control_) control_->leave_all();
+}
+
+/// Does what is to be done when a process has ended.
+void Supervised::go_on(int status) {
+  exit_ = status;
+  auto words = end_in_words(status);
+  // A process that the signal ended before it could handle it has done as it was asked.
+  const bool is_as_asked = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
+  if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_asked) {
+    hear_.event(is_as_asked ? end_in_words(0) : words);
+    if (wish_ == Wish::Restart) {
+      hear_.interrupted();
+      return start_again();
+    }
+    change(ModuleStatus::Ended);
+    return hear_.ended();
+  }
+  if (status != 0) hear_.failed(lines_.last());
+  if (status == 0 && can_be_cut_off() && hear_.has_work()) {
+    awaits_cause_ = true;
+    change(ModuleStatus::Waiting, words);
+    timer_ = loop_.call_at(MonotonicClock::now() + kCauseDelay, [this] { decide(0); });
+    return;
+  }
+  decide(status);
+}
+
+/// Restarts a process that has ended unasked, or gives it up.
+void Supervised::decide(int status) {
+  awaits_cause_ = false;
+  const auto words = end_in_words(status);
+  const bool is_cut_off = status == 0 && is_interrupted_ && hear_.has_work();
+  const auto decision = status == Host::kHostLost
+                            ? restarts_.lost()
+                            : restarts_.ended(is_cut_off ? kCutOff : status, now());
+  using Next = Restarts::Next;
+  if (decision.next == Next::Again) hear_.interrupted();
+  if (decision.next == Next::Again && decision.delay.count() == 0) {
+    hear_.event(words + "; restarting");
+    return start_again();
+  }
+  if (decision.next == Next::Again) {
+    hear_.event(words + "; restarting in " + seconds_in_words(decision.delay));
+    change(ModuleStatus::Waiting, words);
+    timer_ = loop_.call_at(MonotonicClock::now() + decision.delay, [this] { start_again(); });
+    return;
+  }
+  bool is_given_up = decision.next == Next::GiveUp;
+  hear_.event(is_given_up && plan_.restart != Restart::Never
+                  ? words + "; failed permanently" +
+                        (starts_ > 1 ? " after " + std::to_string(starts_) + " starts" : "")
+                  : words);
+  change(is_given_up ? ModuleStatus::GivenUp : ModuleStatus::Ended, is_given_up ? words : "");
+  hear_.ended();
+}
+
+bool Supervised::can_be_cut_off() const {
+  return plan_.control_uri.empty() && plan_.restart != Restart::Never;
+}
+
+void Supervised::note_interruption() {
+  if (!can_be_cut_off()) return;
+  is_interrupted_ = true;
+  if (awaits_cause_) decide(0);
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// One module of a graph that runs: its process, and the next one where that fails; what it says and
+// reports; and the commands it gets. Internal to graph.
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <graph/hosts.h>
+#include <graph/limits.h>
+#include <graph/run/announcer.h>
+#include <graph/run/change.h>
+#include <graph/run/intake.h>
+#include <graph/run/lines.h>
+#include <graph/run/module_process.h>
+#include <graph/run/reports.h>
+#include <graph/run/restarts.h>
+#include <graph/state.h>
+#include <hc/base/clock.h>
+#include <hc/os/procfs.h>
+
+namespace hc::internal {
+
+inline constexpr int kSignal = 128;  ///< the status of who was killed by one is above
+
+inline MonotonicTime now() {
+  return SystemClock().monotonic();
+}
+
+/// How a process has ended, by its status: "failed with status 1".
+std::string end_in_words(int status);
+
+class Supervised {
+ public:
+  /// Who hears of it. None may destroy it.
+  struct Hear {
+    std::function<void(const std::string& line)> event;  ///< "started"
+    std::function<void(const std::string& line)> said;   ///< by the module itself
+    std::function<void(const std::deque<std::string>& last_words)> failed;
+    std::function<void()> changed;      ///< its state, other than in numbers
+    std::function<void()> ended;        ///< for good
+    std::function<void()> interrupted;  ///< its process ends, and another will follow
+    std::function<bool()> has_work;     ///< a writer of its inputs is not over; of one without,
+                                        ///< a reader
+  };
+
+  /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
+  /// @param hosts  that it may run on; null: this one alone.
+  static Result<std::unique_ptr<Supervised>> make(Loop& loop, PlannedModule plan,
+                                                  const SupervisionLimits& limits, Hear hear,
+                                                  Hosts* hosts = nullptr);
+
+  /// Starts it. Errors: NotFound, System; of later starts they are events.
+  Status start();
+  /// Ends it for good: SIGTERM, and SIGKILL when it has had its time.
+  void end();
+  /// Ends it since nobody needs it any more. If it fails all the same, it has failed.
+  void dismiss();
+  /// Ends it where it runs, and starts it, also if it has failed permanently.
+  void restart();
+
+  /// Takes another plan, and restarts where commands cannot make it so. @returns  what to tell()
+  /// it.
+  ModuleChange adopt(PlannedModule plan);
+  /// Sends commands. They reach a module that has not connected yet when it connects; one
+  /// that accepts no commands is restarted.
+  void tell(const std::vector<std::string>& commands);
+
+  /// Has it know that an input's writer has ended for good, or is there again.
+  void finish_input(const PlannedEnd& end, bool is_finished);
+  /// A module that it is linked to is interrupted. One without `control` takes that for the end of
+  /// its work, and is restarted when it ends.
+  void note_interruption();
+  /// Has it open an output for observers, under a name that no other link has, until it was not
+  /// asked for so long.
+  ///
+  /// @returns  the URI that observers read. Errors: Closed (its host is not connected).
+  Result<std::string> observe(const std::string& port, const std::string& name);
+  static constexpr std::chrono::seconds kObserved{5};
+
+  /// Starts it if it waits for its host, and that is there.
+  void look_at_host();
+  /// Looks whether it still reports.
+  void look(MonotonicTime now);
+  /// Takes stock of what its processes use.
+  void measure(MonotonicTime now, bool with_memory);
+  /// Looks whether its process has ended, without waiting for the event.
+  void note_end();
+
+  [[nodiscard]] const PlannedModule& plan() const { return plan_; }
+  [[nodiscard]] ModuleStatus status() const { return status_; }
+  [[nodiscard]] bool is_over() const {
+    return status_ == ModuleStatus::Ended || status_ == ModuleStatus::GivenUp;
+  }
+  /// Ended or is about to, because it was asked to.
+  [[nodiscard]] bool is_to_end() const { return wish_ == Wish::End || wish_ == Wish::Dismissal; }
+  [[nodiscard]] std::optional<int> exit() const { return exit_; }
+  [[nodiscard]] const Reports& reports() const { return reports_; }
+  [[nodiscard]] ModuleState state() const;
+  /// What the log said last of a link: "sender closed; reconnecting"; empty: nothing, lately.
+  [[nodiscard]] std::string said_of(const std::string& uri) const;
+
+ private:
+  Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear,
+             Hosts* hosts);
+
+  /// What its process has been asked to end for.
+  enum class Wish { None, End, Restart, Dismissal };
+
+  struct Observed {
+    std::string text;  // PORT=URI, of the module's output
+    std::string uri;   // for observers
+    MonotonicTime until{0};
+    std::shared_ptr<const HeldPort> held = {};  // where it is read from another host
+
+    [[nodiscard]] std::string command() const { return "link out " + text; }
+  };
+
+  [[nodiscard]] std::shared_ptr<Host> host() const;
+  void tell_time();
+  Status open_observed(Observed& observed, const std::string& port, const std::string& name);
+  void end_observations(MonotonicTime time);
+  Status open_control();
+  std::vector<std::string> catch_up();
+  void set_told();
+  [[nodiscard]] bool is_heard() const;
+  void change(ModuleStatus status, const std::string& detail = "");
+  void ask_to_end();
+  void read_lines();
+  void take_report(const Message& message);
+  void look_at_silent();
+  void forget_process();
+  void go_on(int status);
+  void decide(int status);
+  [[nodiscard]] bool can_be_cut_off() const;
+  void start_again();
+
+  Loop& loop_;
+  PlannedModule plan_;
+  PlannedModule told_;  // as its process knows it, which may know links by their older URIs
+  SupervisionLimits limits_;
+  Hear hear_;
+  Hosts* hosts_;
+  bool awaits_host_ = false;
+  std::int64_t wall_offset_ = 0;  // as its process knows it, of another host [ns]
+  ModuleStatus status_ = ModuleStatus::Waiting;
+  std::string detail_;
+  Wish wish_ = Wish::None;
+  bool is_interrupted_ = false;  // a link has been cut that this process cannot mend
+  bool awaits_cause_ = false;    // it has ended, perhaps since a link was cut
+  std::optional<int> exit_;
+  int starts_ = 0;
+  Restarts restarts_;
+  Lines lines_;
+  MonotonicTime said_at_{0};  // the last of them
+  Reports reports_;
+  MonotonicTime heard_{0};  // when this process reported last; 0: it has not
+  Usage usage_;
+  MonotonicTime measured_{0};
+  double processor_ = 0;
+  std::set<std::string> finished_;            // inputs it has to finish
+  std::map<std::string, Observed> observed_;  // by output
+  std::unique_ptr<Intake> manage_;
+  std::unique_ptr<Announcer> control_;
+  std::unique_ptr<ModuleProcess> process_;
+  Loop::Handle said_, ended_, timer_;
+};
+
+}  // namespace hc::internal

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is seen of a module that runs: its lines, its reports, what it uses, and its outputs.
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include <graph/run/supervised.h>
+#include <hc/mtp/rows.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
+// Observers never make a module wait: with or without one, it keeps a few messages for them.
+constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
+
+}  // namespace
+
+Result<std::string> Supervised::observe(const std::string& port, const std::string& name) {
+  auto found = observed_.find(port);
+  if (found == observed_.end()) {
+    Observed observed;
+    if (auto opened = open_observed(observed, port, name); !opened) return opened.error();
+    found = observed_.emplace(port, std::move(observed)).first;
+    tell({found->second.command()});
+  }
+  found->second.until = now() + kObserved;
+  return found->second.uri;
+}
+
+/// Where an output is opened for observers: those of another host come with the key of this one.
+Status Supervised::open_observed(Observed& observed, const std::string& port,
+                                 const std::string& name) {
+  if (const auto there = host()) {
+    auto held = there->spare_port();
+    if (!held) return held.error();
+    observed.held = std::move(*held);
+    const auto number = ":" + std::to_string(observed.held->number);
+    const auto place = there->place();
+    const bool is_v6 = place.address.find(':') != std::string::npos;
+    observed.text = port + "=tls-listen:" + (is_v6 ? "[::]" : "0.0.0.0") + number +
+                    kObserverPolicy + "&key=" + std::string(kKeyFile) +
+                    "&peer=" + hosts_->fingerprint();
+    observed.uri = "tls:" + (is_v6 ? "[" + place.address + "]" : place.address) + number +
+                   "?key=/proc/" + std::to_string(::getpid()) + "/fd/" +
+                   std::to_string(hosts_->key()) + "&peer=" + place.fingerprint;
+    return {};
+  }
+  const bool has_memory = std::any_of(plan_.ends.begin(), plan_.ends.end(),
+                                      [](const auto& end) { return end.uri.starts_with("shm:"); });
+  observed.text = port + (has_memory ? "=shm:" : "=unix-listen:@") + name + kObserverPolicy;
+  observed.uri = (has_memory ? "shm:" : "unix:@") + name;
+  return {};
+}
+
+void Supervised::end_observations(MonotonicTime time) {
+  std::erase_if(observed_, [&](const auto& entry) {
+    const bool is_over = time >= entry.second.until;
+    if (is_over) tell({"unlink out " + entry.second.text});
+    return is_over;
+  });
+}
+
+/// Hands on what a module has said, until it says nothing more. One piece only: one who does not
+/// stop must not keep us from all else.
+void Supervised::read_lines() {
+  static thread_local std::array<char, kPiece> piece;
+  const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
+  if (size == 0) said_.reset();
+  if (size <= 0) return;
+  lines_.add({piece.data(), static_cast<std::size_t>(size)}, hear_.said);
+  said_at_ = now();
+}
+
+void Supervised::take_report(const Message& message) {
+  heard_ = now();
+  const bool has_changed = reports_.take(message, heard_);
+  if (message.header.src == static_cast<int>(Report::Refusal) &&
+      message.header.info.type == MatrixType::String)
+    for (const auto& line : rows_of(message)) hear_.event(line);
+  if (status_ == ModuleStatus::Stalled) hear_.event("resumed");
+  if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
+      status_ == ModuleStatus::Running)
+    change(ModuleStatus::Running);
+  if (has_changed) hear_.changed();
+}
+
+void Supervised::look(MonotonicTime time) {
+  end_observations(time);
+  tell_time();
+  if (process_ && heard_ == MonotonicTime(0)) return look_at_silent();
+  const bool is_stalled = status_ == ModuleStatus::Stalled;
+  const bool is_blocked = reports_.state().blocked_row != 0;
+  if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
+  if (!process_ || time - heard_ < limits_.stall) return;
+  const bool is_stopped = process_->usage(false).is_stopped;
+  if (is_blocked && !is_stopped) {
+    if (is_stalled) hear_.event("resumed");
+    const auto output = reports_.blocked_output();
+    return change(ModuleStatus::Running,
+                  "blocked: no reader" + (output.empty() ? "" : " on output " + output));
+  }
+  if (is_stalled) return;
+  change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
+  hear_.event("unresponsive: " + detail_);
+}
+
+/// Asks the kernel whether a module that sends no reports has been stopped by a signal.
+void Supervised::look_at_silent() {
+  const bool is_stalled = status_ == ModuleStatus::Stalled;
+  if (status_ != ModuleStatus::Running && !is_stalled) return;
+  const bool is_stopped = process_->usage(false).is_stopped;
+  if (is_stopped == is_stalled) return;
+  change(is_stopped ? ModuleStatus::Stalled : ModuleStatus::Running,
+         is_stopped ? "stopped by a signal" : "");
+  hear_.event(is_stopped ? "unresponsive: " + detail_ : "resumed");
+}
+
+void Supervised::measure(MonotonicTime time, bool with_memory) {
+  if (!process_) return;
+  with_memory = with_memory || measured_ == MonotonicTime(0);
+  auto usage = process_->usage(with_memory);
+  if (!with_memory) usage.memory = usage_.memory;
+  if (measured_ != MonotonicTime(0) && time > measured_)
+    processor_ = std::max(0.0, std::chrono::duration<double>(usage.processor - usage_.processor) /
+                                   std::chrono::duration<double>(time - measured_));
+  usage_ = usage;
+  measured_ = time;
+}
+
+std::string Supervised::said_of(const std::string& uri) const {
+  const auto name = uri.substr(0, uri.find('?'));
+  for (auto line = lines_.last().rbegin(); !name.empty() && line != lines_.last().rend(); ++line) {
+    const auto found = line->find(name);
+    if (found == std::string::npos) continue;
+    const auto why = line->find(": ", found + name.size());
+    if (why == std::string::npos || line->ends_with(": reconnected")) return "";
+    return line->substr(why + 2);
+  }
+  return "";
+}
+
+ModuleState Supervised::state() const {
+  ModuleState state;
+  state.name = plan_.name;
+  state.program = plan_.program;
+  state.group = plan_.group;
+  state.host = plan_.host;
+  state.process = process_ ? process_->number() : 0;
+  state.status = status_;
+  state.detail = detail_;
+  state.restarts = std::max(0, starts_ - 1);
+  state.exit = exit_;
+  state.processor = processor_;
+  state.memory = usage_.memory;
+  state.mode = plan_.mode;
+  state.modes = plan_.modes;
+  state.workspace = plan_.workspace;
+  state.in_focus = reports_.state().in_focus;
+  if (!lines_.last().empty()) {
+    state.last_line = lines_.last().back();
+    state.last_line_age = std::chrono::duration<double>(now() - said_at_).count();
+  }
+  state.parameters = plan_.parameters;
+  for (const auto& [key, value] : reports_.parameters()) state.parameters[key] = value;
+  return state;
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/state.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+namespace hc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 7> kStatusNames = {
+    "starting", "running", "stalled", "waiting", "stopping", "ended", "given up"};
+
+/// Writes the fields of a struct into a JSON object.
+struct Writer {
+  Json& json;
+
+  template <typename T>
+  void operator()(const char* key, const T& value) {
+    json[key] = value;
+  }
+  template <typename T>
+  void operator()(const char* key, const std::optional<T>& value) {
+    json[key] = value ? Json(*value) : Json(nullptr);
+  }
+  void operator()(const char* key, ModuleStatus value) { json[key] = name(value); }
+};
+
+/// Reads them; throws what Json throws. A key that is absent leaves its field as it is, so that a
+/// newer tool reads an older graph.
+struct Reader {
+  const Json& json;
+
+  template <typename T>
+  void operator()(const char* key, T& value) {
+    if (auto found = json.find(key); found != json.end()) found->get_to(value);
+  }
+  template <typename T>
+  void operator()(const char* key, std::optional<T>& value) {
+    if (auto found = json.find(key); found != json.end() && !found->is_null())
+      value = found->get<T>();
+  }
+  void operator()(const char* key, ModuleStatus& value) {
+    const auto text = json.value(key, std::string());
+    const auto found = std::find(kStatusNames.begin(), kStatusNames.end(), text);
+    if (found != kStatusNames.end())
+      value = static_cast<ModuleStatus>(found - kStatusNames.begin());
+  }
+};
+
+template <typename Module, typename Visit>
+void visit_module(Module& module, Visit visit) {
+  visit("name", module.name);
+  visit("program", module.program);
+  visit("host", module.host);
+  visit("group", module.group);
+  visit("pid", module.process);
+  visit("status", module.status);
+  visit("detail", module.detail);
+  visit("restarts", module.restarts);
+  visit("exit", module.exit);
+  visit("cpu", module.processor);
+  visit("memory", module.memory);
+  visit("mode", module.mode);
+  visit("modes", module.modes);
+  visit("workspace", module.workspace);
+  visit("in_focus", module.in_focus);
+  visit("in_workspace", module.in_workspace);
+  visit("last_line", module.last_line);
+  visit("last_line_age", module.last_line_age);
+  visit("parameters", module.parameters);
+}
+
+template <typename Host, typename Visit>
+void visit_host(Host& host, Visit visit) {
+  visit("name", host.name);
+  visit("connected", host.is_connected);
+  visit("detail", host.detail);
+  visit("offset", host.offset);
+  visit("error", host.error);
+  visit("drift", host.drift);
+  visit("latency", host.latency);
+}
+
+template <typename Link, typename Visit>
+void visit_link(Link& link, Visit visit) {
+  visit("from", link.from);
+  visit("to", link.to);
+  visit("transport", link.transport);
+  visit("status", link.status);
+  visit("keep", link.keep);
+  visit("rate", link.rate);
+  visit("messages", link.traffic.messages);
+  visit("bytes", link.traffic.bytes);
+  visit("per_second", link.per_second);
+  visit("bytes_per_second", link.bytes_per_second);
+  visit("delayed", link.traffic.kept_back);
+  visit("throttled", link.traffic.over_rate);
+  visit("dropped_newer", link.traffic.superseded);
+  visit("dropped_memory", link.traffic.over_memory);
+  visit("dropped_disconnect", link.traffic.cut);
+  visit("ignored", link.ignored);
+  visit("age", link.age);
+  visit("gap", link.gap);
+  visit("in_workspace", link.in_workspace);
+}
+
+template <typename Graph, typename Visit>
+void visit_graph(Graph& graph, Visit visit) {
+  visit("graph", graph.name);
+  visit("file", graph.file);
+  visit("pid", graph.process);
+  visit("uptime", graph.uptime);
+  visit("modes", graph.modes);
+  visit("addresses", graph.addresses);
+}
+
+}  // namespace
+
+std::string_view name(ModuleStatus status) {
+  return kStatusNames.at(static_cast<std::size_t>(status));
+}
+
+std::string GraphState::mode_name(std::int64_t number) const {
+  auto found = std::find_if(modes.begin(), modes.end(),
+                            [&](const auto& mode) { return mode.second == number; });
+  if (found != modes.end()) return found->first;
+  return number == 0 ? "" : std::to_string(number);
+}
+
+std::string GraphState::focus_of(const ModuleState& module) const {
+  const auto found = focus.find(module.workspace);
+  return found == focus.end() ? "" : mode_name(found->second);
+}
+
+std::string GraphState::focus_in_words() const {
+  std::string words;
+  bool is_any = false;
+  for (const auto& [workspace, number] : focus) {
+    is_any = is_any || number != 0;
+    if (focus.size() == 1) return mode_name(number);
+    if (!words.empty()) words += ", ";
+    words += workspace + ": " + (number == 0 ? "none" : mode_name(number));
+  }
+  return is_any ? words : "";
+}
+
+std::string to_json(const GraphState& state) {
+  Json json = Json::object();
+  visit_graph(state, Writer{json});
+  json["status"] = state.is_stopping ? "stopping" : "running";
+  auto& focus = json["focus"] = Json::object();
+  for (const auto& [workspace, number] : state.focus)
+    focus[workspace] =
+        number == 0 ? Json(nullptr) : Json{{"mode", state.mode_name(number)}, {"number", number}};
+  for (const char* list : {"hosts", "modules", "links"}) json[list] = Json::array();
+  for (const auto& host : state.hosts)
+    visit_host(host, Writer{json["hosts"].emplace_back(Json::object())});
+  for (const auto& module : state.modules)
+    visit_module(module, Writer{json["modules"].emplace_back(Json::object())});
+  for (const auto& link : state.links)
+    visit_link(link, Writer{json["links"].emplace_back(Json::object())});
+  // Texts of modules and files may be no UTF-8.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<GraphState> parse_graph_state(std::string_view text) {
+  try {
+    const auto json = Json::parse(text);
+    GraphState state;
+    visit_graph(state, Reader{json});
+    state.is_stopping = json.at("status") == "stopping";
+    for (const auto& [workspace, mode] : json.at("focus").items())
+      state.focus[workspace] = mode.is_null() ? 0 : mode.at("number").get<std::int64_t>();
+    for (const auto& host : json.value("hosts", Json::array()))
+      visit_host(state.hosts.emplace_back(), Reader{host});
+    for (const auto& module : json.at("modules"))
+      visit_module(state.modules.emplace_back(), Reader{module});
+    for (const auto& link : json.at("links")) visit_link(state.links.emplace_back(), Reader{link});
+    return state;
+  } catch (const Json::exception& error) {
+    return Error{Code::Malformed, std::string("the state of a graph: ") + error.what()};
+  }
+}
+
+}  // namespace hc
