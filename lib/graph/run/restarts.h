@@ -44,13 +44,15 @@ class Restarts {
 
   /// Says what follows where it was lost with its host: the start does not count, as it has not
   /// failed.
-  Decision lost();
+  Decision lost(MonotonicTime now);
 
   /// Forgets all starts: somebody has changed what made it fail.
   void reset();
   void set_policy(Restart policy) { policy_ = policy; }
 
  private:
+  void forget_after_long_run(MonotonicTime now);
+
   Restart policy_;
   RestartLimits limits_;
   std::minstd_rand random_;

@@ -60,7 +60,7 @@ TEST_F(RestartsTest, WhatIsLostWithItsHostHasNotFailed) {
   Restarts restarts(Restart::Failure, {}, 1);
   const auto lose = [&] {
     restarts.started(now_);
-    return restarts.lost();
+    return restarts.lost(now_);
   };
   for (int failures = 1; failures <= 4; ++failures) {
     for (int i = 0; i < 100; ++i) EXPECT_EQ(lose().next, Next::Again);
@@ -73,7 +73,21 @@ TEST_F(RestartsTest, WhatIsLostWithItsHostHasNotFailed) {
   EXPECT_GT(run(restarts, 1ms).delay, 0s);
   Restarts once(Restart::Never, {}, 1);
   once.started(now_);
-  EXPECT_EQ(once.lost().next, Next::GiveUp);
+  EXPECT_EQ(once.lost(now_).next, Next::GiveUp);
+}
+
+TEST_F(RestartsTest, ALongRunThatIsLostWithItsHostResetsTheCount) {
+  const RestartLimits limits;
+  Restarts restarts(Restart::Failure, limits, 1);
+  while (run(restarts, 1ms).delay == 0s) {
+  }
+  for (int i = 1; i < limits.delayed_starts; ++i) EXPECT_EQ(run(restarts, 1ms).next, Next::Again);
+  restarts.started(now_);
+  now_ += limits.window + 1s;
+  EXPECT_EQ(restarts.lost(now_).next, Next::Again);
+  const auto decision = run(restarts, 1ms);
+  EXPECT_EQ(decision.next, Next::Again);
+  EXPECT_EQ(decision.delay, 0s);
 }
 
 TEST_F(RestartsTest, DelaysStayBelowTheLongest) {

@@ -319,7 +319,7 @@ void Supervised::decide(int status) {
   const auto words = end_in_words(status);
   const bool is_cut_off = status == 0 && is_interrupted_ && hear_.has_work();
   const auto decision = status == Host::kHostLost
-                            ? restarts_.lost()
+                            ? restarts_.lost(now())
                             : restarts_.ended(is_cut_off ? kCutOff : status, now());
   using Next = Restarts::Next;
   if (decision.next == Next::Again) hear_.interrupted();
