@@ -38,7 +38,7 @@ export class HeaderStrip {
       this.fields.map(({ element }) => element),
     ),
   );
-  private readonly times: number[] = [];
+  private readonly times: number[] = []; // of arrivals, by performance.now() [ms]
   private latency?: number; // [s]
   private lastSeq?: bigint;
   private lost = 0n;
@@ -55,13 +55,14 @@ export class HeaderStrip {
   count(arrival: Arrival, sent: Header, isReplay = false): void {
     const { seq, time } = arrival.message.header;
     this.sent = sent;
-    this.times.push(arrival.at);
-    while (this.times[0]! < arrival.at - period * 1000) this.times.shift();
+    const now = performance.now(); // the wall clock may be set
+    this.times.push(now);
+    while (this.times[0]! < now - period * 1000) this.times.shift();
     if (!isReplay && this.lastSeq !== undefined && seq > this.lastSeq + 1n)
       this.lost += seq - this.lastSeq - 1n;
     this.lastSeq = seq;
     if (time > 0n && !isReplay) this.latency = arrival.at / 1000 - Number(time) / 1e9;
-    if (performance.now() - this.drawn > 250) this.draw();
+    if (now - this.drawn > 250) this.draw();
   }
 
   /** Shows the figures; called from time to time too, so that a rate falls when nothing comes. */
@@ -69,8 +70,7 @@ export class HeaderStrip {
     this.drawn = performance.now();
     const { sent, times } = this;
     if (!sent) return;
-    const now = Date.now();
-    const recent = times.filter((time) => time > now - period * 1000);
+    const recent = times.filter((time) => time > this.drawn - period * 1000);
     const size = `${sent.width} × ${sent.height} of ${sent.components} × ${sent.scalar}`;
     const parts = [
       `${sent.type} ${size}, ${coordName(sent.coord)}`,
