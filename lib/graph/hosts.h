@@ -59,15 +59,14 @@ class Hosts {
  public:
   virtual ~Hosts() = default;
 
-  /// The hosts of these declarations; those that are new are connected to, all at once. Makes the
-  /// key of this host, also where there are none, as a host may be added later. Errors: of each,
-  /// Closed (it cannot be reached, or has no agent of ours; the detail says why), Stopped.
+  /// The hosts of these declarations; those that are new are connected to, all at once. Errors: of
+  /// each, Closed (it cannot be reached, or has no agent of ours; the detail says why), Stopped.
   virtual std::vector<Result<std::shared_ptr<Host>>> connect(const std::vector<GraphHost>& declared,
                                                              int stop) = 0;
   /// A host that has been connected to; null: none has that name.
   [[nodiscard]] virtual std::shared_ptr<Host> find(const std::string& name) const = 0;
 
-  /// Of the key of this host: its fingerprint, and its file.
+  /// Of the key of this host: its fingerprint, and its file. The same for life, from any thread.
   [[nodiscard]] virtual std::string fingerprint() const = 0;
   [[nodiscard]] virtual int key() const = 0;
 

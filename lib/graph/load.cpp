@@ -219,7 +219,7 @@ class FileLoader : public GraphLoader {
     HostPlaces places;
     if (!wanted.empty() && options_.hosts == nullptr)
       problems.add(wanted.front().place, "this program runs graphs on one host alone");
-    if (!graph.hosts.empty() && options_.hosts != nullptr) {
+    if (options_.hosts != nullptr) {
       const auto connected = options_.hosts->connect(wanted, stop);
       for (std::size_t i = 0; i < wanted.size(); ++i) {
         const auto& name = wanted[i].name;

@@ -23,6 +23,20 @@ class AllHosts final : public Hosts {
     if (worker_) worker_->post([this] { clock_.reset(); });
   }
 
+  /// Before anything else: the key is every module's, of whose links any may be to a host that is
+  /// declared later.
+  Status make_key() {
+    auto text = tls::make_key_text();
+    if (!text) return text.error();
+    auto fingerprint = tls::fingerprint_of_text(*text);
+    if (!fingerprint) return fingerprint.error();
+    auto file = make_key_file(*text);
+    if (!file) return file.error();
+    fingerprint_ = *fingerprint;
+    key_ = std::move(*file);
+    return {};
+  }
+
   /// Begins with the first host.
   Status begin() {
     if (worker_) return {};
@@ -37,8 +51,7 @@ class AllHosts final : public Hosts {
                                                      int stop) override {
     std::vector<Result<std::shared_ptr<Connection>>> begun;
     begun.reserve(declared.size());
-    const auto made = key_ ? Status() : make_key();
-    for (const auto& each : declared) begun.push_back(made ? begin_connecting(each) : made.error());
+    for (const auto& each : declared) begun.push_back(begin_connecting(each));
     std::vector<Result<std::shared_ptr<Host>>> hosts;
     for (std::size_t i = 0; i < declared.size(); ++i)
       hosts.push_back(wait(begun[i], declared[i], stop));
@@ -94,18 +107,6 @@ class AllHosts final : public Hosts {
     return found == hosts_.end() ? nullptr : found->second;
   }
 
-  Status make_key() {
-    auto text = tls::make_key_text();
-    if (!text) return text.error();
-    auto fingerprint = tls::fingerprint_of_text(*text);
-    if (!fingerprint) return fingerprint.error();
-    auto file = make_key_file(*text);
-    if (!file) return file.error();
-    fingerprint_ = *fingerprint;
-    key_ = std::move(*file);
-    return {};
-  }
-
   void log(const std::string& line) {
     constexpr std::size_t kMost = 1000;
     const std::lock_guard lock(mutex_);
@@ -138,8 +139,10 @@ class AllHosts final : public Hosts {
 
 }  // namespace
 
-std::unique_ptr<Hosts> make_hosts(std::string version) {
-  return std::make_unique<AllHosts>(std::move(version));
+Result<std::unique_ptr<Hosts>> make_hosts(std::string version) {
+  auto hosts = std::make_unique<AllHosts>(std::move(version));
+  if (auto made = hosts->make_key(); !made) return made.error();
+  return std::unique_ptr<Hosts>(std::move(hosts));
 }
 
 }  // namespace hc::hosts

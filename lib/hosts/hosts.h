@@ -9,7 +9,9 @@
 
 namespace hc::hosts {
 
-/// @param version  of this program, which an agent must have too.
-std::unique_ptr<Hosts> make_hosts(std::string version);
+/// Makes the key of this run, and connects to nobody yet.
+///
+/// @param version  of this program, which an agent must have too. Errors: System.
+Result<std::unique_ptr<Hosts>> make_hosts(std::string version);
 
 }  // namespace hc::hosts

@@ -101,6 +101,21 @@ class Hosts(HostsTest):
         self.stop(process)
         self.assert_empty(host)
 
+    def test_a_file_that_is_edited_may_declare_its_first_host(self):
+        (host,) = self.network.add()
+        here = CAMERA.replace('host = "%s"', "") + BRIGHTNESS % ""
+        self.write_graph(here)
+        process = self.run_graph("")
+        messages = self.observe(process)
+        self.state(messages, lambda state: self.rate(state, "camera.left", "brightness.image"))
+        more = BRIGHTNESS.replace("modules.brightness", "modules.more") % 'host = "h1"\n'
+        self.write_graph(self.tables(host) + here + more)
+        state = self.state(messages, lambda state: self.rate(state, "camera.left", "more.image"))
+        self.assertEqual(self.link(state, "camera.left", "more.image")["transport"], "tls")
+        self.assertEqual(self.module(state, "camera")["restarts"], 0)
+        self.stop(process)
+        self.assert_empty(host)
+
     def test_who_reads_no_more_makes_nobody_wait(self):
         (host,) = self.network.add()
         for writes, reads in (("", "h1"), ("h1", "")):

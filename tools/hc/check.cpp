@@ -2,7 +2,6 @@
 // hc check: reports every problem of a graph, and what its hosts lack, without starting it.
 
 #include <hc/base/format.h>
-#include <hosts/hosts.h>
 
 #include "common.h"
 #include "examination.h"
@@ -16,7 +15,7 @@ void add_check(CLI::App& app) {
   auto* verb = app.add_subcommand("check", "Check a graph file, without starting anything");
   add_graph_options(*verb, *options);
   verb->callback([options] {
-    const auto hosts = hc::hosts::make_hosts(HC_VERSION);
+    const auto hosts = make_hosts();
     auto plan = load_plan("check", *options, hosts.get());
     bool is_missing = false;
     for (const auto& finding : diagnose(plan, *hosts)) {

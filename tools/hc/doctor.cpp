@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc doctor: checks this machine, and the requirements of a graph.
 #include <graph/run.h>
-#include <hosts/hosts.h>
 
 #include "common.h"
 #include "examination.h"
@@ -13,7 +12,7 @@ namespace {
 
 /// A graph that is wrong has no plan, and so nothing that could be looked for.
 std::vector<Finding> examine_graph(hc::LoadOptions options, Needs& needs) {
-  const auto hosts = hc::hosts::make_hosts(HC_VERSION);
+  const auto hosts = make_hosts();
   options.hosts = hosts.get();
   auto planned = hc::make_loader(options)->load(nullptr, -1);
   if (!planned) throw Failure(planned.error());

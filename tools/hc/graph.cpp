@@ -19,6 +19,10 @@ void add_graph_options(CLI::App& verb, hc::LoadOptions& options) {
       ->allow_extra_args(false);
 }
 
+std::unique_ptr<hc::Hosts> make_hosts() {
+  return value_or_fail(hc::hosts::make_hosts(HC_VERSION), "the key of this host");
+}
+
 hc::LoadedGraph load_graph(std::string_view verb, const std::string& file,
                            hc::GraphLoader& loader) {
   auto loaded = loader.load(nullptr, -1);
@@ -35,7 +39,7 @@ hc::LoadedGraph load_graph(std::string_view verb, const std::string& file,
 }
 
 hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options, hc::Hosts* hosts) {
-  const auto own = hosts == nullptr ? hc::hosts::make_hosts(HC_VERSION) : nullptr;
+  const auto own = hosts == nullptr ? make_hosts() : nullptr;
   hc::LoadOptions with_hosts = options;
   with_hosts.hosts = hosts == nullptr ? own.get() : hosts;
   return std::move(*load_graph(verb, options.file, *hc::make_loader(with_hosts)).plan);

@@ -13,7 +13,6 @@
 #include <graph/run.h>
 #include <hc/base/format.h>
 #include <hc/os/program.h>
-#include <hosts/hosts.h>
 
 #include "common.h"
 #include "graph.h"
@@ -159,7 +158,7 @@ void run(const RunOptions& options) {
   hc::LoadOptions load_options = options.graph;
   take_record(options, load_options);
   load_options.holds_ports = true;
-  const auto hosts = hc::hosts::make_hosts(HC_VERSION);
+  const auto hosts = make_hosts();
   load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
