@@ -9,8 +9,7 @@
 #include <vector>
 
 #include <dds/byte_sample.h>
-#include <hc/mtp/framing.h>
-#include <hc/mtp/stream_reader.h>
+#include <hc/mtp/decode.h>
 
 namespace hc::dds {
 namespace {
@@ -130,69 +129,6 @@ Result<std::span<const std::byte>> sequence_of(const MessageSample& sample) {
   return std::span<const std::byte>(sample.bytes.get() + kPrelude, count);
 }
 
-Error cut() {
-  return {Code::Truncated, "it ends inside its message"};
-}
-
-/// A message, and how many bytes it takes.
-struct Read {
-  Message message;
-  std::size_t bytes = 0;
-};
-
-/// By way of a stream, which copies.
-Result<Read> read_rows(std::span<const std::byte> octets, const Limits& limits) {
-  StreamReader reader(limits);
-  Message message;
-  while (!octets.empty()) {
-    const auto space = reader.space();
-    const std::size_t count = std::min(space.size(), octets.size());
-    std::memcpy(space.data(), octets.data(), count);
-    reader.commit(count);
-    octets = octets.subspan(count);
-    auto got = reader.next(message);
-    if (!got) return got.error();
-    if (*got) return Read{std::move(message), reader.bytes()};
-  }
-  return cut();
-}
-
-/// Reads the message that begins at `at`.
-Result<Read> read_message(const MessageSample& sample, std::span<const std::byte> octets,
-                          std::size_t begin, const Limits& limits, internal::HeaderMemo& memo) {
-  const auto rest = octets.subspan(begin);
-  const std::string_view text(reinterpret_cast<const char*>(rest.data()), rest.size());
-  auto line = internal::read_header_line(text, limits, begin, memo);
-  if (!line) return line.error();
-  if (line->bytes == 0) return cut();
-  if (internal::has_rows(line->header)) return read_rows(rest, limits);
-  std::size_t at = line->bytes;
-  std::uint64_t length = line->header.element_bytes();
-  if (internal::is_compressed(line->header)) {
-    auto part = internal::read_length_line(text.substr(at), limits, begin + at);
-    if (!part) return part.error();
-    if (part->bytes == 0) return cut();
-    at += part->bytes;
-    length = part->length;
-  }
-  if (length > text.size() - at) return cut();
-  auto closing =
-      internal::read_closing(line->header, text.substr(at + length), begin + at + length);
-  if (!closing) return closing.error();
-  if (*closing == 0) return cut();
-  const std::size_t size = at + length + *closing;
-  Message message{line->header, rest.subspan(at, length), sample.bytes, begin + at};
-  const std::size_t scalar =
-      internal::is_compressed(line->header) ? 1 : size_of(line->header.info.scalar);
-  // Of another program a fragment's end may be inside the header.
-  const bool is_aligned = reinterpret_cast<std::uintptr_t>(message.elements.data()) % scalar == 0;
-  if (size != octets.size() || !is_aligned) {
-    message.owner.reset();
-    message = message.keep();
-  }
-  return Read{std::move(message), size};
-}
-
 }  // namespace
 
 ddsi_sertype* make_type() {
@@ -256,10 +192,13 @@ Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::H
   do {
     if (count++ == kMost)
       return Error{Code::TooLarge, "it has more than " + std::to_string(kMost) + " messages"};
-    auto read = read_message(sample, *octets, at, limits, memo);
-    if (!read) return read.error();
-    at += read->bytes;
-    take(std::move(read->message), read->bytes);
+    Message message;
+    auto used = internal::decode(octets->subspan(at), message, limits, at, memo);
+    if (!used) return used.error();
+    if (*used == 0) return Error{Code::Truncated, "it ends inside its message"};
+    at += *used;
+    if (message.owner == nullptr && *used == octets->size()) message.owner = sample.bytes;
+    take(message.keep(), *used);
   } while (at < octets->size());
   return {};
 }

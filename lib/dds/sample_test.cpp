@@ -165,8 +165,12 @@ TEST_F(DdsSample, MayHaveSeveralMessages) {
   for (const std::size_t piece : {4U, 1000U}) {
     const auto got = read_all(*come(in_pieces(*joined, piece), piece));
     ASSERT_EQ(got.size(), sent.size());
+    std::size_t begin = 0;
     for (std::size_t i = 0; i < sent.size(); ++i) {
-      EXPECT_EQ(encode(got[i]), encode(sent[i]));
+      const std::string mtp = encode(sent[i]);
+      EXPECT_EQ(encode(got[i]), mtp);
+      EXPECT_EQ(got[i].byte, begin + mtp.find('\n') + 1);
+      begin += mtp.size();
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(got[i].elements.data()) %
                     size_of(got[i].header.info.scalar),
                 0U);
@@ -210,6 +214,8 @@ TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
   EXPECT_EQ(refusal(rows + "5 6\n"),
             "Unsupported: R6 version: this reader knows version 1, not 5, at byte 34");
   EXPECT_EQ(refusal(rows.substr(0, rows.size() - 4)), "Truncated: it ends inside its message");
+  EXPECT_EQ(refusal(rows + rows.substr(0, rows.size() - 2) + "x\n"),
+            "Malformed: R27 elements: \"x\" is not a number of u8, at byte 66");
   EXPECT_EQ(refusal_of(in_pieces(*make(testing::numbered(7, 30)), 100), {20}),
             "TooLarge: R24 width: 30 x 1 x 1 bytes are over the limit of 20, at byte 22");
 }
