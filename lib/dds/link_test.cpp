@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 
 #include <dds/stranger_test.h>
@@ -114,6 +115,34 @@ TEST(Dds, OfABurstWhoKeepsTheLatestGetsTheLast) {
   EXPECT_EQ(source->traffic().superseded, kCount - 1U);
   EXPECT_FALSE(*receive(*source, message));
   EXPECT_EQ(sink->traffic().messages, std::uint64_t{kCount});
+}
+
+TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
+  constexpr std::size_t kSinks = 50;
+  const auto uri = fresh_topic();
+  const auto source = source_of(uri);
+  const auto keeper = sink_of(uri + "&readers=1");  // until all others have left
+  std::array<std::uint64_t, kSinks> received{};
+  std::thread receiver([&] {
+    Message message;
+    while (*receive(*source, message)) ++received.at(static_cast<std::size_t>(message.header.src));
+  });
+  std::array<Traffic, kSinks> sent;
+  for (std::size_t i = 0; i < kSinks; ++i) {
+    const auto sink = sink_of(uri + "&readers=1&rate=1000000&burst=1000");
+    for (int k = 0; k < 900; ++k) {
+      Message message = numbered(k, 100);
+      message.header.src = static_cast<int>(i);
+      ASSERT_TRUE(sink->send(message));
+    }
+    sink->abandon();
+    ASSERT_TRUE(sink->close());
+    sent.at(i) = sink->traffic();
+  }
+  ASSERT_TRUE(keeper->close());
+  receiver.join();
+  for (std::size_t i = 0; i < kSinks; ++i)
+    EXPECT_LE(received.at(i), sent.at(i).messages - sent.at(i).cut) << i;
 }
 
 TEST(Dds, AllWritersAreRead) {

@@ -169,10 +169,14 @@ class DdsSink final : public Sink {
   /// Sends no more. With the mutex.
   void give_up() {
     has_ended_ = true;
-    losses_.cut += queue_.clear(losses_) + std::exchange(joined_messages_, 0);
-    losses_.bytes -= std::exchange(joined_bytes_, 0);
+    losses_.cut += queue_.clear(losses_);
+    if (!is_handing_over_) lose_joined();
     event_.raise();
     changed_.notify_one();
+  }
+  void lose_joined() {
+    losses_.cut += std::exchange(joined_messages_, 0);
+    losses_.bytes -= std::exchange(joined_bytes_, 0);
   }
 
   /// Waits until something has changed; the lock is free meanwhile.
@@ -237,10 +241,15 @@ class DdsSink final : public Sink {
       return true;
     }
     if (!joined_) join_first(now);
+    is_handing_over_ = true;
     lock.unlock();
     const auto written = hand_over(*joined_);
     lock.lock();
-    if (!is_written(written)) return false;
+    is_handing_over_ = false;
+    if (!is_written(written)) {
+      if (has_ended_) lose_joined();
+      return false;
+    }
     joined_.reset();
     joined_messages_ = joined_bytes_ = 0;
     return true;
@@ -334,8 +343,9 @@ class DdsSink final : public Sink {
   SendQueue<Sample> queue_;
   Sample joined_;  // taken out of the queue to be written, of so many messages and bytes
   std::uint64_t joined_messages_ = 0, joined_bytes_ = 0;
-  TimePoint sent_{};       // when the last message was
-  std::size_t burst_ = 0;  // how many messages there were in the burst that is now
+  bool is_handing_over_ = false;  // joined_; whether it is lost is not known yet
+  TimePoint sent_{};              // when the last message was
+  std::size_t burst_ = 0;         // how many messages there were in the burst that is now
   Traffic losses_;
   std::uint64_t messages_ = 0, bytes_ = 0;
   std::uint32_t readers_ = 0;
