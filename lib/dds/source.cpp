@@ -32,7 +32,6 @@ class DdsSource;
 struct Cache : dds_rhc {
   explicit Cache(DdsSource& to);
   DdsSource& source;
-  ddsi_tkmap_instance* instance = nullptr;  // kept until the domain ends
 };
 
 /// A message that waits, and its size [byte].
@@ -101,9 +100,12 @@ class DdsSource final : public Source {
     return Got::Message;
   }
 
-  /// Takes a sample, on a thread of Cyclone's; false where there is no room for it now.
-  bool store(dds_instance_handle_t writer, ddsi_serdata& sample) {
+  /// Takes a sample, on any thread of Cyclone's; false where there is no room for it now.
+  bool store(dds_instance_handle_t writer, ddsi_serdata& sample, ddsi_tkmap_instance& instance) {
     std::unique_lock lock(mutex_);
+    // The topic's only one. Cyclone DDS would make it for each sample again, and wake a thread to
+    // delete it.
+    if (!std::exchange(has_instance_, true)) ddsi_tkmap_instance_ref(&instance);
     if (is_closing_ || sample.kind != SDK_DATA) return true;
     if (octets_of(sample) == 0) {
       if (closed_.insert(writer).second && alive() == 0) await_next(std::chrono::seconds(0));
@@ -203,6 +205,7 @@ class DdsSource final : public Source {
   std::size_t matched_ = 0;                 // writers
   std::set<dds_instance_handle_t> closed_;  // those of them that have
   bool has_had_one_ = false, is_final_ = false, is_closing_ = false;
+  bool has_instance_ = false;             // keeps the topic's until the domain ends
   TimePoint give_up_ = TimePoint::max();  // while there is no writer
 
   internal::Watch timer_;
@@ -215,11 +218,7 @@ dds_rhc_ops make_cache_ops() {
   dds_rhc_ops ops{};
   ops.rhc_ops.store = [](ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* sample,
                          ddsi_tkmap_instance* instance) {
-    auto& own = *reinterpret_cast<Cache*>(cache);
-    // The topic's only one. Cyclone DDS would make it for each sample again, and wake a thread to
-    // delete it.
-    if (std::exchange(own.instance, instance) == nullptr) ddsi_tkmap_instance_ref(instance);
-    return own.source.store(writer->iid, *sample);
+    return reinterpret_cast<Cache*>(cache)->source.store(writer->iid, *sample, *instance);
   };
   ops.rhc_ops.unregister_wr = [](ddsi_rhc*, const ddsi_writer_info*) {};
   ops.rhc_ops.relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {};
