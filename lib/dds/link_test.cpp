@@ -308,6 +308,25 @@ TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
                               end);
 }
 
+TEST(Dds, OfASampleWhatIsBeforeAFaultIsTaken) {
+  const auto uri = fresh_topic();
+  Lines log;
+  const auto source = source_of(uri, log.options());
+  Stranger stranger(uri);
+  stranger.send(encode(numbered(0, 3)) + encode(numbered(1, 3)) + "GET / HTTP/1.1\r\n");
+  Message message;
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+  }
+  ASSERT_TRUE(source->take(message));
+  EXPECT_EQ(log.lines,
+            std::vector<std::string>{
+                uri + ": dropped the rest of a sample: Malformed: R5 version: \"GET\" is not "
+                      "an integer, at byte 60; further ones of this writer are dropped in "
+                      "silence"});
+}
+
 TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
   const auto uri = fresh_topic();
   Lines log;

@@ -118,7 +118,7 @@ class DdsSource final : public Source {
         read_messages(sample, options_.limits, memo_, [&](Message message, std::uint64_t bytes) {
           read_.push_back({std::move(message), bytes});
         });
-    if (!read) drop(writer, read.error());
+    if (!read) drop(writer, read_.empty() ? "a sample" : "the rest of a sample", read.error());
     lock.lock();
     const bool is_first = queue_.empty();
     for (auto& [message, bytes] : read_)
@@ -181,10 +181,10 @@ class DdsSource final : public Source {
   }
 
   /// One line for each writer, however much it sends. With the mutex `reading_`.
-  void drop(dds_instance_handle_t writer, const Error& why) {
+  void drop(dds_instance_handle_t writer, const std::string& what, const Error& why) {
     constexpr std::size_t kMost = 1000;
     if (strangers_.size() >= kMost || !strangers_.insert(writer).second) return;
-    participant_->warn("dropped a sample: " + why.text() +
+    participant_->warn("dropped " + what + ": " + why.text() +
                        "; further ones of this writer are dropped in silence");
   }
 
