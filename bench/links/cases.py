@@ -208,7 +208,7 @@ CASES = [
             (
                 "ddsperf",
                 "listener",
-                "Cyclone's own program: reliable, KEEP_LAST 1, UDP on loopback",
+                "Cyclone's own program: reliable, KEEP_ALL, batches, UDP on loopback",
             ),
             ("ddsperf_waitset", "waitset", "the same, taken by another thread than receives"),
         )
