@@ -23,15 +23,16 @@ using std::chrono::steady_clock;
 
 constexpr std::size_t kCapacity = 1000;  // messages that wait before a sender that loses none does
 
-/// Messages make a burst where so many follow each other as soon as this: sooner than any could be
-/// answered, or another be computed.
-constexpr std::size_t kBurst = 8;
-constexpr std::chrono::microseconds kBurstGap{2};
-constexpr std::chrono::microseconds kGather{20};  // between two samples of a burst
+/// Messages follow one another when no more time has passed between them: sooner than any could be
+/// answered, or another be computed. From so many on they are gathered.
+constexpr std::chrono::microseconds kFollowTime{2};
+constexpr std::size_t kFewest = 8;
+/// Between two samples of what is gathered; some 60 µs more by the kernel's timer slack.
+constexpr std::chrono::microseconds kGather{20};
 
 /// Writes at once where Cyclone DDS takes a message. Where it does not, since readers have not
 /// acknowledged what went before, or the pace says so, the message waits by the link's policy, and
-/// a thread writes it as soon as may be. So it is with small messages that come in a burst: what
+/// a thread writes it as soon as may be. So it is with small messages that follow one another: what
 /// comes while the thread writes goes together in the next sample.
 class DdsSink final : public Sink {
  public:
@@ -95,9 +96,9 @@ class DdsSink final : public Sink {
       if (auto waited = wait(lock); !waited) return waited;
     }
     auto sample = make_sample(participant_->type(), pieces, message);
-    const bool joins = waits_ && size <= kMostCopied && steady_clock::now() - sent_ < kBurstGap;
-    burst_ = joins ? burst_ + 1 : 0;
-    if (is_paced_ || burst_ >= kBurst || !queue_.empty() || joined_ || !write(*sample)) {
+    const bool follows = waits_ && size <= kMostCopied && steady_clock::now() - sent_ < kFollowTime;
+    following_ = follows ? following_ + 1 : 0;
+    if (is_paced_ || following_ >= kFewest || !queue_.empty() || joined_ || !write(*sample)) {
       if (failed_) return *failed_;
       queue_.push(std::move(sample), size, losses_);
       if (!thread_.joinable()) thread_ = std::thread([this] { write_all(); });
@@ -345,7 +346,7 @@ class DdsSink final : public Sink {
   std::uint64_t joined_messages_ = 0, joined_bytes_ = 0;
   bool is_handing_over_ = false;  // joined_; whether it is lost is not known yet
   TimePoint sent_{};              // when the last message was
-  std::size_t burst_ = 0;         // how many messages there were in the burst that is now
+  std::size_t following_ = 0;     // messages that have followed one another so far
   Traffic losses_;
   std::uint64_t messages_ = 0, bytes_ = 0;
   std::uint32_t readers_ = 0;
