@@ -16,9 +16,8 @@ namespace {
 
 constexpr std::size_t kPrelude = 8;  // encapsulation, and the number of bytes
 
-/// A sent sample has its frame and header line in `begin`, and the message's elements, or all where
-/// these are copied; a received
-/// sample has all its bytes in `elements`.
+/// A sample to send has its frame and header line in `begin`, and its elements in `elements`, or
+/// all of it in `begin` where they are copied; a received one has all in `elements`.
 struct MessageSample : ddsi_serdata {
   MessageSample(const ddsi_sertype& of, ddsi_serdata_kind what) : ddsi_serdata{} {
     ddsi_serdata_init(this, &of, what);
