@@ -87,28 +87,43 @@ TEST(Dds, AllReadersGetEachMessage) {
   sender.join();
 }
 
-TEST(Dds, WhatIsSentInABurstArrivesThoughNoMoreFollows) {
+/// A sink whose messages all wait for its thread, and so share samples, however fast they come.
+std::string shares(const std::string& uri) {
+  return uri + "&rate=1000000&burst=1000";
+}
+
+TEST(Dds, WhatSharesASampleArrivesThoughNoMoreFollows) {
   const auto uri = fresh_topic();
   const auto source = source_of(uri);
-  const auto sink = sink_of(uri + "&readers=1");
+  SampleCounter samples(uri);
+  const auto sink = sink_of(shares(uri + "&readers=2"));
   Message message;
+  int sent = 0;
   for (const int count : {1, 2, 10, 1000, 1}) {
-    for (int i = 0; i < count; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 500)));
+    for (int i = 0; i < count; ++i, ++sent) ASSERT_TRUE(sink->send(numbered(i, i % 500)));
     for (int i = 0; i < count; ++i) {
       ASSERT_TRUE(*receive(*source, message));
       EXPECT_EQ(message.header.seq, i);
       EXPECT_EQ(message.characters(), numbered(i, i % 500).characters());
     }
   }
+  ASSERT_TRUE(sink->close());
+  const int count = samples.count();
+  EXPECT_GE(count, 5);
+  EXPECT_LT(count, sent);
 }
 
-TEST(Dds, OfABurstWhoKeepsTheLatestGetsTheLast) {
+TEST(Dds, OfASharedSampleWhoKeepsTheLatestGetsTheLast) {
   constexpr int kCount = 1000;
   const auto uri = fresh_topic();
   const auto source = source_of(uri + "&keep=latest");
-  const auto sink = sink_of(uri + "&readers=1");
+  SampleCounter samples(uri);
+  const auto sink = sink_of(shares(uri + "&readers=2"));
   for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
   ASSERT_TRUE(sink->close());
+  const int count = samples.count();
+  EXPECT_GE(count, 1);
+  EXPECT_LT(count, kCount);
   Message message;
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, kCount - 1);
@@ -129,7 +144,7 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
   });
   std::array<Traffic, kSinks> sent;
   for (std::size_t i = 0; i < kSinks; ++i) {
-    const auto sink = sink_of(uri + "&readers=1&rate=1000000&burst=1000");
+    const auto sink = sink_of(shares(uri + "&readers=1"));
     for (int k = 0; k < 900; ++k) {
       Message message = numbered(k, 100);
       message.header.src = static_cast<int>(i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A writer of a topic that sends what it likes, for tests.
+// A writer of a topic that sends what it likes, and a reader that counts its samples, for tests.
 
 #include <memory>
 #include <string>
@@ -50,6 +50,39 @@ class Stranger {
 
   std::unique_ptr<dds::Participant> participant_;
   dds::Entity writer_;
+};
+
+class SampleCounter {
+ public:
+  explicit SampleCounter(const std::string& uri)
+      : participant_(std::move(*dds::Participant::open(*dds::parse_place(*parse_uri(uri)), {}))) {
+    const auto qos = dds::make_qos();
+    reader_ = dds::Entity(
+        dds_create_reader(participant_->handle(), participant_->topic(), qos.get(), nullptr));
+    EXPECT_GT(reader_.handle(), 0);
+  }
+
+  /// How many samples of messages come until their writer closes.
+  int count() {
+    for (int count = 0;;) {
+      ddsi_serdata* taken = nullptr;
+      dds_sample_info_t info{};
+      const auto got = dds_takecdr(reader_.handle(), &taken, 1, &info, DDS_ANY_STATE);
+      if (got < 0) return got;
+      if (got == 0) {
+        std::this_thread::yield();
+        continue;
+      }
+      const dds::Sample sample(taken);
+      if (!info.valid_data) continue;
+      if (dds::octets_of(*sample) == 0) return count;
+      ++count;
+    }
+  }
+
+ private:
+  std::unique_ptr<dds::Participant> participant_;
+  dds::Entity reader_;
 };
 
 }  // namespace hc::testing
