@@ -118,6 +118,8 @@ class Recordings(Pipes):
         run = "hc run g.toml --record disk/kept --set camera.width=640 --set camera.height=480"
         self.assertEqual(self.on_a_small_disk(run), 1, self.err)
         self.assertIn("camera: System: left: write(): No space left on device\n", self.err)
+        seqs = self.seqs("kept/kept/camera.left.mtp")  # status 0: its messages are whole
+        self.assertGreater(len(seqs), 1)
 
     def test_a_graph_is_recorded_into_one_file(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 30))
@@ -218,6 +220,10 @@ class Recordings(Pipes):
         seqs = self.seqs("kept/x.mcap")  # status 0: the file is whole
         self.assertEqual(seqs, list(range(len(seqs))))
         self.assertIn(" in ", self.shell("hc info kept/x.mcap"))
+        self.shell("rm -r kept")
+        self.assertEqual(self.on_a_small_disk("hc record noise.mtp disk/x.mtp"), 1, self.err)
+        self.assertIn("disk/x.mtp: write(): No space left on device\n", self.err)
+        self.assertGreater(len(self.seqs("kept/x.mtp")), 100)  # status 0: they are whole
 
     def test_a_graph_on_a_disk_of_2_mb(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 100))

@@ -84,6 +84,7 @@ Result<bool> Connection::send(Outgoing& message, TimePoint now) {
   bool passes = connected() && !blocked_ && queue_.pass(now);
   if (passes) {
     put(message.borrowed(), now);
+    if (failed_ && writer_waits_) --losses_.cut;  // the error tells of this one
   } else {
     queue_.push(writer_waits_ ? message.borrowed() : message.kept(), message.size(), losses_);
     if (!writer_waits_) advance(now);
@@ -157,7 +158,8 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
 void Connection::fail(const Error& why) {
   failed_ = why;
   stop_watching();
-  // A waiting writer gets an error for what it has in the queue, which is not among the lost.
+  // A waiting writer gets an error for what it has in the queue, which is not among the lost;
+  // send() sees to what it has just put.
   Traffic reported;
   auto waiting = queue_.clear(writer_waits_ ? reported : losses_);
   losses_.cut += writer_.clear() + (writer_waits_ ? 0 : waiting);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -78,6 +80,48 @@ TEST(File, AFullDiskIsTold) {
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().detail, "write(): No space left on device");
 }
+
+/// Files become no larger, as on a full disk.
+class FullDisk : public ::testing::TestWithParam<int> {
+ protected:
+  FullDisk() {
+    EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &limit_), 0);
+    const rlimit small{100'000, limit_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  }
+  ~FullDisk() override {
+    ::setrlimit(RLIMIT_FSIZE, &limit_);
+    std::signal(SIGXFSZ, before_);
+  }
+
+  Folder folder_;
+
+ private:
+  rlimit limit_{};
+  void (*before_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+};
+
+TEST_P(FullDisk, LeavesWholeMessages) {
+  auto sink = sink_of("file:" + (folder_ / "eyes.mtp"));
+  Status sent;
+  for (int i = 0; sent && i < 20'000; ++i) sent = sink->send(numbered(i, GetParam()));
+  ASSERT_FALSE(sent);
+  EXPECT_EQ(sent.error().detail, "write(): File too large");
+  EXPECT_FALSE(sink->close());
+
+  auto source = source_of(folder_ / "eyes.mtp");
+  Message message;
+  while (true) {
+    auto got = receive(*source, message);
+    ASSERT_TRUE(got) << got.error().text();
+    if (!*got) break;
+  }
+  const auto traffic = sink->traffic();
+  EXPECT_GT(source->traffic().messages, 0U);
+  EXPECT_EQ(source->traffic().messages, traffic.messages - traffic.cut);
+}
+
+INSTANTIATE_TEST_SUITE_P(SmallAndLarge, FullDisk, ::testing::Values(100, 30'000));
 
 std::pair<std::string, std::string> make_fifo() {
   static Folder folder;

@@ -3,7 +3,9 @@
 
 #include <pthread.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/uio.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -114,6 +116,7 @@ Result<bool> StreamWriter::write() {
     } else if (errno != EINTR) {
       int number = errno;
       forget_written();
+      cut_file();
       return channel != nullptr ? channel->failure() : system_error("write", "", number);
     }
   }
@@ -142,8 +145,20 @@ void StreamWriter::forget_written() {
   written_ -= begin;
 }
 
+/// Where there is no room for the rest of a message, its beginning would be damage to readers.
+void StreamWriter::cut_file() const {
+  const int file = descriptor_.get();
+  const auto end = ::lseek(file, 0, SEEK_CUR);
+  struct stat status {};
+  if (begun() == 0 || ::fstat(file, &status) != 0 || !S_ISREG(status.st_mode) ||
+      status.st_size != end)
+    return;
+  const auto whole = end - static_cast<off_t>(begun());
+  if (::ftruncate(file, whole) == 0) ::lseek(file, whole, SEEK_SET);
+}
+
 bool StreamWriter::inside_message() const {
-  return written_ > 0 || (large_left_ > 0 && large_left_ < size_of(large_)) || has_unsent();
+  return begun() > 0 || has_unsent();
 }
 
 bool StreamWriter::take_back() {

@@ -55,7 +55,8 @@ class StreamWriter {
 
   /// Writes what can be written now; true when that was all.
   ///
-  /// Errors: Closed, System. Cost: one system call where the descriptor takes all of it.
+  /// Errors: Closed, System (a file then ends with the last whole message). Cost: one system call
+  /// where the descriptor takes all of it.
   Result<bool> write();
 
   /// Forgets the last message, if nothing of it has been written; false when it was begun.
@@ -76,9 +77,14 @@ class StreamWriter {
   [[nodiscard]] bool has_unsent() const {
     return descriptor_.channel && descriptor_.channel->has_unsent();
   }
+  /// Of the message that is written in part. [byte]
+  [[nodiscard]] std::size_t begun() const {
+    return written_ + (large_left_ > 0 ? size_of(large_) - large_left_ : 0);
+  }
   void gather(const Pieces& pieces);
   void advance(std::size_t size);
   void forget_written();
+  void cut_file() const;
 
   ConnectedSocket descriptor_;
   bool is_socket_ = false;
