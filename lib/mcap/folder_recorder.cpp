@@ -10,9 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A sink has less than that of a stream in memory. [byte]
-constexpr std::uint64_t kMostUnwritten = std::uint64_t{1} << 20;
-
 std::string path_of(const std::string& folder, const std::string& stream) {
   return (fs::path(folder) / (stream + ".mtp")).string();
 }
@@ -55,38 +52,29 @@ Result<std::unique_ptr<FolderRecorder>> FolderRecorder::make(
 
 Status FolderRecorder::record(std::size_t number, const Message& message) {
   ++messages_;
-  auto& stream = streams_[number];
-  if (stream.sink != nullptr) {
-    if (auto sent = stream.sink->send(message)) {
-      auto& ends = stream.ends;
-      ends.push_back(stream.sink->traffic().bytes);
-      while (ends.size() > 1 && ends[1] + kMostUnwritten <= ends.back()) ends.pop_front();
-      return {};
-    }
+  auto& [path, sink] = streams_[number];
+  if (sink != nullptr) {
+    auto sent = sink->send(message);
+    if (sent) return {};
+    status_ = Error{sent.error().code, path + ": " + sent.error().detail};
     static_cast<void>(close());
   }
   ++lost_;
   return status_;
 }
 
+/// Small messages are written some time after they were taken, so that some that were taken may be
+/// missing when that fails.
 Status FolderRecorder::close() {
-  for (auto& stream : streams_)
-    if (stream.sink != nullptr) end(stream);
+  for (auto& [path, sink] : streams_) {
+    if (sink == nullptr) continue;
+    auto closed = sink->close();
+    if (!closed && status_)
+      status_ = Error{closed.error().code, path + ": " + closed.error().detail};
+    lost_ += sink->traffic().cut;
+    sink.reset();
+  }
   return status_;
-}
-
-/// Small messages are written some time after they were taken, so that others than the last one
-/// may be missing when that fails.
-void FolderRecorder::end(Stream& stream) {
-  const auto closed = stream.sink->close();
-  stream.sink.reset();
-  if (closed) return;
-  if (status_) status_ = Error{closed.error().code, stream.path + ": " + closed.error().detail};
-  std::error_code failed;
-  const auto size = fs::file_size(stream.path, failed);
-  if (failed) return;
-  for (; stream.ends.size() > 1 && stream.ends.back() > size; stream.ends.pop_back()) ++lost_;
-  if (stream.ends.back() < size) fs::resize_file(stream.path, stream.ends.back(), failed);
 }
 
 }  // namespace hc::mcap

@@ -3,7 +3,6 @@
 // Records streams into a folder: a file STREAM.mtp for each, of its messages and nothing else.
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,12 +38,10 @@ class FolderRecorder {
  private:
   struct Stream {
     std::string path;
-    std::unique_ptr<Sink> sink;            // null: closed
-    std::deque<std::uint64_t> ends = {0};  // of the last messages, in the file [byte]
+    std::unique_ptr<Sink> sink;  // null: closed
   };
 
   explicit FolderRecorder(std::string folder) : folder_(std::move(folder)) {}
-  void end(Stream& stream);
 
   const std::string folder_;
   std::vector<Stream> streams_;
