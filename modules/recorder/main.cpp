@@ -11,8 +11,8 @@
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <hc/os/descriptor.h>
-#include <mcap/folder_recorder.h>
 
+#include "folder_recorder.h"
 #include "graph_metadata.h"
 
 namespace {
@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
   auto frames = module.parameter("frames", "", "", "frames of the graph, as text", {.fixed = true});
 
   std::unique_ptr<hc::mcap::Recorder> recorder;
-  std::unique_ptr<hc::mcap::FolderRecorder> folder_recorder;  // one of the two
+  std::unique_ptr<FolderRecorder> folder_recorder;  // one of the two
   std::unique_ptr<GraphMetadata> metadata;
   std::string path;
   bool has_failed = false, was_set = false;
@@ -139,8 +139,7 @@ int main(int argc, char** argv) {
       std::vector<std::string> streams_of_folder;
       streams_of_folder.reserve(names.size());
       for (const auto& [input, name] : names) streams_of_folder.push_back(name);
-      folder_recorder =
-          hc::value_or_end(hc::mcap::FolderRecorder::make(*folder, streams_of_folder));
+      folder_recorder = hc::value_or_end(FolderRecorder::make(*folder, streams_of_folder));
       path = folder_recorder->folder();
       return;
     }

@@ -7,9 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/link/link.h>
-
-namespace hc::mcap {
+#include <hc/module/port.h>
 
 /// Writes as messages come. Ends at the first failure: then all files hold whole messages alone.
 class FolderRecorder {
@@ -19,14 +17,14 @@ class FolderRecorder {
   /// @param streams  names of files, each another.
   ///
   /// Errors: Invalid (names that cannot be those of files), System.
-  static Result<std::unique_ptr<FolderRecorder>> make(const std::string& folder,
-                                                      const std::vector<std::string>& streams);
+  static hc::Result<std::unique_ptr<FolderRecorder>> make(const std::string& folder,
+                                                          const std::vector<std::string>& streams);
 
   /// Errors: System (the disk, with the file's path); each later call gives the same.
-  Status record(std::size_t stream, const Message& message);
+  hc::Status record(std::size_t stream, const hc::Message& message);
 
   /// Writes what is left. Errors: System; also what went wrong before.
-  Status close();
+  hc::Status close();
 
   /// Where the files are.
   [[nodiscard]] const std::string& folder() const { return folder_; }
@@ -38,15 +36,13 @@ class FolderRecorder {
  private:
   struct Stream {
     std::string path;
-    std::unique_ptr<Sink> sink;  // null: closed
+    std::unique_ptr<hc::Sink> sink;  // null: closed
   };
 
   explicit FolderRecorder(std::string folder) : folder_(std::move(folder)) {}
 
   const std::string folder_;
   std::vector<Stream> streams_;
-  Status status_;
+  hc::Status status_;
   std::uint64_t messages_ = 0, lost_ = 0;
 };
-
-}  // namespace hc::mcap

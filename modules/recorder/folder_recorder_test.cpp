@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/folder_recorder.h>
+#include "folder_recorder.h"
 
 #include <sys/resource.h>
 
@@ -14,7 +14,6 @@
 
 #include <hc/mtp/codec.h>
 
-namespace hc::mcap {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,19 +34,19 @@ class Folder : public testing::Test {
     return made ? std::move(*made) : nullptr;
   }
 
-  static Error refusal(const std::string& folder, const std::vector<std::string>& streams) {
+  static hc::Error refusal(const std::string& folder, const std::vector<std::string>& streams) {
     auto made = FolderRecorder::make(folder, streams);
     EXPECT_FALSE(made);
-    return made ? Error() : made.error();
+    return made ? hc::Error() : made.error();
   }
 
   /// A message with so many bytes of elements.
-  static Message sized(std::int32_t size) {
-    Header header;
-    header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};
+  static hc::Message sized(std::int32_t size) {
+    hc::Header header;
+    header.info = {hc::MatrixType::IntensityImage, 1, hc::Scalar::U8, hc::Encoding::Binary};
     header.width = size;
     header.height = 1;
-    Draft draft = Draft::make(header);
+    hc::Draft draft = hc::Draft::make(header);
     std::ranges::fill(draft.elements(), std::byte('a'));
     return std::move(draft).finish();
   }
@@ -59,11 +58,11 @@ class Folder : public testing::Test {
 
   /// How many messages a file has, all of them whole.
   static std::uint64_t count(const fs::path& path) {
-    auto source = open_source({"file", path.string(), {}});
+    auto source = hc::open_source({"file", path.string(), {}});
     if (!source) return 0;
-    Message message;
+    hc::Message message;
     while (true) {
-      auto got = receive(**source, message);
+      auto got = hc::receive(**source, message);
       EXPECT_TRUE(got) << path << ": " << got.error().text();
       if (!got || !*got) return (*source)->traffic().messages;
     }
@@ -82,8 +81,8 @@ TEST_F(Folder, HasAFileOfEachStream) {
   EXPECT_EQ(made->folder(), kept);
   EXPECT_EQ(made->messages(), 3U);
   EXPECT_EQ(made->lost(), 0U);
-  EXPECT_EQ(read(root / "kept/eyes.left.mtp"), encode(sized(3)) + encode(sized(4)));
-  EXPECT_EQ(read(root / "kept/eyes.right.mtp"), encode(sized(100000)));
+  EXPECT_EQ(read(root / "kept/eyes.left.mtp"), hc::encode(sized(3)) + hc::encode(sized(4)));
+  EXPECT_EQ(read(root / "kept/eyes.right.mtp"), hc::encode(sized(100000)));
   EXPECT_TRUE(fs::exists(root / "kept/neck.pose.mtp"));
 }
 
@@ -105,7 +104,7 @@ TEST_F(Folder, OfAnEarlierProcessIsLeftAlone) {
 TEST_F(Folder, WrongNamesAreRefused) {
   for (const std::vector<std::string>& streams :
        {std::vector<std::string>{""}, {"../a.out"}, {"a.out", "a.out"}})
-    EXPECT_EQ(refusal(kept, streams).code, Code::Invalid) << streams.back();
+    EXPECT_EQ(refusal(kept, streams).code, hc::Code::Invalid) << streams.back();
   EXPECT_FALSE(fs::exists(kept));
 }
 
@@ -139,10 +138,10 @@ class FullDisk : public Folder {
   /// Records until the disk is full; every message that is said to be recorded is whole.
   void fill(std::int32_t size) {
     auto made = recorder(kept, {"a.out", "b.out"});
-    Status recorded = made->record(1, sized(10));
+    hc::Status recorded = made->record(1, sized(10));
     for (int i = 0; recorded && i < 20000; ++i) recorded = made->record(0, sized(size));
     ASSERT_FALSE(recorded);
-    EXPECT_EQ(recorded.error().code, Code::System);
+    EXPECT_EQ(recorded.error().code, hc::Code::System);
     EXPECT_EQ(recorded.error().detail, kept + "/a.out.mtp: write(): File too large");
     EXPECT_EQ(made->record(1, sized(1)).error().detail, recorded.error().detail);
     EXPECT_EQ(made->close().error().detail, recorded.error().detail);
@@ -166,4 +165,3 @@ TEST_F(FullDisk, LeavesWholeMessagesOfThoseThatAreGathered) {
 }
 
 }  // namespace
-}  // namespace hc::mcap

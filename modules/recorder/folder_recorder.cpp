@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/folder_recorder.h>
+#include "folder_recorder.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
-namespace hc::mcap {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,33 +29,34 @@ std::string free_folder(const std::string& folder, const std::vector<std::string
 
 }  // namespace
 
-Result<std::unique_ptr<FolderRecorder>> FolderRecorder::make(
+hc::Result<std::unique_ptr<FolderRecorder>> FolderRecorder::make(
     const std::string& folder, const std::vector<std::string>& streams) {
   std::set<std::string> names;
   for (const auto& name : streams)
     if (name.empty() || name.find('/') != std::string::npos || !names.insert(name).second)
-      return Error{Code::Invalid, "streams: each is a file of its name, which \"" + name +
-                                      "\" cannot be" + (names.contains(name) ? " twice" : "")};
+      return hc::Error{hc::Code::Invalid, "streams: each is a file of its name, which \"" + name +
+                                              "\" cannot be" +
+                                              (names.contains(name) ? " twice" : "")};
   std::unique_ptr<FolderRecorder> made(new FolderRecorder(free_folder(folder, streams)));
   std::error_code failed;
   fs::create_directories(made->folder_, failed);
-  if (failed) return Error{Code::System, made->folder_ + ": " + failed.message()};
+  if (failed) return hc::Error{hc::Code::System, made->folder_ + ": " + failed.message()};
   for (const auto& name : streams) {
     const auto path = path_of(made->folder_, name);
-    auto sink = open_sink({"file", path, {}});
+    auto sink = hc::open_sink({"file", path, {}});
     if (!sink) return sink.error();
     made->streams_.push_back({path, std::move(*sink)});
   }
   return made;
 }
 
-Status FolderRecorder::record(std::size_t number, const Message& message) {
+hc::Status FolderRecorder::record(std::size_t number, const hc::Message& message) {
   ++messages_;
   auto& [path, sink] = streams_[number];
   if (sink != nullptr) {
     auto sent = sink->send(message);
     if (sent) return {};
-    status_ = Error{sent.error().code, path + ": " + sent.error().detail};
+    status_ = hc::Error{sent.error().code, path + ": " + sent.error().detail};
     static_cast<void>(close());
   }
   ++lost_;
@@ -65,16 +65,14 @@ Status FolderRecorder::record(std::size_t number, const Message& message) {
 
 /// Small messages are written some time after they were taken, so that some that were taken may be
 /// missing when that fails.
-Status FolderRecorder::close() {
+hc::Status FolderRecorder::close() {
   for (auto& [path, sink] : streams_) {
     if (sink == nullptr) continue;
     auto closed = sink->close();
     if (!closed && status_)
-      status_ = Error{closed.error().code, path + ": " + closed.error().detail};
+      status_ = hc::Error{closed.error().code, path + ": " + closed.error().detail};
     lost_ += sink->traffic().cut;
     sink.reset();
   }
   return status_;
 }
-
-}  // namespace hc::mcap
