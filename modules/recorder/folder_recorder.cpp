@@ -32,11 +32,13 @@ std::string free_folder(const std::string& folder, const std::vector<std::string
 hc::Result<std::unique_ptr<FolderRecorder>> FolderRecorder::make(
     const std::string& folder, const std::vector<std::string>& streams) {
   std::set<std::string> names;
-  for (const auto& name : streams)
-    if (name.empty() || name.find('/') != std::string::npos || !names.insert(name).second)
-      return hc::Error{hc::Code::Invalid, "streams: each is a file of its name, which \"" + name +
-                                              "\" cannot be" +
-                                              (names.contains(name) ? " twice" : "")};
+  for (const auto& name : streams) {
+    const bool is_file_name = !name.empty() && name.find('/') == std::string::npos;
+    if (is_file_name && names.insert(name).second) continue;
+    return hc::Error{
+        hc::Code::Invalid,
+        "streams: \"" + name + "\" " + (is_file_name ? "is there twice" : "cannot be a file name")};
+  }
   std::unique_ptr<FolderRecorder> made(new FolderRecorder(free_folder(folder, streams)));
   std::error_code failed;
   fs::create_directories(made->folder_, failed);

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -102,9 +103,14 @@ TEST_F(Folder, OfAnEarlierProcessIsLeftAlone) {
 }
 
 TEST_F(Folder, WrongNamesAreRefused) {
-  for (const std::vector<std::string>& streams :
-       {std::vector<std::string>{""}, {"../a.out"}, {"a.out", "a.out"}})
-    EXPECT_EQ(refusal(kept, streams).code, hc::Code::Invalid) << streams.back();
+  for (const auto& [streams, what] :
+       {std::pair(std::vector<std::string>{""}, "\"\" cannot be a file name"),
+        {{"../a.out"}, "\"../a.out\" cannot be a file name"},
+        {{"a.out", "a.out"}, "\"a.out\" is there twice"}}) {
+    const auto error = refusal(kept, streams);
+    EXPECT_EQ(error.code, hc::Code::Invalid);
+    EXPECT_EQ(error.detail, std::string("streams: ") + what);
+  }
   EXPECT_FALSE(fs::exists(kept));
 }
 

@@ -130,8 +130,7 @@ int main(int argc, char** argv) {
     options.last =
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*last));
     if (file->empty() == folder->empty())
-      throw hc::ModuleError(
-          hc::Error{hc::Code::Invalid, "either `file` or `folder` is to be given"});
+      throw hc::ModuleError(hc::Error{hc::Code::Invalid, "give either `file` or `folder`"});
     if (!folder->empty()) {
       if (options.split > 0 || options.keep > 0 || *last > 0 || !when->empty())
         throw hc::ModuleError(

@@ -90,7 +90,7 @@ class Recordings(Pipes):
             self.shell("cmp in.mtp %s/in.mtp" % kept)
         for options in ("", "--file x.mcap --folder kept"):
             self.shell("hc recorder %s <in.mtp" % options, 2)
-            self.assertIn("either `file` or `folder` is to be given", self.err)
+            self.assertIn("give either `file` or `folder`", self.err)
         for option in ("--split 1G", "--last 3", "--when a.b"):
             self.shell("hc recorder --folder kept %s <in.mtp" % option, 2)
             self.assertIn("`split`, `keep`, `last` and `when` are for `file`", self.err)
