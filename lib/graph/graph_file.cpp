@@ -9,6 +9,7 @@
 #include <hc/base/suggestion.h>
 #include <hc/contract/conversion.h>
 #include <hc/contract/description.h>
+#include <hc/contract/recording.h>
 #include <hc/contract/trace.h>
 #include <hc/link/policy.h>
 
@@ -242,7 +243,7 @@ void record_outputs(Graph& graph, const std::vector<std::string>& traced,
   for (const auto& [output, place] : recorded_outputs(graph, traced)) {
     GraphLink link;
     link.from = {output.first, output.second, ""};
-    link.to.uri = "file:" + folder + "/" + link.from.text() + ".mtp";
+    link.to.uri = "file:" + recording_file(folder, link.from.text());
     link.place = place;
     graph.links.push_back(std::move(link));
   }

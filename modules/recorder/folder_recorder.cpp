@@ -5,13 +5,11 @@
 #include <filesystem>
 #include <set>
 
+#include <hc/contract/recording.h>
+
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string path_of(const std::string& folder, const std::string& stream) {
-  return (fs::path(folder) / (stream + ".mtp")).string();
-}
 
 /// A folder that has none of the files.
 std::string free_folder(const std::string& folder, const std::vector<std::string>& streams) {
@@ -19,8 +17,9 @@ std::string free_folder(const std::string& folder, const std::vector<std::string
   if (!path.has_filename()) path = path.parent_path();  // "kept/"
   auto is_free = [&](const std::string& name) {
     std::error_code missing;
-    return std::ranges::none_of(
-        streams, [&](const auto& stream) { return fs::exists(path_of(name, stream), missing); });
+    return std::ranges::none_of(streams, [&](const auto& stream) {
+      return fs::exists(hc::recording_file(name, stream), missing);
+    });
   };
   std::string name = folder;
   for (int i = 2; !is_free(name); ++i) name = path.string() + "_" + std::to_string(i);
@@ -44,7 +43,7 @@ hc::Result<std::unique_ptr<FolderRecorder>> FolderRecorder::make(
   fs::create_directories(made->folder_, failed);
   if (failed) return hc::Error{hc::Code::System, made->folder_ + ": " + failed.message()};
   for (const auto& name : streams) {
-    const auto path = path_of(made->folder_, name);
+    const auto path = hc::recording_file(made->folder_, name);
     auto sink = hc::open_sink({"file", path, {}});
     if (!sink) return sink.error();
     made->streams_.push_back({path, std::move(*sink)});

@@ -8,6 +8,7 @@
 #include <frames/messages.h>
 #include <hc/base/format.h>
 #include <hc/compress/compress.h>
+#include <hc/contract/recording.h>
 #include <hc/os/program.h>
 
 #include "common.h"
@@ -53,7 +54,7 @@ std::vector<std::string> outputs_between(const GraphFrames& frames, const Frames
 void read_recording(GraphFrames& frames, const std::string& folder,
                     const std::vector<std::string>& outputs) {
   for (const auto& output : outputs) {
-    const auto file = (fs::path(folder) / (output + ".mtp")).string();
+    const auto file = hc::recording_file(folder, output);
     auto source = open_file_source(file, kDefaultLimit);
     for (hc::Message message; receive(*source, message, file);) feed(frames, message, file);
   }

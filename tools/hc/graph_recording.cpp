@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include <hc/contract/recording.h>
 #include <mcap/link.h>
 
 #include "common.h"
@@ -11,8 +12,6 @@ namespace tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view kEnding = ".mtp";
 
 std::set<std::string> streams_of(const std::string& file) {
   auto reader = value_or_fail(hc::mcap::Reader::open(file), file);
@@ -27,7 +26,7 @@ std::set<std::string> files_of(const std::string& folder) {
   std::error_code failed;
   fs::directory_iterator each(folder, failed);
   for (; !failed && each != fs::directory_iterator(); each.increment(failed))
-    if (each->path().extension() == kEnding) names.insert(each->path().stem().string());
+    if (each->path().extension() == ".mtp") names.insert(each->path().stem().string());
   if (failed) throw Failure({hc::Code::NotFound, folder + ": " + failed.message()});
   return names;
 }
@@ -40,8 +39,7 @@ GraphRecording::GraphRecording(std::string place)
       outputs_(is_mcap_ ? streams_of(place_) : files_of(place_)) {}
 
 std::string GraphRecording::place_of(const std::string& output) const {
-  return is_mcap_ ? place_ + "?stream=" + output
-                  : (fs::path(place_) / (output + std::string(kEnding))).string();
+  return is_mcap_ ? place_ + "?stream=" + output : hc::recording_file(place_, output);
 }
 
 std::string GraphRecording::graph_file() const {

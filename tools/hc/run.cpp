@@ -12,6 +12,7 @@
 
 #include <graph/run.h>
 #include <hc/base/format.h>
+#include <hc/contract/recording.h>
 #include <hc/os/program.h>
 
 #include "common.h"
@@ -140,7 +141,7 @@ void remove_previous_files(const RunOptions& options, const hc::LoadOptions& loa
   if (load.record.empty() || graph.recorder.empty()) return;
   for (const auto& link : graph.plan->links) {
     if (!link.to.starts_with(graph.recorder + ".")) continue;
-    const auto file = (fs::path(load.record) / (link.from + ".mtp")).string();
+    const auto file = hc::recording_file(load.record, link.from);
     fs::remove(file, failed);
     if (failed) throw Failure({hc::Code::System, file + ": " + failed.message()});
   }
