@@ -174,6 +174,8 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
                                       const std::map<std::string, std::string>& parameters);
 
 /// Sets a parameter, from "MODULE.PARAMETER=VALUE".
-void set_parameter(Graph& graph, std::string_view assignment, Problems& problems);
+/// @param place  where that is from.
+void set_parameter(Graph& graph, std::string_view assignment, Problems& problems,
+                   const Place& place = {});
 
 }  // namespace hc

@@ -137,12 +137,13 @@ class FileLoader : public GraphLoader {
     auto environment = [](const char* name) -> const char* { return std::getenv(name); };
     Graph graph = parse_graph(*text, environment, problems, read_file);
     if (options_.page) add_page(graph, options_.listen, problems);
-    for (const auto& setting : options_.settings) set_parameter(graph, setting, problems);
+    for (const auto& setting : options_.settings)
+      set_parameter(graph, setting, problems, kSetBeside);
     return planned(std::move(graph), problems, running, stop);
   }
 
   LoadedGraph plan(Graph graph, const Plan& running, int stop) override {
-    Problems problems(graph.files, "");
+    Problems problems(graph.files);
     return planned(std::move(graph), problems, &running, stop);
   }
 
@@ -173,11 +174,8 @@ class FileLoader : public GraphLoader {
       return known->second;
     };
     if (has_recorder && recorder.empty()) {
-      loaded.problems = problems.lines();
-      loaded.problems.push_back("--record: " + why_no_program("recorder", "recorder"));
-      return loaded;
-    }
-    if (has_recorder) {
+      problems.add({}, "--record: " + why_no_program("recorder", "recorder"));
+    } else if (has_recorder) {
       recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
       loaded.recorder = graph.modules.back().name;
     } else if (!options_.record.empty()) {

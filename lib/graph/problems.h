@@ -14,9 +14,12 @@ namespace hc {
 
 /// Where something is.
 struct Place {
-  int line = 0;  ///< from 1 on; 0: it was not in a file, but set beside it
+  int line = 0;  ///< from 1 on; 0: it is in no file
   int file = 0;  ///< as Problems counts them; 0 is the graph's own, others are included
 };
+
+/// Of what `--set` sets, beside the files.
+inline constexpr Place kSetBeside{0, -1};
 
 /// Collects what is wrong with one graph file, and with those that it includes.
 class Problems {
@@ -24,9 +27,7 @@ class Problems {
   /// @param file  as it was given, for the lines.
   explicit Problems(std::string file) : files_{std::move(file)} {}
   /// @param files  as files() gives them.
-  /// @param beside  what is said before problems that are in none of them.
-  Problems(std::vector<std::string> files, std::string beside)
-      : files_(std::move(files)), beside_(std::move(beside)) {}
+  explicit Problems(std::vector<std::string> files) : files_(std::move(files)) {}
 
   /// Makes a file that is included known. Gives its number, for places in it.
   int add_file(std::string file) {
@@ -43,8 +44,8 @@ class Problems {
     return files_.at(static_cast<std::size_t>(number));
   }
 
-  /// Each as "FILE:LINE: WHAT", or "--set: WHAT", in the order of the files and their lines; what
-  /// would end a line is shown as \x0a.
+  /// Each as "FILE:LINE: WHAT", "--set: WHAT" or "WHAT", in the order of the files and their lines,
+  /// behind what is in none; what would end a line is shown as \x0a.
   [[nodiscard]] std::vector<std::string> lines() const {
     auto sorted = found_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
@@ -52,14 +53,16 @@ class Problems {
     });
     std::vector<std::string> lines;
     lines.reserve(sorted.size());
-    for (const auto& [place, what] : sorted)
-      lines.push_back(visible(place.line == 0 ? beside_ + what
-                                              : file(place.file) + ":" +
-                                                    std::to_string(place.line) + ": " + what));
+    for (const auto& [place, what] : sorted) lines.push_back(visible(before(place) + what));
     return lines;
   }
 
  private:
+  [[nodiscard]] std::string before(const Place& place) const {
+    if (place.line == 0) return place.file == kSetBeside.file ? "--set: " : "";
+    return file(place.file) + ":" + std::to_string(place.line) + ": ";
+  }
+
   static std::string visible(std::string_view text) {
     constexpr std::string_view kHex = "0123456789abcdef";
     std::string result;
@@ -79,7 +82,6 @@ class Problems {
   };
 
   std::vector<std::string> files_;
-  std::string beside_ = "--set: ";
   std::vector<Problem> found_;
 };
 

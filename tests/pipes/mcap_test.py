@@ -109,8 +109,11 @@ class Recordings(Pipes):
             module = "libexec/hypercolumn/" + name
             os.symlink(BUILD / module, self.path("own/" + module))
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
-        self.shell("own/bin/hc run g.toml --record x.mcap", 2)
-        self.assertEqual(self.err, 'hc run: error: --record: no program "recorder"\n')
+        self.shell("own/bin/hc run g.toml --record x.mcap --set camera.width=-1", 2)
+        wrong = '--set: module camera: parameter width: "-1" is not from 0 to 65535'
+        for line in (wrong, '--record: no program "recorder"'):
+            self.assertIn("hc run: error: %s\n" % line, self.err)
+        self.assertEqual(self.err.count("\n"), 2, self.err)
 
     def test_a_module_that_writes_its_file_itself_fails_on_a_full_disk(self):
         text = GRAPH.replace("ends_graph = true", 'restart = "never"')

@@ -133,7 +133,7 @@ void Runner::begin_changes() {
     if (commands.empty())
       return begin_planning([this](int stop) { return options_.loader->load(&plan_, stop); });
     Graph graph = graph_;
-    Problems problems(graph.files, "");
+    Problems problems(graph.files);
     for (const auto& command : commands) apply_command(graph, command, problems);
     std::vector<std::string> wrong = problems.lines();
     if (wrong.empty() && only_set(commands))
