@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "folder_recorder.h"
+#include "folder_recording.h"
 
 #include <sys/resource.h>
 
@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/link/link.h>
 #include <hc/mtp/codec.h>
 
 namespace {
@@ -28,15 +29,15 @@ class Folder : public testing::Test {
   }
   void TearDown() override { fs::remove_all(root); }
 
-  static std::unique_ptr<FolderRecorder> recorder(const std::string& folder,
-                                                  const std::vector<std::string>& streams) {
-    auto made = FolderRecorder::make(folder, streams);
+  static std::unique_ptr<Recording> recording(const std::string& folder,
+                                              const std::vector<std::string>& streams) {
+    auto made = open_folder(folder, streams);
     EXPECT_TRUE(made) << made.error().text();
     return made ? std::move(*made) : nullptr;
   }
 
   static hc::Error refusal(const std::string& folder, const std::vector<std::string>& streams) {
-    auto made = FolderRecorder::make(folder, streams);
+    auto made = open_folder(folder, streams);
     EXPECT_FALSE(made);
     return made ? hc::Error() : made.error();
   }
@@ -74,12 +75,12 @@ class Folder : public testing::Test {
 };
 
 TEST_F(Folder, HasAFileOfEachStream) {
-  auto made = recorder(kept, {"eyes.left", "eyes.right", "neck.pose"});
+  auto made = recording(kept, {"eyes.left", "eyes.right", "neck.pose"});
   ASSERT_TRUE(made->record(0, sized(3)));
   ASSERT_TRUE(made->record(1, sized(100000)));
   ASSERT_TRUE(made->record(0, sized(4)));
   ASSERT_TRUE(made->close());
-  EXPECT_EQ(made->folder(), kept);
+  EXPECT_EQ(made->place(), kept);
   EXPECT_EQ(made->messages(), 3U);
   EXPECT_EQ(made->lost(), 0U);
   EXPECT_EQ(read(root / "kept/eyes.left.mtp"), hc::encode(sized(3)) + hc::encode(sized(4)));
@@ -89,15 +90,15 @@ TEST_F(Folder, HasAFileOfEachStream) {
 
 TEST_F(Folder, OfAnEarlierProcessIsLeftAlone) {
   auto record_one = [&](const std::string& folder) {
-    auto made = recorder(folder, {"a.out"});
+    auto made = recording(folder, {"a.out"});
     EXPECT_TRUE(made->record(0, sized(1)));
     EXPECT_TRUE(made->close());
-    return made->folder();
+    return made->place();
   };
   EXPECT_EQ(record_one(kept), kept);
   EXPECT_EQ(record_one(kept), kept + "_2");
   EXPECT_EQ(record_one(kept + "/"), kept + "_3");
-  EXPECT_EQ(recorder(kept, {"b.out"})->folder(), kept);
+  EXPECT_EQ(recording(kept, {"b.out"})->place(), kept);
   for (const char* file : {"kept/a.out.mtp", "kept_2/a.out.mtp", "kept_3/a.out.mtp"})
     EXPECT_EQ(count(root / file), 1U) << file;
 }
@@ -143,7 +144,7 @@ class FullDisk : public Folder {
 
   /// Records until the disk is full; every message that is said to be recorded is whole.
   void fill(std::int32_t size) {
-    auto made = recorder(kept, {"a.out", "b.out"});
+    auto made = recording(kept, {"a.out", "b.out"});
     hc::Status recorded = made->record(1, sized(10));
     for (int i = 0; recorded && i < 20000; ++i) recorded = made->record(0, sized(size));
     ASSERT_FALSE(recorded);

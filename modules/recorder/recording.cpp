@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording.h"
+
+#include <string_view>
+
+#include <hc/base/format.h>
+
+std::string free_name(const std::string& path,
+                      const std::function<bool(const std::string& path)>& is_free) {
+  const std::string_view ending = path.ends_with(".mcap") ? ".mcap" : "";
+  std::string stem = path.substr(0, path.size() - ending.size());
+  while (stem.ends_with('/')) stem.pop_back();  // "kept/"
+  std::string name = path;
+  for (int i = 2; !is_free(name); ++i) name = hc::format("{}_{}{}", stem, i, ending);
+  return name;
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+TEST(FreeName, HasANumberWhereTheNameIsTaken) {
+  const std::set<std::string> taken = {"kept.mcap", "kept_2.mcap", "kept/", "runs/2026.11.24"};
+  auto name = [&](const std::string& path) {
+    return free_name(path, [&](const std::string& each) { return !taken.contains(each); });
+  };
+  EXPECT_EQ(name("new.mcap"), "new.mcap");
+  EXPECT_EQ(name("new/"), "new/");
+  EXPECT_EQ(name("kept.mcap"), "kept_3.mcap");
+  EXPECT_EQ(name("kept/"), "kept_2");
+  EXPECT_EQ(name("runs/2026.11.24"), "runs/2026.11.24_2");
+}
+
+}  // namespace
