@@ -77,7 +77,9 @@ int main(int argc, char** argv) {
     inputs.push_back(module.input(input, hc::anything(), "recorded as " + name));
     recorded.push_back(name);
   }
-  auto file = module.parameter("file", "", "", "output file, of MCAP", {.fixed = true});
+  auto file = module.parameter(
+      "file", "", "", "output file, of MCAP; recording.mcap where neither it nor `folder` is given",
+      {.fixed = true});
   auto folder = module.parameter("folder", "", "",
                                  "in place of `file`: a file STREAM.mtp for each stream goes there",
                                  {.fixed = true});
@@ -109,18 +111,19 @@ int main(int argc, char** argv) {
 
   module.on_start([&] {
     McapOptions options;
-    options.file = *file;
+    options.file = file->empty() ? "recording.mcap" : *file;
     options.split = bytes_of("split", *split);
     options.keep = bytes_of("keep", *keep);
     options.last =
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*last));
     options.when = *when;
     options.frames = *frames;
-    if (file->empty() == folder->empty()) refuse("give either `file` or `folder`");
-    if (file->empty() && (options.split > 0 || options.keep > 0 || *last > 0 || !when->empty()))
+    const bool is_folder = !folder->empty();
+    if (is_folder && !file->empty()) refuse("give either `file` or `folder`");
+    if (is_folder && (options.split > 0 || options.keep > 0 || *last > 0 || !when->empty()))
       refuse("`split`, `keep`, `last` and `when` are for `file`");
-    recording = hc::value_or_end(folder->empty() ? open_mcap(module, options, recorded)
-                                                 : open_folder(*folder, recorded));
+    recording = hc::value_or_end(is_folder ? open_folder(*folder, recorded)
+                                           : open_mcap(module, options, recorded));
   });
   for (std::size_t i = 0; i < inputs.size(); ++i)
     module.on_raw(inputs[i], [&, i](const hc::Message& message) {

@@ -82,15 +82,20 @@ class Recordings(Pipes):
             self.assertRegex(self.shell("hc info x.mcap"), r"\neye\.left +1 ")
             self.shell("rm x.mcap")
 
+    def test_the_recorder_writes_recording_mcap_where_it_is_not_told_where(self):
+        for name in ("recording", "recording_2"):
+            self.shell("hc send 1 | hc recorder")
+            self.assertIn("1 message in %s.mcap\n" % name, self.err)
+            self.assertEqual(self.seqs(name + ".mcap"), [0])
+
     def test_the_recorder_writes_a_folder_instead(self):
         self.shell(CAMERA + " --count 5 >in.mtp")
         for kept in ("kept", "kept_2"):
             self.shell("hc recorder --folder kept <in.mtp")
             self.assertIn("5 messages in %s\n" % kept, self.err)
             self.shell("cmp in.mtp %s/in.mtp" % kept)
-        for options in ("", "--file x.mcap --folder kept"):
-            self.shell("hc recorder %s <in.mtp" % options, 2)
-            self.assertIn("give either `file` or `folder`", self.err)
+        self.shell("hc recorder --file x.mcap --folder kept <in.mtp", 2)
+        self.assertIn("give either `file` or `folder`", self.err)
         for option in ("--split 1G", "--last 3", "--when a.b"):
             self.shell("hc recorder --folder kept %s <in.mtp" % option, 2)
             self.assertIn("`split`, `keep`, `last` and `when` are for `file`", self.err)
