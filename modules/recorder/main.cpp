@@ -124,6 +124,8 @@ int main(int argc, char** argv) {
       refuse("`split`, `keep`, `last` and `when` are for `file`");
     recording = hc::value_or_end(is_folder ? open_folder(*folder, recorded)
                                            : open_mcap(module, options, recorded));
+    if (const auto& place = recording->place(); place != (is_folder ? *folder : options.file))
+      module.log("recording continues in " + place);
   });
   for (std::size_t i = 0; i < inputs.size(); ++i)
     module.on_raw(inputs[i], [&, i](const hc::Message& message) {

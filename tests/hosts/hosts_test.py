@@ -256,7 +256,9 @@ class Hosts(HostsTest):
         wait_until(lambda: self.count("kept_3") > before_kill + 50)
         self.assertEqual(self.ask(process, "remove more"), ["ok"])
         wait_until(lambda: self.count("kept_4") > 50)
-        self.stop(process)
+        _, err = self.stop(process)
+        for folder in ("kept_2", "kept_3", "kept_4"):
+            self.assertIn("recorder: recording continues in %s\n" % folder, err)
         self.assertEqual(self.count("kept"), before)
         self.assertIn("seq restarted 1 time", self.shell("hc info kept_3/camera.left.mtp"))
         for folder, has_more in (("kept", 0), ("kept_2", 1), ("kept_3", 1), ("kept_4", 0)):

@@ -90,9 +90,10 @@ class Recordings(Pipes):
 
     def test_the_recorder_writes_a_folder_instead(self):
         self.shell(CAMERA + " --count 5 >in.mtp")
-        for kept in ("kept", "kept_2"):
+        for kept, continues in (("kept", False), ("kept_2", True)):
             self.shell("hc recorder --folder kept <in.mtp")
             self.assertIn("5 messages in %s\n" % kept, self.err)
+            self.assertEqual("recording continues in kept_2\n" in self.err, continues, self.err)
             self.shell("cmp in.mtp %s/in.mtp" % kept)
         self.shell("hc recorder --file x.mcap --folder kept <in.mtp", 2)
         self.assertIn("give either `file` or `folder`", self.err)
