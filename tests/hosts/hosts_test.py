@@ -108,7 +108,7 @@ class Hosts(HostsTest):
         process = self.run_graph("")
         messages = self.observe(process)
         self.state(messages, lambda state: self.rate(state, "camera.left", "brightness.image"))
-        more = BRIGHTNESS.replace("modules.brightness", "modules.more") % 'host = "h1"\n'
+        more = BRIGHTNESS.replace("brightness", "more") % 'program = "brightness"\nhost = "h1"\n'
         self.write_graph(self.tables(host) + here + more)
         state = self.state(messages, lambda state: self.rate(state, "camera.left", "more.image"))
         self.assertEqual(self.link(state, "camera.left", "more.image")["transport"], "tls")

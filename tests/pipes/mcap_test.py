@@ -212,7 +212,7 @@ class Recordings(Pipes):
         it then is in the folder `kept`."""
         own = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
         mount = "mount -t tmpfs -o size=2m none disk"
-        os.makedirs(self.path("disk"))
+        os.makedirs(self.path("disk"), exist_ok=True)
         if subprocess.run(own + [mount], cwd=self.folder.name, stderr=-1, check=False).returncode:
             self.skipTest("no mount namespaces, in which a small disk would be made")
         text = "%s && { %s; status=$?; cp -r disk kept; exit $status; }" % (mount, command)
