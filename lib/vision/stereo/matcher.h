@@ -41,7 +41,7 @@ struct StereoOptions {
 /// cv::setNumThreads() has them; the result does not depend on them. Confidence is how much more
 /// the second-best disparity costs.
 ///
-/// Cost: linear in pixels · disparities; doc/depth.md has figures.
+/// Cost: linear in pixels · disparities; doc/sight.md has figures.
 std::unique_ptr<StereoMatcher> semi_global_matcher(const StereoOptions& options);
 
 /// Semi-global matching of OpenCV in its three-way mode. Confidence is 255 where a disparity is
