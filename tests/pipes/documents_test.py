@@ -125,6 +125,7 @@ class Documents(Pipes):
                     wrong = Documents.run_block(self, block)
                     if not wrong:
                         break
+                    print(wrong, flush=True)
                 else:
                     self.fail(wrong)
 

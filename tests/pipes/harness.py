@@ -20,6 +20,7 @@ DATA = os.environ.get("HC_DATA", "/usr/share/doc/opencv-doc/examples/data")
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
 WATCHDOG = 100  # seconds after which a program hangs
+PRESSURE = pathlib.Path("/proc/pressure/cpu")
 
 
 def free_port():
@@ -37,10 +38,31 @@ def wait_until(condition):
     return result
 
 
+def waited_for_processor():
+    """How long some process had to wait for a processor, since the machine started [s]; all of the
+    time on a kernel that does not count it."""
+    try:
+        return int(re.search(r"some .*total=(\d+)", PRESSURE.read_text())[1]) * 1e-6
+    except OSError:
+        return time.monotonic()
+
+
 def succeeds_once(attempt, times=5):
-    """Whether one of some attempts succeeds: of what is done in real time, and fails where the
-    machine has no time for it. What is broken fails each time."""
-    return any(attempt() for _ in range(times))
+    """Whether one of some attempts succeeds, of what is done in real time. A failed attempt is
+    printed, and repeated only if processes had to wait for a processor meanwhile."""
+    for number in range(1, times + 1):
+        begin, waited = time.monotonic(), waited_for_processor()
+        if attempt():
+            return True
+        share = (waited_for_processor() - waited) / (time.monotonic() - begin)
+        print(
+            "attempt %d of %d failed; processes waited for a processor %.0f %% of the time"
+            % (number, times, 100 * share),
+            flush=True,
+        )
+        if share < 0.05:
+            return False
+    return False
 
 
 def listens(port):

@@ -18,7 +18,6 @@ nothing to be fed with. The stream `device` is not fed to pan_tilt: it names a p
 has gone, or is somebody else's by now.
 """
 
-import functools
 import math
 import os
 import pathlib
@@ -27,30 +26,9 @@ import socket
 import unittest
 
 from harness import Pipes, wait_until
-from recordings import Task, numbers, read_messages, share_within
+from recordings import Late, Task, numbers, read_messages, record_again, share_within
 
 DEGREE = math.pi / 180
-
-
-class Late(AssertionError):
-    """What was recorded differs by more than a replay on a machine that has time for the robot."""
-
-
-def record_again(test):
-    """Does a test anew, twice at most, where a module was late; what is broken fails each time."""
-
-    @functools.wraps(test)
-    def tried(self):
-        for _ in range(2):
-            try:
-                return test(self)
-            except Late as late:
-                print("late: %s" % late, flush=True)
-                self.doCleanups()
-                self.setUp()
-        return test(self)
-
-    return tried
 
 
 class Recording(Pipes):
