@@ -37,9 +37,9 @@ from mtp1_number import FLOAT, FLOATS, INTEGER, nearest, spell
 from mtp1_random import loosen, random_message
 
 LIMIT = 256 << 20  # bytes; R24
-MOST_HEADER = 256  # bytes with the line feed; R3
-MOST_NUMBER = 64  # bytes; R31
-MOST_LENGTH = 20  # bytes without the line feed; R34
+MAX_HEADER = 256  # bytes with the line feed; R3
+MAX_NUMBER = 64  # bytes; R31
+MAX_LENGTH = 20  # bytes without the line feed; R34
 CHUNK = 1 << 16  # bytes asked of a stream at a time
 
 NUMBER = re.compile(rb" *([^ \n]*)([ \n])")  # with what is before it and the byte that ends it
@@ -142,9 +142,9 @@ def read_message(source, limit, expand):
 def read_header(source, limit):
     """Reads a header line. R3."""
     start = source.byte
-    line = source.line(MOST_HEADER)
+    line = source.line(MAX_HEADER)
     if line is None:
-        raise Refused("R3", "header", start + MOST_HEADER, "no line feed in 256 bytes")
+        raise Refused("R3", "header", start + MAX_HEADER, "no line feed in 256 bytes")
     return judge_header(line, start, limit)
 
 
@@ -200,8 +200,8 @@ def wait_for_number(source):
 
 def judge_length(word, byte):
     """Refuses a number that takes too many bytes. R31."""
-    if len(word) > MOST_NUMBER:
-        raise Refused("R31", "elements", byte, f"a number longer than {MOST_NUMBER} bytes")
+    if len(word) > MAX_NUMBER:
+        raise Refused("R31", "elements", byte, f"a number longer than {MAX_NUMBER} bytes")
 
 
 def read_number(word, header, byte):
@@ -220,7 +220,7 @@ def read_number(word, header, byte):
 def read_compressed(source, header, limit, expand):
     """Reads the elements of encodings zstd and jpeg. R34 to R37."""
     start = source.byte
-    line = source.line(MOST_LENGTH + 1)
+    line = source.line(MAX_LENGTH + 1)
     if line is None or not INTEGER.fullmatch(line) or line.startswith(b"-"):
         reason = "no number" if line is None else f"{show(line)} is no number of bytes"
         raise Refused("R34", "length", start, reason)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The bit streams and codes of zstd: FSE and Huffman. Section numbers are of RFC 8878."""
 
-MOST_LITERAL_BITS = 11  # of a Huffman code; 4.2.1
+MAX_LITERAL_BITS = 11  # of a Huffman code; 4.2.1
 
 
 class ZstdError(ValueError):
@@ -163,7 +163,7 @@ def huffman_table(weights):
         raise ZstdError("no Huffman code")
     longest = total.bit_length()
     rest = (1 << longest) - total
-    if longest > MOST_LITERAL_BITS or rest & rest - 1 or len(weights) > 255:
+    if longest > MAX_LITERAL_BITS or rest & rest - 1 or len(weights) > 255:
         raise ZstdError("Huffman weights do not add up")
     weights = weights + [rest.bit_length()]
     table = []

@@ -42,7 +42,7 @@ TYPES = {
     12: ("table", ANY, SCALARS),
 }
 ENCODINGS = ("text", "binary", "zstd", "jpeg")
-MOST_JPEG_SIDE = 65500  # R21
+MAX_JPEG_SIDE = 65500  # R21
 
 
 class Refused(Exception):
@@ -170,8 +170,8 @@ def judge_field(field, header):
         return judge_info(header.info)
     side = getattr(header, field)
     if field in ("width", "height") and header.encoding == "jpeg":
-        if not 1 <= side <= MOST_JPEG_SIDE:
-            return "R21", f"a jpeg's side is 1 to {MOST_JPEG_SIDE}, not {side}"
+        if not 1 <= side <= MAX_JPEG_SIDE:
+            return "R21", f"a jpeg's side is 1 to {MAX_JPEG_SIDE}, not {side}"
     if field == "width" and header.type == "sparse_graph" and side != 1:
         return "R22", f"the width of a sparse_graph is 1, not {side}"
     if field == "height" and header.type == "dense_graph" and side != header.width:

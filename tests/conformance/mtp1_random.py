@@ -5,7 +5,7 @@ import math
 
 from mtp1_header import FIELDS, I31, TYPES, Header, Message
 from mtp1_number import FLOATS, SCALARS, nearest
-from mtp1_zstd import MAGIC, MOST_BLOCK, SKIPPABLE, xxh64
+from mtp1_zstd import MAGIC, MAX_BLOCK, SKIPPABLE, xxh64
 
 
 def random_message(rng):
@@ -157,7 +157,7 @@ def random_frame(rng, data):
     frame += bytes((0, 1, 2, 4)[dictionary])  # dictionary 0 is none
     given = size - 256 if flag == 1 else size
     frame += given.to_bytes(8, "little")[: (is_single, 2, 4, 8)[flag]]
-    frame += random_blocks(rng, data, min(window, MOST_BLOCK))
+    frame += random_blocks(rng, data, min(window, MAX_BLOCK))
     return frame + (xxh64(data) & 0xFFFFFFFF).to_bytes(4, "little") * has_checksum
 
 

@@ -21,8 +21,8 @@ from mtp1_entropy import (
 
 MAGIC = 0xFD2FB528
 SKIPPABLE = range(0x184D2A50, 0x184D2A60)
-MOST_BLOCK = 128 << 10  # bytes; 3.1.1.2.4
-MOST_WINDOW_LOG = 31  # a larger window is refused, as the common implementation does
+MAX_BLOCK = 128 << 10  # bytes; 3.1.1.2.4
+MAX_WINDOW_LOG = 31  # a larger window is refused, as the common implementation does
 
 # Number codes of lengths: code -> (base, extra bits); 3.1.1.3.2.1.1
 LITERAL_LENGTHS = [(n, 0) for n in range(16)] + list(
@@ -81,7 +81,7 @@ class Frame:
     def __init__(self, source, out, most):
         self.source, self.out, self.most = source, out, most
         self.start = len(out)  # earlier frames are out of a match's reach
-        self.block = MOST_BLOCK
+        self.block = MAX_BLOCK
         self.huffman = None
         self.tables = [None, None, None]
         self.offsets = [1, 4, 8]
@@ -108,15 +108,15 @@ class Frame:
         if not is_single:
             window = self.source.number(1)  # 3.1.1.1.2
             log = 10 + (window >> 3)
-            if log > MOST_WINDOW_LOG:
+            if log > MAX_WINDOW_LOG:
                 raise ZstdError(f"a window of 2^{log} bytes")
-            self.block = min(MOST_BLOCK, (1 << log) + ((1 << log) >> 3) * (window & 7))
+            self.block = min(MAX_BLOCK, (1 << log) + ((1 << log) >> 3) * (window & 7))
         if self.source.number((0, 1, 2, 4)[dictionary_flag]):
             raise ZstdError("needs a dictionary")
         size = (is_single, 2, 4, 8)[content_flag]  # 3.1.1.1.4
         content = self.source.number(size) + (256 if size == 2 else 0) if size else None
         if is_single:
-            self.block = min(MOST_BLOCK, content)
+            self.block = min(MAX_BLOCK, content)
         if content is not None and content > self.most - self.start:
             raise ZstdError(f"promises more than {self.most} bytes")
         return content, bool(head & 4)
