@@ -4,6 +4,7 @@ import { Coord, headerOf, numbersMessage, textMessage, type Kind, type Message }
 import { Signal, type Drive, type Server } from "../server";
 import type { Angles } from "./orientation";
 import { Stick } from "./steering";
+import { WallClock } from "./wall_clock";
 
 export type SeatState =
   | { readonly is: "free" }
@@ -29,6 +30,7 @@ const still = 0.01;
  */
 export class Seat {
   readonly stick = new Stick();
+  private readonly clock = new WallClock();
   private readonly states = new Signal<SeatState>({ is: "free" });
   private readonly tasks = new Signal<number>(0);
   private drive?: Drive;
@@ -125,7 +127,7 @@ export class Seat {
 
   /** The person's head is turned so, since it was zeroed. */
   turn({ roll, pitch, yaw }: Angles): void {
-    const time = Date.now();
+    const time = this.clock.now();
     const message = numbersMessage("rotation", [roll, pitch, yaw], {
       coord: Coord.supervisor,
       time: nanoseconds(time),
@@ -145,7 +147,7 @@ export class Seat {
    */
   lookAt(x: number, y: number, coord: number, time: bigint): void {
     const message = numbersMessage("position", [x, y, 0], { coord, time });
-    if (this.drive?.send("target", message)) this.commanded(Date.now());
+    if (this.drive?.send("target", message)) this.commanded(this.clock.now());
   }
 
   /**
@@ -173,7 +175,7 @@ export class Seat {
 
   private sendStick(): void {
     const { left, down } = this.isHeld ? this.stick.push : { left: 0, down: 0 };
-    const time = Date.now();
+    const time = this.clock.now();
     if (this.drive?.send("stick", stickMessage(left, down, nanoseconds(time))) && !this.steering)
       this.commanded(time);
   }
@@ -203,5 +205,5 @@ function stickMessage(left: number, down: number, time: bigint): Message {
 }
 
 function nanoseconds(ms: number): bigint {
-  return BigInt(ms) * 1_000_000n;
+  return BigInt(Math.round(ms * 1e3)) * 1000n;
 }

@@ -7,6 +7,7 @@ import { Latency } from "./latency";
 import { anglesOfDevice, anglesOfHeadset, anglesOfPose, since, type Angles } from "./orientation";
 import { pixelAt, placesOf } from "./places";
 import { Keys, pushOfGamepads, Stick, withoutDeadZone } from "./steering";
+import { WallClock } from "./wall_clock";
 
 const degree = Math.PI / 180;
 
@@ -118,4 +119,22 @@ test("motion to photon is to the first later image that changed more than before
   latency.shown(image(200, 1300));
   assert.equal(latency.measurements.length, 1);
   assert.equal(latency.median, 120);
+});
+
+test("the wall clock, with fractions of a millisecond", () => {
+  let [fine, wall] = [10, 1000];
+  const clock = new WallClock(
+    () => fine,
+    () => wall,
+  );
+  [fine, wall] = [12.25, 1002];
+  assert.equal(clock.now(), 1002.25);
+  // The machine slept for two hours, in which its fine clock did not go.
+  wall += 7_200_000;
+  assert.equal(clock.now(), 7_201_002);
+  fine += 0.5;
+  assert.equal(clock.now(), 7_201_002.5);
+  // Its clock is set back by a second.
+  wall -= 1000;
+  assert.equal(clock.now(), 7_200_002);
 });

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The time of the wall clock, finer than the millisecond of Date.now().
+
+/** More than the two clocks differ by, unless the machine slept or its clock was set [ms]. */
+const stepped = 5;
+
+/** Wall time from a fine clock, which may stop while the machine sleeps, and a coarse one that is set. */
+export class WallClock {
+  private offset: number;
+
+  constructor(
+    private readonly fine = () => performance.now(),
+    private readonly wall = () => Date.now(),
+  ) {
+    this.offset = this.wall() - this.fine();
+  }
+
+  /** [ms since the Unix epoch], with a fraction. */
+  now(): number {
+    const wall = this.wall();
+    const time = this.fine() + this.offset;
+    if (Math.abs(time - wall) <= stepped) return time;
+    this.offset = wall - this.fine();
+    return wall;
+  }
+}
