@@ -39,8 +39,8 @@ class FolderRecording : public Recording {
     return status_;
   }
 
-  /// Small messages are written some time after they were taken, so that some that were taken may
-  /// be missing when that fails.
+  /// Small messages are written from a buffer, so some that were accepted may be lost if that
+  /// fails.
   hc::Status close() override {
     for (auto& [path, sink] : streams_) {
       if (sink == nullptr) continue;
@@ -88,10 +88,16 @@ hc::Result<std::unique_ptr<Recording>> open_folder(const std::string& folder,
     });
   });
   std::error_code failed;
-  fs::create_directories(place, failed);
+  const bool is_new = fs::create_directories(place, failed);
   if (failed) return hc::Error{hc::Code::System, place + ": " + failed.message()};
   auto made = std::make_unique<FolderRecording>(place);
   for (const auto& name : streams)
-    if (auto added = made->add_stream(name); !added) return added.error();
+    if (auto added = made->add_stream(name); !added) {
+      // Empty files would send the next attempt to another folder.
+      std::error_code ignored;
+      for (const auto& each : streams) fs::remove(hc::recording_file(place, each), ignored);
+      if (is_new) fs::remove(place, ignored);
+      return added.error();
+    }
   return std::unique_ptr<Recording>(std::move(made));
 }

@@ -8,12 +8,14 @@
 
 #include "recording.h"
 
-/// Writes as messages come. Ends at the first failure: then all files hold whole messages alone.
+/// Writes messages as they come. The first failure ends the recording of all streams; that of a
+/// stream whose small messages are still in a buffer is noticed at its next message, or at the end.
+/// Then each file holds only whole messages.
 ///
-/// Makes the folder where it is not there. Where it holds one of the files it is FOLDER_2 instead,
-/// and so on.
-/// @param streams  names of files, each another.
+/// Creates the folder if there is none. If it holds one of the files, the recording goes to
+/// FOLDER_2 instead, and so on. After an error nothing of it is left.
+/// @param streams  names of files, all different.
 ///
-/// Errors: Invalid (names that cannot be those of files), System.
+/// Errors: Invalid (a name that cannot be a file's, or is there twice), System.
 hc::Result<std::unique_ptr<Recording>> open_folder(const std::string& folder,
                                                    const std::vector<std::string>& streams);

@@ -74,6 +74,17 @@ class Folder : public testing::Test {
   std::string kept;
 };
 
+TEST_F(Folder, AnErrorLeavesNothingBehind) {
+  const std::string too_long(300, 'x');
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(refusal(kept, {"eyes.left", too_long}).code, hc::Code::System);
+    EXPECT_FALSE(fs::exists(kept));
+  }
+  fs::create_directories(kept);
+  EXPECT_EQ(refusal(kept, {"eyes.left", too_long}).code, hc::Code::System);
+  EXPECT_TRUE(fs::is_empty(kept));
+}
+
 TEST_F(Folder, HasAFileOfEachStream) {
   auto made = recording(kept, {"eyes.left", "eyes.right", "neck.pose"});
   ASSERT_TRUE(made->record(0, sized(3)));

@@ -80,9 +80,9 @@ int main(int argc, char** argv) {
   auto file = module.parameter(
       "file", "", "", "output file, of MCAP; recording.mcap where neither it nor `folder` is given",
       {.fixed = true});
-  auto folder = module.parameter("folder", "", "",
-                                 "in place of `file`: a file STREAM.mtp for each stream goes there",
-                                 {.fixed = true});
+  auto folder = module.parameter(
+      "folder", "", "", "record into this folder instead of `file`, one STREAM.mtp for each stream",
+      {.fixed = true});
   auto streams = module.parameter(
       "streams", "", "", "inputs and names of their streams, INPUT=NAME …", {.fixed = true});
   auto split = module.parameter(

@@ -22,6 +22,10 @@ class McapRecording : public Recording {
 
   hc::Status record(std::size_t stream, const hc::Message& message) override {
     auto recorded = recorder_->record(stream, message, module_.now());
+    if (!recorded && recorded.error().code == hc::Code::TooLarge) {  // too many streams
+      module_.log_once(streams_[stream], streams_[stream] + " dropped: " + recorded.error().detail);
+      recorded = {};
+    }
     if (options_.last.count() > 0 && streams_[stream] == options_.when) save_when_set(message);
     return recorded;
   }

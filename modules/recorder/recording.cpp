@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording.h"
 
+#include <filesystem>
 #include <string_view>
 
 #include <hc/base/format.h>
@@ -9,7 +10,9 @@ std::string free_name(const std::string& path,
                       const std::function<bool(const std::string& path)>& is_free) {
   const std::string_view ending = path.ends_with(".mcap") ? ".mcap" : "";
   std::string stem = path.substr(0, path.size() - ending.size());
-  while (stem.ends_with('/')) stem.pop_back();  // "kept/"
+  while (stem.size() > 1 && stem.ends_with('/')) stem.pop_back();  // "kept/"
+  if (const auto last = std::filesystem::path(stem).filename(); last == "." || last == "..")
+    stem = std::filesystem::weakly_canonical(stem).string();
   std::string name = path;
   for (int i = 2; !is_free(name); ++i) name = hc::format("{}_{}{}", stem, i, ending);
   return name;

@@ -15,13 +15,14 @@ class Recording {
  public:
   virtual ~Recording() = default;
 
+  /// A message that this recording has no place for is lost, which is logged once.
   /// Errors: System (the disk); each later call gives the same.
   virtual hc::Status record(std::size_t stream, const hc::Message& message) = 0;
   /// To be called now and then, and when descriptor() is readable. Errors: as record().
   virtual hc::Status poll() { return {}; }
   /// Below 0: none now.
   [[nodiscard]] virtual int descriptor() const { return -1; }
-  /// Saves what is kept of the last time, where it is.
+  /// Writes the last seconds to a file, if this recording keeps them in memory; else does nothing.
   virtual void save() {}
   /// Writes what is left. Errors: System; also what went wrong before.
   virtual hc::Status close() = 0;
