@@ -16,8 +16,8 @@ constexpr double kLeastValue = 0.2;
 
 using Quad = std::array<cv::Point2d, 4>;
 
-/// The least of red, green and blue: dark in what is coloured, light in what is white.
-cv::Mat least_of(const cv::Mat& rgb) {
+/// The minimum of red, green and blue: dark in what is coloured, light in what is white.
+cv::Mat min_channel(const cv::Mat& rgb) {
   cv::Mat least(rgb.size(), CV_8U);
   for (int y = 0; y < rgb.rows; ++y) {
     const auto* from = rgb.ptr<std::uint8_t>(y);
@@ -153,7 +153,7 @@ std::vector<Marker> find_colour_markers(const cv::Mat& rgb) {
     if (!hue) continue;
     turn_upright(*quad);
     if (least.empty()) {
-      least = least_of(rgb);
+      least = min_channel(rgb);
       cv::GaussianBlur(least, least, {3, 3}, 0);
     }
     // The first time from the corners of an image of half the size.

@@ -26,9 +26,9 @@ SeenBefore::Window& SeenBefore::window_of(std::int32_t src, hc::MonotonicTime no
   if (last_ == nullptr || src != last_src_) {
     auto found = windows_.find(src);
     if (found == windows_.end()) {
-      if (room_ + kLeast > most_) forget_silent(nullptr);
-      found = windows_.emplace(src, Window{std::vector<Entry>(kLeast), now}).first;
-      room_ += kLeast;
+      if (room_ + kMin > max_) forget_silent(nullptr);
+      found = windows_.emplace(src, Window{std::vector<Entry>(kMin), now}).first;
+      room_ += kMin;
     }
     last_src_ = src;
     last_ = &found->second;
@@ -40,9 +40,9 @@ SeenBefore::Window& SeenBefore::window_of(std::int32_t src, hc::MonotonicTime no
 /// Doubles a window; false when it may not be larger.
 bool SeenBefore::grow(Window& window) {
   const std::size_t size = window.entries.size();
-  if (2 * size > most_of_source_) return false;
-  while (room_ + size > most_ && windows_.size() > 1) forget_silent(&window);
-  if (room_ + size > most_) return false;
+  if (2 * size > max_of_source_) return false;
+  while (room_ + size > max_ && windows_.size() > 1) forget_silent(&window);
+  if (room_ + size > max_) return false;
   // The entries of one set go to two, so there is room for each.
   auto old = std::exchange(window.entries, std::vector<Entry>(2 * size));
   room_ += size;

@@ -15,17 +15,17 @@
 /// Messages that came lately, to recognise one that comes again in a circle.
 ///
 /// Two are the same where src, dst, seq and time are. A message is remembered for a time, unless
-/// its source has sent `most_of_source` others since. What was not remembered is never taken for
+/// its source has sent `max_of_source` others since. What was not remembered is never taken for
 /// the same, so no fresh message is dropped; what was forgotten is let through once more, until its
 /// ttl ends it.
 ///
-/// Memory: 32 bytes for each message that is remembered, twice that at most, `most` in all; when
+/// Memory: 32 bytes for each message that is remembered, twice that at most, `max` in all; when
 /// there is no more, the source that was silent longest is forgotten.
 class SeenBefore {
  public:
-  explicit SeenBefore(std::chrono::nanoseconds remember, std::size_t most_of_source = 1 << 16,
-                      std::size_t most = 1 << 20)
-      : remember_(remember), most_of_source_(most_of_source), most_(most) {}
+  explicit SeenBefore(std::chrono::nanoseconds remember, std::size_t max_of_source = 1 << 16,
+                      std::size_t max = 1 << 20)
+      : remember_(remember), max_of_source_(max_of_source), max_(max) {}
 
   /// Whether the message has come before; from now on it has. Cost: constant, but for a window that
   /// grows.
@@ -47,7 +47,7 @@ class SeenBefore {
     std::vector<Entry> entries;
     hc::MonotonicTime latest{};
   };
-  static constexpr std::size_t kWays = 4, kLeast = 64;
+  static constexpr std::size_t kWays = 4, kMin = 64;
 
   static Entry* set_of(Window& window, std::int64_t seq);
   Window& window_of(std::int32_t src, hc::MonotonicTime now);
@@ -55,7 +55,7 @@ class SeenBefore {
   void forget_silent(const Window* but);
 
   std::chrono::nanoseconds remember_;
-  std::size_t most_of_source_, most_, room_ = 0;
+  std::size_t max_of_source_, max_, room_ = 0;
   std::unordered_map<std::int32_t, Window> windows_;
   std::int32_t last_src_ = -1;
   Window* last_ = nullptr;  // of last_src_
