@@ -10,12 +10,30 @@ import sys
 ROOT = pathlib.Path(__file__).parents[1]
 SOURCES = (".h", ".cpp", ".py", ".sh", ".cmake", ".awk", ".toml")
 LINK = re.compile(r"\]\(([^)#:]+)(#[^)]*)?\)")
+INCLUDE = re.compile(r'^#include [<"](.+)[>"]', re.M)
 HERE = pathlib.Path(__file__).relative_to(ROOT)
 
 
 def budgets():
     lines = (ROOT / "scripts/budgets.txt").read_text().splitlines()
     return {k: int(v) for k, v in (line.split() for line in lines if line and line[0] != "#")}
+
+
+def stream_peer_lines():
+    """The lines of what a peer needs that speaks MTP over streams: its links, and all they include."""
+    lib = ROOT / "lib"
+    link = lib / "hc/link"
+    left = [link / "link.h", link / "transports.h", link / "wait_set.h", *link.glob("stream/*.cpp")]
+    found = {}
+    while left:
+        path = left.pop()
+        is_other = path.parent.name == "shm" or path.stem.endswith("_test")
+        if path in found or is_other or not path.is_file():
+            continue
+        text = path.read_text()
+        found[path] = len(text.splitlines())
+        left += [path.with_suffix(".cpp"), *(lib / name for name in INCLUDE.findall(text))]
+    return sum(found.values())
 
 
 def problems():
@@ -52,6 +70,9 @@ def problems():
         yield "README.md: %d lines, at most %d" % (readme, budget["readme_lines"])
     core = (ROOT / "scripts/packages/core.txt").read_text().splitlines()
     packages = sum(not line.startswith("#") for line in core)
+    lines = stream_peer_lines()
+    if lines > budget["stream_peer_lines"]:
+        yield "a peer over streams needs %d lines, at most %d" % (lines, budget["stream_peer_lines"])
     if packages > budget["core_packages"]:
         yield "the core needs %d packages, at most %d" % (packages, budget["core_packages"])
 

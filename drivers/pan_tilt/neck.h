@@ -11,6 +11,7 @@
 #include <drivers/pan_tilt/conversation.h>
 #include <drivers/pan_tilt/serial.h>
 #include <hc/base/backoff.h>
+#include <hc/base/clock.h>
 
 namespace hc::pan_tilt {
 

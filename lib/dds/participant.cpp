@@ -105,7 +105,9 @@ Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const
   if (!interfaces) return interfaces.error();
   std::unique_ptr<Participant> made(new Participant(next_number()));
   log_of_all().add(made->number_, made->remarks_);
-  const auto most = std::min(limits.element_bytes + kMaxHeaderBytes + 64 + kFrame, kMostBytes);
+  const auto most = std::min(
+      std::max<std::uint64_t>(limits.element_bytes + kMaxHeaderBytes + 64 + kFrame, kMostJoined),
+      kMostBytes);
   const auto domain = dds_create_domain(made->number_, configuration(place, most).c_str());
   if (domain < 0) return failed("domain " + std::to_string(place.domain), domain);
   made->domain_ = Entity(domain);

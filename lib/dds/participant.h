@@ -32,10 +32,10 @@ class Participant {
   [[nodiscard]] dds_entity_t topic() const { return topic_.handle(); }
   [[nodiscard]] const ddsi_sertype& type() const { return *type_; }
 
-  /// Has tell_log() log a line; from any thread.
+  /// Has flush_log() log a line; from any thread.
   void warn(std::string line) { remarks_->add(std::move(line)); }
   /// Logs what there is to warn of.
-  void tell_log(const LogSink& log) { remarks_->tell(log); }
+  void flush_log(const LogSink& log) { remarks_->flush(log); }
 
  private:
   explicit Participant(std::uint32_t number);

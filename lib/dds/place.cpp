@@ -41,7 +41,7 @@ Result<Place> parse_place(const Uri& uri) {
     return Error{Code::Invalid, "\"" + uri.rest +
                                     "\" is no topic of DDS: it takes letters, digits, _ and /, and "
                                     "begins with no digit"};
-  auto domain = internal::number_option(uri, "domain", 0, kLastDomain);
+  auto domain = number_option(uri, "domain", 0, {0, kLastDomain});
   if (!domain) return domain.error();
   place.domain = static_cast<std::uint32_t>(*domain);
   auto list = uri.option("interface", "");

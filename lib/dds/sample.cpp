@@ -157,11 +157,10 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
 }
 
 bool join(ddsi_serdata& sample, const ddsi_serdata& more) {
-  constexpr std::size_t kMost = 16 << 10;
   auto& first = static_cast<MessageSample&>(sample);
   const auto& next = own(&more);
   const bool are_copied = first.elements.empty() && next.elements.empty();
-  if (!are_copied || first.size + next.size > kMost) return false;
+  if (!are_copied || first.size + next.size > kMostJoined) return false;
   first.begin.insert(first.begin.end(), next.begin.begin() + kPrelude, next.begin.end());
   first.size = first.begin.size();
   first.write_prelude();

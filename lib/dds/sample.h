@@ -38,8 +38,11 @@ inline constexpr std::size_t kMostCopied = 4096;
 /// @param pieces  of `message`.
 Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message& message);
 
-/// Adds the messages of one sample to those of another, neither of which is sent yet; false where
-/// elements are not copied, or the sample would be large.
+/// A sample of several messages has at most so many bytes, whatever the largest message is. [byte]
+inline constexpr std::size_t kMostJoined = 16 << 10;
+
+/// Adds the messages of one sample to those of another, neither of which is sent yet; false if
+/// elements are not copied, or the sample would be larger than kMostJoined.
 bool join(ddsi_serdata& sample, const ddsi_serdata& more);
 
 /// A sample without octets: its writer has closed, and nothing more will come of it.

@@ -12,6 +12,7 @@
 #include <hc/link/queue.h>
 #include <hc/link/transports.h>
 #include <hc/os/event.h>
+#include <hc/os/wait_readable.h>
 
 namespace hc::dds {
 namespace {
@@ -68,7 +69,7 @@ class DdsSink final : public Sink {
   }
 
   Status send(const Message& message) override {
-    participant_->tell_log(options_.log);
+    participant_->flush_log(options_.log);
     const auto pieces = encoder_.encode(message);
     const std::uint64_t size = pieces[0].size() + pieces[1].size() + pieces[2].size();
     if (size > UINT32_MAX - kFrame)
@@ -122,7 +123,7 @@ class DdsSink final : public Sink {
     // end is said twice.
     if (outcome) outcome = await_answers();
     for (int i = 0; i < 2 && outcome; ++i) outcome = say_end();
-    participant_->tell_log(options_.log);
+    participant_->flush_log(options_.log);
     end();
     return outcome;
   }
@@ -364,9 +365,9 @@ class DdsSink final : public Sink {
 Result<std::unique_ptr<Sink>> make_sink(const Place& place, const Uri& uri,
                                         const LinkOptions& options) {
   constexpr std::int64_t kMostReaders = 1000;
-  auto readers = internal::number_option(uri, "readers", -1, kMostReaders);
+  auto readers = number_option(uri, "readers", -1, {0, kMostReaders});
   if (!readers) return readers.error();
-  auto stays = internal::number_option(uri, "stay", 0, 1);
+  auto stays = number_option(uri, "stay", 0, {0, 1});
   if (!stays) return stays.error();
   auto policy = internal::parse_policy(uri);
   if (!policy) return policy.error();

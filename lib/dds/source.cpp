@@ -90,7 +90,7 @@ class DdsSource final : public Source {
 
   Result<Got> take(Message& message) override {
     message = {};
-    participant_->tell_log(options_.log);
+    participant_->flush_log(options_.log);
     const std::lock_guard lock(mutex_);
     if (queue_.empty()) return nothing();
     auto [next, bytes] = queue_.pop({});  // it has no pace
@@ -250,9 +250,9 @@ Result<std::unique_ptr<Source>> make_source(const Place& place, const Uri& uri,
                                             const LinkOptions& options) {
   auto policy = internal::parse_policy(uri);
   if (!policy) return policy.error();
-  auto wait = internal::number_option(uri, "wait", 0);
+  auto wait = number_option(uri, "wait", 0);
   if (!wait) return wait.error();
-  auto reconnect = internal::number_option(uri, "reconnect", 0);
+  auto reconnect = number_option(uri, "reconnect", 0);
   if (!reconnect) return reconnect.error();
   Policy unpaced = *policy;
   unpaced.rate = 0;

@@ -15,11 +15,11 @@
 #include <system_error>
 
 #include <graph/commands.h>
+#include <graph/held_port.h>
 #include <graph/programs.h>
 #include <hc/base/suggestion.h>
 #include <hc/contract/description.h>
 #include <hc/contract/trace.h>
-#include <hc/os/socket.h>
 
 namespace hc {
 namespace {
@@ -138,7 +138,7 @@ class FileLoader : public GraphLoader {
     Graph graph = parse_graph(*text, environment, problems, read_file);
     if (options_.page) add_page(graph, options_.listen, problems);
     for (const auto& setting : options_.settings)
-      set_parameter(graph, setting, problems, kSetBeside);
+      set_parameter(graph, setting, problems, kCommandLine);
     return planned(std::move(graph), problems, running, stop);
   }
 

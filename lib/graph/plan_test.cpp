@@ -5,6 +5,7 @@
 
 #include <netinet/in.h>
 
+#include <graph/held_port.h>
 #include <graph/plan/planning_test.h>
 #include <hc/os/socket.h>
 

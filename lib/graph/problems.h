@@ -18,8 +18,8 @@ struct Place {
   int file = 0;  ///< as Problems counts them; 0 is the graph's own, others are included
 };
 
-/// Of what `--set` sets, beside the files.
-inline constexpr Place kSetBeside{0, -1};
+/// The options `--set`, which are in no file.
+inline constexpr Place kCommandLine{0, -1};
 
 /// Collects what is wrong with one graph file, and with those that it includes.
 class Problems {
@@ -45,7 +45,7 @@ class Problems {
   }
 
   /// Each as "FILE:LINE: WHAT", "--set: WHAT" or "WHAT", in the order of the files and their lines,
-  /// behind what is in none; what would end a line is shown as \x0a.
+  /// after those in no file; what would end a line is shown as \x0a.
   [[nodiscard]] std::vector<std::string> lines() const {
     auto sorted = found_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
@@ -59,7 +59,7 @@ class Problems {
 
  private:
   [[nodiscard]] std::string before(const Place& place) const {
-    if (place.line == 0) return place.file == kSetBeside.file ? "--set: " : "";
+    if (place.line == 0) return place.file == kCommandLine.file ? "--set: " : "";
     return file(place.file) + ":" + std::to_string(place.line) + ": ";
   }
 

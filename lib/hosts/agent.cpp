@@ -11,6 +11,7 @@
 #include <memory>
 #include <sstream>
 
+#include <graph/held_port.h>
 #include <graph/plan.h>
 #include <graph/programs.h>
 #include <graph/run/announcer.h>
@@ -20,7 +21,6 @@
 #include <hc/base/suggestion.h>
 #include <hc/os/procfs.h>
 #include <hc/os/program.h>
-#include <hc/os/socket.h>
 #include <hosts/conversation.h>
 #include <hosts/key_file.h>
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <graph/held_port.h>
 #include <hc/base/format.h>
-#include <hc/os/socket.h>
 
 namespace hc::hosts {
 namespace {

@@ -13,6 +13,7 @@
 
 #include <graph/hosts.h>
 #include <graph/run/process.h>
+#include <hc/os/wait_readable.h>
 #include <hosts/clock_estimate.h>
 #include <hosts/conversation.h>
 #include <hosts/remote_module.h>

@@ -61,7 +61,7 @@ ConnectedSocket Acceptor::take(const LogSink& log) {
     }
     if (agreed_.empty()) ::eventfd_read(event_, &count);
   }
-  remarks_.tell(log);
+  remarks_.flush(log);
   return peer;
 }
 

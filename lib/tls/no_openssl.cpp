@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/stream/peers.h>
+#include <hc/link/transports.h>
 #include <tls/key.h>
 
 extern "C" {

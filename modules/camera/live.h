@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <hc/base/backoff.h>
+#include <hc/base/clock.h>
 #include <hc/base/result.h>
 
 #include "pairing.h"

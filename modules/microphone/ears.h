@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <hc/base/backoff.h>
+#include <hc/base/clock.h>
 #include <hc/base/result.h>
 #include <sound/capture.h>
 #include <sound/converter.h>

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <hc/base/backoff.h>
+#include <hc/base/clock.h>
 #include <hc/base/result.h>
 #include <sound/converter.h>
 #include <sound/playback.h>

@@ -18,8 +18,8 @@
 #include <hc/link/link.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
-#include <hc/link/stream/dialing.h>
-#include <hc/link/stream/peers.h>
+#include <hc/link/stream/ends.h>
+#include <hc/link/transports.h>
 #include <hc/os/descriptor.h>
 
 namespace hc::testing {

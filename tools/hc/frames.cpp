@@ -10,6 +10,7 @@
 #include <hc/compress/compress.h>
 #include <hc/contract/recording.h>
 #include <hc/os/program.h>
+#include <hc/os/wait_readable.h>
 
 #include "common.h"
 #include "graph.h"

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include <hc/base/json_string.h>
-#include <hc/mtp/text.h>
+
+#include "number.h"
 
 namespace tool {
 namespace {
@@ -14,12 +15,12 @@ void append_json_number(T value, std::string& json) {
   if constexpr (std::is_floating_point_v<T>) {
     if (!std::isfinite(value)) {
       json += '"';
-      hc::append_number(value, json);
+      append_number(value, json);
       json += '"';
       return;
     }
   }
-  hc::append_number(value, json);
+  append_number(value, json);
 }
 
 constexpr std::size_t kPiece = 64 << 10;  // [bytes]

@@ -16,6 +16,7 @@
 #include <hc/base/suggestion.h>
 #include <hc/contract/description.h>
 #include <hc/os/program.h>
+#include <hc/os/wait_readable.h>
 
 #include "common.h"
 

@@ -7,6 +7,7 @@
 
 #include <hc/base/format.h>
 #include <hc/os/program.h>
+#include <hc/os/wait_readable.h>
 
 #include "common.h"
 #include "verbs.h"

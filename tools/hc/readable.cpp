@@ -8,7 +8,8 @@
 
 #include <hc/base/format.h>
 #include <hc/mtp/coords.h>
-#include <hc/mtp/text.h>
+
+#include "number.h"
 
 namespace tool {
 namespace {
@@ -27,7 +28,7 @@ std::string rows_of(const hc::MatrixView<const T>& matrix) {
     text += " ";
     for (std::size_t i = 0; i < count; ++i) {
       text += ' ';
-      hc::append_number(row[i], text);
+      append_number(row[i], text);
     }
     text += count < row.size() ? " …\n" : "\n";
   }

@@ -23,6 +23,7 @@
 #include <hc/compress/compress.h>
 #include <hc/contract/trace.h>
 #include <hc/os/program.h>
+#include <hc/os/wait_readable.h>
 
 #include "common.h"
 #include "comparison.h"

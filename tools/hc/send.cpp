@@ -15,6 +15,7 @@
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/compress/compress.h>
+#include <hc/mtp/names.h>
 #include <hc/mtp/text.h>
 
 #include "common.h"
@@ -92,12 +93,12 @@ hc::Message message_of_numbers(const SendOptions& options) {
   header.height = static_cast<std::int32_t>(height);
   if (auto valid = hc::check(header); !valid) throw Failure(valid.error());
   hc::Draft draft = hc::Draft::make(header);
-  hc::visit_scalar(header.info.scalar, [&](auto zero) {
-    using T = decltype(zero);
-    auto numbers = draft.view<T>().numbers();
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-      numbers[i] = value_or_fail(hc::parse_number<T>(options.numbers[i]), "elements");
-  });
+  std::byte* number = draft.elements().data();
+  for (const auto& token : options.numbers) {
+    if (auto parsed = hc::parse_number(token, header.info.scalar, number); !parsed)
+      throw Failure("elements", parsed.error());
+    number += hc::size_of(header.info.scalar);
+  }
   return std::move(draft).finish();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include <graph/file/tables.h>
+#include <hc/mtp/names.h>
 
 namespace hc::internal {
 namespace {

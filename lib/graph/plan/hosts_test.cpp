@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hc/os/socket.h>
+#include <graph/held_port.h>
 
 namespace hc {
 namespace {

@@ -6,10 +6,10 @@
 #include <array>
 #include <span>
 
+#include <graph/held_port.h>
 #include <graph/plan/planning.h>
 #include <graph/plan/routes.h>
 #include <hc/base/uri.h>
-#include <hc/os/socket.h>
 
 namespace hc::internal {
 namespace {

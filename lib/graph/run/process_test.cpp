@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include <hc/link/link.h>
+#include <hc/os/wait_readable.h>
 
 namespace hc::internal {
 namespace {

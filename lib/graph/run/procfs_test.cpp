@@ -8,6 +8,7 @@
 
 #include <graph/run/process.h>
 #include <hc/link/link.h>
+#include <hc/os/wait_readable.h>
 
 namespace hc::internal {
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include <graph/held_port.h>
 #include <graph/run/supervised.h>
 #include <hc/mtp/rows.h>
 

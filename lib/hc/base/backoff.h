@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// When to try again what has failed: after a pause that doubles with each failure. Pure.
+// When to retry: after a pause that doubles with each failure. Pure.
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
-
-#include <hc/base/clock.h>
 
 namespace hc {
 
@@ -18,19 +16,22 @@ namespace hc {
 ///     }
 class Backoff {
  public:
-  explicit Backoff(MonotonicTime first = std::chrono::milliseconds(100),
-                   MonotonicTime longest = std::chrono::seconds(2))
+  /// Time since any moment, of a clock that never goes back, and spans of it.
+  using Time = std::chrono::nanoseconds;
+
+  explicit Backoff(Time first = std::chrono::milliseconds(100),
+                   Time longest = std::chrono::seconds(2))
       : first_(first), longest_(longest), pause_(first) {}
 
   /// Whether the next attempt may be made; also before the first.
-  [[nodiscard]] bool is_due(MonotonicTime now) const { return now >= due_; }
-  /// When it may be made; 0 before the first failure.
-  [[nodiscard]] MonotonicTime due() const { return due_; }
+  [[nodiscard]] bool is_due(Time now) const { return now >= due_; }
+  /// When the next attempt may be made; 0 before the first failure.
+  [[nodiscard]] Time due() const { return due_; }
 
   /// An attempt has failed.
-  void fail(MonotonicTime now) { due_ = now + next(); }
-  /// The same, for who waits without a loop: gives the pause.
-  MonotonicTime next() { return std::exchange(pause_, std::min(2 * pause_, longest_)); }
+  void fail(Time now) { due_ = now + next(); }
+  /// The same for a caller that sleeps by itself: returns the pause.
+  Time next() { return std::exchange(pause_, std::min(2 * pause_, longest_)); }
 
   /// The next attempt may be made at once, and pauses start over.
   void reset() {
@@ -39,7 +40,7 @@ class Backoff {
   }
 
  private:
-  MonotonicTime first_, longest_, pause_, due_{0};
+  Time first_, longest_, pause_, due_{0};
 };
 
 }  // namespace hc

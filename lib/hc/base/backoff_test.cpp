@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/base/clock.h>
+
 namespace {
 
 using std::chrono_literals::operator""ms;

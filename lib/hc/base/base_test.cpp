@@ -23,12 +23,6 @@ TEST(Result, HoldsAValueOrAnError) {
   EXPECT_EQ(failed.value_or(7), 7);
 }
 
-TEST(Result, AndThenStopsAtTheFirstError) {
-  EXPECT_EQ(half(8).and_then(half).value(), 2);
-  EXPECT_EQ(half(6).and_then(half).error().detail, "3 is odd");
-  EXPECT_EQ(half(5).and_then(half).error().detail, "5 is odd");
-}
-
 TEST(Result, OfNothingIsASuccessByDefault) {
   Status good;
   EXPECT_TRUE(good);

@@ -5,7 +5,6 @@
 
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -77,36 +76,16 @@ class [[nodiscard]] Result {
     return *std::get_if<1>(&state_);
   }
 
-  /// Calls `next` with the value, or hands the error on; `next` returns a Result.
-  template <typename F>
-  auto and_then(F&& next) const -> std::invoke_result_t<F, const T&> {
-    if (!has_value()) return error();
-    return std::forward<F>(next)(value());
-  }
-
  private:
   std::variant<T, Error> state_;
 };
 
 /// Success without a value, or an Error.
 template <>
-class [[nodiscard]] Result<void> {
+class [[nodiscard]] Result<void> : public Result<std::monostate> {
  public:
-  Result() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor): `return error;` is the point
-  Result(Error error) : failed_(true), error_(std::move(error)) {}
-
-  [[nodiscard]] bool has_value() const { return !failed_; }
-  explicit operator bool() const { return has_value(); }
-
-  [[nodiscard]] const Error& error() const {
-    HC_CHECK(failed_);
-    return error_;
-  }
-
- private:
-  bool failed_ = false;
-  Error error_;
+  Result() : Result<std::monostate>(std::monostate()) {}
+  using Result<std::monostate>::Result;
 };
 
 using Status = Result<void>;

@@ -85,6 +85,27 @@ Result<Uri> parse_uri(std::string_view text) {
   return uri;
 }
 
+Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,
+                                   const NumberRange& range) {
+  auto digits = uri.option(key, "");
+  if (digits.empty()) return default_value;
+  int shift = 0;
+  if (auto unit = std::string_view("KMG").find(digits.back());
+      range.has_units && unit != std::string_view::npos) {
+    shift = 10 * (static_cast<int>(unit) + 1);
+    digits.remove_suffix(1);
+  }
+  std::int64_t value = 0;
+  const char* end = digits.data() + digits.size();
+  auto [stop, status] = std::from_chars(digits.data(), end, value);
+  if (stop != end || status != std::errc() || value < range.least || value > range.most >> shift)
+    return Error{Code::Invalid, "option " + std::string(key) + " is a whole number from " +
+                                    std::to_string(range.least) + " to " +
+                                    std::to_string(range.most) +
+                                    (range.has_units ? ", also as K, M or G" : "")};
+  return value << shift;
+}
+
 Result<HostPort> parse_host_port(std::string_view text) {
   HostPort result;
   std::string_view port = text;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Names a link's end: `tcp:localhost:7000`, `file:eyes.mtp`, `unix:/run/eye?encoding=zstd`, `-`.
-// Pure; which schemes exist is the link layer's business.
+// Pure; the link layer knows which schemes and options there are.
 
 #include <cstdint>
 #include <string>
@@ -32,6 +32,16 @@ struct Uri {
 /// Errors: Invalid (empty; longer than 4096 bytes; a NUL, line end or other control byte; a scheme
 /// with other letters; an option without `=`, without a key, or given twice).
 Result<Uri> parse_uri(std::string_view text);
+
+/// What numbers an option takes.
+struct NumberRange {
+  std::int64_t least = 0, most = 1'000'000'000;
+  bool has_units = false;  ///< may be followed by K, M or G (of 1024)
+};
+
+/// An option that is a whole number, or `default_value` where it is not given. Errors: Invalid.
+Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,
+                                   const NumberRange& range = {});
 
 /// Where a TCP link's end is.
 struct HostPort {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/contract/conversion.h>
+#include <hc/mtp/names.h>
 
 #include <algorithm>
 #include <charconv>

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hc/contract/trace.h>
+#include <hc/mtp/names.h>
 
 namespace hc {
 namespace {

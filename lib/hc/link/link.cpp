@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include <hc/base/suggestion.h>
 #include <hc/link/policy.h>
-#include <hc/link/stream/dialing.h>
-#include <hc/link/stream/listening.h>
-#include <hc/link/stream/peers.h>
+#include <hc/link/stream/ends.h>
 #include <hc/link/transports.h>
 #include <hc/os/descriptor.h>
 
@@ -23,62 +22,45 @@ using internal::Transport;
 using Opened = Result<std::unique_ptr<Source>>;
 using OpenedSink = Result<std::unique_ptr<Sink>>;
 
+/// Calls a function of a transport; null: it is in a library that this program is linked without.
+template <typename Function, typename... Options>
+auto call(Function* function, const Uri& uri, const Options&... options)
+    -> decltype(function(uri, options...)) {
+  if (function != nullptr) return function(uri, options...);
+  const bool is_tls = uri.scheme.starts_with("tls");
+  const std::string name = is_tls ? "tls" : "dds";
+  return Error{Code::Unsupported, name + ": links need " + (is_tls ? "OpenSSL" : "Cyclone DDS") +
+                                      ": this program is linked without lib/" + name};
+}
+
 // The ends of links between sockets that connect, and that listen.
 
 template <Result<internal::Peer> find(const Uri&)>
 Opened connect_source(const Uri& uri, const LinkOptions& options) {
-  auto peer = find(uri);
+  auto peer = call(find, uri);
   return peer ? internal::dial_source(*peer, uri, options) : peer.error();
 }
 
 template <Result<internal::Peer> find(const Uri&)>
 OpenedSink connect_sink(const Uri& uri, const LinkOptions& options) {
-  auto peer = find(uri);
+  auto peer = call(find, uri);
   return peer ? internal::dial_sink(*peer, uri, options) : peer.error();
 }
 
 template <Result<internal::ListeningSocket> listen(const Uri&)>
 Opened listening_source(const Uri& uri, const LinkOptions& options) {
-  auto socket = listen(uri);
+  auto socket = call(listen, uri);
   return socket ? internal::listening_source(std::move(*socket), options) : socket.error();
 }
 
 template <Result<internal::ListeningSocket> listen(const Uri&)>
 OpenedSink listening_sink(const Uri& uri, const LinkOptions& options) {
-  auto socket = listen(uri);
+  auto socket = call(listen, uri);
   return socket ? internal::listening_sink(std::move(*socket), uri, options) : socket.error();
 }
 
-// Links by TLS, where the program has lib/tls.
-
-Error no_tls() {
-  return {Code::Unsupported, "tls: links need OpenSSL: this program is linked without lib/tls"};
-}
-
-Result<internal::Peer> find_tls_peer(const Uri& uri) {
-  return internal::tls_peer != nullptr ? internal::tls_peer(uri) : no_tls();
-}
-
-Result<internal::ListeningSocket> find_tls_listener(const Uri& uri) {
-  return internal::listen_tls != nullptr ? internal::listen_tls(uri) : no_tls();
-}
-
-// Links by DDS, where the program has lib/dds.
-
-Error no_dds() {
-  return {Code::Unsupported, "dds: links need Cyclone DDS: this program is linked without lib/dds"};
-}
-
-Opened dds_source(const Uri& uri, const LinkOptions& options) {
-  return internal::open_dds_source != nullptr ? internal::open_dds_source(uri, options) : no_dds();
-}
-
-OpenedSink dds_sink(const Uri& uri, const LinkOptions& options) {
-  return internal::open_dds_sink != nullptr ? internal::open_dds_sink(uri, options) : no_dds();
-}
-
-/// Every transport there is. The options that an end has are named here, so that one misspelt is
-/// refused and not overlooked.
+/// Every transport there is. The options of each end are listed here, so that a misspelt one is
+/// refused and not ignored.
 constexpr std::array<Transport, 11> kTransports = {{
     {"-", "", "keep rate burst memory", internal::open_stdin, internal::open_stdout},
     {"file", "", "keep rate burst memory", internal::open_file_source, internal::open_file_sink},
@@ -87,9 +69,9 @@ constexpr std::array<Transport, 11> kTransports = {{
     {"tcp-listen", "same_user", "readers stay same_user keep rate burst memory",
      listening_source<internal::listen_tcp>, listening_sink<internal::listen_tcp>},
     {"tls", "key peer wait reconnect", "key peer wait reconnect keep rate burst memory",
-     connect_source<find_tls_peer>, connect_sink<find_tls_peer>},
+     connect_source<internal::tls_peer>, connect_sink<internal::tls_peer>},
     {"tls-listen", "key peer", "key peer readers stay keep rate burst memory",
-     listening_source<find_tls_listener>, listening_sink<find_tls_listener>},
+     listening_source<internal::listen_tls>, listening_sink<internal::listen_tls>},
     {"unix", "wait reconnect", "wait reconnect keep rate burst memory",
      connect_source<internal::unix_peer>, connect_sink<internal::unix_peer>},
     {"unix-listen", "", "readers stay keep rate burst memory",
@@ -99,17 +81,13 @@ constexpr std::array<Transport, 11> kTransports = {{
     {"shm", "keep rate burst spin wait reconnect", "readers stay keep memory",
      internal::open_shm_source, internal::open_shm_sink},
     {"dds", "domain interface wait reconnect keep rate burst memory",
-     "domain interface readers stay keep rate burst memory", dds_source, dds_sink},
+     "domain interface readers stay keep rate burst memory", internal::open_dds_source,
+     internal::open_dds_sink},
 }};
 
 std::vector<std::string> split(std::string_view words) {
-  std::vector<std::string> list;
-  while (!words.empty()) {
-    auto word = words.substr(0, words.find(' '));
-    words.remove_prefix(std::min(words.size(), word.size() + 1));
-    list.emplace_back(word);
-  }
-  return list;
+  std::istringstream text{std::string(words)};
+  return {std::istream_iterator<std::string>(text), {}};
 }
 
 /// Whether some end of some transport has an option of that name: then it is not misspelt.
@@ -160,7 +138,7 @@ Status check_end(const Uri& uri, std::string_view allowed) {
     return Error{Code::Invalid, "there is no name"};
   }
   for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user", "domain"})
-    if (auto number = internal::number_option(uri, key, 0); !number) return number.error();
+    if (auto number = number_option(uri, key, 0); !number) return number.error();
   auto policy = internal::parse_policy(uri);
   return policy ? Status() : policy.error();
 }
@@ -197,7 +175,7 @@ Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& o
   if (!transport) return transport.error();
   auto checked = check_options(uri, (*transport)->source_options);
   if (!checked) return checked.error();
-  return (*transport)->open_source(uri, with_name(options, uri));
+  return call((*transport)->open_source, uri, with_name(options, uri));
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
@@ -205,7 +183,7 @@ Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& optio
   if (!transport) return transport.error();
   auto checked = check_options(uri, (*transport)->sink_options);
   if (!checked) return checked.error();
-  return (*transport)->open_sink(uri, with_name(options, uri));
+  return call((*transport)->open_sink, uri, with_name(options, uri));
 }
 
 Status check_source(const Uri& uri) {
@@ -218,21 +196,6 @@ Status check_sink(const Uri& uri) {
   return transport ? check_end(uri, (*transport)->sink_options) : transport.error();
 }
 
-Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,
-                                  std::chrono::milliseconds timeout) {
-  std::vector<pollfd> polled;
-  for (int descriptor : descriptors) polled.push_back({descriptor, POLLIN, 0});
-  polled.push_back({stop, POLLIN, 0});
-  auto ready = internal::system_call("poll", "", [&] {
-    return ::poll(polled.data(), polled.size(), static_cast<int>(timeout.count()));
-  });
-  if (!ready) return ready.error();
-  if (polled.back().revents != 0) return Error{Code::Stopped, "asked to stop"};
-  auto first = std::find_if(polled.begin(), polled.end() - 1,
-                            [](const pollfd& entry) { return entry.revents != 0; });
-  return static_cast<std::size_t>(first - polled.begin());
-}
-
 Result<bool> receive(Source& source, Message& message, int stop) {
   while (true) {
     auto got = source.take(message);
@@ -243,20 +206,4 @@ Result<bool> receive(Source& source, Message& message, int stop) {
   }
 }
 
-namespace internal {
-
-Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::int64_t default_value,
-                                   std::int64_t most) {
-  auto text = uri.option(key, "");
-  if (text.empty()) return default_value;
-  std::int64_t value = 0;
-  const char* end = text.data() + text.size();
-  auto [stop, status] = std::from_chars(text.data(), end, value);
-  if (stop != end || status != std::errc() || value < 0 || value > most)
-    return Error{Code::Invalid, "option " + std::string(key) + " is a whole number from 0 to " +
-                                    std::to_string(most)};
-  return value;
-}
-
-}  // namespace internal
 }  // namespace hc

@@ -198,13 +198,6 @@ Status check_sink(const Uri& uri);
 /// The schemes that open_source() and open_sink() know.
 std::vector<std::string_view> transports();
 
-/// Waits until one of `descriptors` is readable; gives its index.
-///
-/// Gives `descriptors.size()` when `timeout` has passed. Errors: Stopped (`stop` is readable).
-Result<std::size_t> wait_readable(
-    std::span<const int> descriptors, int stop = -1,
-    std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
-
 /// Takes the next message, waiting for it; false at the end.
 ///
 /// Errors: as Source::take, and Stopped when `stop` becomes readable.

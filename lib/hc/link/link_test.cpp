@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/os/wait_readable.h>
+
 namespace hc {
 namespace {
 

@@ -2,52 +2,30 @@
 #include <hc/link/policy.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <tuple>
 #include <utility>
 
 namespace hc::internal {
-namespace {
 
 constexpr std::int64_t kTick = 1'000'000'000;  // parts of a token, as a second has nanoseconds
 
-/// Reads a number above 0, perhaps of K, M or G where `units` allow it.
-Status read(const Uri& uri, std::string_view key, bool units, std::uint64_t& value) {
-  auto text = uri.option(key, "");
-  if (text.empty()) return {};
-  std::string_view digits = text;
-  int shift = 0;
-  if (auto unit = std::string_view("KMG").find(digits.back());
-      units && unit != std::string_view::npos) {
-    shift = 10 * (static_cast<int>(unit) + 1);
-    digits.remove_suffix(1);
-  }
-  std::uint64_t number = 0;
-  const char* end = digits.data() + digits.size();
-  auto [stop, status] = std::from_chars(digits.data(), end, number);
-  if (stop != end || status != std::errc() || number == 0 || number > (TokenBucket::kMost >> shift))
-    return Error{Code::Invalid, "option " + std::string(key) + " is a whole number from 1 to " +
-                                    std::to_string(TokenBucket::kMost) +
-                                    (units ? ", also as K, M or G" : "")};
-  value = number << shift;
-  return {};
-}
-
-}  // namespace
-
 Result<Policy> parse_policy(const Uri& uri) {
   Policy policy;
-  std::uint64_t keep = 1;
   auto kept = uri.option("keep", "all");
-  if (kept != "all" && kept != "latest")
-    if (auto got = read(uri, "keep", false, keep); !got)
-      return Error{Code::Invalid, "option keep is all, latest, or how many messages"};
-  if (kept != "all") policy.keep = keep;
-  for (auto [key, units, value] : {std::tuple{"rate", false, &policy.rate},
-                                   {"burst", false, &policy.burst},
-                                   {"memory", true, &policy.memory}})
-    if (auto got = read(uri, key, units, *value); !got) return got.error();
+  if (kept != "all") {
+    auto keep = kept == "latest" ? 1 : number_option(uri, "keep", 1, {1, TokenBucket::kMost});
+    if (!keep) return Error{Code::Invalid, "option keep is all, latest, or how many messages"};
+    policy.keep = static_cast<std::size_t>(*keep);
+  }
+  for (auto [key, has_units, value] : {std::tuple{"rate", false, &policy.rate},
+                                       {"burst", false, &policy.burst},
+                                       {"memory", true, &policy.memory}}) {
+    const auto default_value = static_cast<std::int64_t>(*value);
+    auto number = number_option(uri, key, default_value, {1, TokenBucket::kMost, has_units});
+    if (!number) return number.error();
+    *value = static_cast<std::uint64_t>(*number);
+  }
   if (policy.rate == 0 && !uri.option("burst", "").empty())
     return Error{Code::Invalid, "option burst wants rate beside it"};
   return policy;

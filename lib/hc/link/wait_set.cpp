@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/wait_set.h>
 
-#include <sched.h>
 #include <sys/epoll.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -10,31 +9,16 @@
 #include <array>
 #include <atomic>
 
+#include <hc/link/shm/spin.h>
 #include <hc/os/descriptor.h>
-
-#if defined(__x86_64__) || defined(__i386__)
-#include <emmintrin.h>
-#endif
 
 namespace hc {
 namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::chrono::microseconds kSpinAlone{1};   // until a reader that spins lets others run
-constexpr std::size_t kSpinLooks = 16;               // at sources, between two looks at the clock
-constexpr std::chrono::milliseconds kPollPeriod{1};  // of descriptors, while spinning
-/// Spinning pays only where the next message comes soon: not after a wait longer than this many
-/// times the spin. A module with a camera at 30 Hz would burn 20 µs an image for nothing.
-constexpr int kShortWait = 4;
 // What an event is about, if not the number of a source.
 constexpr std::uint64_t kStop = 0, kOther = ~std::uint64_t{0};
-
-void relax() {
-#if defined(__x86_64__) || defined(__i386__)
-  _mm_pause();
-#endif
-}
 
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last{0};
@@ -60,6 +44,8 @@ Result<bool> Source::wait(int stop, std::chrono::milliseconds timeout) {
   return alone_->wait(self, timeout);
 }
 
+WaitSet::WaitSet(int stop) : stop_(stop), spin_(std::make_unique<internal::Spin>()) {}
+
 WaitSet::~WaitSet() {
   if (poll_ >= 0) ::close(poll_);
 }
@@ -77,7 +63,7 @@ Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t what) 
   return {};
 }
 
-/// Sees that the sources that are waited for, and no others, are watched.
+/// Has these sources watched, and no others.
 Status WaitSet::prepare(std::span<Source* const> sources) {
   auto is_watched = [](std::uint64_t number, const Source* source) {
     return number == source->number_;
@@ -85,7 +71,7 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   if (poll_ >= 0 &&
       std::equal(watched_.begin(), watched_.end(), sources.begin(), sources.end(), is_watched))
     return {};
-  // A new instance, since a descriptor of a source that is closed may be open elsewhere.
+  // A new instance: the descriptor of a source that was closed may have been opened again elsewhere.
   if (poll_ >= 0) ::close(poll_);
   watched_.clear();
   never_sleeps_ = false;
@@ -102,38 +88,6 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   }
   for (const Source* source : sources) watched_.push_back(source->number_);
   return {};
-}
-
-/// Looks at what memory shows, some times.
-bool WaitSet::look() const {
-  for (std::size_t looks = 0; looks < kSpinLooks; looks += spins_.size()) {
-    for (const auto& each : spins_)
-      if (each.word->load(std::memory_order_acquire) >= each.value) return true;
-    relax();
-  }
-  return false;
-}
-
-/// Looks for so long, and now and then at the descriptors.
-Result<bool> WaitSet::spin(nanoseconds time) {
-  last_wait_ = nanoseconds(0);
-  was_short_ = look();
-  if (was_short_) return true;
-  const auto begin = Clock::now();
-  auto next_poll = kPollPeriod;
-  for (nanoseconds passed(0); passed < time; passed = Clock::now() - begin) {
-    if (passed > next_poll) {
-      next_poll += kPollPeriod;
-      if (auto ready = sleep(nanoseconds(0)); !ready || *ready) return ready;
-    }
-    const bool is_long = passed > kSpinAlone;
-    if (is_long) ::sched_yield();
-    if (look()) {
-      was_short_ = !is_long;
-      return true;
-    }
-  }
-  return false;
 }
 
 bool WaitSet::was_woken_by(const Source& source) const {
@@ -165,26 +119,19 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
         timeout.count() < 0 ? internal::Deadline::max() : Clock::now() + timeout);
   }
   if (auto prepared = prepare(sources); !prepared) return prepared.error();
-  // Each time, since their owner may have closed one and opened another of the same number.
+  // Each time: their owner may have closed one and opened another with the same number.
   for (int descriptor : descriptors)
     if (auto watched = watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther); !watched)
       return watched.error();
-  nanoseconds longest(0);
-  spins_.clear();
-  for (const Source* source : sources)
-    if (auto each = source->spin(); each.word != nullptr && each.time.count() > 0) {
-      longest = std::max<nanoseconds>(longest, each.time);
-      spins_.push_back(each);
-    }
-  if (timeout.count() >= 0) longest = std::min(longest, timeout);
-  if (longest.count() > 0 && last_wait_ <= kShortWait * longest)
-    if (auto ready = spin(longest); !ready || *ready) return ready;
+  auto found = spin_->run(sources, timeout, [&] { return sleep(nanoseconds(0)); });
+  was_short_ = spin_->was_short();
+  if (!found || *found) return found;
   const auto begin = Clock::now();
   bool is_ready = never_sleeps_;
   for (Source* source : sources) is_ready = !source->prepare_wait() || is_ready;
-  if (is_ready) timeout = nanoseconds(0);  // but the wish to stop comes first
+  if (is_ready) timeout = nanoseconds(0);  // `stop` takes precedence
   auto ready = sleep(timeout);
-  last_wait_ = Clock::now() - begin;
+  spin_->note_sleep(Clock::now() - begin);
   if (!ready) return ready;
   return is_ready || *ready;
 }

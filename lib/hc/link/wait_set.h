@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// One wait for any number of sources: look for a while at those whose messages come in memory, then
-// sleep once. Of one thread.
+// One wait for any number of sources: looks for a while at those whose messages come in memory,
+// then sleeps once. Of one thread.
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include <hc/link/link.h>
 
 namespace hc {
+
+namespace internal {
+class Spin;
+}
 
 /// Waits for sources, again and again. What a wait needs is prepared once, and again only when the
 /// sources are others than the last time.
@@ -21,7 +26,7 @@ namespace hc {
 class WaitSet {
  public:
   /// @param stop  descriptor that is readable when waiting is to end; -1: none.
-  explicit WaitSet(int stop = -1) : stop_(stop) {}
+  explicit WaitSet(int stop = -1);
   ~WaitSet();
   WaitSet(const WaitSet&) = delete;
   WaitSet& operator=(const WaitSet&) = delete;
@@ -41,8 +46,8 @@ class WaitSet {
   /// Whether the last wait slept, and a descriptor of this source ended it.
   [[nodiscard]] bool was_woken_by(const Source& source) const;
 
-  /// Whether the last wait took about a microsecond at most: a message was there when memory was
-  /// looked at. Who has read the clock before it need not read it again.
+  /// Whether the last wait took about a microsecond at most, since a message was in memory already.
+  /// A caller that has read the clock before it need not read it again.
   [[nodiscard]] bool was_short() const { return was_short_; }
 
   /// The descriptor that ends a wait.
@@ -53,17 +58,14 @@ class WaitSet {
 
   Status prepare(std::span<Source* const> sources);
   Status watch(int descriptor, std::uint32_t events, std::uint64_t what);
-  [[nodiscard]] bool look() const;
-  Result<bool> spin(std::chrono::nanoseconds time);
   Result<bool> sleep(std::chrono::nanoseconds timeout);
 
   int stop_;
-  int poll_ = -1;                        // an epoll instance of all that is waited for
-  std::vector<std::uint64_t> watched_;   // the sources in it, by their numbers
-  bool never_sleeps_ = false;            // one is a file, which is always readable
-  std::vector<std::uint64_t> woken_by_;  // the sources whose events ended the last sleep
-  std::vector<Source::Spin> spins_;
-  std::chrono::nanoseconds last_wait_{0};
+  int poll_ = -1;                         // an epoll instance of all that is waited for
+  std::vector<std::uint64_t> watched_;    // the sources in it, by their numbers
+  bool never_sleeps_ = false;             // one is a file, which is always readable
+  std::vector<std::uint64_t> woken_by_;   // the sources whose events ended the last sleep
+  std::unique_ptr<internal::Spin> spin_;  // before it sleeps
   bool was_short_ = false;
 };
 

@@ -10,6 +10,7 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/contract/trace.h>
+#include <hc/mtp/names.h>
 
 namespace hc::internal {
 namespace {

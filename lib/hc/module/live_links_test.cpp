@@ -126,7 +126,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   const auto row = last_counters(*reports).at(0);
   ASSERT_EQ(row.size(), 14U);
   EXPECT_EQ(row[0], 3);
-  EXPECT_EQ(row[7], 0);                  // left out
+  EXPECT_EQ(row[7], 0);                  // omitted
   for (std::size_t i : {8U, 9U, 10U}) {  // ages
     EXPECT_GE(row[i], hour);
     EXPECT_LT(row[i], hour + hour / 7);

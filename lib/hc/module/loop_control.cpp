@@ -30,7 +30,7 @@ Status unknown_link() {
 /// What has come since the last report; the next begins with none.
 Durations take_durations(internal::Quantiles& quantiles) {
   if (quantiles.empty()) return {-1, -1, -1};
-  const Durations taken = {quantiles.quantile(0.5), quantiles.quantile(0.99), quantiles.most()};
+  const Durations taken = {quantiles.quantile(0.5), quantiles.quantile(0.99), quantiles.max()};
   quantiles.clear();
   return taken;
 }
@@ -54,6 +54,7 @@ void Module::Loop::serve() {
   for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);
   report();
+  now_ = module_.clock_.monotonic();  // commands may have taken their time
 }
 
 void Module::Loop::receive_focus() {

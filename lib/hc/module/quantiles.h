@@ -19,11 +19,11 @@ class Quantiles {
     auto value = duration < 0 ? 0 : static_cast<std::uint64_t>(duration);
     ++counts_[class_of(value)];
     ++total_;
-    if (value > most_) most_ = value;
+    if (value > max_) max_ = value;
   }
 
   [[nodiscard]] bool empty() const { return total_ == 0; }
-  [[nodiscard]] std::int64_t most() const { return static_cast<std::int64_t>(most_); }
+  [[nodiscard]] std::int64_t max() const { return static_cast<std::int64_t>(max_); }
 
   /// The least duration that a `part` of all, 0 … 1, do not exceed, up to the width of its class;
   /// 0 of none. [ns]
@@ -33,7 +33,7 @@ class Quantiles {
     for (std::size_t i = 0; i < counts_.size(); ++i) {
       seen += counts_[i];
       if (seen > rank || (seen > 0 && seen == total_))
-        return static_cast<std::int64_t>(std::min(top_of(i), most_));
+        return static_cast<std::int64_t>(std::min(top_of(i), max_));
     }
     return 0;
   }
@@ -58,7 +58,7 @@ class Quantiles {
   }
 
   std::array<std::uint32_t, kClasses> counts_{};
-  std::uint64_t total_ = 0, most_ = 0;
+  std::uint64_t total_ = 0, max_ = 0;
 };
 
 }  // namespace hc::internal

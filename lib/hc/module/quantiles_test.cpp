@@ -27,7 +27,7 @@ TEST(Quantiles, AreRightToAnEighth) {
     EXPECT_LE(quantiles.quantile(part), exact + exact / 8 + 1) << part;
   }
   EXPECT_EQ(quantiles.quantile(1), all.back());
-  EXPECT_EQ(quantiles.most(), all.back());
+  EXPECT_EQ(quantiles.max(), all.back());
 }
 
 TEST(Quantiles, TakeAllThereIs) {
@@ -40,7 +40,7 @@ TEST(Quantiles, TakeAllThereIs) {
   quantiles.add(-5);
   EXPECT_EQ(quantiles.quantile(0.99), 0);
   quantiles.add(std::numeric_limits<std::int64_t>::max());
-  EXPECT_EQ(quantiles.most(), std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(quantiles.max(), std::numeric_limits<std::int64_t>::max());
   EXPECT_EQ(quantiles.quantile(1), std::numeric_limits<std::int64_t>::max());
 }
 

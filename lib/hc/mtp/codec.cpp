@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/mtp/codec.h>
 
-#include <cstring>
 #include <string_view>
 
 #include <hc/mtp/digits.h>
@@ -9,13 +8,6 @@
 #include <hc/mtp/text.h>
 
 namespace hc {
-namespace {
-
-std::span<const std::byte> bytes_of(std::string_view text) {
-  return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
-}
-
-}  // namespace
 
 Pieces Encoder::encode(const Message& message) {
   const Header& header = message.header;
@@ -26,14 +18,15 @@ Pieces Encoder::encode(const Message& message) {
   if (internal::has_rows(header)) {
     text_.assign(head_.data(), size);
     append_text(header, message.elements, text_);
-    return {bytes_of(text_), {}, {}};
+    return {std::as_bytes(std::span(text_)), {}, {}};
   }
   if (internal::is_compressed(header)) {
-    char* end = internal::write_digits(head_.data() + size, message.elements.size());
+    char* end = internal::write_integer(head_.data() + size, message.elements.size());
     *end++ = '\n';
     size = static_cast<std::size_t>(end - head_.data());
   }
-  return {bytes_of({head_.data(), size}), message.elements, bytes_of("\n")};
+  return {std::as_bytes(std::span(head_).first(size)), message.elements,
+          std::as_bytes(std::span("\n", 1))};
 }
 
 std::string encode(const Message& message) {

@@ -3,7 +3,6 @@
 // Decimal digits, eight at a time in one machine word. Internal. Pure.
 // Source: the word tricks are in H. S. Warren, Hacker's Delight, 2nd ed., chapters 6 and 10.
 
-#include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -50,19 +49,11 @@ inline std::uint64_t digits_of_value(std::uint64_t value) {
   return (tens | ((pairs - 10 * tens) << 8)) | kZeros;
 }
 
-/// "00" to "99".
-inline constexpr std::array<char, 200> kPairs = [] {
-  std::array<char, 200> pairs{};
-  for (unsigned i = 0; i < 200; ++i)
-    pairs[i] = static_cast<char>('0' + (i % 2 == 0 ? i / 20 : i / 2 % 10));
-  return pairs;
-}();
-
-/// How reading a number went; the rule's number when it did not (R27, R28).
+/// The result of reading a number: good, or the number of the rule that it breaks (R27, R28).
 enum class Outcome { Good, NotANumber = 27, OutOfRange = 28 };
 
-/// Reads a number at the start of [first, last); `next` is the byte behind it. With NotANumber the
-/// whole token is at fault, wherever the spelling broke.
+/// Reads a number at the start of [first, last); `next` is the byte behind it. NotANumber applies
+/// to the whole token, wherever its spelling breaks the rule.
 template <typename T>
 Outcome read_integer(const char* first, const char* last, T& value, const char*& next) {
   const char* at = first;
@@ -94,43 +85,12 @@ Outcome read_integer(const char* first, const char* last, T& value, const char*&
   return status == std::errc() ? Outcome::Good : Outcome::OutOfRange;
 }
 
-// The writers below give back where they ended. Those of few digits go by branches, which are
-// mostly predicted right, so that what comes next need not wait for the value.
-
-/// Writes both digits of `value` < 100.
-inline char* write_2_digits(char* at, std::uint64_t value) {
-  std::memcpy(at, &kPairs[2 * value], 2);
-  return at + 2;
-}
-
-/// Writes `value` < 10000 without leading zeros.
-inline char* write_up_to_4_digits(char* at, std::uint64_t value) {
-  if (value >= 100) return write_2_digits(write_up_to_4_digits(at, value / 100), value % 100);
-  if (value >= 10) return write_2_digits(at, value);
-  *at = static_cast<char>('0' + value);
-  return at + 1;
-}
-
-/// Writes all eight digits of `value` < 10⁸.
-inline char* write_8_digits(char* at, std::uint64_t value) {
-  std::uint64_t digits = digits_of_value(value);
-  std::memcpy(at, &digits, sizeof digits);
-  return at + 8;
-}
-
-/// Writes `value` in decimal at `at`, which has room for 20 bytes.
-inline char* write_digits(char* at, std::uint64_t value) {
-  constexpr std::uint64_t kTenTo4 = 10'000, kTenTo8 = kTenTo4 * kTenTo4;
-  if (value < kTenTo4) return write_up_to_4_digits(at, value);
-  if (value >= kTenTo8) return write_8_digits(write_digits(at, value / kTenTo8), value % kTenTo8);
-  at = write_up_to_4_digits(at, value / kTenTo4);
-  return write_2_digits(write_2_digits(at, value / 100 % 100), value % 100);
-}
-
-/// Writes a negative or positive value; room as write_digits, and one byte for the sign.
-inline char* write_integer(char* at, std::int64_t value) {
+/// Writes an integer in decimal at `at`, which has room for 20 bytes; returns where it ended.
+template <typename T>
+char* write_integer(char* at, T value) {
+  constexpr std::uint64_t kTenTo8 = 100'000'000;
   auto magnitude = static_cast<std::uint64_t>(value);
-  if (magnitude < 10) {  // the commonest, here so that it is inlined
+  if (magnitude < 10) {  // the most common, so inlined
     *at = static_cast<char>('0' + magnitude);
     return at + 1;
   }
@@ -138,7 +98,12 @@ inline char* write_integer(char* at, std::int64_t value) {
     *at++ = '-';
     magnitude = 0 - magnitude;
   }
-  return write_digits(at, magnitude);
+  if (magnitude < kTenTo8)
+    return std::to_chars(at, at + 8, static_cast<std::uint32_t>(magnitude)).ptr;
+  at = write_integer(at, magnitude / kTenTo8);
+  const std::uint64_t digits = digits_of_value(magnitude % kTenTo8);
+  std::memcpy(at, &digits, sizeof digits);
+  return at + sizeof digits;
 }
 
 }  // namespace hc::internal

@@ -43,13 +43,6 @@ const TypeRule& rule_of(MatrixType type) {
   return kTypes[static_cast<std::size_t>(type) - 1];
 }
 
-template <typename E, typename Names>
-std::optional<E> find_name(const Names& names, std::string_view wanted, int first) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == wanted) return static_cast<E>(static_cast<int>(i) + first);
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::string_view name(MatrixType type) {
@@ -60,18 +53,6 @@ std::string_view name(Scalar scalar) {
 }
 std::string_view name(Encoding encoding) {
   return kEncodingNames[static_cast<std::size_t>(encoding)];
-}
-
-std::optional<MatrixType> matrix_type_of(std::string_view name) {
-  for (std::size_t i = 0; i < kTypes.size(); ++i)
-    if (kTypes[i].name == name) return static_cast<MatrixType>(i + 1);
-  return std::nullopt;
-}
-std::optional<Scalar> scalar_of(std::string_view name) {
-  return find_name<Scalar>(kScalarNames, name, 0);
-}
-std::optional<Encoding> encoding_of(std::string_view name) {
-  return find_name<Encoding>(kEncodingNames, name, 0);
 }
 
 std::string matrix_text(const Info& info, std::optional<std::int32_t> width,
@@ -123,17 +104,13 @@ std::optional<InfoError> find_error(const Info& info) {
   }
 }
 
-Result<Info> parse_info(std::int64_t code) {
+std::optional<InfoError> parse_info(std::int64_t code, Info& info) {
   if (code < 10000 || code > 129999)
-    return Error{Code::Malformed, "R17: info " + std::to_string(code) +
-                                      " names no matrix type (TTCCSE, TT 1 to 12)"};
-  Info info{static_cast<MatrixType>(code / 10000), static_cast<std::uint8_t>(code / 100 % 100),
-            static_cast<Scalar>(code / 10 % 10), static_cast<Encoding>(code % 10)};
-  if (auto error = find_error(info)) {
-    auto kind = error->rule == 20 ? Code::Unsupported : Code::Malformed;
-    return Error{kind, "R" + std::to_string(error->rule) + ": " + error->what};
-  }
-  return info;
+    return InfoError{17,
+                     "info " + std::to_string(code) + " names no matrix type (TTCCSE, TT 1 to 12)"};
+  info = {static_cast<MatrixType>(code / 10000), static_cast<std::uint8_t>(code / 100 % 100),
+          static_cast<Scalar>(code / 10 % 10), static_cast<Encoding>(code % 10)};
+  return find_error(info);
 }
 
 }  // namespace hc

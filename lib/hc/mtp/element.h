@@ -41,11 +41,6 @@ std::string_view name(MatrixType type);
 std::string_view name(Scalar scalar);
 std::string_view name(Encoding encoding);
 
-/// The type, scalar or encoding of that name; nothing where there is none.
-std::optional<MatrixType> matrix_type_of(std::string_view name);
-std::optional<Scalar> scalar_of(std::string_view name);
-std::optional<Encoding> encoding_of(std::string_view name);
-
 /// Bytes that a scalar takes: 1, 2, 4 or 8.
 constexpr std::size_t size_of(Scalar scalar) {
   constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
@@ -131,14 +126,14 @@ int broken_rule(const Info& info);
 struct InfoError {
   int rule = 0;  ///< 17 … 21
   std::string what;
+
+  [[nodiscard]] Code code() const { return rule == 20 ? Code::Unsupported : Code::Malformed; }
 };
 
-/// The rule that broken_rule() finds, in words; nothing when it finds none.
+/// The error that broken_rule() finds, in words; nothing when it finds none.
 std::optional<InfoError> find_error(const Info& info);
 
-/// Reads the header's info field, `code` ≥ 0.
-///
-/// Errors: Malformed or Unsupported; the detail begins with the rule, "R18: …".
-Result<Info> parse_info(std::int64_t code);
+/// Reads the header's info field, `code` ≥ 0; the error when that is no valid info.
+std::optional<InfoError> parse_info(std::int64_t code, Info& info);
 
 }  // namespace hc

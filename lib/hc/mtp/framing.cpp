@@ -7,11 +7,6 @@
 #include <hc/mtp/refusal.h>
 
 namespace hc::internal {
-namespace {
-
-constexpr std::size_t kMaxLengthLine = 20;  // R34: bytes before the line feed
-
-}  // namespace
 
 Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits, std::uint64_t byte,
                                     HeaderMemo& memo) {
@@ -31,6 +26,7 @@ Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits,
 
 Result<LengthLine> read_length_line(std::string_view text, const Limits& limits,
                                     std::uint64_t byte) {
+  constexpr std::size_t kMaxLengthLine = 20;  // R34: bytes before the line feed
   auto line = text.substr(0, std::min(text.size(), kMaxLengthLine + 1));
   auto end = line.find('\n');
   if (end == std::string_view::npos && line.size() <= kMaxLengthLine) return LengthLine{};

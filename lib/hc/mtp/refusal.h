@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How the wire layer words an error: rule, field, what is wrong, where. Internal. Pure.
+// The text of an error of the protocol: rule, field, what is wrong, where. Internal. Pure.
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,17 +12,17 @@
 
 namespace hc::internal {
 
-/// "R7 src: -1 is below 0, at byte 2"
+/// "R7 src: -1 is below 0, at byte 2"; without the byte where there is none.
 inline Error refusal(Code code, int rule, std::string_view field, std::string_view what,
-                     std::uint64_t byte) {
+                     std::optional<std::uint64_t> byte) {
   std::string detail = "R" + std::to_string(rule) + " ";
   detail.append(field).append(": ").append(what);
-  detail += ", at byte " + std::to_string(byte);
+  if (byte) detail += ", at byte " + std::to_string(*byte);
   return {code, std::move(detail)};
 }
 
-/// Bytes from outside as part of an error line: in quotes, at most 24 of them, the rest made
-/// visible.
+/// Received bytes as part of an error line: in quotes, at most 24 of them, escaped where they are
+/// not printable.
 inline std::string in_quotes(std::string_view bytes) {
   constexpr std::size_t kShown = 24;
   constexpr std::string_view kHex = "0123456789abcdef";

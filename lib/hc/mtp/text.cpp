@@ -23,27 +23,14 @@ bool is_end(char c) {
   return c == ' ' || c == '\n';
 }
 
-/// Whether a well-spelled number that fits no float is too small for one, rather than too large:
-/// whether its first digit that is not 0 is behind the decimal point once that is moved.
-bool is_tiny(std::string_view number) {
-  std::int64_t places = 0;  // digits before the point, or -zeros behind it
-  bool behind_point = false, significant = false;
-  std::size_t i = number.starts_with('-') ? 1 : 0;
-  for (; i < number.size() && (number[i] | 0x20) != 'e'; ++i) {
-    if (number[i] == '.') {
-      behind_point = true;
-      continue;
-    }
-    significant = significant || number[i] != '0';
-    if (significant && !behind_point) ++places;
-    if (!significant && behind_point) --places;
-  }
-  bool negative_exponent = i + 1 < number.size() && number[i + 1] == '-';
-  std::int64_t exponent = 0;
-  for (; i < number.size(); ++i)
-    if (number[i] >= '0' && number[i] <= '9' && exponent < 1'000'000)
-      exponent = exponent * 10 + (number[i] - '0');
-  return places + (negative_exponent ? -exponent : exponent) <= 0;
+/// Whether a valid number that T cannot represent is too small for it, rather than too large.
+bool is_tiny(const char* first, const char* last) {
+  double value = 0;  // represents what is too small or too large for a float alone
+  if (std::from_chars(first, last, value).ec == std::errc()) return std::abs(value) < 1;
+  // The digits of a number, at most kMaxNumberBytes, shift the point less than such an exponent
+  // does.
+  const char* mark = std::find_if(first, last, [](char c) { return c == 'e' || c == 'E'; });
+  return mark != last && mark[1] == '-';
 }
 
 template <typename T>
@@ -53,7 +40,7 @@ Outcome read_float(const char* first, const char* last, T& value, const char*& n
   if (status == std::errc::invalid_argument) return Outcome::NotANumber;
   if (stop[-1] == ')') return Outcome::NotANumber;  // from_chars also knows nan(…)
   if (status == std::errc::result_out_of_range) {
-    if (!is_tiny({first, static_cast<std::size_t>(stop - first)})) return Outcome::OutOfRange;
+    if (!is_tiny(first, stop)) return Outcome::OutOfRange;
     value = static_cast<T>(*first == '-' ? -0.0 : 0.0);
   }
   return Outcome::Good;
@@ -69,14 +56,11 @@ Outcome read_number(const char* first, const char* last, T& value, const char*& 
 
 template <typename T>
 char* write_number(char* at, T value) {
-  if constexpr (std::is_unsigned_v<T>) {
-    return internal::write_digits(at, value);
-  } else if constexpr (std::is_integral_v<T>) {
+  if constexpr (std::is_integral_v<T>) {
     return internal::write_integer(at, value);
   } else {
-    if (std::isnan(value)) [[unlikely]] {
+    if (std::isnan(value)) [[unlikely]]
       return std::copy_n("nan", 3, at);
-    }
     return std::to_chars(at, at + kMaxWritten, value).ptr;
   }
 }
@@ -102,7 +86,7 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
   const char* at = begin;
   auto where = [&](const char* here) { return byte + static_cast<std::uint64_t>(here - begin); };
 
-  // The numbers and line ends one after the other, up to one that is not whole.
+  // Numbers and line ends in turn, up to one that is incomplete.
   while (rows_left_ > 0) {
     while (at != end && *at == ' ') ++at;
     if (at == end) break;
@@ -136,13 +120,13 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
         continue;
       }
     }
-    // Something is wrong with the number, or it is not whole; of several faults the first rule in
-    // the order of R31 is named.
+    // The number is invalid or incomplete; of several broken rules the first in the order of R31 is
+    // reported.
     const char* token_end = at;
     while (token_end != end && !is_end(*token_end)) ++token_end;
     if (token_end != end && *token_end == '\n' && token_end[-1] == '\r') --token_end;
     std::string_view token(at, static_cast<std::size_t>(token_end - at));
-    bool open = token_end == end;  // more of it may come, or the LF to a CR at its end
+    bool open = token_end == end;  // the rest of it may follow, or the LF after a CR at its end
     if (open && token.size() <= kMaxNumberBytes) break;
     if (open && token.size() == kMaxNumberBytes + 1 && token.back() == '\r') break;
     if (token.size() > kMaxNumberBytes)
@@ -180,8 +164,7 @@ void append_text(const Header& header, std::span<const std::byte> elements, std:
     using T = decltype(zero);
     const T* number = reinterpret_cast<const T*>(elements.data());
     std::uint64_t row_numbers = header.row_numbers();
-    // Numbers go through a piece of memory of our own, so that the string need not be filled with
-    // zeros first.
+    // Numbers are written into a local buffer first: growing the string would fill it with zeros.
     constexpr std::size_t kPiece = 4096;
     char piece[kPiece];
     char* at = piece;
@@ -200,40 +183,19 @@ void append_text(const Header& header, std::span<const std::byte> elements, std:
   });
 }
 
-template <ScalarType T>
-void append_number(T value, std::string& text) {
-  char written[kMaxWritten];
-  text.append(written, write_number(written, value));
+Status parse_number(std::string_view token, Scalar scalar, std::byte* number) {
+  return visit_scalar(scalar, [&](auto value) -> Status {
+    const char *const end = token.data() + token.size(), *next = nullptr;
+    Outcome outcome = read_number(token.data(), end, value, next);
+    if (next != end) outcome = Outcome::NotANumber;
+    if (token.size() > kMaxNumberBytes)
+      return Error{Code::Malformed, "R31: a number is at most 64 bytes long"};
+    if (outcome != Outcome::Good)
+      return Error{Code::Malformed, "R" + std::to_string(static_cast<int>(outcome)) + ": " +
+                                        describe(outcome, token, scalar)};
+    std::memcpy(number, &value, sizeof value);
+    return {};
+  });
 }
-
-template <ScalarType T>
-Result<T> parse_number(std::string_view token) {
-  const char* next = nullptr;
-  T value{};
-  const char* end = token.data() + token.size();
-  Outcome outcome =
-      token.empty() ? Outcome::NotANumber : read_number(token.data(), end, value, next);
-  if (outcome != Outcome::NotANumber && next != end) outcome = Outcome::NotANumber;
-  if (token.size() > kMaxNumberBytes)
-    return Error{Code::Malformed, "R31: a number is at most 64 bytes long"};
-  if (outcome == Outcome::Good) return value;
-  return Error{Code::Malformed, "R" + std::to_string(static_cast<int>(outcome)) + ": " +
-                                    describe(outcome, token, scalar_for<T>())};
-}
-
-#define HC_INSTANTIATE(T)                          \
-  template void append_number<T>(T, std::string&); \
-  template Result<T> parse_number<T>(std::string_view);
-HC_INSTANTIATE(std::uint8_t)
-HC_INSTANTIATE(std::int8_t)
-HC_INSTANTIATE(std::uint16_t)
-HC_INSTANTIATE(std::int16_t)
-HC_INSTANTIATE(std::uint32_t)
-HC_INSTANTIATE(std::int32_t)
-HC_INSTANTIATE(std::uint64_t)
-HC_INSTANTIATE(std::int64_t)
-HC_INSTANTIATE(float)
-HC_INSTANTIATE(double)
-#undef HC_INSTANTIATE
 
 }  // namespace hc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Matrices as text: rows of numbers, read in pieces as they come and written in the shortest form
+// Matrices as text: rows of numbers, read in pieces of any size and written in the shortest form
 // (spec/mtp-1.md, R27 … R31, R39). Pure.
 
 #include <cstddef>
@@ -16,21 +16,21 @@ namespace hc {
 
 inline constexpr std::size_t kMaxNumberBytes = 64;  ///< of a number in text; R31
 
-/// Reads the rows of one matrix, in as many pieces as they come in.
+/// Reads the rows of one matrix from pieces of any size.
 class TextRows {
  public:
   TextRows() = default;
-  /// @param header  of a message in text encoding that is no string and not empty.
+  /// @param header  of a message in text encoding; neither a string nor empty.
   explicit TextRows(const Header& header);
 
-  /// Reads what is whole of `text` and appends its numbers in binary form.
+  /// Reads the complete numbers of `text` and appends them in binary form.
   ///
-  /// @param text  the stream from where the last call stopped. A number is whole when the byte
-  ///     after it is there.
-  /// @param byte  where `text` is in the stream, for errors.
+  /// @param text  the stream from where the last call stopped. A number is complete when the byte
+  ///     after it has been received.
+  /// @param byte  offset of `text` in the stream, for errors.
   /// @param numbers  the first free byte of the result; has room for all numbers of the matrix or
   ///     for text.size() / 2 + 1 of them.
-  /// @returns  bytes of text used, not more than up to the matrix' end.
+  /// @returns  bytes of text used, none beyond the end of the matrix.
   ///
   /// Errors: Malformed (R27 … R31).
   Result<std::size_t> read(std::string_view text, std::uint64_t byte, std::byte* numbers);
@@ -56,14 +56,9 @@ class TextRows {
 /// @param elements  in binary form, aligned for the scalar, as the header says.
 void append_text(const Header& header, std::span<const std::byte> elements, std::string& text);
 
-/// Appends one number in canonical form: 0.1, 1e+05, -0, nan.
-template <ScalarType T>
-void append_number(T value, std::string& text);
-
-/// Reads one number that fills `token`, as a row of text spells it.
+/// Reads one number that fills `token`, spelled as in a row of text, into `number` in binary form.
 ///
 /// Errors: Malformed; the detail is "R28: 256 does not fit into u8".
-template <ScalarType T>
-Result<T> parse_number(std::string_view token);
+Status parse_number(std::string_view token, Scalar scalar, std::byte* number);
 
 }  // namespace hc

@@ -9,15 +9,33 @@
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <span>
 
 namespace hc {
 namespace {
 
+Header table_header(std::int32_t width, std::int32_t height, Scalar scalar) {
+  Header header;
+  header.info = {MatrixType::Table, 1, scalar, Encoding::Text};
+  header.width = width;
+  header.height = height;
+  return header;
+}
+
 template <typename T>
 std::string written(T value) {
   std::string text;
-  append_number(value, text);
+  append_text(table_header(1, 1, scalar_for<T>()), std::as_bytes(std::span(&value, 1)), text);
+  text.pop_back();  // the line feed
   return text;
+}
+
+template <typename T>
+Result<T> parse_number(std::string_view token) {
+  T value{};
+  auto parsed = parse_number(token, scalar_for<T>(), reinterpret_cast<std::byte*>(&value));
+  if (!parsed) return parsed.error();
+  return value;
 }
 
 TEST(Number, R39_IsShortest) {
@@ -71,14 +89,6 @@ TEST(Number, R28_TooSmallIsZero) {
   EXPECT_EQ(*parse_number<double>("1e-400"), 0.0);
   EXPECT_TRUE(std::signbit(*parse_number<double>("-1000.0e-400")));
   EXPECT_EQ(*parse_number<float>("0.0000001e-40"), 0.0F);
-}
-
-Header table_header(std::int32_t width, std::int32_t height, Scalar scalar) {
-  Header header;
-  header.info = {MatrixType::Table, 1, scalar, Encoding::Text};
-  header.width = width;
-  header.height = height;
-  return header;
 }
 
 TEST(TextRows, ReadInPiecesOfAnySizeAreTheSame) {

@@ -8,11 +8,8 @@
 #include <span>
 
 namespace hc::internal {
-namespace {
 
 constexpr std::uint64_t kTimerId = 0;  // entries have others
-
-}  // namespace
 
 Result<std::unique_ptr<Loop>> Loop::make() {
   auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });

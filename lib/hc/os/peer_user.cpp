@@ -7,8 +7,10 @@
 #include <linux/sock_diag.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <cstring>
+#include <string>
 
 #include <hc/os/descriptor.h>
 
@@ -86,6 +88,20 @@ Result<uid_t> tcp_peer_user(int socket, Connected how) {
   if (!is_loopback(peer)) return Error{Code::NotFound, "it is not on the loopback address"};
   auto user = user_of(peer, &own);
   return user || how == Connected::Accepted ? user : user_of(peer, nullptr);
+}
+
+Result<uid_t> unix_peer_user(int socket) {
+  ucred credentials{};
+  socklen_t size = sizeof credentials;
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0)
+    return system_error("getsockopt", "SO_PEERCRED");
+  return credentials.uid;
+}
+
+Status check_own(const Result<uid_t>& peer, const std::string& what) {
+  if (!peer) return Error{Code::Closed, what + "an unknown user: " + peer.error().detail};
+  if (*peer == ::geteuid() || *peer == 0) return {};
+  return Error{Code::Closed, what + "another user (uid " + std::to_string(*peer) + ")"};
 }
 
 }  // namespace hc::internal

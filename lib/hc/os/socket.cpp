@@ -16,23 +16,6 @@
 #include <hc/base/backoff.h>
 
 namespace hc::internal {
-namespace {
-
-constexpr int kBacklog = 1024;  // who waits here costs no descriptor
-
-Result<Descriptor> bind_socket(const Address& address, const std::string& name) {
-  auto socket = open_socket(address);
-  if (!socket) return socket.error();
-  int on = 1;
-  ::setsockopt(socket->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  auto bound =
-      system_call("bind", name, [&] { return ::bind(socket->get(), address.get(), address.size); });
-  if (!bound) return bound.error();
-  return socket;
-}
-
-}  // namespace
-
 Address::Address(const void* data, unsigned length) : size(length) {
   HC_CHECK(length <= sizeof storage, length);
   std::memcpy(&storage, data, length);
@@ -64,29 +47,24 @@ ListeningSocket::~ListeningSocket() {
   if (descriptor && !unlink_path.empty()) ::unlink(unlink_path.c_str());
 }
 
-Result<Descriptor> listen_on(const Address& address, const std::string& name) {
-  auto socket = bind_socket(address, name);
+Result<Descriptor> bind_socket(const Address& address, const std::string& name) {
+  auto socket = open_socket(address);
   if (!socket) return socket.error();
-  auto listening = system_call("listen", name, [&] { return ::listen(socket->get(), kBacklog); });
-  if (!listening) return listening.error();
+  int on = 1;
+  ::setsockopt(socket->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  auto bound =
+      system_call("bind", name, [&] { return ::bind(socket->get(), address.get(), address.size); });
+  if (!bound) return bound.error();
   return socket;
 }
 
-Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, std::uint16_t number) {
-  sockaddr_in place{};
-  place.sin_family = AF_INET;
-  place.sin_port = htons(number);
-  place.sin_addr.s_addr = htonl(of_all_addresses ? INADDR_ANY : INADDR_LOOPBACK);
-  const Address address(&place, sizeof place);
-  auto socket =
-      bind_socket(address, (of_all_addresses ? "0.0.0.0:" : "127.0.0.1:") + std::to_string(number));
+Result<Descriptor> listen_on(const Address& address, const std::string& name) {
+  auto socket = bind_socket(address, name);
   if (!socket) return socket.error();
-  socklen_t size = sizeof place;
-  auto named = system_call("getsockname", "", [&] {
-    return ::getsockname(socket->get(), reinterpret_cast<sockaddr*>(&place), &size);
-  });
-  if (!named) return named.error();
-  return std::make_shared<const HeldPort>(HeldPort{std::move(*socket), ntohs(place.sin_port)});
+  constexpr int kBacklog = 1024;  // who waits here costs no descriptor
+  auto listening = system_call("listen", name, [&] { return ::listen(socket->get(), kBacklog); });
+  if (!listening) return listening.error();
+  return socket;
 }
 
 Result<ConnectedSocket> ListeningSocket::accept(const LogSink& log) const {

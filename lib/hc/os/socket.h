@@ -72,20 +72,10 @@ bool is_with_itself(int socket);
 /// How long a peer may take to answer where `wait` is 0.
 constexpr std::chrono::seconds kAnswerTime{4};
 
-/// A socket that listens on an address; its name is for error lines.
+/// A socket bound to an address, and one that listens there; `name` is for error lines.
+/// Errors: System.
+Result<Descriptor> bind_socket(const Address& address, const std::string& name);
 Result<Descriptor> listen_on(const Address& address, const std::string& name);
-
-/// A port that no other program is given. It is bound and nobody listens here, so that
-/// one who sets SO_REUSEADDR, and knows the number, can listen there, again and again.
-struct HeldPort {
-  Descriptor socket;
-  std::uint16_t number = 0;
-};
-
-/// Holds a port until the last who shares it lets it go, of 127.0.0.1 or of all addresses.
-/// @param number  0: one that is free. Errors: System.
-Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses = false,
-                                                  std::uint16_t number = 0);
 
 /// How long a TCP peer may leave what it must answer without an answer: so one that vanishes is
 /// noticed within 4 s, with what timers are late by.

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include <hc/link/stream/listening.h>
+#include <hc/link/stream/ends.h>
 #include <hc/link/stream/source.h>
 #include <hc/mtp/codec.h>
 #include <hc/os/descriptor.h>

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include <hc/link/shm/crash_point.h>
-#include <hc/link/stream/peers.h>
+#include <hc/os/peer_user.h>
 
 namespace hc::internal {
 Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
@@ -23,10 +23,9 @@ Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
   readers->bytes_ = memory.size();
   readers->keep_ = keep;
   readers->socket_.admit = [](int peer) -> Status {
-    auto who = foreigner(peer);
-    if (who.empty()) return {};
-    refuse(peer, "another user");
-    return Error{Code::Closed, "refused a reader of " + who};
+    auto own = check_own(unix_peer_user(peer), "refused a reader of ");
+    if (!own) refuse(peer, "another user");
+    return own;
   };
   auto watched = readers->watch_.start(readers->socket_.descriptor.get(),
                                        [all = readers.get()](auto) { all->accept_all(); });

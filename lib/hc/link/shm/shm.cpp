@@ -6,8 +6,7 @@
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/shm/sink.h>
 #include <hc/link/shm/source.h>
-#include <hc/link/stream/dialing.h>
-#include <hc/link/stream/peers.h>
+#include <hc/link/stream/ends.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
@@ -58,9 +57,9 @@ Status check_shm_memory(const Uri& uri) {
 
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
   if (auto named = check_name(uri); !named) return named.error();
-  auto counted = number_option(uri, "readers", -1, kMostReaders);
+  auto counted = number_option(uri, "readers", -1, {0, kMostReaders});
   if (!counted) return counted.error();
-  auto stays = number_option(uri, "stay", 0, 1);
+  auto stays = number_option(uri, "stay", 0, {0, 1});
   if (!stays) return stays.error();
   if (auto enough = check_shm_memory(uri); !enough) return enough.error();
   auto policy = parse_policy(uri);

@@ -9,6 +9,7 @@
 
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/stream/source.h>
+#include <hc/os/wait_readable.h>
 
 namespace hc::internal {
 namespace {
@@ -30,7 +31,7 @@ constexpr std::chrono::milliseconds kStopCheckPeriod{20};
 
 void ShmSink::meet_readers() {
   readers_->refresh();
-  readers_->remarks().tell(options_.log);
+  readers_->remarks().flush(options_.log);
   const auto& readers = readers_->current();
   present_ = static_cast<std::size_t>(std::count_if(
       readers.begin(), readers.end(), [](const auto& reader) { return !reader->left(); }));

@@ -62,15 +62,9 @@ void Connection::dial(TimePoint now) {
   stop_watching();  // before the dialer closes its descriptor
   auto made = dialer_->dial(now);
   if (!made) return fail(made.error());
-  if (auto remark = dialer_->take_remark(now)) {
-    remarks_.add(*remark);
-    news_ = "connected";
-  }
-  if (*made) {
-    if (!news_.empty()) remarks_.add(std::exchange(news_, {}));
-    return connect(std::move(*made), now);
-  }
-  watch_.move_to(dialer_->descriptor());
+  if (!*made) return watch_.move_to(dialer_->descriptor());
+  dialer_->in_use();
+  connect(std::move(*made), now);
 }
 
 void Connection::stop_watching() {
@@ -81,10 +75,16 @@ void Connection::stop_watching() {
 Result<bool> Connection::send(Outgoing& message, TimePoint now) {
   std::unique_lock lock(mutex_);
   if (failed_) return *failed_;
-  bool passes = connected() && !blocked_ && queue_.pass(now);
-  if (passes) {
+  is_sending_ = true;
+  auto sent = hand_over(lock, message, now);
+  is_sending_ = false;
+  return sent;
+}
+
+Result<bool> Connection::hand_over(std::unique_lock<std::mutex>& lock, Outgoing& message,
+                                   TimePoint now) {
+  if (connected() && !blocked_ && queue_.pass(now)) {
     put(message.borrowed(), now);
-    if (failed_ && writer_waits_) --losses_.cut;  // the error tells of this one
   } else {
     queue_.push(writer_waits_ ? message.borrowed() : message.kept(), message.size(), losses_);
     if (!writer_waits_) advance(now);
@@ -95,7 +95,7 @@ Result<bool> Connection::send(Outgoing& message, TimePoint now) {
     if (auto drained = drain(lock, false); !drained) return drained.error();
     return true;
   }
-  if (writer_.borrows()) writer_.keep(message.kept().pieces, message.kept().keeper);
+  if (writer_.borrows()) writer_.keep(message.kept());
   if (is_pending) arm(now);
   return all_written();
 }
@@ -103,7 +103,7 @@ Result<bool> Connection::send(Outgoing& message, TimePoint now) {
 /// Begins a message, for which there is no hindrance.
 void Connection::put(const Parcel& parcel, TimePoint now) {
   const bool is_first = writer_.gathered() == 0;
-  if (writer_.add(parcel.pieces, parcel.keeper)) {
+  if (writer_.add(parcel)) {
     if (is_first) oldest_ = now;
     bool pays = !is_first || gathering_.pays(now - last_write_ < kFollowTime);
     if (pays && writer_.gathered() < kFlushBytes && now - oldest_ < kFlushAge) {
@@ -137,8 +137,7 @@ void Connection::advance(TimePoint now) {
     if (blocked_ || !writer_.empty()) return;
     while (queue_.ready_at(now, losses_) <= now) {
       if (!writer_.empty() && !writer_.has_room(queue_.front().size())) break;
-      auto parcel = queue_.pop(now);
-      writer_.add(parcel.pieces, parcel.keeper);
+      writer_.add(queue_.pop(now));
     }
     if (writer_.empty()) return;
   }
@@ -149,8 +148,6 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
   look_due_ = TimePoint::max();
   blocked_ = false;
   if (dialer_ == nullptr) return fail(why);
-  remarks_.add(in_words(why) + "; reconnecting");
-  news_ = "reconnected";
   writer_.start(ConnectedSocket());
   dialer_->lost(now, now - connected_at_ >= Dialer::kUseTime, in_words(why));
 }
@@ -158,11 +155,17 @@ void Connection::lose_connection(const Error& why, TimePoint now) {
 void Connection::fail(const Error& why) {
   failed_ = why;
   stop_watching();
-  // A waiting writer gets an error for what it has in the queue, which is not among the lost;
-  // send() sees to what it has just put.
+  if (!writer_waits_) {
+    losses_.cut += queue_.clear(losses_) + writer_.clear();
+    return;
+  }
+  // The message that send() is called with is the last one, in the queue or begun. Its caller gets
+  // the error, so it does not count as lost.
   Traffic reported;
-  auto waiting = queue_.clear(writer_waits_ ? reported : losses_);
-  losses_.cut += writer_.clear() + (writer_waits_ ? 0 : waiting);
+  const bool is_queued = queue_.clear(reported) > 0;
+  auto begun = writer_.clear();
+  if (is_sending_ && !is_queued && begun > 0) --begun;
+  losses_.cut += begun;
 }
 
 void Connection::look_at_reader(TimePoint now) {
@@ -245,7 +248,7 @@ Status Connection::drain(std::unique_lock<std::mutex>& lock, bool closing,
                   : "asked to stop, and the reader did not take all messages"});
       return *failed_;
     }
-    tell_log();
+    flush_log();
     auto waited = wait(lock, give_up, now);
     if (waited) continue;
     if (waited.error().code != Code::Stopped) return waited.error();

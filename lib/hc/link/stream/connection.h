@@ -14,7 +14,6 @@
 #include <hc/link/policy.h>
 #include <hc/link/queue.h>
 #include <hc/link/stream/dialer.h>
-#include <hc/link/stream/parcel.h>
 #include <hc/link/stream/remarks.h>
 #include <hc/link/stream/writer.h>
 #include <hc/os/reactor.h>
@@ -91,7 +90,7 @@ class Connection {
   [[nodiscard]] bool has_failed() const;
   /// Logs what has happened to the connection; on the thread that sends, which also hears
   /// of it while it waits in send() or close().
-  void tell_log() { remarks_.tell(log_); }
+  void flush_log() { remarks_.flush(log_); }
   [[nodiscard]] int descriptor() const { return writer_.descriptor(); }
 
  private:
@@ -100,10 +99,14 @@ class Connection {
         stop_(options.stop),
         log_(options.log),
         dialer_(std::move(dialer)),
-        queue_(policy) {}
+        queue_(policy) {
+    if (dialer_ != nullptr)
+      dialer_->log_to([this](std::string line) { remarks_.add(std::move(line)); });
+  }
 
   [[nodiscard]] bool connected() const { return writer_.descriptor() >= 0; }
   [[nodiscard]] bool all_written() const { return writer_.empty() && queue_.empty(); }
+  Result<bool> hand_over(std::unique_lock<std::mutex>& lock, Outgoing& message, TimePoint now);
   void connect(ConnectedSocket connection, TimePoint now);
   void dial(TimePoint now);
   void put(const Parcel& parcel, TimePoint now);
@@ -143,9 +146,9 @@ class Connection {
   std::optional<Error> failed_;
   Traffic losses_;
   Remarks remarks_;
-  std::string news_;          // for the log when there is a connection: empty where it is no news
   std::uint32_t wanted_ = 0;  // of watch_
   bool waits_ = false;        // a thread, in wait()
+  bool is_sending_ = false;   // a thread, in send()
   Watch watch_;               // of the connection or the dialer's attempt, and of the next time
 };
 

@@ -23,38 +23,56 @@ Dialer::Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patie
 
 Result<ConnectedSocket> Dialer::dial(TimePoint now) {
   if (!attempt_ && now >= next_try_) try_next(now);
-  if (attempt_ && is_connected(now)) {
+  const bool has_connected = attempt_ && is_connected(now);
+  if (!has_connected && attempt_ && now >= answer_due_) {
+    fail(ETIMEDOUT, now);
+    if (now < give_up_) try_next(now);
+  }
+  if (!has_connected && now >= give_up_)
+    return Error{
+        was_there_ ? Code::Closed : Code::NotFound,
+        "no peer for " + std::to_string((was_there_ ? patience_ : first_).count()) + " s: " + why_};
+  if (now >= log_due_) log_loss();
+  if (has_connected) {
     was_there_ = true;
     set_up_connection(attempt_.get());
     return std::move(attempt_);
   }
-  if (attempt_ && now >= answer_due_) {
-    fail(ETIMEDOUT, now);
-    if (now < give_up_) try_next(now);
+  if (!was_there_ && !why_.empty() && now >= begin_ + kQuiet && !std::exchange(is_awaited_, true)) {
+    // "waiting" where the longest time that can be asked for amounts to for ever.
+    log("no peer yet (" + why_ + "); " +
+        (first_ >= std::chrono::hours(24)
+             ? "waiting"
+             : "giving up after " + std::to_string(first_.count()) + " s"));
+    news_ = "connected";
   }
-  if (now >= give_up_)
-    return Error{
-        was_there_ ? Code::Closed : Code::NotFound,
-        "no peer for " + std::to_string((was_there_ ? patience_ : first_).count()) + " s: " + why_};
   return ConnectedSocket();
 }
 
-std::optional<std::string> Dialer::take_remark(TimePoint now) {
-  if (was_there_ || why_.empty() || now < begin_ + kQuiet || std::exchange(told_, true))
-    return std::nullopt;
-  // As long as the longest that can be asked for is for ever, to who reads this.
-  return "no peer yet (" + why_ + "); " +
-         (first_ >= std::chrono::hours(24)
-              ? "waiting"
-              : "giving up after " + std::to_string(first_.count()) + " s");
+void Dialer::in_use() {
+  log_due_ = TimePoint::max();
+  if (!news_.empty()) log(std::exchange(news_, {}));
+}
+
+void Dialer::log_loss() {
+  log_due_ = TimePoint::max();
+  log(loss_ + "; reconnecting");
+  news_ = "reconnected";
+}
+
+void Dialer::log(std::string line) const {
+  if (log_) log_(std::move(line));
 }
 
 TimePoint Dialer::due() const {
-  return std::min(give_up_, attempt_ ? answer_due_ : next_try_);
+  return std::min({give_up_, log_due_, attempt_ ? answer_due_ : next_try_});
 }
 
-void Dialer::lost(TimePoint now, bool was_of_use, std::string why) {
-  why_ = std::move(why);
+void Dialer::lost(TimePoint now, bool was_of_use, std::string why,
+                  std::chrono::milliseconds log_after) {
+  why_ = loss_ = std::move(why);
+  log_due_ = now + log_after;
+  if (log_due_ <= now) log_loss();
   give_up_ = now + patience_;
   if (was_of_use) backoff_.reset();
   next_try_ = was_of_use ? now : std::min(now + draw_pause(backoff_, random_), give_up_);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Connections that are made again and again, by somebody who does not wait for them. Internal.
+// Connects to a peer, again and again, without blocking the caller. Internal.
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -18,8 +17,8 @@
 
 namespace hc::internal {
 
-/// A pause between tries, so that many who lost the same peer do not come back at once: uniform
-/// between 0 and what `backoff` says ("full jitter").
+/// A pause between tries, so that many that lost the same peer do not all reconnect at once:
+/// uniform between 0 and the pause of `backoff` ("full jitter").
 ///
 /// Source: M. Brooker, Exponential Backoff And Jitter, AWS Architecture Blog, 2015.
 std::chrono::nanoseconds draw_pause(Backoff& backoff, std::minstd_rand& random);
@@ -42,30 +41,30 @@ struct Peer {
   std::function<Status(int socket)> admit;
   /// Makes the channel of a connection, which is of use once that is agreed on. May be empty.
   std::function<std::unique_ptr<SecureChannel>(int socket)> secure = {};
-  /// Between two tries: one on this host costs so little that nobody needs to be spared.
+  /// Between two tries; short for a peer on this host, where a try costs little.
   std::chrono::milliseconds longest_pause = kLongestPause;
 };
 
 /// Connects to a peer, and to it again when the connection is lost.
 ///
-/// A try that is refused is followed by a pause, one without an answer within kAnswer by the next
-/// try at once: it was the pause. So a network that comes back is in use again soon, though the
-/// kernel's own tries are seconds apart by then. Where the network is known to be away the pauses
-/// are kAway at most, for the same reason.
+/// A try that is refused is followed by a pause; one without an answer within kAnswer by the next
+/// try at once, since it took as long as a pause. So a network that comes back is soon in use
+/// again, although the kernel's own retries are seconds apart by then. Where the network is known
+/// to be down the pauses are at most kAway, for the same reason.
 class Dialer {
  public:
   static constexpr std::chrono::seconds kAnswer{1}, kAway{1};
-  /// How long a connection lives that was of use.
+  /// A connection that lived so long was of use.
   static constexpr std::chrono::seconds kUseTime{1};
 
-  /// How long one looks for a first connection before a line says so.
+  /// How long to try for the first connection before that is logged.
   static constexpr std::chrono::seconds kQuiet{1};
 
-  /// @param first  how long to go without a first connection before giving up,
-  /// @param patience  … and without one after that.
+  /// @param first  how long to try for the first connection before giving up,
+  /// @param patience  … and for each one after that.
   Dialer(Peer peer, std::chrono::seconds first, std::chrono::seconds patience, TimePoint now);
 
-  /// Does what is to be done by now; gives the connection, or none (-1) when there is none yet.
+  /// Does what is due; returns the connection, or none (-1) when there is none yet.
   ///
   /// Errors: once patience is at its end, Closed, or NotFound if there never was a connection.
   Result<ConnectedSocket> dial(TimePoint now);
@@ -75,29 +74,35 @@ class Dialer {
   [[nodiscard]] short events() const { return events_; }
   /// When to dial() again at the latest.
   [[nodiscard]] TimePoint due() const;
-  /// Whether all addresses have been tried and have refused, so that nobody listens for now.
+  /// Whether all addresses have been tried and have refused, so that nobody listens now.
   [[nodiscard]] bool is_refused() const { return is_refused_; }
   /// Why the last attempt failed.
   [[nodiscard]] const std::string& why() const { return why_; }
 
-  /// A line for the log when the first connection is long in coming; once.
-  std::optional<std::string> take_remark(TimePoint now);
+  /// Logs to `log` when the first connection takes long, when one is lost, and the next one.
+  void log_to(std::function<void(std::string line)> log) { log_ = std::move(log); }
 
-  /// Says that the connection has been lost: then the next try is made at once, but after a pause
-  /// if it was of no use (`why`, in words, for the error once patience is at its end), so that one
-  /// which is made and lost each time costs no more than others.
-  void lost(TimePoint now, bool was_of_use, std::string why);
+  /// The owner uses the connection that it has got.
+  void in_use();
+  /// The owner has lost it. The next try is made at once, or after a pause where the connection was
+  /// of no use: a peer that accepts and closes each time costs no more than one that refuses.
+  /// @param why  for the log, and the error once patience is at its end.
+  /// @param log_after  … which is not logged if a connection is in use by then.
+  void lost(TimePoint now, bool was_of_use, std::string why,
+            std::chrono::milliseconds log_after = {});
 
  private:
   void try_next(TimePoint now);
   bool is_connected(TimePoint now);
   bool has_agreed(TimePoint now);
   void fail(int number, TimePoint now);
+  void log_loss();
+  void log(std::string line) const;
 
   Peer peer_;
   std::chrono::seconds first_, patience_;
-  bool was_there_ = false;  // a peer
-  bool told_ = false;
+  bool was_there_ = false;   // a peer
+  bool is_awaited_ = false;  // as has been logged
   std::minstd_rand random_{std::random_device{}()};
   Backoff backoff_;
   TimePoint begin_, give_up_, next_try_;
@@ -107,6 +112,10 @@ class Dialer {
   short events_ = POLLOUT;
   TimePoint answer_due_;
   std::string why_;  // the last try failed
+  std::function<void(std::string line)> log_;
+  std::string loss_;                      // why the last connection was lost
+  TimePoint log_due_ = TimePoint::max();  // for that
+  std::string news_;                      // to be logged with the next connection; empty: nothing
 };
 
 }  // namespace hc::internal

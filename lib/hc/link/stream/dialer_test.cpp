@@ -8,8 +8,10 @@
 #include <array>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
-#include <hc/link/stream/peers.h>
+#include <hc/link/transports.h>
 #include <hc/testing/loopback.h>
 
 namespace hc::testing {
@@ -124,18 +126,53 @@ TEST_F(DialerTest, GivesUpWhenNobodyComesBack) {
   EXPECT_EQ(dialer.dial(now_).error().text(), "Closed: no peer for 10 s: Connection refused");
 }
 
-TEST_F(DialerTest, SaysOnceThatItsFirstConnectionIsLongInComing) {
+TEST_F(DialerTest, LogsOnceThatItsFirstConnectionTakesLong) {
   auto dialer = this->dialer();
-  EXPECT_FALSE(dialer.take_remark(now_ + Dialer::kQuiet));  // has not tried yet
+  std::vector<std::string> lines;
+  auto log = [&](const std::string& line) { lines.push_back(line); };
+  dialer.log_to(log);
+  const auto begin = now_;
+  now_ = begin + Dialer::kQuiet - nanoseconds(1);
   EXPECT_FALSE(connects(dialer));
-  EXPECT_FALSE(dialer.take_remark(now_ + Dialer::kQuiet - nanoseconds(1)));
-  EXPECT_EQ(dialer.take_remark(now_ + Dialer::kQuiet),
-            "no peer yet (Connection refused); giving up after 60 s");
-  EXPECT_FALSE(dialer.take_remark(now_ + 2 * Dialer::kQuiet));
+  EXPECT_TRUE(lines.empty());
+  for (int i : {1, 2}) {
+    now_ = begin + i * Dialer::kQuiet;
+    EXPECT_FALSE(connects(dialer));
+    EXPECT_EQ(lines,
+              std::vector<std::string>{"no peer yet (Connection refused); giving up after 60 s"});
+  }
+  lines.clear();
   auto patient = this->dialer(seconds(86'400));
+  patient.log_to(log);
+  now_ += Dialer::kQuiet;
   EXPECT_FALSE(connects(patient));
-  EXPECT_EQ(patient.take_remark(now_ + Dialer::kQuiet),
-            "no peer yet (Connection refused); waiting");
+  EXPECT_EQ(lines, std::vector<std::string>{"no peer yet (Connection refused); waiting"});
+}
+
+TEST_F(DialerTest, LogsALossUnlessAConnectionIsInUseBeforeThatIsDue) {
+  listen();
+  auto dialer = this->dialer();
+  std::vector<std::string> lines;
+  dialer.log_to([&](const std::string& line) { lines.push_back(line); });
+  EXPECT_TRUE(connects(dialer));
+  dialer.in_use();
+  EXPECT_TRUE(lines.empty());
+  dialer.lost(now_, true, "sender closed", milliseconds(200));
+  EXPECT_TRUE(connects(dialer));
+  dialer.in_use();
+  EXPECT_TRUE(lines.empty());
+  dialer.lost(now_, true, "reset");
+  EXPECT_EQ(lines, std::vector<std::string>{"reset; reconnecting"});
+  EXPECT_TRUE(connects(dialer));
+  dialer.in_use();
+  EXPECT_EQ(lines.back(), "reconnected");
+  listening_ = {};
+  dialer.lost(now_, true, "sender closed", milliseconds(200));
+  EXPECT_FALSE(connects(dialer));
+  EXPECT_EQ(lines.size(), 2U);
+  now_ += milliseconds(200);
+  EXPECT_FALSE(connects(dialer));
+  EXPECT_EQ(lines.back(), "sender closed; reconnecting");
 }
 
 TEST_F(DialerTest, AfterAConnectionOfUseItTriesAtOnceAndWithShortPauses) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/stream/dialing.h>
+#include <hc/link/stream/ends.h>
 
 #include <algorithm>
 #include <utility>
@@ -13,9 +13,9 @@ namespace hc::internal {
 namespace {
 
 constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
-/// After a sender has closed, how long to wait before that is logged: when both ends are stopped
-/// together, the reader ends meanwhile.
-constexpr std::chrono::milliseconds kTellAfter{200};
+/// How long after a sender has closed that is logged: when both ends are stopped together, the
+/// reader ends meanwhile.
+constexpr std::chrono::milliseconds kLogAfter{200};
 
 /// A source that outlives its connection; see dial_source().
 class DialingSource final : public Source {
@@ -26,6 +26,7 @@ class DialingSource final : public Source {
         made_(std::move(made)),
         loop_(std::move(loop)),
         options_(std::move(options)) {
+    dialer_->log_to([this](const std::string& line) { log(line); });
     static_cast<void>(dial());  // the first take() reports a failure
   }
 
@@ -65,43 +66,33 @@ class DialingSource final : public Source {
   }
 
  private:
-  /// Does what is due for a connection, and has the descriptor tell when there is more to do.
+  /// Does what is due for a connection, and watches for what is due next.
   Status dial() {
     auto now = std::chrono::steady_clock::now();
     watch_.reset();  // before the dialer closes its descriptor
     retry_.reset();
     auto connected = dialer_->dial(now);
     if (!connected) return connected.error();
-    if (auto remark = dialer_->take_remark(now)) {
-      log(*remark);
-      news_ = "connected";
-    }
-    if (now >= tell_at_) {
-      log_loss("sender closed");
-      tell_at_ = TimePoint::max();
-    }
     if (*connected) {
       auto source = made_.open(std::move(*connected));
       if (!source) {
         if (source.error().code == Code::Stopped) return source.error();
-        log_loss(in_words(source.error()));
         dialer_->lost(now, false, in_words(source.error()));
       } else {
         source_ = std::move(*source);
         watch(source_->descriptor(), EPOLLIN);
         connected_at_ = now;
-        tell_at_ = TimePoint::max();
-        if (!news_.empty()) log(std::exchange(news_, {}));
+        dialer_->in_use();
       }
     }
     if (source_ == nullptr) {
-      retry_ = loop_->call_at(std::min(dialer_->due(), tell_at_), [] {});
+      retry_ = loop_->call_at(dialer_->due(), [] {});
       if (dialer_->descriptor() >= 0) watch(dialer_->descriptor(), dialer_->events());
     }
     return {};
   }
 
-  /// @param why  empty: the writer said its end.
+  /// @param why  empty: the sender has closed.
   void lose_connection(const std::string& why) {
     const bool was_heard = source_->traffic().messages > 0;
     past_ += source_->traffic();
@@ -109,22 +100,16 @@ class DialingSource final : public Source {
     source_.reset();
     if (finishing_) return;
     auto now = std::chrono::steady_clock::now();
+    const bool was_of_use = was_heard && now - connected_at_ >= Dialer::kUseTime;
     if (why.empty())
-      tell_at_ = now + kTellAfter;
+      dialer_->lost(now, was_of_use, "sender closed", kLogAfter);
     else
-      log_loss(why);
-    dialer_->lost(now, was_heard && now - connected_at_ >= Dialer::kUseTime,
-                  why.empty() ? "sender closed" : why);
+      dialer_->lost(now, was_of_use, why);
   }
 
   void watch(int descriptor, short events) {
     auto watched = loop_->watch(descriptor, static_cast<std::uint32_t>(events), [](auto) {});
     if (watched) watch_ = std::move(*watched);
-  }
-
-  void log_loss(const std::string& why) {
-    log(why + "; reconnecting");
-    news_ = "reconnected";
   }
 
   void log(std::string_view line) const {
@@ -134,13 +119,11 @@ class DialingSource final : public Source {
   std::unique_ptr<Dialer> dialer_;
   Made made_;
   std::unique_ptr<Loop> loop_;  // of what follows; calls nothing, its descriptor is watched
-  Loop::Handle watch_;          // of the connection, or the attempt at one
+  Loop::Handle watch_;          // of the connection, or the attempt to make one
   Loop::Handle retry_;
   LinkOptions options_;
   std::unique_ptr<Source> source_;  // null: there is no connection
   TimePoint connected_at_;
-  TimePoint tell_at_ = TimePoint::max();  // that the sender closed
-  std::string news_;        // for the log when there is a connection: empty where it is no news
   bool finishing_ = false;  // the peer will not come back
   bool ended_ = false;
   Traffic past_;  // of connections that were lost
@@ -148,10 +131,10 @@ class DialingSource final : public Source {
 
 /// None where the link is to end with its connection. Errors: Invalid.
 Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
-  auto patience = number_option(uri, "reconnect", 0, kMostSeconds);
+  auto patience = number_option(uri, "reconnect", 0, {0, kMostSeconds});
   if (!patience) return patience.error();
   if (*patience == 0) return std::unique_ptr<Dialer>();
-  auto first = number_option(uri, "wait", 0, kMostSeconds);
+  auto first = number_option(uri, "wait", 0, {0, kMostSeconds});
   if (!first) return first.error();
   if (*first == 0) first = *patience;
   return std::make_unique<Dialer>(peer, std::chrono::seconds(*first),
@@ -162,7 +145,7 @@ Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
 }  // namespace
 
 Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
-  auto wait = number_option(uri, "wait", 0, kMostSeconds);
+  auto wait = number_option(uri, "wait", 0, {0, kMostSeconds});
   if (!wait) return wait.error();
   const auto first = *wait > 0 ? std::chrono::seconds(*wait) : kAnswerTime;
   Dialer dialer(peer, first, first, std::chrono::steady_clock::now());

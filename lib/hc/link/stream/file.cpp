@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// `file:PATH`: a file, a FIFO or a device by name; the same bytes as on a wire.
+// `-`: standard input and output, so that modules work in a shell pipe. `file:PATH`: a file, a FIFO
+// or a device by name; the same bytes as on a wire.
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <hc/base/backoff.h>
 #include <hc/link/stream/sink.h>
@@ -33,7 +35,40 @@ Result<Descriptor> open_path(const Uri& uri, int flags, int stop) {
   }
 }
 
+/// A non-blocking descriptor for what `number` is open on, without changing `number` for the other
+/// processes that share it; only that of a socket still blocks.
+Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
+  struct stat status {};
+  auto looked = system_call("fstat", "", [&] { return ::fstat(number, &status); });
+  if (!looked) return looked.error();
+  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode)) {
+    // A second open gets flags of its own; setting them on the first would set them for the shell
+    // and for everybody else who shares it.
+    std::string path = "/proc/self/fd/" + std::to_string(number);
+    Descriptor own(::open(path.c_str(), access_mode | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (own) {
+      widen_pipe(own.get());
+      return own;
+    }
+  }
+  auto copy = system_call("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
+  if (!copy) return copy.error();
+  return Descriptor(*copy);
+}
+
 }  // namespace
+
+Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions& options) {
+  auto descriptor = reopen_without_waiting(STDIN_FILENO, O_RDONLY);
+  if (!descriptor) return descriptor.error();
+  return std::unique_ptr<Source>(new StreamSource(std::move(*descriptor), options));
+}
+
+Result<std::unique_ptr<Sink>> open_stdout(const Uri& uri, const LinkOptions& options) {
+  auto descriptor = reopen_without_waiting(STDOUT_FILENO, O_WRONLY);
+  if (!descriptor) return descriptor.error();
+  return make_stream_sink(std::move(*descriptor), uri, options);
+}
 
 Result<std::unique_ptr<Source>> open_file_source(const Uri& uri, const LinkOptions& options) {
   auto descriptor = open_path(uri, O_RDONLY, options.stop);

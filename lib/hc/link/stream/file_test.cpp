@@ -82,7 +82,7 @@ TEST(File, AFullDiskIsTold) {
 }
 
 /// Files become no larger, as on a full disk.
-class FullDisk : public ::testing::TestWithParam<int> {
+class FullDisk : public ::testing::TestWithParam<std::tuple<int, const char*>> {
  protected:
   FullDisk() {
     EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &limit_), 0);
@@ -102,9 +102,10 @@ class FullDisk : public ::testing::TestWithParam<int> {
 };
 
 TEST_P(FullDisk, LeavesWholeMessages) {
-  auto sink = sink_of("file:" + (folder_ / "eyes.mtp"));
+  const auto [size, options] = GetParam();
+  auto sink = sink_of("file:" + (folder_ / "eyes.mtp") + options);
   Status sent;
-  for (int i = 0; sent && i < 20'000; ++i) sent = sink->send(numbered(i, GetParam()));
+  for (int i = 0; sent && i < 20'000; ++i) sent = sink->send(numbered(i, size));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().detail, "write(): File too large");
   EXPECT_FALSE(sink->close());
@@ -121,7 +122,10 @@ TEST_P(FullDisk, LeavesWholeMessages) {
   EXPECT_EQ(source->traffic().messages, traffic.messages - traffic.cut);
 }
 
-INSTANTIATE_TEST_SUITE_P(SmallAndLarge, FullDisk, ::testing::Values(100, 30'000));
+// With a rate, messages wait in the queue.
+INSTANTIATE_TEST_SUITE_P(SmallAndLarge, FullDisk,
+                         ::testing::Combine(::testing::Values(100, 30'000),
+                                            ::testing::Values("", "?rate=5000")));
 
 std::pair<std::string, std::string> make_fifo() {
   static Folder folder;

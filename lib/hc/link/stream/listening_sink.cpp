@@ -8,7 +8,7 @@
 
 #include <hc/base/backoff.h>
 #include <hc/link/stream/connection.h>
-#include <hc/link/stream/listening.h>
+#include <hc/link/stream/ends.h>
 #include <hc/link/transports.h>
 #include <hc/mtp/codec.h>
 #include <hc/os/loop.h>
@@ -80,19 +80,13 @@ class ListeningSink final : public Sink {
       patient = patient && (closed || closed.error().code == Code::Closed);
       if (awaited && !patient) awaited = closed;
     }
-    while (!peers_.empty()) leave(peers_.size() - 1);
-    listening_.reset();
-    socket_ = ListeningSocket();
+    stop_listening();
     return awaited;
   }
 
   void abandon() override {
     for (auto& peer : peers_) peer->abandon();
-    // Another link may listen here from now on, and its readers come, while this object is still
-    // there.
-    while (!peers_.empty()) leave(peers_.size() - 1);
-    listening_.reset();
-    socket_ = ListeningSocket();
+    stop_listening();
   }
 
   [[nodiscard]] Traffic traffic() const override {
@@ -122,6 +116,13 @@ class ListeningSink final : public Sink {
                          peers_.push_back(std::move(*connection));
                          return {};
                        });
+  }
+
+  /// Another link may listen here from now on, while this object still exists.
+  void stop_listening() {
+    while (!peers_.empty()) leave(peers_.size() - 1);
+    listening_.reset();
+    socket_ = ListeningSocket();
   }
 
   void let_in() {
@@ -221,9 +222,9 @@ class ListeningSink final : public Sink {
 
 Result<std::unique_ptr<Sink>> listening_sink(ListeningSocket socket, const Uri& uri,
                                              const LinkOptions& options) {
-  auto readers = number_option(uri, "readers", -1, kMaxPeers);
+  auto readers = number_option(uri, "readers", -1, {0, kMaxPeers});
   if (!readers) return readers.error();
-  auto stays = number_option(uri, "stay", 0, 1);
+  auto stays = number_option(uri, "stay", 0, {0, 1});
   if (!stays) return stays.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();

@@ -5,8 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <hc/link/stream/dialer.h>
-#include <hc/link/stream/listening.h>
+#include <hc/link/stream/ends.h>
 #include <hc/link/stream/source.h>
 #include <hc/os/loop.h>
 
@@ -40,7 +39,8 @@ class ListeningSource final : public Source {
       if (!got || *got == Got::End) {
         leave(peer, got ? "" : "closed a connection: " + in_words(got.error()));
       } else if (*got == Got::Nothing) {
-        rest(peer);
+        peer.is_ready = false;
+        std::erase(ready_, &peer);
       } else {
         peer.heard = ++count_;
         ++turn_;
@@ -107,12 +107,6 @@ class ListeningSource final : public Source {
     left_ += peer.source->traffic();
     std::erase(ready_, &peer);
     std::erase_if(peers_, [&](const auto& entry) { return entry.get() == &peer; });
-  }
-
-  /// Says that a peer has nothing more for now.
-  void rest(Peer& peer) {
-    peer.is_ready = false;
-    std::erase(ready_, &peer);
   }
 
   ListeningSocket socket_;

@@ -2,23 +2,28 @@
 #pragma once
 // A message on its way out, encoded once for all who get it. Internal.
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
-#include <hc/link/stream/writer.h>
 #include <hc/mtp/codec.h>
 
 namespace hc::internal {
 
-/// Bytes of a message that somebody keeps alive.
+/// The bytes of a message.
 struct Parcel {
-  Pieces pieces;
-  std::shared_ptr<const void> keeper;  ///< null: whoever has handed it in
+  /// Messages up to this size are copied, which takes no longer than a system call. [byte]
+  static constexpr std::size_t kMostCopied = 8 << 10;
 
-  [[nodiscard]] std::size_t size() const { return size_of(pieces); }
+  Pieces pieces;
+  std::shared_ptr<const void> owner;  ///< keeps the pieces alive; null: the caller does
+
+  [[nodiscard]] std::size_t size() const {
+    return pieces[0].size() + pieces[1].size() + pieces[2].size();
+  }
 };
 
-/// A message that is sent, perhaps to several.
+/// A message that is sent, to one reader or several.
 class Outgoing {
  public:
   /// @param pieces  of `message`; both live as long as this.
@@ -28,10 +33,10 @@ class Outgoing {
   [[nodiscard]] const Parcel& borrowed() const { return borrowed_; }
   [[nodiscard]] std::size_t size() const { return borrowed_.size(); }
 
-  /// The same to be held as long as one likes. Elements with an owner are shared, others copied,
-  /// by the first call. Cost: two allocations, or three.
+  /// The same with an owner. The first call shares elements that have one and copies others.
+  /// Cost: two allocations, or three.
   const Parcel& kept() {
-    if (kept_.keeper != nullptr) return kept_;
+    if (kept_.owner != nullptr) return kept_;
     struct Copy {
       std::vector<std::byte> bytes;
       Message message;
@@ -39,7 +44,7 @@ class Outgoing {
     auto copy = std::make_shared<Copy>();
     const auto& [head, elements, end] = borrowed_.pieces;
     copy->bytes.assign(head.begin(), head.end());
-    if (elements.size() <= StreamWriter::kMostCopied) {
+    if (elements.size() <= Parcel::kMostCopied) {
       copy->bytes.insert(copy->bytes.end(), elements.begin(), elements.end());
       copy->bytes.insert(copy->bytes.end(), end.begin(), end.end());
       kept_.pieces = {copy->bytes, {}, {}};
@@ -47,7 +52,7 @@ class Outgoing {
       copy->message = message_.keep();
       kept_.pieces = {copy->bytes, copy->message.elements, end};  // the end is a constant
     }
-    kept_.keeper = std::move(copy);
+    kept_.owner = std::move(copy);
     return kept_;
   }
 

@@ -28,7 +28,7 @@ class Remarks {
   }
 
   /// Logs what there is. Cost: next to nothing when there is nothing.
-  void tell(const LogSink& log) {
+  void flush(const LogSink& log) {
     if (!any_.load(std::memory_order_relaxed)) return;
     std::unique_lock lock(mutex_);
     any_.store(false, std::memory_order_relaxed);

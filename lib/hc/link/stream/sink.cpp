@@ -15,7 +15,7 @@ class StreamSink final : public Sink {
   Status send(const Message& message) override {
     Outgoing outgoing(encoder_.encode(message), message);
     auto sent = connection_->send(outgoing, std::chrono::steady_clock::now());
-    connection_->tell_log();
+    connection_->flush_log();
     if (!sent) return sent.error();
     ++messages_;
     bytes_ += outgoing.size();
@@ -24,7 +24,7 @@ class StreamSink final : public Sink {
 
   Status close() override {
     auto closed = connection_->close();
-    connection_->tell_log();
+    connection_->flush_log();
     return closed;
   }
 

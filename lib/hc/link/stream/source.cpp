@@ -8,16 +8,6 @@
 #include <algorithm>
 
 namespace hc::internal {
-namespace {
-
-constexpr int kPipeBytes = 1 << 20;
-
-bool would_wait(int number) {
-  return number == EAGAIN || number == EWOULDBLOCK;
-}
-
-}  // namespace
-
 Result<Got> StreamSource::take(Message& message) {
   while (true) {
     auto got = reader_.next(message);
@@ -39,7 +29,7 @@ Result<Got> StreamSource::take(Message& message) {
       continue;
     }
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0 && would_wait(errno)) return nothing();
+    if (size < 0 && errno == EAGAIN) return nothing();
     // A peer that was killed with our bytes unread resets the connection: the end of what it said.
     if (size < 0 && (channel != nullptr || errno != ECONNRESET)) {
       auto error = channel != nullptr ? channel->failure() : system_error("read", "");
@@ -88,26 +78,8 @@ Status StreamSource::resume() {
   return {};
 }
 
-Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
-  struct stat status {};
-  auto looked = system_call("fstat", "", [&] { return ::fstat(number, &status); });
-  if (!looked) return looked.error();
-  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode)) {
-    // A second open gets flags of its own; setting them on the first would set them for the shell
-    // and for everybody else who shares it.
-    std::string path = "/proc/self/fd/" + std::to_string(number);
-    Descriptor own(::open(path.c_str(), access_mode | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
-    if (own) {
-      widen_pipe(own.get());
-      return own;
-    }
-  }
-  auto copy = system_call("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
-  if (!copy) return copy.error();
-  return Descriptor(*copy);
-}
-
 void widen_pipe(int descriptor) {
+  constexpr int kPipeBytes = 1 << 20;
   ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
 }
 

@@ -47,8 +47,4 @@ class StreamSource final : public Source {
 /// Lets a pipe hold more than the kernel's 64 KiB; harmless where it is none.
 void widen_pipe(int descriptor);
 
-/// A descriptor for what `number` is open on, whose reads and writes do not wait (but those of a
-/// socket are to be asked not to), without changing that for the other processes that share it.
-Result<Descriptor> reopen_without_waiting(int number, int access_mode);
-
 }  // namespace hc::internal

@@ -5,17 +5,13 @@
 
 #include <memory>
 
-#include <hc/link/stream/peers.h>
 #include <hc/link/transports.h>
 #include <hc/os/peer_user.h>
 
 namespace hc::internal {
 namespace {
 
-struct FreeAddresses {
-  void operator()(addrinfo* list) const { ::freeaddrinfo(list); }
-};
-using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
+using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
 Result<Addresses> resolve(const Uri& uri, int flags) {
   auto place = parse_host_port(uri.rest);
@@ -28,22 +24,15 @@ Result<Addresses> resolve(const Uri& uri, int flags) {
   const char* host = place->host.empty() ? "127.0.0.1" : place->host.c_str();
   int status = ::getaddrinfo(host, port.c_str(), &hints, &list);
   if (status != 0) return Error{Code::NotFound, std::string(host) + ": " + ::gai_strerror(status)};
-  return Addresses(list);
+  return Addresses(list, ::freeaddrinfo);
 }
 
-/// What `same_user=1` has asked of each connection; empty without it. Errors: Invalid.
-Result<std::function<Status(int)>> admission(const Uri& uri, Connected how) {
-  auto same_user = number_option(uri, "same_user", 0, 1);
+/// The check of each connection with `same_user=1`; empty without it. Errors: Invalid.
+Result<std::function<Status(int)>> admission(const Uri& uri, Connected how, const char* what) {
+  auto same_user = number_option(uri, "same_user", 0, {0, 1});
   if (!same_user) return same_user.error();
   if (*same_user == 0) return std::function<Status(int)>();
-  return std::function([how](int socket) -> Status {
-    const std::string what =
-        how == Connected::Dialed ? "the listener is a process of " : "refused a peer of ";
-    auto user = tcp_peer_user(socket, how);
-    if (!user) return Error{Code::Closed, what + "an unknown user: " + user.error().detail};
-    auto who = foreigner_of(*user);
-    return who.empty() ? Status() : Error{Code::Closed, what + who};
-  });
+  return std::function([=](int socket) { return check_own(tcp_peer_user(socket, how), what); });
 }
 
 }  // namespace
@@ -52,7 +41,7 @@ Result<std::function<Status(int)>> admission(const Uri& uri, Connected how) {
 Result<Peer> tcp_peer(const Uri& uri) {
   auto list = resolve(uri, 0);
   if (!list) return list.error();
-  auto admit = admission(uri, Connected::Dialed);
+  auto admit = admission(uri, Connected::Dialed, kListener);
   if (!admit) return admit.error();
   Peer peer;
   peer.name = uri.rest;
@@ -66,7 +55,7 @@ Result<Peer> tcp_peer(const Uri& uri) {
 Result<ListeningSocket> listen_tcp(const Uri& uri) {
   auto addresses = resolve(uri, AI_PASSIVE);
   if (!addresses) return addresses.error();
-  auto admit = admission(uri, Connected::Accepted);
+  auto admit = admission(uri, Connected::Accepted, kAccepted);
   if (!admit) return admit.error();
   auto descriptor = listen_on({(*addresses)->ai_addr, (*addresses)->ai_addrlen}, uri.rest);
   if (!descriptor) return descriptor.error();

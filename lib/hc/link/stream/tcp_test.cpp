@@ -7,9 +7,9 @@
 #include <atomic>
 #include <utility>
 
-#include <hc/link/stream/dialing.h>
-#include <hc/link/stream/listening.h>
+#include <hc/link/stream/ends.h>
 #include <hc/os/peer_user.h>
+#include <hc/os/wait_readable.h>
 #include <hc/testing/reconnect.h>
 
 namespace {

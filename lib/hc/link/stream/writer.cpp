@@ -17,8 +17,8 @@
 namespace hc::internal {
 namespace {
 
-/// Keeps SIGPIPE, which a write to a pipe without a reader raises, from a process that may not have
-/// ignored it. Sockets have a flag for that.
+/// Keeps SIGPIPE, which a write to a pipe without a reader raises, from a process that may not
+/// ignore it. Sockets have a flag for that.
 class NoPipeSignal {
  public:
   NoPipeSignal() {
@@ -32,7 +32,7 @@ class NoPipeSignal {
   NoPipeSignal(const NoPipeSignal&) = delete;
   NoPipeSignal& operator=(const NoPipeSignal&) = delete;
 
-  /// To be called when it has been raised: takes it, so that it does not come later.
+  /// Consumes the signal where it has been raised, so that it is not delivered later.
   void take() const {
     constexpr timespec kNow{};
     ::sigtimedwait(&pipe_, nullptr, &kNow);
@@ -67,27 +67,18 @@ bool is_socket(int descriptor) {
 
 }  // namespace
 
-bool StreamWriter::add(const Pieces& pieces, const std::shared_ptr<const void>& keeper) {
-  const auto size = size_of(pieces);
+bool StreamWriter::add(const Parcel& message) {
+  const auto size = message.size();
   if (has_room(size)) {
-    gather(pieces);
+    if (bytes_.capacity() == 0) bytes_.reserve(kMostGathered + Parcel::kMostCopied);
+    for (auto piece : message.pieces) bytes_.insert(bytes_.end(), piece.begin(), piece.end());
+    ends_.push_back(bytes_.size());
     return true;
   }
   HC_CHECK(large_left_ == 0, large_left_);
   large_left_ = size;
-  keep(pieces, keeper);
+  large_ = message;
   return false;
-}
-
-void StreamWriter::gather(const Pieces& pieces) {
-  if (bytes_.capacity() == 0) bytes_.reserve(kMostGathered + kMostCopied);
-  for (auto piece : pieces) bytes_.insert(bytes_.end(), piece.begin(), piece.end());
-  ends_.push_back(bytes_.size());
-}
-
-void StreamWriter::keep(const Pieces& pieces, std::shared_ptr<const void> keeper) {
-  large_ = pieces;
-  keeper_ = std::move(keeper);
 }
 
 Result<bool> StreamWriter::write() {
@@ -98,8 +89,8 @@ Result<bool> StreamWriter::write() {
       if (!part.empty()) parts.at(used++) = {const_cast<std::byte*>(part.data()), part.size()};
     };
     add(std::span(bytes_).subspan(written_));
-    std::size_t skip = large_left_ == 0 ? 0 : size_of(large_) - large_left_;
-    for (auto piece : large_) {
+    std::size_t skip = large_left_ == 0 ? 0 : large_.size() - large_left_;
+    for (auto piece : large_.pieces) {
       if (large_left_ == 0) break;
       add(piece.subspan(std::min(skip, piece.size())));
       skip -= std::min(skip, piece.size());
@@ -132,10 +123,10 @@ void StreamWriter::advance(std::size_t size) {
     written_ = 0;
   }
   large_left_ -= size - small;
-  if (large_left_ == 0) keeper_.reset();
+  if (large_left_ == 0) large_ = {};
 }
 
-/// Leaves of the gathered bytes those of messages that are not written whole.
+/// Removes whole messages that have been written from the buffer.
 void StreamWriter::forget_written() {
   auto first = std::upper_bound(ends_.begin(), ends_.end(), written_);
   std::size_t begin = first == ends_.begin() ? 0 : *(first - 1);
@@ -145,7 +136,7 @@ void StreamWriter::forget_written() {
   written_ -= begin;
 }
 
-/// Where there is no room for the rest of a message, its beginning would be damage to readers.
+/// Without room for the rest of a message, its beginning would damage the file for readers.
 void StreamWriter::cut_file() const {
   const int file = descriptor_.get();
   const auto end = ::lseek(file, 0, SEEK_CUR);
@@ -163,9 +154,9 @@ bool StreamWriter::inside_message() const {
 
 bool StreamWriter::take_back() {
   if (large_left_ > 0) {
-    if (large_left_ < size_of(large_)) return false;
+    if (large_left_ < large_.size()) return false;
     large_left_ = 0;
-    keeper_.reset();
+    large_ = {};
     return true;
   }
   if (ends_.empty()) return false;
@@ -180,7 +171,7 @@ void StreamWriter::start(ConnectedSocket descriptor) {
   descriptor_ = std::move(descriptor);
   is_socket_ = internal::is_socket(descriptor_.get());
   written_ = 0;
-  if (large_left_ > 0) large_left_ = size_of(large_);
+  if (large_left_ > 0) large_left_ = large_.size();
 }
 
 std::size_t StreamWriter::clear() {
@@ -188,7 +179,7 @@ std::size_t StreamWriter::clear() {
   bytes_.clear();
   ends_.clear();
   written_ = large_left_ = 0;
-  keeper_.reset();
+  large_ = {};
   return count;
 }
 

@@ -14,6 +14,7 @@ namespace hc::testing {
 namespace {
 
 using internal::Descriptor;
+using internal::Parcel;
 using internal::StreamWriter;
 
 Pieces pieces_of(std::string_view text) {
@@ -60,10 +61,10 @@ class StreamWriterTest : public ::testing::Test {
   StreamWriterTest() { writer_.start(std::move(connection_.writing)); }
 
   void add_small(const std::string& text) {
-    EXPECT_TRUE(writer_.add(pieces_of(text), nullptr));
+    EXPECT_TRUE(writer_.add({pieces_of(text), nullptr}));
     EXPECT_FALSE(writer_.borrows());
   }
-  void add_large(const std::string& text) { EXPECT_FALSE(writer_.add(pieces_of(text), keeper_)); }
+  void add_large(const std::string& text) { EXPECT_FALSE(writer_.add({pieces_of(text), keeper_})); }
   /// Goes over to another connection; what had come over the last one is forgotten.
   void reconnect() {
     connection_ = Connection();
@@ -102,8 +103,8 @@ TEST_F(StreamWriterTest, WhatIsGatheredGoesInOneCall) {
 }
 
 TEST_F(StreamWriterTest, GathersAsMuchAsItSays) {
-  EXPECT_FALSE(writer_.has_room(StreamWriter::kMostCopied + 1));
-  const std::string text = text_of(StreamWriter::kMostCopied, 1);
+  EXPECT_FALSE(writer_.has_room(Parcel::kMostCopied + 1));
+  const std::string text = text_of(Parcel::kMostCopied, 1);
   std::string all;
   for (; writer_.has_room(text.size()); all += text) add_small(text);
   EXPECT_EQ(all.size(), StreamWriter::kMostGathered);
@@ -138,11 +139,11 @@ TEST_F(StreamWriterTest, KeepsALargeMessageAliveUntilItIsWritten) {
 TEST_F(StreamWriterTest, ACopyMayStandForABorrowedMessageThatWasBegun) {
   {
     std::string borrowed = large_;
-    EXPECT_FALSE(writer_.add(pieces_of(borrowed), nullptr));
+    EXPECT_FALSE(writer_.add({pieces_of(borrowed), nullptr}));
     EXPECT_TRUE(writer_.borrows());
     EXPECT_FALSE(*writer_.write());
     EXPECT_TRUE(writer_.borrows());
-    writer_.keep(pieces_of(large_), keeper_);
+    writer_.keep({pieces_of(large_), keeper_});
     EXPECT_FALSE(writer_.borrows());
     borrowed.assign(borrowed.size(), 'x');
   }
@@ -161,7 +162,7 @@ TEST_F(StreamWriterTest, WritesInPartWhatThereIsRoomFor) {
   };
   for (unsigned i = 0; i < 3000; ++i) {
     auto text = text_of(random() % 10 == 0 ? 20'000 : random() % 3000, i + 1);
-    bool is_large = text.size() > StreamWriter::kMostCopied;
+    bool is_large = text.size() > Parcel::kMostCopied;
     while (!writer_.has_room(is_large ? 0 : text.size())) step();
     sent += text;
     if (is_large)

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The ends of links between sockets: those that connect, with `wait` and `reconnect`, and those
+// that listen, with any number of peers that come and go. Internal.
+
+#include <functional>
+#include <memory>
+
+#include <hc/link/link.h>
+#include <hc/link/stream/dialer.h>
+#include <hc/os/socket.h>
+
+namespace hc::internal {
+
+/// A connection to a peer that listens, waiting for it as long as `wait` says.
+///
+/// Errors: Invalid, Closed (nobody listens), Stopped, System.
+Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options);
+
+/// What a connecting source makes of its connections.
+struct Made {
+  /// Makes the source of a connection; if that fails, the connection counts as lost. Empty: one of
+  /// the messages in the stream.
+  std::function<Result<std::unique_ptr<Source>>(ConnectedSocket connection)> open = {};
+  int wake_descriptor = -1;  ///< of all these sources
+};
+
+/// Ends of a link to a peer that listens. Without `reconnect` they have their connection from
+/// connect_now(), with the same errors.
+///
+/// With it they exist at once, and their connection as soon as possible; a source connects again
+/// when that is lost, until the dialer gives up; then it ends, or fails with NotFound if there
+/// never was a connection. A partly received message is dropped: the peer sends it again, whole, or
+/// not at all. A clean close looks like the end of a killed process, so both lead to reconnecting.
+Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
+                                            const LinkOptions& options, Made made = {});
+Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
+                                        const LinkOptions& options);
+
+/// How many peers a listening end has at once.
+constexpr std::size_t kMaxPeers = 256;
+
+/// Takes messages from all peers that connect, in the order of arrival. The connection of a peer
+/// that breaks a rule is closed, which is logged; the others are not affected. Never ends by
+/// itself.
+///
+/// When there are kMaxPeers, a new one replaces the peer whose last message is oldest, unless that
+/// is inside a message: so silent peers cannot keep others out.
+///
+/// Errors: System.
+Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket,
+                                                 const LinkOptions& options);
+
+/// Sends each message to every peer that is connected, each by a Connection of its own: with
+/// another policy than keep=all none waits for another. The URI's options say the readers and the
+/// policy.
+///
+/// Waits for the first readers; peers that leave are dropped, and new ones receive what is sent
+/// from then on. When all have left, it waits for another; but if readers were counted the link is
+/// closed, or stays: then only a policy that loses nothing waits for another. With a count of 0 it
+/// never waits for a reader, and what is sent without one is lost.
+///
+/// Errors: Invalid, System.
+Result<std::unique_ptr<Sink>> listening_sink(ListeningSocket socket, const Uri& uri,
+                                             const LinkOptions& options);
+
+}  // namespace hc::internal
