@@ -72,7 +72,10 @@ def problems():
     packages = sum(not line.startswith("#") for line in core)
     lines = stream_peer_lines()
     if lines > budget["stream_peer_lines"]:
-        yield "a peer over streams needs %d lines, at most %d" % (lines, budget["stream_peer_lines"])
+        yield "a peer over streams needs %d lines, at most %d" % (
+            lines,
+            budget["stream_peer_lines"],
+        )
     if packages > budget["core_packages"]:
         yield "the core needs %d packages, at most %d" % (packages, budget["core_packages"])
 

@@ -71,7 +71,8 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   if (poll_ >= 0 &&
       std::equal(watched_.begin(), watched_.end(), sources.begin(), sources.end(), is_watched))
     return {};
-  // A new instance: the descriptor of a source that was closed may have been opened again elsewhere.
+  // A new instance: the descriptor of a source that was closed may have been opened again
+  // elsewhere.
   if (poll_ >= 0) ::close(poll_);
   watched_.clear();
   never_sleeps_ = false;

@@ -160,17 +160,13 @@ Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const Link
 }
 
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
-                                            const LinkOptions& options) {
-  auto open = [options](ConnectedSocket connection) {
-    set_up_reader(connection.get());
-    return Result<std::unique_ptr<Source>>(
-        std::make_unique<StreamSource>(std::move(connection), options));
-  };
-  return dial_source(peer, uri, options, {open});
-}
-
-Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options, Made made) {
+  if (!made.open)
+    made.open = [options](ConnectedSocket connection) {
+      set_up_reader(connection.get());
+      return Result<std::unique_ptr<Source>>(
+          std::make_unique<StreamSource>(std::move(connection), options));
+    };
   auto dialer = dialer_for(peer, uri);
   if (!dialer) return dialer.error();
   if (*dialer == nullptr) {
