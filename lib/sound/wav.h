@@ -69,7 +69,7 @@ class WavWriter {
 
   [[nodiscard]] const Format& format() const { return format_; }
   /// Sample frames in the file.
-  [[nodiscard]] std::int64_t frames() const { return data_bytes_ / (2 * format_.channels); }
+  [[nodiscard]] std::int64_t frames() const { return data_bytes_ / 2 / format_.channels; }
 
  private:
   WavWriter(int file, std::string path, const Format& format)

@@ -18,11 +18,13 @@ TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
   auto reports = source_of(uri("reports"));
   start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--manage=" + uri("reports"),
                  "--mode=3", "--factor=4"});
+  Message parameters;  // first: a module that is seen to run has parameters
+  ASSERT_TRUE(*receive(*reports, parameters));
+  EXPECT_EQ(parameters.header.src, static_cast<int>(Report::Parameters));
+  EXPECT_EQ(rows_of(parameters), (std::vector<std::string>{"factor=4", "title=a b"}));
+  auto state = next(*reports, Report::State);
   EXPECT_EQ(rows_of(next(*reports, Report::Links)),
             (std::vector<std::string>{"in in " + uri("in"), "out out " + uri("out")}));
-  EXPECT_EQ(rows_of(next(*reports, Report::Parameters)),
-            (std::vector<std::string>{"factor=4", "title=a b"}));
-  auto state = next(*reports, Report::State);
   auto numbers = state.view<std::int64_t>()->row(0);
   EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1, 0}));
   ASSERT_TRUE(sink->close());

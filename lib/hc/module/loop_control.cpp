@@ -248,9 +248,8 @@ void Module::Loop::send(Report report, Message message) {
 void Module::Loop::report() {
   if (!management_.is_heard() || now_ - reported_ < kReportPeriod) return;
   if (reported_.count() == 0) {
-    report_links();
-    report_parameters();
     report_state();
+    report_links();
   }
   report_counters();
 }
@@ -306,6 +305,8 @@ void Module::Loop::report_parameters() {
 }
 
 void Module::Loop::report_state(const LinkedSink* blocked) {
+  // From its first report on a module counts as running, and a module that runs has parameters.
+  if (reported_.count() == 0) report_parameters();
   const auto& focus = module_.focus_;
   const auto found = std::find_if(sinks_.begin(), sinks_.end(),
                                   [&](const auto& sink) { return sink.get() == blocked; });

@@ -89,8 +89,8 @@ Outcome read_integer(const char* first, const char* last, T& value, const char*&
 template <typename T>
 char* write_integer(char* at, T value) {
   constexpr std::uint64_t kTenTo8 = 100'000'000;
-  auto magnitude = static_cast<std::uint64_t>(value);
-  if (magnitude < 10) {  // the most common, so inlined
+  auto magnitude = static_cast<std::uint64_t>(+value);  // promoted, then widened
+  if (magnitude < 10) {                                 // the most common, so inlined
     *at = static_cast<char>('0' + magnitude);
     return at + 1;
   }
