@@ -58,10 +58,11 @@ void Module::Loop::serve() {
 }
 
 void Module::Loop::receive_focus() {
-  Message message;
-  if (!module_.message_time_)  // else in its time
+  if (!focus_.empty() && !module_.message_time_) {  // else in its time
+    Message message;
     for (auto& link : focus_)
       while (link.source != nullptr && take(link, message) == Got::Message) set_focus(message);
+  }
   expire_focus();
 }
 

@@ -240,7 +240,7 @@ void internal::Trace::flush() {
   });
 }
 
-void internal::send(OutputState& output, Message message) {
+void internal::send(OutputState& output, Message&& message) {
   Module& module = *output.module;
   Header& header = message.header;
   header.src = output.address;

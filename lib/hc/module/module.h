@@ -280,7 +280,7 @@ class Module {
   [[nodiscard]] bool routes() const { return routes_; }
 
  private:
-  friend void internal::send(internal::OutputState&, Message);
+  friend void internal::send(internal::OutputState&, Message&&);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
   struct Loop;

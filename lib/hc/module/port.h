@@ -100,7 +100,7 @@ struct OutputState {
 };
 
 /// Completes the header and sends to all links. What fails ends the module.
-void send(OutputState& output, Message message);
+void send(OutputState& output, Message&& message);
 
 /// Sends a message as it is; see Output<AnyKind>::forward.
 std::size_t forward(OutputState& output, const Message& message);

@@ -31,17 +31,13 @@ class DialingSource final : public Source {
   }
 
   Result<Got> take(Message& message) override {
-    message = {};
     while (!ended_) {
-      if (source_ == nullptr && finishing_) break;
       if (source_ == nullptr) {
-        if (auto dialed = dial(); !dialed) {
-          ended_ = true;
-          if (dialed.error().code == Code::NotFound) return dialed.error();
-          log(in_words(dialed.error()));
-          break;
-        }
-        if (source_ == nullptr) return Got::Nothing;
+        auto dialed = finishing_ ? Status() : dial();
+        ended_ = finishing_ || !dialed;
+        if (!dialed && dialed.error().code == Code::NotFound) return dialed.error();
+        if (!dialed) log(in_words(dialed.error()));
+        if (source_ == nullptr) break;
       }
       auto got = source_->take(message);
       bool is_lost = got ? *got == Got::End
@@ -50,8 +46,8 @@ class DialingSource final : public Source {
       if (!got && got.error().code == Code::Truncated) ++past_.cut;
       lose_connection(got ? "" : in_words(got.error()));
     }
-    ended_ = true;
-    return Got::End;
+    message = {};
+    return ended_ ? Got::End : Got::Nothing;
   }
 
   [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
