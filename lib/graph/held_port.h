@@ -17,7 +17,7 @@ struct HeldPort {
 };
 
 /// Holds a port, of 127.0.0.1 or of all addresses, until the last owner of the result releases it.
-/// @param number  0: one that is free. Errors: System.
+/// @param number  0: any free one. Errors: System.
 Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses = false,
                                                   std::uint16_t number = 0);
 

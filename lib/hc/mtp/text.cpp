@@ -86,7 +86,7 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
   const char* at = begin;
   auto where = [&](const char* here) { return byte + static_cast<std::uint64_t>(here - begin); };
 
-  // Numbers and line ends in turn, up to one that is incomplete.
+  // Numbers and line ends in turn, up to an incomplete one.
   while (rows_left_ > 0) {
     while (at != end && *at == ' ') ++at;
     if (at == end) break;

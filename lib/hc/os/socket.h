@@ -72,7 +72,7 @@ bool is_with_itself(int socket);
 /// How long a peer may take to answer where `wait` is 0.
 constexpr std::chrono::seconds kAnswerTime{4};
 
-/// A socket bound to an address, and one that listens there; `name` is for error lines.
+/// A socket bound to an address, and a listening one; `name` is for error lines.
 /// Errors: System.
 Result<Descriptor> bind_socket(const Address& address, const std::string& name);
 Result<Descriptor> listen_on(const Address& address, const std::string& name);

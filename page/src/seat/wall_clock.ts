@@ -4,7 +4,7 @@
 /** More than the two clocks differ by, unless the machine slept or its clock was set [ms]. */
 const stepped = 5;
 
-/** Wall time from a fine clock, which may stop while the machine sleeps, and a coarse one that is set. */
+/** Wall time from a fine clock, which may stop while the machine sleeps, corrected by a coarse clock. */
 export class WallClock {
   private offset: number;
 

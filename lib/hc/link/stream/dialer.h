@@ -85,7 +85,7 @@ class Dialer {
   /// The owner uses the connection that it has got.
   void in_use();
   /// The owner has lost it. The next try is made at once, or after a pause where the connection was
-  /// of no use: a peer that accepts and closes each time costs no more than one that refuses.
+  /// of no use: a peer that accepts and closes each time costs no more than a refusing one.
   /// @param why  for the log, and the error once patience is at its end.
   /// @param log_after  … which is not logged if a connection is in use by then.
   void lost(TimePoint now, bool was_of_use, std::string why,
