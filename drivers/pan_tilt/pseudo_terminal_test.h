@@ -31,10 +31,14 @@ class PseudoTerminal {
     if (own_ >= 0) ::close(own_);
     own_ = -1;
   }
+  /// All that was written: one read() may return what the kernel has passed on so far, and only a
+  /// read() that finds nothing has waited for the rest.
   std::string read() {
+    std::string all;
     std::array<char, 4096> room = {};
-    const ssize_t got = ::read(own_, room.data(), room.size());
-    return {room.data(), static_cast<std::size_t>(got > 0 ? got : 0)};
+    for (ssize_t got = 0; (got = ::read(own_, room.data(), room.size())) > 0;)
+      all.append(room.data(), static_cast<std::size_t>(got));
+    return all;
   }
   void write(std::string_view bytes) {
     EXPECT_EQ(::write(own_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
