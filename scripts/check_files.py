@@ -23,7 +23,7 @@ def stream_peer_lines():
     """The lines of what a peer needs that speaks MTP over streams: its links, and all they include."""
     lib = ROOT / "lib"
     link = lib / "hc/link"
-    left = [link / "link.h", link / "transports.h", link / "wait_set.h", *link.glob("stream/*.cpp")]
+    left = [link / "link.h", link / "table.cpp", link / "wait_set.h", *link.glob("stream/*.cpp")]
     found = {}
     while left:
         path = left.pop()

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include <dds/place.h>
-#include <hc/link/transports.h>
+#include <hc/link/link.h>
 #include <hc/os/descriptor.h>
 
 namespace hc::dds {

@@ -9,8 +9,8 @@
 
 #include <dds/participant.h>
 #include <hc/base/backoff.h>
+#include <hc/link/link.h>
 #include <hc/link/queue.h>
-#include <hc/link/transports.h>
 #include <hc/os/event.h>
 #include <hc/os/wait_readable.h>
 

@@ -11,9 +11,9 @@
 
 #include <dds/participant.h>
 #include <dds/source.h>
+#include <hc/link/link.h>
 #include <hc/link/paced_source.h>
 #include <hc/link/queue.h>
-#include <hc/link/transports.h>
 #include <hc/os/event.h>
 #include <hc/os/reactor.h>
 

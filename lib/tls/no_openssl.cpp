@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/transports.h>
+#include <hc/link/stream/ends.h>
 #include <tls/key.h>
 
 extern "C" {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tls:HOST:PORT` and `tls-listen:[HOST:]PORT`: tcp links, encrypted, whose two ends know each
 // other's keys.
-#include <hc/link/transports.h>
+#include <hc/link/stream/ends.h>
 #include <tls/acceptor.h>
 #include <tls/channel.h>
 #include <tls/context.h>

@@ -19,7 +19,6 @@
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
 #include <hc/link/stream/ends.h>
-#include <hc/link/transports.h>
 #include <hc/os/descriptor.h>
 
 namespace hc::testing {

@@ -5,7 +5,7 @@
 
 #include <hc/base/uri.h>
 #include <hc/link/link.h>
-#include <hc/link/transports.h>
+#include <hc/link/stream/ends.h>
 #include <hc/mtp/codec.h>
 
 namespace hc::internal {

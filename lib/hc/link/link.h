@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Links carry messages one way: a Sink puts them in, a Source takes them out. A URI says what
-// carries them; link.cpp has the one table of schemes, and each transport is a file of its own.
+// carries them; table.cpp lists their schemes, and each transport is a file of its own.
 // An object is used from one thread; different objects from different threads.
 
 #include <atomic>

@@ -2,7 +2,7 @@
 // How publishers and readers find each other, and again when one has left.
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/shm_test.h>
-#include <hc/link/transports.h>
+#include <hc/link/stream/ends.h>
 
 #include <memory>
 #include <thread>

@@ -8,10 +8,10 @@
 #include <memory>
 #include <span>
 
+#include <hc/link/link.h>
 #include <hc/link/shm/readers.h>
 #include <hc/link/shm/slots.h>
 #include <hc/link/shm/waker.h>
-#include <hc/link/transports.h>
 #include <hc/mtp/header_memo.h>
 
 namespace hc::internal {

@@ -7,9 +7,9 @@
 #include <chrono>
 #include <memory>
 
+#include <hc/link/link.h>
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/shm/greeting.h>
-#include <hc/link/transports.h>
 #include <hc/mtp/header_memo.h>
 
 namespace hc::internal {

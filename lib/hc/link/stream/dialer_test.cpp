@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <hc/link/transports.h>
+#include <hc/link/stream/ends.h>
 #include <hc/testing/loopback.h>
 
 namespace hc::testing {

@@ -6,7 +6,6 @@
 
 #include <hc/link/stream/sink.h>
 #include <hc/link/stream/source.h>
-#include <hc/link/transports.h>
 #include <hc/os/loop.h>
 
 namespace hc::internal {

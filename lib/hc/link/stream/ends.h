@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The ends of links between sockets: those that connect, with `wait` and `reconnect`, and those
-// that listen, with any number of peers that come and go. Internal.
+// that listen, with any number of peers that come and go; and where each transport has its sockets.
+// Internal.
 
 #include <functional>
 #include <memory>
@@ -63,5 +64,26 @@ Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket,
 /// Errors: Invalid, System.
 Result<std::unique_ptr<Sink>> listening_sink(ListeningSocket socket, const Uri& uri,
                                              const LinkOptions& options);
+
+/// How an error about the user of a peer begins.
+inline constexpr const char* kListener = "the listener is a process of ";
+inline constexpr const char* kAccepted = "refused a peer of ";
+
+/// Who listens at `tcp:HOST:PORT` or `unix:PATH`, to be connected to. With `same_user=1` a TCP peer
+/// is only of this user or root. Errors: Invalid, NotFound.
+Result<Peer> tcp_peer(const Uri& uri);
+Result<Peer> unix_peer(const Uri& uri);
+
+/// A socket that listens at `tcp-listen:[HOST:]PORT`, on loopback without a host;
+/// `same_user` as above. Errors: Invalid, NotFound, System.
+Result<ListeningSocket> listen_tcp(const Uri& uri);
+/// A socket that listens at `unix-listen:PATH` or `unix-listen:@NAME`; connections to a @NAME are
+/// accepted from processes of this user or root only. Errors: Invalid, System.
+Result<ListeningSocket> listen_unix(const Uri& uri);
+
+/// The same of `tls:HOST:PORT` and `tls-listen:[HOST:]PORT`. They are in lib/tls, and null in
+/// programs that are linked without it.
+[[gnu::weak]] Result<Peer> tls_peer(const Uri& uri);
+[[gnu::weak]] Result<ListeningSocket> listen_tls(const Uri& uri);
 
 }  // namespace hc::internal

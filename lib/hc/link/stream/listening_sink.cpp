@@ -9,7 +9,6 @@
 #include <hc/base/backoff.h>
 #include <hc/link/stream/connection.h>
 #include <hc/link/stream/ends.h>
-#include <hc/link/transports.h>
 #include <hc/mtp/codec.h>
 #include <hc/os/loop.h>
 

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include <hc/link/transports.h>
+#include <hc/link/stream/ends.h>
 #include <hc/os/peer_user.h>
 
 namespace hc::internal {

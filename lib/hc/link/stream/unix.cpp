@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include <hc/link/transports.h>
+#include <hc/link/stream/ends.h>
 #include <hc/os/peer_user.h>
 
 namespace hc::internal {
