@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <sstream>
 #include <utility>
 
@@ -58,20 +57,6 @@ hc::Result<Instruments> read_instruments(const std::string& text) {
     *found->second = true;
   }
   return shown;
-}
-
-hc::Result<std::map<int, std::string>> read_tasks(const std::string& text) {
-  std::map<int, std::string> names;
-  for (const auto& word : words_of(text)) {
-    const auto equals = std::min(word.find('='), word.size() - 1);
-    const char* end = word.data() + word.size();
-    int number = 0;
-    const auto [after, error] = std::from_chars(word.data() + equals + 1, end, number);
-    if (error != std::errc() || after != end || equals == 0 || number < 1)
-      return hc::Error{hc::Code::Invalid, "tasks: \"" + word + "\" is not as in track=4"};
-    names[number] = word.substr(0, equals);
-  }
-  return names;
 }
 
 void draw_ring(cv::Mat& image, const Eigen::Vector2d& pixel, const std::string& name) {

@@ -3,7 +3,6 @@
 // Virtual instruments: lines and words over an image that show what the robot perceives and does.
 // Images are (H, W, 3) u8, red, green, blue. Pure.
 
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -27,10 +26,6 @@ struct Instruments {
 /// Reads "gaze depth", with blanks or commas between the names of Instruments' members.
 /// Errors: Invalid (a word that is none).
 hc::Result<Instruments> read_instruments(const std::string& text);
-
-/// Reads "track=4 read=5", as [modes] of a graph has it: names by number.
-/// Errors: Invalid (a word that is not so).
-hc::Result<std::map<int, std::string>> read_tasks(const std::string& text);
 
 /// A ring with its name, around a pixel.
 void draw_ring(cv::Mat& image, const Eigen::Vector2d& pixel, const std::string& name);

@@ -20,14 +20,6 @@ TEST(Instruments, are_read_by_name) {
   EXPECT_NE(wrong.error().detail.find("compass"), std::string::npos);
 }
 
-TEST(Instruments, tasks_are_read_by_number) {
-  const auto names = read_tasks("track=4,read=5");
-  ASSERT_TRUE(names);
-  EXPECT_EQ(*names, (std::map<int, std::string>{{4, "track"}, {5, "read"}}));
-  for (const char* wrong : {"track", "=4", "track=", "track=0", "track=4x"})
-    EXPECT_FALSE(read_tasks(wrong)) << wrong;
-}
-
 TEST(Instruments, axes_point_where_the_camera_sees_them) {
   const hc::graphics::PinholeCamera camera{160, 120, 100, 100, 80, 60, 0.05, 50};
   cv::Mat image = black();

@@ -7,6 +7,7 @@
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
+#include <hc/contract/mode_names.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
 
@@ -69,7 +70,7 @@ int main(int argc, char** argv) {
                                     {.min = 0, .max = 10});
   auto shown =
       module.parameter("instruments", "", "", "to be shown: gaze, frames, depth, confidence, task");
-  auto tasks = module.parameter("tasks", "", "", "names of modes, e.g. \"track=4 read=5\"");
+  auto modes = module.parameter(hc::kModeNames, "", "", "names of modes, by `hc run`");
   auto cursor_x = module.parameter("cursor_x", -1.0, "px", "where depth is shown, -1: the middle",
                                    {.min = -1, .max = 65535});
   auto cursor_y =
@@ -78,7 +79,7 @@ int main(int argc, char** argv) {
   hc::ModuleFrames frames{module};
 
   std::unique_ptr<Scene> scene;
-  std::optional<std::string> objects_read, shown_read, tasks_read;
+  std::optional<std::string> objects_read, shown_read, modes_read;
   Pair pair;
   Markers markers;
   Panel panel;
@@ -91,7 +92,8 @@ int main(int argc, char** argv) {
     }
     if (shown_read != *shown)
       panel.shown = hc::value_or_end(read_instruments(*(shown_read = *shown)));
-    if (tasks_read != *tasks) panel.tasks = hc::value_or_end(read_tasks(*(tasks_read = *tasks)));
+    if (modes_read != *modes)
+      panel.modes = hc::value_or_end(hc::parse_mode_names(*(modes_read = *modes)));
     panel.cursor_x = *cursor_x;
     panel.cursor_y = *cursor_y;
   };

@@ -66,8 +66,8 @@ void Panel::draw_cursor(const cv::Mat& depth, cv::Mat& image) const {
 }
 
 void Panel::draw_task(cv::Mat& image) const {
-  const auto name = tasks.find(focus);
-  draw_title(image, "task: " + (name != tasks.end() ? name->second
+  const auto name = modes.find(focus);
+  draw_title(image, "task: " + (name != modes.end() ? name->second
                                 : focus == 0        ? std::string("none")
                                                     : std::to_string(focus)));
 }

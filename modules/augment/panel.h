@@ -25,8 +25,8 @@ class Panel {
   static constexpr std::int64_t kTargetLives = 500'000'000;  ///< it is shown for so long [ns]
 
   Instruments shown;
-  std::map<int, std::string> tasks;  ///< names of modes
-  std::int32_t focus = 0;            ///< the mode in focus, 0: none
+  std::map<std::int32_t, std::string> modes;  ///< their names
+  std::int32_t focus = 0;                     ///< the mode in focus, 0: none
   std::optional<Target> target;
   cv::Mat confidence;                   ///< (H, W) u8 of the latest depth; empty: unknown
   double cursor_x = -1, cursor_y = -1;  ///< [px]; -1: the middle

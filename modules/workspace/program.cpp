@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
-#include <algorithm>
-#include <charconv>
-#include <map>
 #include <string>
 
+#include <hc/contract/mode_names.h>
 #include <hc/module/module.h>
 
 #include "workspace.h"
@@ -14,21 +12,6 @@ namespace {
 
 std::chrono::nanoseconds seconds(double value) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(value));
-}
-
-/// "track=1,read=3", as the graph gives it; what is not NAME=NUMBER is ignored.
-std::map<std::int32_t, std::string> names_of(std::string_view text) {
-  std::map<std::int32_t, std::string> names;
-  while (!text.empty()) {
-    const auto word = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    const auto equals = word.find('=');
-    std::int32_t mode = 0;
-    if (equals == std::string_view::npos) continue;
-    std::from_chars(word.data() + equals + 1, word.data() + word.size(), mode);
-    if (mode > 0) names[mode] = word.substr(0, equals);
-  }
-  return names;
 }
 
 /// Logs refused bids, once a second at most.
@@ -77,10 +60,15 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       module.parameter("expiry", 1.0, "s", "how long a bid is valid", {.min = 0.001, .max = 86400});
   auto person_expiry = module.parameter(
       "person_expiry", 60.0, "s", "how long a person's bid is valid", {.min = 0.001, .max = 86400});
-  auto modes = module.parameter("modes", "", "", "names of modes for log lines: track=1,read=3");
+  auto modes = module.parameter(hc::kModeNames, "", "", "names of modes, by `hc run`");
 
   Workspace workspace;
   Complaints complaints;
+  auto log_change = [&] {
+    const auto names = hc::parse_mode_names(*modes);
+    if (!names) module.log_once("mode_names", names.error().detail);
+    module.log("focus: " + workspace.last_change(names ? *names : decltype(*names){}));
+  };
   auto take = [&](const hc::Message& message, auto bid) {
     auto now = module.monotonic();
     auto numbers = hc::value_or_end(message.view<double>()).numbers();
@@ -105,7 +93,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   module.every(rate, [&] {
     auto now = module.monotonic();
     workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
-    if (workspace.decide(now)) module.log("focus: " + workspace.last_change(names_of(*modes)));
+    if (workspace.decide(now)) log_change();
     module.report_focus(workspace.focus());
     const std::int64_t time = module.now();
     auto message = hc::table({workspace.focus()});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // System modes: which there are, who works in them, and who receives the focus.
 #include <graph/plan/planning.h>
+#include <hc/contract/mode_names.h>
 
 namespace hc::internal {
 namespace {
@@ -15,12 +16,10 @@ class Modes {
   void run() {
     take_modes();
     for (const auto& workspace : graph_.workspaces)
-      if (publishes_focus(workspace)) {
-        planning_.plan.workspaces.insert(workspace.value);
-        name_modes(workspace.value);
-      }
+      if (publishes_focus(workspace)) planning_.plan.workspaces.insert(workspace.value);
     for (const auto& module : graph_.modules)
       if (PlannedModule* planned = planning_.planned(module.name)) {
+        name_modes(*planning_.description_of(module.name), *planned);
         if (planning_.description_of(module.name)->control) add_options(module, *planned);
         if (!planning_.plan.workspaces.contains(module.workspace)) continue;
         planned->workspace = module.workspace;
@@ -60,16 +59,11 @@ class Modes {
     return is_right;
   }
 
-  /// Gives a workspace that has a parameter `modes` their names, for its log lines.
-  void name_modes(const std::string& workspace) {
-    constexpr const char* kModes = "modes";
-    PlannedModule* planned = planning_.planned(workspace);
-    if (find_named(planning_.description_of(workspace)->parameters, kModes) == nullptr ||
-        planned == nullptr || planned->parameters.contains(kModes))
-      return;
-    std::string& text = planned->parameters[kModes];
-    for (const auto& [name, number] : planning_.plan.modes)
-      text += (text.empty() ? "" : ",") + name + "=" + std::to_string(number);
+  /// Gives a module that has a parameter `mode_names` what they are called, to show them.
+  void name_modes(const Description& description, PlannedModule& planned) {
+    const auto* parameter = find_named(description.parameters, kModeNames);
+    if (parameter == nullptr || !std::holds_alternative<std::string>(parameter->value)) return;
+    planned.parameters.try_emplace(kModeNames, mode_names_text(planning_.plan.modes));
   }
 
   static bool wants_focus(const GraphModule& module) {

@@ -37,10 +37,22 @@ TEST(Modes, ModulesAreToldTheirModes) {
   EXPECT_EQ(values_of(planned->modules[0], "--mode"), (Words{"1"}));
   EXPECT_EQ(values_of(planned->modules[1], "--modes"), (Words{"3"}));
   EXPECT_EQ(values_of(planned->modules[2], "--exclusive"), (Words{"command"}));
-  EXPECT_EQ(planned->modules[3].parameters.at("modes"), "read=3,track=1");
+  EXPECT_EQ(planned->modules[3].parameters.at("mode_names"), "read=3,track=1");
   EXPECT_EQ(planned->modules[0].mode, "track");
   EXPECT_EQ(planned->modules[1].modes, (Words{"read"}));
   EXPECT_EQ(planned->modules[2].exclusive, (std::set<std::string>{"command"}));
+}
+
+TEST(Modes, ModulesThatShowThemGetTheirNames) {
+  auto planned = plan(
+      "[modules.titled]\n[modules.other]\nprogram = \"titled\"\nparameters.mode_names = "
+      "\"mine=1\"\n"
+      "[modules.counted]\n" +
+      kModes + kBid);
+  ASSERT_TRUE(planned) << planned.error().detail;
+  EXPECT_EQ(planned->modules[0].parameters.at("mode_names"), "read=3,track=1");
+  EXPECT_EQ(planned->modules[1].parameters.at("mode_names"), "mine=1");
+  EXPECT_FALSE(planned->modules[2].parameters.contains("mode_names"));
 }
 
 TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {

@@ -81,8 +81,14 @@ inline Result<std::string> describe(const std::string& program, const std::strin
                R"({"name":"focus","types":[{"type":"table","components":1,"scalar":"i32",)"
                R"("width":1,"height":1,"coord":0}]})"));
     return text.replace(text.find("\"parameters\":["), 14,
-                        R"("parameters":[{"name":"modes","type":"string"},)");
+                        R"("parameters":[{"name":"mode_names","type":"string"},)");
   }
+  if (program == "titled")
+    return std::string(R"({"name":"x","inputs":[],"outputs":[],"parameters":[)"
+                       R"({"name":"mode_names","type":"string"}]})");
+  if (program == "counted")
+    return std::string(R"({"name":"x","inputs":[],"outputs":[],"parameters":[)"
+                       R"({"name":"mode_names","type":"integer"}]})");
   if (program == "framed")
     return std::string(R"({"name":"x","inputs":[],"outputs":[],"parameters":[)"
                        R"({"name":"frames","type":"string"},)"

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/contract/mode_names.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace hc {
+
+std::string mode_names_text(const std::map<std::string, std::int64_t>& numbers) {
+  std::string text;
+  for (const auto& [name, number] : numbers)
+    text += (text.empty() ? "" : ",") + name + "=" + std::to_string(number);
+  return text;
+}
+
+Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view text) {
+  std::map<std::int32_t, std::string> names;
+  while (!text.empty()) {
+    const auto word = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    const auto name = word.substr(0, word.find('='));
+    const char *begin = word.data() + std::min(word.size(), name.size() + 1),
+               *end = word.data() + word.size();
+    std::int32_t number = 0;
+    const auto [after, error] = std::from_chars(begin, end, number);
+    if (name.empty() || error != std::errc() || after != end || number < 1)
+      return Error{Code::Invalid, std::string(kModeNames) + ": \"" + std::string(word) +
+                                      "\" is not NAME=NUMBER, as in read=5,track=4"};
+    names[number] = name;
+  }
+  return names;
+}
+
+}  // namespace hc

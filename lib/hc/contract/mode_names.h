@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The names of a graph's modes, as a module gets them: in a parameter `mode_names` of text (G27). Pure.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include <hc/base/result.h>
+
+namespace hc {
+
+/// What `hc run` gives to a module that has such a parameter.
+inline constexpr const char* kModeNames = "mode_names";
+
+/// "read=5,track=4" of the numbers by their names.
+std::string mode_names_text(const std::map<std::string, std::int64_t>& numbers);
+
+/// The names by their numbers, of which each is 1 or more.
+///
+/// Errors: Invalid, which names the word that is not NAME=NUMBER.
+Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view text);
+
+}  // namespace hc
