@@ -26,11 +26,11 @@ struct RunReport {
 
 struct RunOptions {
   int stop = -1;  ///< descriptor that is readable when the graph is to end
-  /// Hears one line for each event, and what modules say; each begins with a module's name, or
+  /// Gets one line for each event, and the lines of modules; each begins with a module's name, or
   /// "graph".
   std::function<void(std::string_view line)> event;
-  bool tells_lines = true;  ///< that modules say; otherwise the last ones of a module that fails
-  /// Hears what the graph does, twice a second.
+  bool with_module_lines = true;  ///< false: only the last ones of a module that fails
+  /// Gets what the graph does, twice a second.
   std::function<void(const GraphState& state)> state;
   /// Where others find the graph: it has two links of that name (spec/graph.md). Empty: none.
   std::string name;

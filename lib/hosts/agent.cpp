@@ -93,7 +93,7 @@ class Agent {
     std::istringstream words(connection == nullptr ? "" : connection);
     std::string client, port, server;
     if (words >> client >> port >> server) hello.update({{"runner", client}, {"address", server}});
-    tell(hello);
+    send(hello);
     send_heartbeat();
     return {};
   }
@@ -118,11 +118,11 @@ class Agent {
     return outcome_;
   }
 
-  void tell(const Json& order) { conversation_->say(make_order(order)); }
+  void send(const Json& order) { conversation_->say(make_order(order)); }
 
   /// Speaks from time to time, so that the other end knows that this one is there.
   void send_heartbeat() {
-    if (++heartbeats_ % kHeartbeatsOfUsage == 0) tell_usage();
+    if (++heartbeats_ % kHeartbeatsOfUsage == 0) send_usage();
     const Moments moments{0, 0, monotonic_now(), monotonic_to_wall()};
     conversation_->say(make_numbers(Heartbeat, moments, moments.size()));
     heartbeat_ = loop_->call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
@@ -196,7 +196,7 @@ class Agent {
     auto started = make_child(number, order);
     if (started) return;
     children_.erase(number);
-    tell({{"what", "ended"},
+    send({{"what", "ended"},
           {"number", number},
           {"status", internal::kCannotExecute},
           {"error", started.error().detail}});
@@ -213,7 +213,7 @@ class Agent {
     std::unique_ptr<Announcer> commands;
     if (const std::string uri = order.at("control"); !uri.empty()) {
       auto made = Announcer::make(*loop_, uri, [this, number] {
-        tell({{"what", "listens"}, {"number", number}});
+        send({{"what", "listens"}, {"number", number}});
         return std::vector<Message>();
       });
       if (!made) return made.error();
@@ -233,7 +233,7 @@ class Agent {
         loop_->watch(child.process.ended(), EPOLLIN, [this, number](auto) { note_end(number); });
     if (!ended) return ended.error();
     child.ended = std::move(*ended);
-    tell({{"what", "started"},
+    send({{"what", "started"},
           {"number", number},
           {"process", internal::first_child(child.process.guard_number())}});
     return {};
@@ -273,11 +273,11 @@ class Agent {
     child.reports->take();  // accepts a connection that has just been made,
     child.reports->take();  // and reads what came on it
     for (int i = 0; i < kLastPieces && child.said; ++i) hear(number);
-    tell({{"what", "ended"}, {"number", number}, {"status", *status}});
+    send({{"what", "ended"}, {"number", number}, {"status", *status}});
     children_.erase(number);
   }
 
-  void tell_usage() {
+  void send_usage() {
     const bool with_memory = usages_++ % kUsagesOfMemory == 0;
     std::vector<std::int64_t> numbers;
     for (auto& [number, child] : children_) {
@@ -306,7 +306,7 @@ class Agent {
     } else {
       answer["error"] = port.error().detail;
     }
-    tell(answer);
+    send(answer);
   }
 
   /// Answers a question on another thread, since programs that are asked may be slow.
@@ -317,7 +317,7 @@ class Agent {
     auto answer = std::make_shared<Json>();
     aside_->begin([this, question, answer](int stop) { *answer = answer_to(question, stop); },
                   [this, answer] {
-                    tell(*answer);
+                    send(*answer);
                     answer_next();
                   });
   }

@@ -92,14 +92,14 @@ class Connection::Process final : public internal::ModuleProcess {
   [[nodiscard]] int output() const override { return module_->output(); }
   [[nodiscard]] int ended() const override { return module_->has_ended(); }
   std::optional<int> poll_status() override { return module_->status(); }
-  void ask_to_end() override { tell("end"); }
+  void ask_to_end() override { send("end"); }
   void kill() override {
-    if (!module_->status()) tell("kill");
+    if (!module_->status()) send("kill");
   }
   internal::Usage usage(bool) override { return module_->usage(); }
 
  private:
-  void tell(const char* what) { host_->tell({{"what", what}, {"number", module_->number()}}); }
+  void send(const char* what) { host_->send({{"what", what}, {"number", module_->number()}}); }
 
   std::shared_ptr<Connection> host_;
   std::shared_ptr<RemoteModule> module_;
@@ -134,7 +134,7 @@ void Connection::close() {
   });
 }
 
-void Connection::tell(Json order) {
+void Connection::send(Json order) {
   worker_.post([self = shared_from_this(), order = std::move(order)] {
     if (self->conversation_) self->conversation_->say(make_order(order));
   });
@@ -185,7 +185,7 @@ std::shared_ptr<const internal::HeldPort> Connection::held(std::uint16_t number,
           [host = weak_from_this()](const internal::HeldPort* port) {
             if (auto self = host.lock()) {
               self->worker_.post([self, number = port->number] { self->ports_.erase(number); });
-              self->tell({{"what", "release"}, {"port", port->number}});
+              self->send({{"what", "release"}, {"port", port->number}});
             }
             delete port;
           }};
@@ -260,7 +260,7 @@ std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {
             auto self = host.lock();
             if (!self) return;
             self->worker_.post([self, number] { self->readers_.erase(number); });
-            self->tell({{"what", "leave"}, {"number", number}});
+            self->send({{"what", "leave"}, {"number", number}});
           }};
 }
 

@@ -59,7 +59,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   [[nodiscard]] std::int64_t wall_offset() const override;
 
   /// Says something to the agent, if it is connected. From any thread.
-  void tell(Json order);
+  void send(Json order);
 
  private:
   class Process;

@@ -178,7 +178,7 @@ std::string command(bool& ended) {
   return line;
 }
 
-void tell(const std::string& line) {
+void report(const std::string& line) {
   std::string text = line + "\n";
   ::send(Child::kSocket, text.data(), text.size(), MSG_NOSIGNAL);
 }

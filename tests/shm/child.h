@@ -66,6 +66,6 @@ class Child {
 
 /// The child's side: the next line, if there is one now; `ended` when the test wants no more.
 std::string command(bool& ended);
-void tell(const std::string& line);
+void report(const std::string& line);
 
 }  // namespace hc::testing

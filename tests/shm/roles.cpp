@@ -61,7 +61,7 @@ int publish(const std::string& uri, std::int32_t id, std::int64_t count, const s
     ++seq;
   }
   if (auto closed = (*sink)->close(); !closed) throw Failed(closed.error().text());
-  tell("sent " + std::to_string(seq));
+  report("sent " + std::to_string(seq));
   return 0;
 }
 
@@ -77,8 +77,8 @@ class Reader {
       while (!held_.empty()) let_go();
       if (ended_) break;
       auto traffic = source_->traffic();
-      tell("end " + std::to_string(traffic.messages) + " " + std::to_string(traffic.lost()) + " " +
-           std::to_string(last_));
+      report("end " + std::to_string(traffic.messages) + " " + std::to_string(traffic.lost()) +
+             " " + std::to_string(last_));
     }
     return 0;
   }
@@ -119,7 +119,7 @@ class Reader {
     last_ = place;
     if (asked_ >= 0 && place > asked_) {
       asked_ = -1;
-      tell(std::to_string(place) + " " + std::to_string(now()));
+      report(std::to_string(place) + " " + std::to_string(now()));
     }
     if (most_ == 0) return true;
     held_.push_back(std::move(message));
@@ -161,7 +161,7 @@ int hold(const std::string& uri, std::size_t count) {
     auto got = receive(**source, message, Child::kSocket);
     if (!got || !*got) throw Failed(got ? "ended" : got.error().text());
   }
-  tell("holds " + std::to_string(place_of(held.back().header)));
+  report("holds " + std::to_string(place_of(held.back().header)));
   for (bool ended = false; !ended;) {
     pollfd polled{Child::kSocket, POLLIN, 0};
     ::poll(&polled, 1, -1);

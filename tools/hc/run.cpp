@@ -174,7 +174,7 @@ void run(const RunOptions& options) {
   ::setenv("HC_GRAPH", (name_of(options) + "." + std::to_string(::getpid())).c_str(), 1);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
-  run_options.tells_lines = !options.quiet;
+  run_options.with_module_lines = !options.quiet;
   run_options.event = [&](std::string_view line) {
     bool is_event = line.ends_with(": started") || line.ends_with(": ended");
     if (!(options.quiet && is_event)) status.say(line);

@@ -46,7 +46,7 @@ Message Observation::state_message() {
   return stamped(make_rows(std::array{to_json(asked_.state())}), State, states_);
 }
 
-void Observation::tell_state() {
+void Observation::publish_state() {
   if (!is_heard()) return;
   soon_.reset();
   announcer_->say(state_message());
@@ -54,7 +54,7 @@ void Observation::tell_state() {
 
 void Observation::changed() {
   if (!is_heard() || soon_) return;
-  soon_ = loop_.call_at(std::chrono::steady_clock::now() + kSoon, [this] { tell_state(); });
+  soon_ = loop_.call_at(std::chrono::steady_clock::now() + kSoon, [this] { publish_state(); });
 }
 
 void Observation::log(const std::string& line) {

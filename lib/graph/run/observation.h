@@ -33,7 +33,7 @@ class Observation {
                                                    Asked asked);
 
   /// Publishes the state, if anybody reads it.
-  void tell_state();
+  void publish_state();
   /// Has the state published soon, however often it is called by then.
   void changed();
   void log(const std::string& line);

@@ -97,8 +97,8 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
   hear.event = [this, name](const std::string& line) { say(with_name(name, line)); };
   hear.said = [this, name](const std::string& line) { this->hear(with_name(name, line)); };
   hear.failed = [this, name](const std::deque<std::string>& last_words) {
-    if (!options_.tells_lines)
-      for (const auto& line : last_words) tell(with_name(name, line));
+    if (!options_.with_module_lines)
+      for (const auto& line : last_words) emit(with_name(name, line));
   };
   hear.changed = [this] {
     is_unsettled_ = true;
@@ -164,12 +164,12 @@ std::set<Supervised*> Runner::cut_off_by(const std::string& name) const {
   return cut_off;
 }
 
-void Runner::tell(const std::string& line) const {
+void Runner::emit(const std::string& line) const {
   if (options_.event) options_.event(line);
 }
 
 void Runner::say(const std::string& line) {
-  tell(line);
+  emit(line);
   if (observation_) observation_->log(line);
 }
 
@@ -181,12 +181,12 @@ void Runner::hear(std::string line) {
     return;
   line = with_link_names(std::move(line));
   if (const auto found = line.find(Lines::kNotice); found != std::string::npos)
-    return tell(line.erase(found + 2, Lines::kNotice.size() - 2));
+    return emit(line.erase(found + 2, Lines::kNotice.size() - 2));
   if (auto found = line.find(kResult); found != std::string::npos) {
     line.erase(found, kResult.size() - 2);
     if (results_.size() < kMaxResults) results_.push_back(line);
   }
-  if (options_.tells_lines) tell(line);
+  if (options_.with_module_lines) emit(line);
   if (observation_) observation_->log(line);
 }
 
@@ -211,7 +211,7 @@ void Runner::tick() {
     if (observation_ && observation_->is_heard()) {
       for (auto& [name, module] : modules_)
         module->measure(time, (ticks_ - 1) % kTicksOfMemory == 0);
-      observation_->tell_state();
+      observation_->publish_state();
     }
     if (options_.state) options_.state(state());
   }

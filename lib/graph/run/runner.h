@@ -50,7 +50,7 @@ class Runner {
   [[nodiscard]] std::set<Supervised*> neighbours_of(const std::string& name) const;
   [[nodiscard]] std::set<Supervised*> cut_off_by(const std::string& name) const;
 
-  void tell(const std::string& line) const;
+  void emit(const std::string& line) const;
   void say(const std::string& line);
   void hear(std::string line);
   [[nodiscard]] std::string with_link_names(std::string line) const;

@@ -212,7 +212,7 @@ std::vector<std::string> Runner::set_parameters(const Commands& commands) {
     if (module == changed.end()) continue;
     planned = module->second;
     auto* supervised = find(planned.name);
-    supervised->tell(supervised->adopt(planned).outputs);
+    supervised->send_commands(supervised->adopt(planned).outputs);
   }
   return {};
 }
@@ -235,7 +235,7 @@ void Runner::change_to(Plan plan) {
   bool has_changed = !added.empty();
   for (auto& [module, change] : changes) {
     has_changed = has_changed || !change.is_empty();
-    module->tell(change.unlinks);
+    module->send_commands(change.unlinks);
   }
   for (auto entry = modules_.begin(); entry != modules_.end();) {
     auto module = entry++;
@@ -244,9 +244,9 @@ void Runner::change_to(Plan plan) {
     module->second->end();
     leaving_.insert(modules_.extract(module));
   }
-  for (auto& [module, change] : changes) module->tell(change.outputs);
+  for (auto& [module, change] : changes) module->send_commands(change.outputs);
   for (const auto* module : added) add(*module);
-  for (auto& [module, change] : changes) module->tell(change.inputs);
+  for (auto& [module, change] : changes) module->send_commands(change.inputs);
   say(has_changed ? "graph: changed" : "graph: unchanged");
 }
 

@@ -126,7 +126,7 @@ void Supervised::look_at_host() {
 }
 
 /// Has a module on another host go by the time here.
-void Supervised::tell_time() {
+void Supervised::send_wall_offset() {
   constexpr std::int64_t kNear = 20'000;  // [ns]
   const auto there = control_ && process_ ? host() : nullptr;
   if (!there || !there->state().is_connected) return;
@@ -134,7 +134,7 @@ void Supervised::tell_time() {
   if (std::abs(wall_offset - wall_offset_) < kNear) return;
   wall_offset_ = wall_offset;
   if (is_heard())
-    tell({text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset), {}})});
+    send_commands({text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset), {}})});
 }
 
 Status Supervised::start() {
@@ -246,7 +246,7 @@ bool Supervised::is_heard() const {
   return process_ && control_ && control_->is_heard();
 }
 
-void Supervised::tell(const std::vector<std::string>& commands) {
+void Supervised::send_commands(const std::vector<std::string>& commands) {
   for (const auto& command : commands) {
     if (!is_heard() || wish_ == Wish::Restart || control_->say(command_message(command))) continue;
     hear_.event("does not accept commands; restarting");
@@ -257,9 +257,9 @@ void Supervised::tell(const std::vector<std::string>& commands) {
 void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
   std::string what = end.port + "=" + end.uri;
   if (is_finished && finished_.insert(what).second)
-    tell({text({ModuleCommand::Verb::Finish, true, what, {}})});
+    send_commands({text({ModuleCommand::Verb::Finish, true, what, {}})});
   if (!is_finished && finished_.erase(what) != 0)
-    tell({text({ModuleCommand::Verb::Link, true, what, {}})});
+    send_commands({text({ModuleCommand::Verb::Link, true, what, {}})});
 }
 
 void Supervised::note_end() {

@@ -64,14 +64,14 @@ class Supervised {
   /// Ends it where it runs, and starts it, also if it has failed permanently.
   void restart();
 
-  /// Takes another plan, and restarts where commands cannot make it so. @returns  what to tell()
-  /// it.
+  /// Takes another plan, and restarts where commands cannot make it so. @returns  the commands for
+  /// send_commands().
   ModuleChange adopt(PlannedModule plan);
   /// Sends commands. They reach a module that has not connected yet when it connects; one
   /// that accepts no commands is restarted.
-  void tell(const std::vector<std::string>& commands);
+  void send_commands(const std::vector<std::string>& commands);
 
-  /// Has it know that an input's writer has ended for good, or is there again.
+  /// Notes that an input's writer has ended for good, or is there again.
   void finish_input(const PlannedEnd& end, bool is_finished);
   /// A module that it is linked to is interrupted. One without `control` takes that for the end of
   /// its work, and is restarted when it ends.
@@ -122,7 +122,7 @@ class Supervised {
   };
 
   [[nodiscard]] std::shared_ptr<Host> host() const;
-  void tell_time();
+  void send_wall_offset();
   Status open_observed(Observed& observed, const std::string& port, const std::string& name);
   void end_observations(MonotonicTime time);
   Status open_control();

@@ -24,7 +24,7 @@ Result<std::string> Supervised::observe(const std::string& port, const std::stri
     Observed observed;
     if (auto opened = open_observed(observed, port, name); !opened) return opened.error();
     found = observed_.emplace(port, std::move(observed)).first;
-    tell({found->second.command()});
+    send_commands({found->second.command()});
   }
   found->second.until = now() + kObserved;
   return found->second.uri;
@@ -58,7 +58,7 @@ Status Supervised::open_observed(Observed& observed, const std::string& port,
 void Supervised::end_observations(MonotonicTime time) {
   std::erase_if(observed_, [&](const auto& entry) {
     const bool is_over = time >= entry.second.until;
-    if (is_over) tell({"unlink out " + entry.second.text});
+    if (is_over) send_commands({"unlink out " + entry.second.text});
     return is_over;
   });
 }
@@ -89,7 +89,7 @@ void Supervised::take_report(const Message& message) {
 
 void Supervised::look(MonotonicTime time) {
   end_observations(time);
-  tell_time();
+  send_wall_offset();
   if (process_ && heard_ == MonotonicTime(0)) return look_at_silent();
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const bool is_blocked = reports_.state().blocked_row != 0;

@@ -135,7 +135,7 @@ TEST_F(Supervision, WhoDoesNotEndWhenAskedToIsKilled) {
 }
 
 TEST_F(Supervision, AQuietOneTellsItsLastLinesWhenItFails) {
-  options_.tells_lines = false;
+  options_.with_module_lines = false;
   add("a", "seq 1 30 >&2; exit 2");
   ASSERT_TRUE(run());
   ASSERT_EQ(lines_.size(), 22U);
@@ -158,7 +158,7 @@ class Reporter {
     ASSERT_TRUE(sink_->send(message));
   }
   void count(std::int64_t messages) { report(1, std::array{messages, 10 * messages}); }
-  void tell_state(bool awaits_reader) {
+  void publish_state(bool awaits_reader) {
     report(4, std::array<std::int64_t, 4>{0, 0, 1, awaits_reader ? 1 : 0});
   }
   template <std::size_t kSize>
@@ -198,7 +198,7 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") {
       reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
-      reporter->tell_state(true);
+      reporter->publish_state(true);
     }
     if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9')
       process = std::stoi(std::string(line.substr(3)));
@@ -211,7 +211,7 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
     seen.push_back(detail);
     const bool is_stopped = state.modules.at(0).status == ModuleStatus::Stalled;
     if (is_stopped || seen.size() == 1) ::kill(process, is_stopped ? SIGCONT : SIGSTOP);
-    if (seen.size() == 3) reporter->tell_state(false);
+    if (seen.size() == 3) reporter->publish_state(false);
   };
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;

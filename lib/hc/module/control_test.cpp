@@ -23,7 +23,7 @@ TEST_F(RunningModule, ObeysCommands) {
   start_managed(module, {"--in=" + uri("first"), "--out=" + uri("out")});
   next(*reports_, Report::Parameters);
   ::testing::internal::CaptureStderr();
-  ASSERT_TRUE(tell(*control_, "set factor=5"));
+  ASSERT_TRUE(send_command(*control_, "set factor=5"));
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters))[0], "factor=5");
   auto from = source_of(uri("out"));
   ASSERT_TRUE(first->send(table({2.0})));
@@ -33,18 +33,18 @@ TEST_F(RunningModule, ObeysCommands) {
 
   auto second = sink_of(uri("second"));
   auto other = source_of(uri("other"));
-  ASSERT_TRUE(tell(*control_, "link in in=" + uri("second")));
+  ASSERT_TRUE(send_command(*control_, "link in in=" + uri("second")));
   next(*reports_, Report::Links);
-  ASSERT_TRUE(tell(*control_, "link out out=" + uri("other")));
+  ASSERT_TRUE(send_command(*control_, "link out out=" + uri("other")));
   EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 4U);
   ASSERT_TRUE(second->send(table({3.0})));
   for (auto* each : {from.get(), other.get()}) {
     ASSERT_TRUE(*receive(*each, message));
     EXPECT_EQ(message.view<double>()->at(0, 0), 15);
   }
-  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("first")));
+  ASSERT_TRUE(send_command(*control_, "unlink in in=" + uri("first")));
   next(*reports_, Report::Links);
-  ASSERT_TRUE(tell(*control_, "unlink out out=" + uri("out")));
+  ASSERT_TRUE(send_command(*control_, "unlink out out=" + uri("out")));
   EXPECT_EQ(rows_of(next(*reports_, Report::Links)),
             (std::vector<std::string>{"in in " + uri("second"), "out out " + uri("other")}));
   ASSERT_TRUE(second->send(table({1.0})));
@@ -54,7 +54,7 @@ TEST_F(RunningModule, ObeysCommands) {
   // What is wrong changes nothing, and is an error.
   for (const char* line : {"set factor=-1", "set factor", "set colour=1", "set title=b", "link up",
                            "unlink out out=inproc:nowhere", "route out=x via=y", "jump"})
-    ASSERT_TRUE(tell(*control_, line));
+    ASSERT_TRUE(send_command(*control_, line));
   const std::string commands =
       "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, route "
       "PORT=URI WORDS, or wall_offset NANOSECONDS";
@@ -66,15 +66,15 @@ TEST_F(RunningModule, ObeysCommands) {
            "\"route out=x via=y\": a route is to=ADDRESS,… and peer=NAME, not \"via\"",
            "\"jump\": " + commands})
     EXPECT_EQ(rows_of(next(*reports_, Report::Refusal)), std::vector{"command " + wrong});
-  ASSERT_TRUE(tell(*control_, "set factor=7"));
+  ASSERT_TRUE(send_command(*control_, "set factor=7"));
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)),
             (std::vector<std::string>{"factor=7", "title=a"}));
   // One whose inputs have all been unlinked waits for others.
-  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("second")));
+  ASSERT_TRUE(send_command(*control_, "unlink in in=" + uri("second")));
   next(*reports_, Report::Links);
   auto third = sink_of(uri("third"));
   ASSERT_TRUE(third->close());
-  ASSERT_TRUE(tell(*control_, "link in in=" + uri("third")));
+  ASSERT_TRUE(send_command(*control_, "link in in=" + uri("third")));
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(*title, "a");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
@@ -86,7 +86,7 @@ TEST_F(RunningModule, WhoReportsToNobodyTellsOnStandardErrorWhatIsWrong) {
   module.on(in, [](const auto&) {});
   auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
   ::testing::internal::CaptureStderr();
-  ASSERT_TRUE(tell(*control, "set colour=1"));
+  ASSERT_TRUE(send_command(*control, "set colour=1"));
   ASSERT_TRUE(sink->close());
   start(module, {"--in=" + uri("in"), "--control=" + uri("control")});
   EXPECT_EQ(join(), 0);
@@ -223,7 +223,7 @@ TEST_F(RunningModule, ATimerHearsOfItsRateAtOnce) {
   auto sink = sink_of(uri("control"));
   module.every(rate, [&] { throw ModuleError("tick"); });
   start(module, {"--control=" + uri("control")});
-  ASSERT_TRUE(tell(*sink, "set rate=1000"));
+  ASSERT_TRUE(send_command(*sink, "set rate=1000"));
   EXPECT_EQ(join(), 1);
 }
 

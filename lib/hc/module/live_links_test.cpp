@@ -69,9 +69,9 @@ TEST_F(RunningModule, ObeysWhileItWaitsForAReader) {
   start_managed(module, {"--out=" + link});
   while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) == 0) {
   }
-  ASSERT_TRUE(tell(*control_, "set factor=4"));
+  ASSERT_TRUE(send_command(*control_, "set factor=4"));
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)).front(), "factor=4");
-  ASSERT_TRUE(tell(*control_, "unlink out out=" + link));
+  ASSERT_TRUE(send_command(*control_, "unlink out out=" + link));
   EXPECT_EQ(join(), 0);
 }
 
@@ -102,7 +102,7 @@ TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
     ASSERT_TRUE(quick->wait());
     take_all();
   }
-  ASSERT_TRUE(tell(*control_, "unlink out out=" + link));
+  ASSERT_TRUE(send_command(*control_, "unlink out out=" + link));
   while (received < kCount) {
     ASSERT_TRUE(quick->wait());
     take_all();
@@ -146,8 +146,8 @@ TEST_F(RunningModule, HasOnlyTheLinksThatItIsToldOf) {
   EXPECT_TRUE(rows_of(next(*reports_, Report::Links)).empty());
   auto first = sink_of(uri("first"));
   auto from = source_of(uri("out"));
-  ASSERT_TRUE(tell(*control_, "link out out=" + uri("out")));
-  ASSERT_TRUE(tell(*control_, "link in in=" + uri("first")));
+  ASSERT_TRUE(send_command(*control_, "link out out=" + uri("out")));
+  ASSERT_TRUE(send_command(*control_, "link in in=" + uri("first")));
   ASSERT_TRUE(first->send(table({2.0})));
   Message message;
   ASSERT_TRUE(*receive(*from, message));
@@ -178,7 +178,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   for (double i : {1, 2, 3}) {
     auto sink = open_sink(*parse_uri(uri("in")));
     while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has closed
-    ASSERT_TRUE(tell(*control_, "link in in=" + uri("in")));
+    ASSERT_TRUE(send_command(*control_, "link in in=" + uri("in")));
     ASSERT_TRUE((*sink)->send(table({i})));
     ASSERT_TRUE(*receive(*handled, message));
     ASSERT_TRUE((*sink)->close());
@@ -187,7 +187,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   while (rows.back()[0] < 3) rows = next_counters(*reports_);
   ASSERT_EQ(rows.size(), 3U) << "the other, this one, and that out";
   EXPECT_EQ(rows[1][0], 3);
-  ASSERT_TRUE(tell(*control_, "unlink in in=" + uri("in")));
+  ASSERT_TRUE(send_command(*control_, "unlink in in=" + uri("in")));
   std::vector<std::string> links;
   while (links.size() != 2) links = rows_of(next(*reports_, Report::Links));
   EXPECT_EQ(links, (std::vector{"in in " + uri("other"), "out out " + uri("out")}));
@@ -208,7 +208,7 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersTold) {
   ASSERT_TRUE(sink->send(table({1.0})));
   ASSERT_TRUE(*receive(*from, message));
   for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
-    ASSERT_TRUE(tell(*control_, "unlink " + end));
+    ASSERT_TRUE(send_command(*control_, "unlink " + end));
     EXPECT_EQ(next_counters(*reports_).back()[0], 1);
     next(*reports_, Report::Links);
   }
@@ -231,7 +231,7 @@ TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(table({static_cast<double>(i)})));
   while (next_counters(*reports).back()[0] < 100) {
   }
-  ASSERT_TRUE(tell(*control, "unlink out out=" + place + "?keep=100&rate=1"));
+  ASSERT_TRUE(send_command(*control, "unlink out out=" + place + "?keep=100&rate=1"));
   auto row = next_counters(*reports).back();
   while (row[6] == 0) row = next_counters(*reports).back();
   EXPECT_EQ(row[0], 100);
@@ -257,7 +257,7 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   std::string place = uri("left");
   auto l = sink_of(place), r = sink_of(uri("right"));
   auto obeyed = [&](const std::string& command) {
-    ASSERT_TRUE(tell(*control_, command));
+    ASSERT_TRUE(send_command(*control_, command));
     next(*reports_, Report::Links);
   };
   obeyed("link in right=" + uri("right"));
@@ -284,8 +284,8 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   auto one = sink_of(uri("one")), other = sink_of(uri("other"));
   start_managed(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other")});
   next(*reports_, Report::State);
-  ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
-  ASSERT_TRUE(tell(*control_, "unlink in focus=" + uri("one")));
+  ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
+  ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
   next(*reports_, Report::Links);
   EXPECT_EQ(rows_of(next(*reports_, Report::Refusal)),
             std::vector{"command \"unlink in focus=" + uri("one") + "\": there is no such link"});
@@ -305,7 +305,7 @@ TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
   ASSERT_TRUE(writer->send(table({1.0})));
   ASSERT_TRUE(writer->close());
   writer.reset();
-  ASSERT_TRUE(tell(*control_, "finish in=" + name + "?reconnect=60"));
+  ASSERT_TRUE(send_command(*control_, "finish in=" + name + "?reconnect=60"));
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
@@ -315,7 +315,7 @@ TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {
   Module module{"reader", "Reads."};
   module.on(module.input("in", table<double>(), ""), [](const auto&) {});
   start_managed(module);
-  ASSERT_TRUE(tell(*control_, "link in in=" + nowhere));
+  ASSERT_TRUE(send_command(*control_, "link in in=" + nowhere));
   const auto refusal = rows_of(next(*reports_, Report::Refusal)).at(0);
   EXPECT_TRUE(refusal.starts_with("command \"link in in=" + nowhere + "\": Closed: in: "))
       << refusal;

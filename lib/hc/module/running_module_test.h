@@ -79,7 +79,7 @@ inline Message next(Source& reports, Report kind) {
   return message;
 }
 
-inline Status tell(Sink& control, const std::string& line) {
+inline Status send_command(Sink& control, const std::string& line) {
   return control.send(make_rows(std::vector<std::string>{line}));
 }
 

@@ -117,7 +117,7 @@ TEST_F(RunningModule, IsTracedFromACommandOn) {
   auto trace = source_of(uri("trace"));
   start_managed(module, {"--in=" + uri("in")});
   EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 1U);
-  ASSERT_TRUE(tell(*control_, "link out trace=" + uri("trace")));
+  ASSERT_TRUE(send_command(*control_, "link out trace=" + uri("trace")));
   EXPECT_EQ(rows_of(next(*reports_, Report::Links))[1], "out trace " + uri("trace"));
   ASSERT_TRUE(sink->send(at(table({1.0}), 1000, 7)));
   Message message;
@@ -125,10 +125,10 @@ TEST_F(RunningModule, IsTracedFromACommandOn) {
   EXPECT_EQ(
       words(read_trace(message)),
       (std::vector<std::string>{"took in 0 7 1000", "began in 0 7 1000", "ended in 0 7 1000"}));
-  ASSERT_TRUE(tell(*control_, "unlink out trace=" + uri("trace")));
+  ASSERT_TRUE(send_command(*control_, "unlink out trace=" + uri("trace")));
   EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 1U);
   EXPECT_FALSE(*receive(*trace, message));
-  ASSERT_TRUE(tell(*control_, "unlink out trace=" + uri("trace")));
+  ASSERT_TRUE(send_command(*control_, "unlink out trace=" + uri("trace")));
   EXPECT_EQ(rows_of(next(*reports_, Report::Refusal))[0],
             "command \"unlink out trace=" + uri("trace") + "\": there is no such link");
   ASSERT_TRUE(sink->close());
@@ -196,7 +196,7 @@ class TracedEffort : public RunningModule {
     words.insert(words.end(), more.begin(), more.end());
     control_ = sink_of(uri("control"));
     reports_ = source_of(uri("reports"));
-    for (const auto& command : commands) EXPECT_TRUE(tell(*control_, command));
+    for (const auto& command : commands) EXPECT_TRUE(send_command(*control_, command));
     words.insert(words.end(), {"--manage=" + uri("reports"), "--control=" + uri("control")});
     start(module, words);
     Message message;

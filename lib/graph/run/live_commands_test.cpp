@@ -61,7 +61,7 @@ TEST_F(LiveTold, ACommandThatAModuleRefusesIsTold) {
     message.header.src = 5;
     EXPECT_TRUE((*reports)->send(message));
   });
-  options_.tells_lines = false;
+  options_.with_module_lines = false;
   ASSERT_TRUE(run());
 }
 
