@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person's commands to turn the head, by a game controller.
+#include <drivers/joystick/changes.h>
 #include <drivers/joystick/joystick.h>
-#include <drivers/joystick/stick.h>
 
 #include <hc/module/module.h>
 
@@ -22,24 +22,20 @@ int main(int argc, char** argv) {
                                {.min = 0, .max = 1000});
 
   std::unique_ptr<hc::Joystick> joystick;
-  hc::JoystickState sent;
-  hc::Stick sent_stick;
+  hc::JoystickWatch watch;
 
   auto send_stick = [&] {
-    stick.send(hc::table({sent_stick.left, sent_stick.down}).at(module.now()));
+    stick.send(hc::table({watch.stick().left, watch.stick().down}).at(module.now()));
   };
   auto send_changes = [&] {
     const auto& state = joystick->state();
     const auto time = module.now();
-    if (state.name != sent.name)
-      module.log(state.name.empty() ? sent.name + " disconnected" : state.name + " connected");
+    const auto changes = watch.take(state, *dead_zone);
+    if (!changes.line.empty()) module.log(changes.line);
     // The stick first: the head moves by it.
-    const auto pushed = hc::stick_of(state.axes, *dead_zone);
-    if (pushed != std::exchange(sent_stick, pushed)) send_stick();
-    if (state.axes != sent.axes) axes.send(hc::table<double>(state.axes).at(time));
-    if (state.buttons != sent.buttons)
-      buttons.send(hc::table<std::uint8_t>(state.buttons).at(time));
-    sent = state;
+    if (changes.stick) send_stick();
+    if (changes.axes) axes.send(hc::table<double>(state.axes).at(time));
+    if (changes.buttons) buttons.send(hc::table<std::uint8_t>(state.buttons).at(time));
   };
   auto update = [&] {
     while (joystick->update()) send_changes();
@@ -56,7 +52,7 @@ int main(int argc, char** argv) {
   });
   module.on_readable([&] { return joystick->descriptor(); }, update);
   module.every(rate, [&] {
-    if (!sent_stick.is_in_middle()) send_stick();
+    if (!watch.stick().is_in_middle()) send_stick();
   });
   return module.run(argc, argv);
 }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What has changed about a joystick since it was last looked at, and so is worth a message. Pure.
+
+#include <string>
+
+#include <drivers/joystick/joystick.h>
+#include <drivers/joystick/stick.h>
+
+namespace hc {
+
+struct JoystickChanges {
+  std::string line;  ///< which one was connected or disconnected; empty: neither
+  bool stick = false, axes = false, buttons = false;
+};
+
+class JoystickWatch {
+ public:
+  /// What is new in a state; each change is given once.
+  /// @param dead_zone  as of stick_of().
+  JoystickChanges take(const JoystickState& state, double dead_zone);
+  /// The stick as of the last state.
+  [[nodiscard]] const Stick& stick() const { return stick_; }
+
+ private:
+  JoystickState state_;
+  Stick stick_;
+};
+
+}  // namespace hc
