@@ -17,7 +17,8 @@ Result<FileEar> FileEar::open(const std::string& path, const hc::audio::Format& 
   return FileEar(std::move(*reader), std::move(*converter), format, start);
 }
 
-Result<Piece> FileEar::next(std::size_t frames) {
+Result<std::optional<Piece>> FileEar::next() {
+  const auto frames = static_cast<std::size_t>(format_.rate / kPiecesPerSecond);
   const std::size_t wanted = frames * static_cast<std::size_t>(format_.channels);
   std::vector<std::int16_t> read(frames * static_cast<std::size_t>(reader_.format().channels));
   while (ready_.size() < wanted && !is_finished_) {
@@ -33,14 +34,15 @@ Result<Piece> FileEar::next(std::size_t frames) {
     const auto more = converter_.take();
     ready_.insert(ready_.end(), more.begin(), more.end());
   }
-  const auto end = ready_.begin() + static_cast<std::ptrdiff_t>(std::min(wanted, ready_.size()));
+  if (ready_.empty()) return std::optional<Piece>();
+  const std::size_t size = std::min(wanted, ready_.size());
   constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
   const std::int64_t rate = format_.rate;
-  Piece piece{{ready_.begin(), end},
-              start_ + sent_ / rate * kSecond + sent_ % rate * kSecond / rate};
-  sent_ += static_cast<std::int64_t>(piece.samples.size()) / format_.channels;
-  ready_.erase(ready_.begin(), end);
-  return piece;
+  auto piece = hc::audio::message_of(std::span(std::as_const(ready_)).first(size), format_)
+                   .at(start_ + sent_ / rate * kSecond + sent_ % rate * kSecond / rate);
+  sent_ += piece.header.width;
+  ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(size));
+  return std::optional(std::move(piece));
 }
 
 std::optional<Piece> DeviceEar::next() {
@@ -51,8 +53,8 @@ std::optional<Piece> DeviceEar::next() {
   if (std::exchange(is_silent_, false)) log_("microphone resumed");
   if (capture_->lost() > 0 && !std::exchange(has_lost_, true))
     log_("sound dropped: not read in time (further drops are not logged)");
-  const auto frames = static_cast<std::int64_t>(heard->samples.size()) / format_.channels;
-  return Piece{std::move(heard->samples), times_.stamp(frames, heard->time)};
+  const auto piece = hc::audio::message_of(heard->samples, format_);
+  return piece.at(times_.stamp(piece.header.width, heard->time));
 }
 
 void DeviceEar::look() {
@@ -69,7 +71,7 @@ void DeviceEar::look() {
     return;
   }
   if (!backoff_.is_due(now)) return;
-  auto opened = hc::audio::Capture::open(device_, format_, frames_);
+  auto opened = hc::audio::Capture::open(device_, format_, format_.rate / kPiecesPerSecond);
   if (!opened) {
     backoff_.fail(now);
     if (!std::exchange(is_missing_, true)) log_(opened.error().detail + "; retrying");

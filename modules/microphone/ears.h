@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Sound of a microphone or a WAV file, in pieces with the time of their first frame.
+// Sound of a microphone or a WAV file, in messages with the time of their first frame.
 
 #include <chrono>
 #include <cstdint>
@@ -16,23 +16,23 @@
 #include <hc/base/result.h>
 #include <sound/capture.h>
 #include <sound/converter.h>
+#include <sound/messages.h>
 #include <sound/wav.h>
 
-/// A piece of sound.
-struct Piece {
-  std::vector<std::int16_t> samples;  ///< channels next to one another
-  std::int64_t time = 0;              ///< of the first frame [ns since the Unix epoch]
-};
+inline constexpr int kPiecesPerSecond = 50;  // of 20 ms
 
-/// A WAV file as sound of another format, in pieces of one length; the last may be shorter.
+/// A piece of sound, of a rate that has a coordinate system.
+using Piece = hc::MessageOf<hc::SoundKind<std::int16_t>>;
+
+/// A WAV file as sound of another format; the last piece may be shorter.
 class FileEar {
  public:
   /// @param start  time of its first frame [ns]. Errors: as WavReader::open and Converter::make.
   static hc::Result<FileEar> open(const std::string& path, const hc::audio::Format& format,
                                   std::int64_t start = 0);
 
-  /// The next piece, empty at the end. Errors: System.
-  hc::Result<Piece> next(std::size_t frames);
+  /// The next piece; nothing at the end. Errors: System.
+  hc::Result<std::optional<Piece>> next();
 
  private:
   FileEar(hc::audio::WavReader reader, hc::audio::Converter converter,
@@ -54,16 +54,13 @@ class FileEar {
 /// is logged once.
 class DeviceEar {
  public:
-  static constexpr std::chrono::seconds kTimeout{3};  ///< some servers begin late
+  static constexpr std::chrono::seconds kTimeout{3};      ///< some servers begin late
+  static constexpr std::chrono::milliseconds kLook{100};  ///< how often look() is to be called
   using Log = std::function<void(std::string_view line)>;
-  DeviceEar(std::string device, const hc::audio::Format& format, int frames, Log log)
-      : device_(std::move(device)),
-        format_(format),
-        frames_(frames),
-        log_(std::move(log)),
-        times_(format.rate) {}
+  DeviceEar(std::string device, const hc::audio::Format& format, Log log)
+      : device_(std::move(device)), format_(format), log_(std::move(log)), times_(format.rate) {}
 
-  /// Checks whether the device is connected, and opens it again. To be called every 0.1 s.
+  /// Checks whether the device is connected, and opens it again.
   void look();
   /// For poll(): readable while there are pieces; -1 without a device.
   [[nodiscard]] int descriptor() const { return capture_ ? capture_->descriptor() : -1; }
@@ -73,7 +70,6 @@ class DeviceEar {
  private:
   std::string device_;
   hc::audio::Format format_;
-  int frames_;
   Log log_;
   hc::audio::FrameClock times_;
   hc::Backoff backoff_;

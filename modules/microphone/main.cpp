@@ -4,13 +4,6 @@
 
 #include "ears.h"
 
-namespace {
-
-constexpr int kPiecesPerSecond = 50;             // of 20 ms
-constexpr std::chrono::milliseconds kLook{100};  // how often the device is checked
-
-}  // namespace
-
 int main(int argc, char** argv) {
   hc::Module module{"microphone", "Sends the sound of a microphone or a WAV file."};
   auto mono = module.output("mono", hc::sound<std::int16_t>(1),
@@ -30,44 +23,33 @@ int main(int argc, char** argv) {
 
   std::optional<FileEar> from_file;
   std::optional<DeviceEar> from_device;
-  std::int32_t coord = 0;
 
-  auto send = [&](const Piece& piece) {
-    const auto channel_count = static_cast<int>(*channels);
-    const auto message =
-        hc::sound<std::int16_t>(channel_count, piece.samples).at(piece.time).in(coord);
-    (channel_count == 1 ? mono : stereo).send(message);
-  };
+  auto send = [&](const Piece& piece) { (*channels == 1 ? mono : stereo).send(piece); };
   auto send_from_file = [&] {
     // A piece is sent at its end, as by a microphone.
     if (*paced) module.keep_rate(kPiecesPerSecond);
-    const auto piece =
-        hc::value_or_end(from_file->next(static_cast<std::size_t>(*rate / kPiecesPerSecond)));
-    if (piece.samples.empty()) return false;
-    send(piece);
-    return true;
+    const auto piece = hc::value_or_end(from_file->next());
+    if (piece) send(*piece);
+    return piece.has_value();
   };
   module.on_start([&] {
     const hc::audio::Format format{static_cast<int>(*rate), static_cast<int>(*channels)};
-    auto known = hc::audio::coord_of(format.rate);
-    if (!known)
+    if (!hc::audio::coord_of(format.rate))
       throw hc::ModuleError(
           hc::Error{hc::Code::Invalid, "parameter rate: " + std::to_string(*rate) +
                                            " is not 8000, 16000, 22050, 44100 or 48000"});
-    coord = *known;
     if (!file->empty()) {
       from_file.emplace(hc::value_or_end(FileEar::open(*file, format, module.now())));
       return module.generate(send_from_file);
     }
-    from_device.emplace(*device, format, format.rate / kPiecesPerSecond,
-                        [&](std::string_view line) { module.log(line); });
+    from_device.emplace(*device, format, [&](std::string_view line) { module.log(line); });
     from_device->look();
   });
   module.on_readable([&] { return from_device ? from_device->descriptor() : -1; },
                      [&] {
                        while (auto piece = from_device->next()) send(*piece);
                      });
-  module.every(kLook, [&] {
+  module.every(DeviceEar::kLook, [&] {
     if (from_device) from_device->look();
   });
   return module.run(argc, argv);

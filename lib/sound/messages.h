@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Sound as messages, whose coordinate system says the rate (spec/mtp-1.md, R44), and back. Header
+// only. Pure.
+
+#include <span>
+#include <string>
+
+#include <hc/base/check.h>
+#include <hc/module/kind.h>
+#include <sound/format.h>
+
+namespace hc::audio {
+
+/// Sound of a rate that has a coordinate system; another one is a bug.
+inline MessageOf<SoundKind<std::int16_t>> message_of(std::span<const std::int16_t> samples,
+                                                     const Format& format) {
+  const auto coord = coord_of(format.rate);
+  HC_CHECK(coord, format.rate);
+  return sound<std::int16_t>(format.channels, samples).in(*coord);
+}
+
+/// The format of a message of sound.
+///
+/// Errors: Unsupported (a coordinate system that has no sample rate).
+inline Result<Format> format_of(const Message& message) {
+  const auto rate = rate_of(message.header.coord);
+  if (!rate)
+    return Error{Code::Unsupported,
+                 "coordinate system " + coord_text(message.header.coord) + " has no sample rate"};
+  return Format{*rate, message.header.info.components};
+}
+
+/// Sound of i16 and f32 in up to as many channels as can be played.
+inline AnyKind any_sound() {
+  AnyKind any;
+  for (int channels = 1; channels <= kMostChannels; ++channels) {
+    any.types.push_back(sound<std::int16_t>(channels).type);
+    any.types.push_back(sound<float>(channels).type);
+  }
+  return any;
+}
+
+}  // namespace hc::audio
