@@ -2,30 +2,16 @@
 // A mouth: plays sound and writes it to a file.
 #include <hc/module/module.h>
 #include <hc/os/program.h>
+#include <sound/messages.h>
 
 #include "player.h"
 
-namespace {
-
-constexpr std::chrono::milliseconds kLook{100};  // how often the device is checked
-
-/// Sound of i16 and f32 in up to as many channels as can be played.
-hc::AnyKind any_sound() {
-  hc::AnyKind any;
-  for (int channels = 1; channels <= hc::audio::kMostChannels; ++channels) {
-    any.types.push_back(hc::sound<std::int16_t>(channels).type);
-    any.types.push_back(hc::sound<float>(channels).type);
-  }
-  return any;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   hc::Module module{"speaker", "Plays sound and writes it to a WAV file."};
-  auto sound = module.input("sound", any_sound(), "of a rate, coord 20 … 24; f32 from -1 to 1");
+  auto sound =
+      module.input("sound", hc::audio::any_sound(), "of a rate, coord 20 … 24; f32 from -1 to 1");
   auto device = module.parameter("device", "", "",
-                                 "SDL's name of the loudspeaker, \"\": the default, \"none\": none",
+                                 R"(SDL's name of the loudspeaker, "": the default, "none": none)",
                                  {.fixed = true});
   auto save = module.parameter(
       "save", "", "",
@@ -51,18 +37,11 @@ int main(int argc, char** argv) {
         [&](std::string_view line) { module.log(line); }, hc::stop_descriptor());
   });
   module.on(sound, [&](const hc::Message& message) {
-    const auto known = hc::audio::rate_of(message.header.coord);
-    if (!known)
-      return module.log_once("no rate", "sound dropped: coordinate system " +
-                                            hc::coord_text(message.header.coord) +
-                                            " has no sample rate");
-    const hc::audio::Format format{*known, message.header.info.components};
-    if (message.header.info.scalar == hc::Scalar::F32)
-      or_end(player->play(hc::value_or_end(message.view<float>()).numbers(), format));
-    else
-      or_end(player->play(hc::value_or_end(message.view<std::int16_t>()).numbers(), format));
+    const auto format = hc::audio::format_of(message);
+    if (!format) return module.log_once("no rate", "sound dropped: " + format.error().detail);
+    or_end(player->play(message, *format));
   });
-  module.every(kLook, [&] { player->look(); });
+  module.every(Player::kLook, [&] { player->look(); });
   module.on_end([&] { or_end(player->finish()); });
   const int status = module.run(argc, argv);
   if (player && player->dropped() > 0)

@@ -13,7 +13,7 @@ using hc::audio::Format;
 
 namespace {
 
-constexpr int kLook = 5;  // how often free room is looked for [ms]
+constexpr int kPoll = 5;  // how often free room is looked for [ms]
 
 }  // namespace
 
@@ -27,6 +27,15 @@ Status Player::play(std::span<const T> samples, const Format& format) {
 }
 template Status Player::play(std::span<const std::int16_t>, const Format&);
 template Status Player::play(std::span<const float>, const Format&);
+
+Status Player::play(const hc::Message& message, const Format& format) {
+  if (message.header.info.scalar == hc::Scalar::F32) {
+    auto samples = message.view<float>();
+    return samples ? play(samples->numbers(), format) : samples.error();
+  }
+  auto samples = message.view<std::int16_t>();
+  return samples ? play(samples->numbers(), format) : samples.error();
+}
 
 /// Has the converter for a sound, and the file; what was converted otherwise is given out before.
 Status Player::prepare(Converter::Scalar scalar, const Format& format) {
@@ -81,7 +90,7 @@ void Player::wait_until_at_most(double seconds) {
       return log_("loudspeaker unresponsive; dropping sound");
     }
     pollfd stop{stop_, POLLIN, 0};
-    if (::poll(&stop, 1, kLook) != 0) return;
+    if (::poll(&stop, 1, kPoll) != 0) return;
   }
 }
 

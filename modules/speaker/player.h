@@ -14,6 +14,7 @@
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
 #include <hc/base/result.h>
+#include <hc/mtp/message.h>
 #include <sound/converter.h>
 #include <sound/playback.h>
 #include <sound/wav.h>
@@ -31,6 +32,7 @@ struct PlayerOptions {
 class Player {
  public:
   static constexpr std::chrono::seconds kTimeout{1};
+  static constexpr std::chrono::milliseconds kLook{100};  ///< how often look() is to be called
   using Log = std::function<void(std::string_view line)>;
   /// @param stop  descriptor that is readable when waiting is to end.
   Player(PlayerOptions options, Log log, int stop)
@@ -43,6 +45,8 @@ class Player {
   /// Errors: Unsupported (such a format), System, TooLarge (the file).
   template <typename T>
   hc::Status play(std::span<const T> samples, const hc::audio::Format& format);
+  /// The same of a message of that format, i16 or f32.
+  hc::Status play(const hc::Message& message, const hc::audio::Format& format);
 
   /// Checks whether the device is connected, and opens it again.
   void look();

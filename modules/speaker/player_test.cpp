@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <hc/module/kind.h>
 
 namespace {
 
@@ -77,6 +78,22 @@ TEST_F(PlayerTest, takes_other_formats_after_the_first) {
   EXPECT_NEAR(static_cast<double>(written({16000, 1}).size()), 16000 + 8000 + 16000, 4);
 }
 
+TEST_F(PlayerTest, takes_messages_of_either_scalar) {
+  auto to_file = player({.plays = false, .device = "", .file = wav});
+  const std::vector<float> halves = {0.5F, -0.5F};
+  ASSERT_TRUE(to_file.play(hc::sound<std::int16_t>(2, kSome), {8000, 2}));
+  ASSERT_TRUE(to_file.play(hc::sound<float>(2, halves), {8000, 2}));
+  auto samples = written({8000, 2});
+  ASSERT_EQ(samples.size(), 8);
+  EXPECT_NEAR(samples[6], 16384, 1);
+  EXPECT_NEAR(samples[7], -16384, 1);
+  samples.resize(6);
+  EXPECT_EQ(samples, kSome);
+  const auto failed = to_file.play(hc::table<double>({1}), {8000, 2});
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, hc::Code::Unsupported);
+}
+
 TEST_F(PlayerTest, says_why_a_file_cannot_be_written) {
   auto to_file = player({.plays = false, .device = "", .file = "/no/such.wav"});
   auto status = to_file.play<std::int16_t>(kSome, {8000, 1});
@@ -86,6 +103,7 @@ TEST_F(PlayerTest, says_why_a_file_cannot_be_written) {
 
 TEST_F(PlayerTest, what_is_played_plays_and_written) {
   std::vector<std::int16_t> samples;
+  samples.reserve(4000);
   for (int i = 0; i < 4000; ++i) samples.push_back(static_cast<std::int16_t>(7 * i + 1));
   auto both = player({.plays = true, .device = "", .file = wav, .buffer = 0.2});
   ASSERT_TRUE(both.play<std::int16_t>(samples, {16000, 1}));
