@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's head, by any tracker that opentrack supports.
-#include <drivers/head_tracker/head_tracker.h>
-
-#include <optional>
+#include <drivers/head_tracker/tracked_head.h>
 
 #include <frames/messages.h>
-#include <hc/base/backoff.h>
-#include <hc/base/format.h>
 #include <hc/module/module.h>
-
-namespace {
-
-constexpr std::chrono::milliseconds kLook{20};  // how often a port in use is tried again
-
-}  // namespace
 
 int main(int argc, char** argv) {
   hc::Module module{"head_tracker", "Follows a person's head by an opentrack tracker."};
@@ -34,56 +24,28 @@ int main(int argc, char** argv) {
                                   {.min = 0.01, .max = 3600});
 
   const hc::SystemClock clock;
-  std::optional<hc::HeadTracker> tracker;
-  hc::Backoff backoff;
-  hc::HeadPose zero;
-  bool centre_next = false, is_first = true, receives = false;
-  std::string where;
-  auto silent = module.after(std::chrono::seconds(1), [&] {
-    module.log("no packets received on UDP " + where);
-    receives = false;
-  });
-  auto listen = [&] {
-    if (tracker || !backoff.is_due(clock.monotonic())) return;
-    auto opened = hc::HeadTracker::open(*host, static_cast<int>(*port));
-    if (!opened && opened.error().code == hc::Code::Invalid) throw hc::ModuleError(opened.error());
-    if (!opened) {
-      backoff.fail(clock.monotonic());
-      return module.log_once("port in use", opened.error().detail + "; retrying");
-    }
-    tracker.emplace(std::move(*opened));
-    where = *host + ":" + std::to_string(tracker->port());
-    module.log("listening on UDP " + where);
-    silent.restart(hc::duration(*silence));
-  };
-  auto receive = [&] {
-    const auto invalid = tracker->ignored();
-    const auto pose = hc::value_or_end(tracker->receive());
-    if (const auto more = static_cast<std::int64_t>(tracker->ignored() - invalid); more > 0)
-      module.log_once("invalid packet", "ignored " + tracker->why_ignored(), more);
-    if (!pose) return;
-    silent.restart(hc::duration(*silence));
-    if (!std::exchange(receives, true)) module.log("receiving from the tracker");
-    if (is_first && *centre_first) {
-      const Eigen::Vector3d angles = pose->pose.angles().array() + 0.0;  // not -0
-      module.log(hc::format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad",
-                            angles.x(), angles.y(), angles.z()));
-      centre_next = true;
-    }
-    if (centre_next) zero = pose->pose;
-    centre_next = is_first = false;
-    const auto relative = pose->pose.relative_to(zero);
-    rotation.send(hc::rotation(relative.angles()).at(pose->time));
-    position.send(hc::position(relative.p).at(pose->time));
+  std::optional<hc::TrackedHead> head;
+  auto pass = [&] {
+    const auto status = head->pass(clock.monotonic(), hc::duration(*silence));
+    if (!status) throw hc::ModuleError(status.error());
   };
 
   module.on_start([&] {
-    silent.stop();
-    listen();
+    head.emplace(
+        hc::TrackedHeadOptions{*host, static_cast<int>(*port), *centre_first},
+        [&](std::string_view line) { module.log(line); },
+        [&](const auto&... problem) { module.log_once(problem...); });
+    pass();
   });
-  module.every(kLook, listen);
+  module.every(hc::TrackedHead::kLook, pass);
   module.keep_running();
-  module.on(centre, [&](const hc::Message&) { centre_next = true; });
-  module.on_readable([&] { return tracker ? tracker->descriptor() : -1; }, receive);
+  module.on(centre, [&](const hc::Message&) { head->centre(); });
+  module.on_readable([&] { return head->descriptor(); },
+                     [&] {
+                       const auto pose = hc::value_or_end(head->receive(clock.monotonic()));
+                       if (!pose) return;
+                       rotation.send(hc::rotation(pose->pose.angles()).at(pose->time));
+                       position.send(hc::position(pose->pose.p).at(pose->time));
+                     });
   return module.run(argc, argv);
 }

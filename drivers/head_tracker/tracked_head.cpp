@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/head_tracker/tracked_head.h>
+
+#include <hc/base/format.h>
+
+#include <utility>
+
+namespace hc {
+
+Status TrackedHead::pass(MonotonicTime now, std::chrono::nanoseconds silence) {
+  if (!tracker_) return backoff_.is_due(now) ? listen(now) : Status();
+  if (!heard_ || now - *heard_ < silence) return {};
+  heard_.reset();
+  receives_ = false;
+  log_("no packets received on UDP " + where_);
+  return {};
+}
+
+Status TrackedHead::listen(MonotonicTime now) {
+  auto opened = HeadTracker::open(options_.host, options_.port);
+  if (!opened && opened.error().code == Code::Invalid) return opened.error();
+  if (!opened) {
+    backoff_.fail(now);
+    problem_("port in use", opened.error().detail + "; retrying", 1);
+    return {};
+  }
+  tracker_.emplace(std::move(*opened));
+  heard_ = now;
+  where_ = options_.host + ":" + std::to_string(tracker_->port());
+  log_("listening on UDP " + where_);
+  return {};
+}
+
+Result<std::optional<TimedHeadPose>> TrackedHead::receive(MonotonicTime now) {
+  if (!tracker_) return std::optional<TimedHeadPose>();
+  const auto ignored = tracker_->ignored();
+  auto pose = tracker_->receive();
+  if (const auto more = static_cast<std::int64_t>(tracker_->ignored() - ignored); more > 0)
+    problem_("invalid packet", "ignored " + tracker_->why_ignored(), more);
+  if (!pose || !*pose) return pose;
+  heard_ = now;
+  if (!std::exchange(receives_, true)) log_("receiving from the tracker");
+  HeadPose& head = (*pose)->pose;
+  if (std::exchange(is_first_, false) && options_.centre_first) {
+    const Eigen::Vector3d angles = head.angles().array() + 0.0;  // not -0
+    log_(format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad", angles.x(),
+                angles.y(), angles.z()));
+    centres_next_ = true;
+  }
+  if (std::exchange(centres_next_, false)) zero_ = head;
+  head = head.relative_to(zero_);
+  return pose;
+}
+
+}  // namespace hc

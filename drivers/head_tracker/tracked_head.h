@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A person's head by a tracker: listens once the port is free, gives poses since a zero, and logs a
+// line for each change. Never waits.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <drivers/head_tracker/head_tracker.h>
+#include <hc/base/backoff.h>
+#include <hc/base/clock.h>
+
+namespace hc {
+
+struct TrackedHeadOptions {
+  std::string host;  ///< and port: as of HeadTracker::open()
+  int port = 0;
+  bool centre_first = true;  ///< the first pose is the zero; else the tracker's
+};
+
+/// For one thread.
+class TrackedHead {
+ public:
+  static constexpr std::chrono::milliseconds kLook{20};  ///< how often pass() is to be called
+  using Log = std::function<void(std::string_view line)>;
+  using Problem =
+      std::function<void(const std::string& kind, std::string_view line, std::int64_t count)>;
+
+  /// @param problem  gets what may happen often, to log the first of a kind and count the others.
+  TrackedHead(TrackedHeadOptions options, Log log, Problem problem)
+      : options_(std::move(options)), log_(std::move(log)), problem_(std::move(problem)) {}
+
+  /// Time passes: opens the port, again and again while it is in use, and logs when no pose came
+  /// for `silence`.
+  ///
+  /// Errors: Invalid (the host is no address).
+  Status pass(MonotonicTime now, std::chrono::nanoseconds silence);
+  /// For poll(); -1 while it does not listen.
+  [[nodiscard]] int descriptor() const { return tracker_ ? tracker_->descriptor() : -1; }
+  /// The newest pose that has come, since the zero; nothing where none has.
+  ///
+  /// Errors: System.
+  Result<std::optional<TimedHeadPose>> receive(MonotonicTime now);
+  /// Makes the next pose the zero.
+  void centre() { centres_next_ = true; }
+
+ private:
+  Status listen(MonotonicTime now);
+
+  TrackedHeadOptions options_;
+  Log log_;
+  Problem problem_;
+  std::optional<HeadTracker> tracker_;
+  Backoff backoff_;
+  std::string where_;
+  std::optional<MonotonicTime> heard_;  // the last pose, or since when it listens; none: silence
+  bool receives_ = false, is_first_ = true, centres_next_ = false;
+  HeadPose zero_;
+};
+
+}  // namespace hc

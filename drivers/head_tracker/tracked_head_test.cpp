@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <drivers/head_tracker/tracked_head.h>
+
+#include <drivers/head_tracker/sender.h>
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using std::chrono::milliseconds;
+
+class TrackedHeadTest : public ::testing::Test {
+ protected:
+  hc::TrackedHead head(int port, bool centre_first = true) {
+    return {{"127.0.0.1", port, centre_first},
+            [this](std::string_view line) { log.emplace_back(line); },
+            [this](const std::string& kind, std::string_view line, std::int64_t count) {
+              problems.push_back(kind + ": " + std::string(line) + ": " + std::to_string(count));
+            }};
+  }
+  /// One that listens, and who sends to it.
+  hc::TrackedHead connected(bool centre_first = true) {
+    auto made = head(0, centre_first);
+    EXPECT_TRUE(made.pass(now, kSilence));
+    EXPECT_EQ(log.size(), 1U);
+    const std::string before = "listening on UDP ";
+    EXPECT_TRUE(log.back().starts_with(before)) << log.back();
+    address = log.back().substr(before.size());
+    auto opened = hc::HeadPoseSender::open(std::stoi(address.substr(address.rfind(':') + 1)));
+    EXPECT_TRUE(opened);
+    sender.emplace(std::move(*opened));
+    log.clear();
+    return made;
+  }
+  /// The position that comes of a pose which is sent.
+  Eigen::Vector3d feed(hc::TrackedHead& head, double x) {
+    EXPECT_TRUE(sender->send({.p = {x, 0, 0}}));
+    auto pose = head.receive(now);
+    EXPECT_TRUE(pose && *pose);
+    return (*pose)->pose.p;
+  }
+
+  static constexpr milliseconds kSilence{1000};
+  hc::MonotonicTime now{milliseconds(5000)};
+  std::optional<hc::HeadPoseSender> sender;
+  std::string address;
+  std::vector<std::string> log, problems;
+};
+
+TEST_F(TrackedHeadTest, the_first_pose_is_the_zero) {
+  auto head = connected();
+  EXPECT_NEAR(feed(head, 0.5).norm(), 0, 1e-12);
+  EXPECT_NEAR(feed(head, 0.7).x(), 0.2, 1e-12);
+  EXPECT_EQ(log, (std::vector<std::string>{
+                     "receiving from the tracker",
+                     "zero set to the first pose: roll 0.00, pitch 0.00, yaw 0.00 rad"}));
+}
+
+TEST_F(TrackedHeadTest, else_the_trackers_zero_stays_until_it_is_centred) {
+  auto head = connected(/*centre_first=*/false);
+  EXPECT_NEAR(feed(head, 0.5).x(), 0.5, 1e-12);
+  head.centre();
+  EXPECT_NEAR(feed(head, 0.6).x(), 0, 1e-12);
+  EXPECT_NEAR(feed(head, 0.5).x(), -0.1, 1e-12);
+  EXPECT_EQ(log, std::vector<std::string>{"receiving from the tracker"});
+}
+
+TEST_F(TrackedHeadTest, nothing_is_given_where_nothing_came) {
+  auto head = connected();
+  auto pose = head.receive(now);
+  ASSERT_TRUE(pose);
+  EXPECT_FALSE(*pose);
+  EXPECT_TRUE(log.empty());
+}
+
+TEST_F(TrackedHeadTest, silence_and_its_end_are_logged_once_each) {
+  auto head = connected();
+  const auto wait = [&](milliseconds time) {
+    now += time;
+    EXPECT_TRUE(head.pass(now, kSilence));
+  };
+  const std::string silence = "no packets received on UDP " + address;
+  wait(milliseconds(999));
+  EXPECT_TRUE(log.empty());
+  for (int i = 0; i < 3; ++i) wait(milliseconds(1000));
+  EXPECT_EQ(log, std::vector<std::string>{silence});
+  feed(head, 0);
+  log.clear();
+  wait(milliseconds(500));
+  feed(head, 0);
+  wait(milliseconds(999));
+  EXPECT_TRUE(log.empty());
+  wait(milliseconds(1));
+  feed(head, 0);
+  EXPECT_EQ(log, (std::vector<std::string>{silence, "receiving from the tracker"}));
+}
+
+TEST_F(TrackedHeadTest, invalid_packets_are_counted) {
+  auto head = connected();
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(sender->send({.p = {0, 0, 2000}}));
+  EXPECT_NEAR(feed(head, 1).norm(), 0, 1e-12);
+  EXPECT_EQ(problems, std::vector<std::string>{
+                          "invalid packet: ignored a packet whose y is 200000.000000: 3"});
+}
+
+TEST_F(TrackedHeadTest, a_port_in_use_is_tried_again_less_and_less_often) {
+  auto opened = hc::HeadTracker::open("127.0.0.1", 0);
+  ASSERT_TRUE(opened);
+  std::optional<hc::HeadTracker> other(std::move(*opened));
+  const int port = other->port();
+  auto waiting = head(port);
+  for (int i = 0; i < 310; ++i, now += milliseconds(1)) EXPECT_TRUE(waiting.pass(now, kSilence));
+  const std::string problem = "port in use: UDP port " + std::to_string(port) +
+                              " of 127.0.0.1: Address already in use; retrying: 1";
+  EXPECT_EQ(problems, std::vector<std::string>(3, problem));  // at 0, 100 and 300 ms
+  EXPECT_EQ(waiting.descriptor(), -1);
+  EXPECT_TRUE(log.empty());
+  other.reset();
+  EXPECT_TRUE(waiting.pass(now += milliseconds(400), kSilence));
+  EXPECT_GE(waiting.descriptor(), 0);
+  EXPECT_EQ(log, std::vector<std::string>{"listening on UDP 127.0.0.1:" + std::to_string(port)});
+}
+
+TEST_F(TrackedHeadTest, a_wrong_host_is_an_error) {
+  hc::TrackedHead head({"999.0.0.1.", 0, true}, {}, {});
+  const auto status = head.pass(now, kSilence);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, hc::Code::Invalid);
+}
+
+}  // namespace
