@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulated pan-tilt unit: answers on a pseudo-terminal as a real one does on a serial line,
 // moves in real time, and fails on request.
-#include <algorithm>
-#include <numbers>
 #include <optional>
 
-#include <drivers/pan_tilt/unit.h>
 #include <hc/module/module.h>
 
-#include "terminal.h"
-#include "wire.h"
-
-namespace {
-
-constexpr double kStep =
-    hc::pan_tilt::kArcsecondsPerPosition / 3600 * std::numbers::pi / 180;  // [rad/position]
-
-}  // namespace
+#include "simulated_line.h"
 
 int main(int argc, char** argv) {
   hc::Module module{"fake_pan_tilt", "A simulated pan-tilt unit on a pseudo-terminal."};
@@ -43,53 +32,28 @@ int main(int argc, char** argv) {
                                            "of the line, each way; 960 is 9600 baud, 0: unbounded",
                                            {.min = 0, .max = 1e9});
 
-  const hc::SystemClock clock;
-  const auto start = clock.monotonic();
-  auto seconds = [&] { return hc::seconds(clock.monotonic() - start); };
-  std::optional<hc::pan_tilt::Unit> unit;
-  std::optional<Terminal> terminal;
-  std::optional<Wire> to_unit, from_unit;
+  auto seconds = [] { return hc::seconds(hc::SystemClock().monotonic()); };
+  std::optional<SimulatedLine> line;
 
-  auto send_device = [&] {
-    device.send(hc::string(terminal ? terminal->path() : "").at(module.now()));
-  };
-  auto plug = [&] {
-    if (*unplugged)
-      terminal.reset();
-    else
-      terminal = hc::value_or_end(Terminal::open());
-    to_unit->clear();
-    from_unit->clear();
-    send_device();
-  };
-  /// All that is due: bytes reach the unit, and its answers the line.
+  auto send_device = [&] { device.send(hc::string(line->path()).at(module.now())); };
   hc::Timeout serve = module.after(std::chrono::nanoseconds(0), [&] {
-    if (*unplugged == terminal.has_value()) plug();
+    if (hc::value_or_end(line->plug(!*unplugged))) send_device();
     const double now = seconds();
-    if (terminal) to_unit->put(now, terminal->read(), {0, *bytes_per_second, 0});
-    const std::string bytes = to_unit->take(now);
+    const auto bytes = line->serve(now, {*answer_delay, *bytes_per_second, *garbage}, *silent);
     if (!bytes.empty()) received.send(hc::string(bytes).at(module.now()));
-    const std::string answer = unit->take(now, bytes) + unit->pass(now);
-    if (!*silent) from_unit->put(now, answer, {*answer_delay, *bytes_per_second, *garbage});
-    if (terminal) terminal->write(from_unit->take(now));
-    double next = 0.02;  // [s] at the latest, for parameters
-    for (auto due : {to_unit->next(), from_unit->next(), unit->next()})
-      if (due) next = std::min(next, *due - now);
-    serve.restart(hc::duration(next));
+    serve.restart(hc::duration(line->pause(now)));
   });
 
   module.on_start([&] {
-    unit.emplace(*pan / kStep, -*tilt / kStep);
-    to_unit.emplace(static_cast<std::uint64_t>(*seed));
-    from_unit.emplace(static_cast<std::uint64_t>(*seed));
-    plug();
+    line.emplace(*pan, *tilt, static_cast<std::uint64_t>(*seed));
+    hc::value_or_end(line->plug(!*unplugged));
+    send_device();
   });
-  module.on_readable([&] { return terminal ? terminal->descriptor() : -1; },
+  module.on_readable([&] { return line->descriptor(); },
                      [&] { serve.restart(std::chrono::nanoseconds(0)); });
   module.every(rate, [&] {
     const double now = seconds();
-    motion.send(
-        hc::rotation(0.0, -unit->tilt(now) * kStep, unit->pan(now) * kStep).at(module.now()));
+    motion.send(hc::rotation(0.0, line->tilt(now), line->pan(now)).at(module.now()));
   });
   module.every(std::chrono::seconds(1), send_device);
   return module.run(argc, argv);
