@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <drivers/pan_tilt/neck.h>
 
+#include <hc/base/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace hc::pan_tilt {
@@ -14,7 +17,15 @@ constexpr std::size_t kMostRemarks = 10;  // logged since all was well: garbage 
 
 using Phase = Conversation::Phase;
 
-void Neck::set_device(MonotonicTime now, const std::string& device, bool stays) {
+void Neck::set(MonotonicTime now, const NeckSettings& settings) {
+  conversation_.set_pace(settings.speed, settings.acceleration);
+  conversation_.set_hold(settings.hold);
+  if (settings.device != settings_.device) use(now, settings.device, true);
+  set_baud(now, settings.baud);
+  settings_ = settings;
+}
+
+void Neck::use(MonotonicTime now, std::string_view device, bool stays) {
   if (device == device_) return;
   if (serial_) close(now, {Code::Stopped, device.empty() ? "removed" : "closed"});
   device_ = device;
@@ -63,11 +74,15 @@ void Neck::read(MonotonicTime now) {
   std::array<char, 512> room = {};
   while (serial_) {
     auto bytes = serial_->read(room);
-    if (!bytes) return close(now, bytes.error());
-    if (bytes->empty()) return;
+    if (!bytes) {
+      close(now, bytes.error());
+      break;
+    }
+    if (bytes->empty()) break;
     conversation_.take(now, *bytes);
     work(now);
   }
+  if (const auto gaze = conversation_.gaze()) seen_(*gaze);
 }
 
 /// Does what the conversation asks for.
@@ -83,7 +98,8 @@ void Neck::work(MonotonicTime now) {
     if (auto written = serial_->write(bytes); !written) close(now, written.error());
 }
 
-void Neck::pass(MonotonicTime now) {
+void Neck::pass(MonotonicTime now, const NeckSettings& settings) {
+  set(now, settings);
   if (!serial_ && !device_.empty() && backoff_.is_due(now)) open(now);
   read(now);  // an answer that has come is not overdue, however late it is read
   conversation_.pass(now);
@@ -102,10 +118,16 @@ void Neck::look(MonotonicTime now) {
   work(now);
 }
 
-bool Neck::command(MonotonicTime now, double pan, double tilt, std::chrono::nanoseconds life) {
-  const bool is_taken = conversation_.command(now, pan, tilt, life);
+void Neck::command(MonotonicTime now, std::int64_t wall, const NeckCommand& command) {
+  if (command.time == 0) return problem_("without a time", "command dropped: it has no time");
+  const double old = seconds(wall - command.time);
+  if (std::abs(old) > settings_.age)
+    return problem_("stale", format("command dropped: {:.3f} s {}", std::abs(old),
+                                    old > 0 ? "old" : "in the future"));
+  const bool is_taken = conversation_.command(now, command.pan, command.tilt,
+                                              duration(settings_.age - std::max(old, 0.0)));
   work(now);
-  return is_taken;
+  if (!is_taken) problem_("no unit", "command dropped: pan-tilt unit not connected");
 }
 
 void Neck::leave() {

@@ -15,44 +15,73 @@
 
 namespace hc::pan_tilt {
 
+/// What may be changed at any time.
+struct NeckSettings {
+  std::string device;  ///< whose name stays valid while it is unplugged, as a serial port's
+  int baud = 9600;
+  double speed = 0, acceleration = 0;  ///< as of Conversation::set_pace()
+  std::chrono::nanoseconds hold{0};    ///< as of Conversation::set_hold()
+  double age = 0.2;                    ///< maximum of a command, either way [s]
+};
+
+/// Where to turn to.
+struct NeckCommand {
+  double pan = 0, tilt = 0;  ///< finite [rad]
+  std::int64_t time = 0;     ///< when it was given [ns since the Unix epoch]; 0: unknown
+};
+
 class Neck {
  public:
   static constexpr std::chrono::seconds kSettled{1};  ///< without a fault, before it counts as well
+  static constexpr std::chrono::milliseconds kTick{10};  ///< how often pass() is to be called
+  using Log = std::function<void(std::string_view line)>;
+  using Problem = std::function<void(const std::string& kind, std::string_view line)>;
+  using Seen = std::function<void(const Gaze& gaze)>;
 
   /// @param log  gets a line when the unit is connected, disconnected, or refuses something.
-  explicit Neck(std::function<void(std::string_view)> log) : log_(std::move(log)) {}
+  /// @param problem  gets why a command is dropped, to log the first of a kind.
+  /// @param seen  gets where the head looks, when the unit has said so.
+  Neck(Log log, Problem problem, Seen seen)
+      : log_(std::move(log)), problem_(std::move(problem)), seen_(std::move(seen)) {}
+  Neck(const Neck&) = delete;
+  Neck& operator=(const Neck&) = delete;
+  ~Neck() { leave(); }
 
-  /// The device to open; "" for none. The same again changes nothing.
-  ///
-  /// @param stays  the name stays valid while the device is unplugged, as a serial port's; the
-  /// number of a pseudo-terminal may be another's by then, so it has to be set again.
-  void set_device(MonotonicTime now, const std::string& device, bool stays);
-  /// Its baud rate; 9600 at first. The same again changes nothing.
-  void set_baud(MonotonicTime now, int baud);
+  /// The device to open, until that of the settings changes; "" for none. The same again changes
+  /// nothing. The number of a pseudo-terminal may be another's once it is unplugged, so it has to
+  /// be set again then.
+  void set_device(MonotonicTime now, std::string_view device) { use(now, device, false); }
 
   /// For poll(); -1 while no line is open.
   [[nodiscard]] int descriptor() const { return serial_ ? serial_->descriptor() : -1; }
   /// Reads what has come.
   void read(MonotonicTime now);
-  /// Time passes; to be called every few ms.
-  void pass(MonotonicTime now);
+  /// Time passes, with these settings from now on.
+  void pass(MonotonicTime now, const NeckSettings& settings);
 
   void look(MonotonicTime now);
-  bool command(MonotonicTime now, double pan, double tilt,
-               std::chrono::nanoseconds life = Conversation::kLife);
-  /// Halts a motion that was commanded, and lets go of the line.
+  /// Has it turn, unless the command is older than the settings allow, as one may be that has
+  /// waited anywhere, or as far in the future.
+  /// @param wall  this moment by the clock of its time [ns since the Unix epoch].
+  void command(MonotonicTime now, std::int64_t wall, const NeckCommand& command);
+  /// Halts a motion that was commanded, and lets go of the line; so does the destructor.
   void leave();
 
-  Conversation& conversation() { return conversation_; }
-
  private:
+  void set(MonotonicTime now, const NeckSettings& settings);
+  void set_baud(MonotonicTime now, int baud);
+  /// @param stays  the name stays valid while the device is unplugged.
+  void use(MonotonicTime now, std::string_view device, bool stays);
   void open(MonotonicTime now);
   /// @param why  of Code::Closed where the device is disconnected.
   void close(MonotonicTime now, const Error& why);
   void work(MonotonicTime now);
   void log_fault(const Error& error);
 
-  std::function<void(std::string_view)> log_;
+  Log log_;
+  Problem problem_;
+  Seen seen_;
+  NeckSettings settings_;
   Conversation conversation_;
   std::optional<Serial> serial_;
   std::string device_;

@@ -24,28 +24,40 @@ class NeckTest : public ::testing::Test {
         if (!is_silent_) terminal_->write(said);
       }
       neck_.read(now_);
-      neck_.pass(now_);
+      neck_.pass(now_, settings_);
       if (now_.count() % 20'000'000 == 0) neck_.look(now_);
     }
   }
   void plug() { terminal_.emplace(); }
-  void open(bool stays = true) { neck_.set_device(now_, terminal_->path(), stays); }
+  void open() { settings_.device = terminal_->path(); }
+  void command(double pan, double tilt) { neck_.command(now_, kWall, {pan, tilt, kWall}); }
   [[nodiscard]] std::string path() const { return terminal_->path(); }
 
+  static constexpr std::int64_t kWall = 1'700'000'000'000'000'000;  // [ns]
   MonotonicTime now_{milliseconds(1000)};
   std::optional<PseudoTerminal> terminal_;
   Unit unit_;
   bool is_silent_ = false;
-  std::vector<std::string> log_;
-  Neck neck_{[this](std::string_view line) { log_.emplace_back(line); }};
+  NeckSettings settings_;
+  std::vector<std::string> log_, problems_;
+  std::vector<Gaze> seen_;
+  Neck neck_{[this](std::string_view line) { log_.emplace_back(line); },
+             [this](const std::string& kind, std::string_view line) {
+               problems_.push_back(kind + ": " + std::string(line));
+             },
+             [this](const Gaze& gaze) { seen_.push_back(gaze); }};
 };
 
-TEST_F(NeckTest, finds_the_unit_and_commands_it) {
+TEST_F(NeckTest, finds_the_unit_commands_it_and_says_where_it_looks) {
   plug();
   open();
   run(milliseconds(100));
-  EXPECT_TRUE(neck_.command(now_, 0.5, 0.1));
+  command(0.5, 0.1);
   run(milliseconds(1000));
+  EXPECT_TRUE(problems_.empty());
+  ASSERT_FALSE(seen_.empty());
+  EXPECT_NEAR(seen_.back().pan, 0.5, 0.001);
+  EXPECT_NEAR(seen_.back().tilt, 0.1, 0.001);
   EXPECT_NEAR(unit_.pan(9), 557, 0.5);
   EXPECT_NEAR(unit_.tilt(9), -111, 0.5);
   EXPECT_EQ(log_, std::vector<std::string>{
@@ -54,14 +66,14 @@ TEST_F(NeckTest, finds_the_unit_and_commands_it) {
 }
 
 TEST_F(NeckTest, logs_once_that_there_is_no_device_and_retries) {
-  neck_.set_device(now_, "/no/such/device", true);
+  settings_.device = "/no/such/device";
   run(milliseconds(10'000));
   EXPECT_EQ(log_, std::vector<std::string>{"/no/such/device: open: No such file or directory"});
 }
 
 TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
   plug();
-  open(false);
+  neck_.set_device(now_, path());
   run(milliseconds(100));
   const std::string old = path();
   terminal_.reset();
@@ -70,11 +82,60 @@ TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
   plug();  // it may well get the same number
   run(milliseconds(5000));
   EXPECT_EQ(neck_.descriptor(), -1);
-  open(false);
+  neck_.set_device(now_, path());
   run(milliseconds(1500));
   ASSERT_EQ(log_.size(), 3U);
   EXPECT_EQ(log_[1], old + ": disconnected");
   EXPECT_EQ(log_[2], path() + ": reconnected");
+}
+
+TEST_F(NeckTest, a_device_that_was_set_counts_until_the_setting_changes) {
+  settings_.device = "/no/such/device";
+  run(milliseconds(100));
+  plug();
+  neck_.set_device(now_, path());
+  run(milliseconds(100));
+  EXPECT_GE(neck_.descriptor(), 0);
+  settings_.device = "";
+  run(milliseconds(100));
+  EXPECT_EQ(neck_.descriptor(), -1);
+  EXPECT_EQ(log_.back(), path() + ": removed");
+}
+
+TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
+  plug();
+  open();
+  run(milliseconds(100));
+  neck_.command(now_, kWall, {0.5, 0, 0});
+  neck_.command(now_, kWall, {0.5, 0, kWall - 201'000'000});
+  neck_.command(now_, kWall, {0.5, 0, kWall + 300'000'000});
+  run(milliseconds(1000));
+  EXPECT_EQ(unit_.pan(9), 0);
+  neck_.command(now_, kWall, {0.5, 0, kWall - 199'000'000});
+  run(milliseconds(1000));
+  EXPECT_NEAR(unit_.pan(9), 557, 0.5);
+  neck_.command(now_, kWall, {0, 0, kWall + 199'000'000});
+  run(milliseconds(1000));
+  EXPECT_NEAR(unit_.pan(9), 0, 0.5);
+  neck_.leave();
+  command(0, 0);
+  EXPECT_EQ(problems_,
+            (std::vector<std::string>{"without a time: command dropped: it has no time",
+                                      "stale: command dropped: 0.201 s old",
+                                      "stale: command dropped: 0.300 s in the future",
+                                      "no unit: command dropped: pan-tilt unit not connected"}));
+}
+
+TEST_F(NeckTest, a_command_that_has_waited_lives_for_the_rest_of_its_age) {
+  plug();
+  open();
+  run(milliseconds(100));
+  command(1, 0);
+  neck_.command(now_, kWall, {0.5, 0, kWall - 150'000'000});  // waits for the first one's answer
+  now_ += milliseconds(60);
+  neck_.pass(now_, settings_);
+  run(milliseconds(1000));
+  EXPECT_NEAR(unit_.pan(9), 1114, 0.5);
 }
 
 TEST_F(NeckTest, a_silent_unit_is_logged_once_and_so_is_its_return) {
@@ -100,7 +161,7 @@ TEST_F(NeckTest, an_answer_that_came_while_nothing_was_read_is_no_silence) {
   neck_.look(now_);
   terminal_->write(unit_.take(2.6, terminal_->read()));
   now_ += milliseconds(1000);  // as long as the process was stopped
-  neck_.pass(now_);
+  neck_.pass(now_, settings_);
   run(milliseconds(1000));
   EXPECT_TRUE(log_.empty()) << log_[0];
 }
@@ -109,7 +170,7 @@ TEST_F(NeckTest, a_new_rate_reopens_the_line) {
   plug();
   open();
   run(milliseconds(100));
-  neck_.set_baud(now_, 38400);
+  settings_.baud = 38400;
   run(milliseconds(1500));
   EXPECT_EQ(log_.back(), path() + ": reconnected");
 }
@@ -118,7 +179,7 @@ TEST_F(NeckTest, halts_what_it_has_begun_when_it_leaves) {
   plug();
   open();
   run(milliseconds(100));
-  neck_.command(now_, 2, 0);
+  command(2, 0);
   run(milliseconds(20));
   neck_.leave();
   EXPECT_NE(terminal_->read().find("h "), std::string::npos);
