@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <hc/base/format.h>
 
@@ -46,6 +47,14 @@ TrackScore score_track(const std::vector<TrackSample>& samples, double within) {
   give_up();
   if (score.samples > 0) score.rms = std::sqrt(sum / static_cast<double>(score.samples));
   return score;
+}
+
+void Track::begin() {
+  if (!std::exchange(has_begun_, true)) samples_.clear();
+}
+
+double Track::duration() const {
+  return samples_.empty() ? 0 : samples_.back().time - samples_.front().time;
 }
 
 double TrackScore::longest() const {

@@ -51,5 +51,20 @@ TEST(TrackScore, one_that_comes_back_when_no_time_is_left_is_no_failure) {
   EXPECT_TRUE(score_track(samples, 0.05).again.empty());
 }
 
+TEST(Track, begins_anew_once_and_lasts_from_its_first_look_to_its_last) {
+  Track track;
+  EXPECT_EQ(track.duration(), 0);
+  track.add({1, 0.4, 1});
+  EXPECT_EQ(track.duration(), 0);
+  track.begin();
+  track.add({3, 0.01, 1});
+  track.begin();
+  track.add({5.5, 0.01, 1});
+  EXPECT_EQ(track.duration(), 2.5);
+  const auto score = track.score(0.05);
+  EXPECT_EQ(score.acquired, 0);
+  EXPECT_EQ(score.samples, 2U);
+}
+
 }  // namespace
 }  // namespace hc::gaze

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a head follows a ball, by the truth of a simulation.
 #include <cmath>
-#include <utility>
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
@@ -30,12 +29,9 @@ int main(int argc, char** argv) {
   auto timeout =
       module.parameter("timeout", 60.0, "s", "to wait for an image", {.min = 1, .max = 3600});
 
-  std::vector<hc::gaze::TrackSample> samples;
-  bool has_begun = false;
+  hc::gaze::Track track;
   std::int64_t waits = 0;  // looks since an image
-  module.on(begin, [&](const auto&) {
-    if (!std::exchange(has_begun, true)) samples.clear();
-  });
+  module.on(begin, [&](const auto&) { track.begin(); });
   module.on(
       hc::together(eye, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {
         const auto T_world_left_eye = hc::value_or_end(hc::pose_of(pose)).T_to_from;
@@ -43,16 +39,16 @@ int main(int argc, char** argv) {
         const Eigen::Vector3d to = T_world_left_eye.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
                                    frames.fixed("left_eye", "right_eye").translation() / 2;
         waits = 0;
-        samples.push_back({static_cast<double>(pose.header.time) * 1e-9,
-                           std::atan2(to.head<2>().norm(), to.z()), share.numbers()[3]});
+        track.add({hc::seconds(pose.header.time), std::atan2(to.head<2>().norm(), to.z()),
+                   share.numbers()[3]});
       });
   module.generate([&] {
     constexpr double kLook = 50;  // [Hz]
     module.keep_rate(kLook);
     if (static_cast<double>(++waits) > *timeout * kLook)
       throw hc::ModuleError("no image within timeout");
-    if (samples.empty() || samples.back().time - samples.front().time < *duration) return true;
-    const auto score = hc::gaze::score_track(samples, *within);
+    if (track.duration() < *duration) return true;
+    const auto score = track.score(*within);
     result.send(hc::table<double>(score.numbers()));
     module.log("result: " + score.text());
     return false;
