@@ -3,7 +3,6 @@
 #include <optional>
 
 #include <frames/messages.h>
-#include <hc/base/format.h>
 #include <hc/module/module.h>
 
 #include "pusher.h"
@@ -31,7 +30,7 @@ int main(int argc, char** argv) {
                                      {.min = 0, .max = 100, .fixed = true});
 
   std::optional<Pusher> pusher;
-  std::int64_t sent = 0;  // when `stick` was last sent [ns]
+  bool is_ready = false;
   module.on_start([&] {
     pusher.emplace(Pusher::Options{.count = static_cast<int>(*count),
                                    .seed = static_cast<std::uint64_t>(*seed),
@@ -39,31 +38,20 @@ int main(int argc, char** argv) {
   });
   module.on(motion, [&](const auto& message) {
     const auto q = hc::value_or_end(hc::rotation_of(message));
-    pusher->hear(static_cast<double>(message.header.time) * 1e-9, hc::gaze::angles_of(q));
+    pusher->hear(hc::seconds(message.header.time), hc::gaze::angles_of(q));
   });
-  bool is_ready = false;
   module.on(report, [&](const auto&) { is_ready = true; });
-  auto repeat = [&] {
-    if (!is_ready) return;
-    const std::int64_t now = module.now();
-    const auto push = pusher->look(static_cast<double>(now) * 1e-9);
-    const bool is_out = push.left != 0 || push.down != 0;
-    const bool is_due = is_out && static_cast<double>(now - sent) * 1e-9 >= 1 / *rate;
-    if (!push.changed && !is_due) return;
-    sent = now;
-    stick.send(hc::table({push.left, push.down}).at(now));
-  };
   module.generate([&] {
     constexpr double kLook = 1000;  // [Hz]
     module.keep_rate(kLook);
-    repeat();
+    if (!is_ready) return true;
+    const std::int64_t now = module.now();
+    if (const auto pushed = pusher->look(hc::seconds(now), *rate))
+      stick.send(hc::table({pushed->left, pushed->down}).at(now));
     if (!pusher->is_done()) return true;
     const auto score = pusher->score();
-    result.send(hc::table({score.median, score.max, static_cast<double>(score.moved),
-                           static_cast<double>(pusher->pushes())}));
-    module.log(hc::format(
-        "result: stick to first motion {:.1f} ms median, {:.1f} ms at most, of {} of {} pushes",
-        1000 * score.median, 1000 * score.max, score.moved, pusher->pushes()));
+    result.send(hc::table<double>(score.numbers()));
+    module.log("result: " + score.text());
     return false;
   });
   return module.run(argc, argv);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <hc/base/format.h>
+
 namespace {
 
 constexpr double kStill = 1e-6;  // a head at rest moves less [rad]
@@ -23,31 +25,38 @@ double Pusher::random(double least, double most) {
   return least + (most - least) * static_cast<double>(random_() >> 11) * 0x1p-53;
 }
 
-Pusher::Stick Pusher::look(double time) {
-  stick_.changed = false;
+std::optional<Pusher::Stick> Pusher::look(double time, double rate) {
+  if (!move(time)) {
+    const bool is_out = stick_.left != 0 || stick_.down != 0;
+    if (!is_out || time - sent_ < 1 / rate) return std::nullopt;
+  }
+  sent_ = time;
+  return stick_;
+}
+
+bool Pusher::move(double time) {
   if (pushed_) {
     const bool is_over = moved_ ? time >= release_ : time - *pushed_ > options_.timeout;
-    if (!is_over) return stick_;
+    if (!is_over) return false;
     pushed_.reset();
     still_since_ = time;
     rest_ = random(0.2, 0.8);  // some so long that the head is left to others meanwhile
-    stick_ = {0, 0, true};
-    return stick_;
+    stick_ = {};
+    return true;
   }
   if (!rests_at_ || pushes_ >= options_.count || time - still_since_ < rest_ ||
       heard_ < still_since_ + rest_ / 2)
-    return stick_;
+    return false;
   // Back towards the middle, so that the unit never comes to its limits.
   const double size = random(0.3, 1), share = random(-0.5, 0.5);
   stick_.left = rests_at_->pan > 0 ? -size : size;
   stick_.down = (rests_at_->tilt > 0 ? -1 : 1) * std::abs(share) * size;
-  stick_.changed = true;
   pushed_ = time;
   release_ = time + random(0.2, 0.5);
   moved_ = false;
   from_ = *rests_at_;
   ++pushes_;
-  return stick_;
+  return true;
 }
 
 void Pusher::hear(double time, const hc::gaze::Angles& angles) {
@@ -64,9 +73,18 @@ void Pusher::hear(double time, const hc::gaze::Angles& angles) {
 }
 
 Pusher::Score Pusher::score() const {
-  if (delays_.empty()) return {};
+  if (delays_.empty()) return {.pushes = pushes_};
   auto sorted = delays_;
   std::ranges::sort(sorted);
   const std::size_t n = sorted.size();
-  return {(sorted[(n - 1) / 2] + sorted[n / 2]) / 2, sorted.back(), n};
+  return {(sorted[(n - 1) / 2] + sorted[n / 2]) / 2, sorted.back(), n, pushes_};
+}
+
+std::array<double, 4> Pusher::Score::numbers() const {
+  return {median, max, static_cast<double>(moved), static_cast<double>(pushes)};
+}
+
+std::string Pusher::Score::text() const {
+  return hc::format("stick to first motion {:.1f} ms median, {:.1f} ms at most, of {} of {} pushes",
+                    1000 * median, 1000 * max, moved, pushes);
 }
