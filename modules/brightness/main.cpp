@@ -7,9 +7,7 @@
 
 int main(int argc, char** argv) {
   hc::Module module{"brightness", "Measures how bright images are."};
-  auto image = module.input(
-      "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "camera image");
+  auto image = module.input("image", hc::any_image(), "camera image");
   auto mean = module.output("mean", hc::table<double>(), "mean of all its numbers, 0 … 255");
 
   module.on(image, [&](const hc::Message& message) {

@@ -12,9 +12,7 @@ int main(int argc, char** argv) {
   hc::Module module{"depth_score", "Compares disparities with the true ones."};
   auto disparity =
       module.input("disparity", hc::intensity_image<float>(), "as found [px], 0 unknown");
-  auto truth = module.input(
-      "truth", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "true disparity in grey levels, 0 unknown");
+  auto truth = module.input("truth", hc::any_image(), "true disparity in grey levels, 0 unknown");
   auto result = module.output(
       "score", hc::table<double>(),
       "share of bad pixels among the valid, of holes, of bad or hole; pixels with known truth");

@@ -128,6 +128,12 @@ IntensityImageKind<T> intensity_image() {
   return IntensityImageKind<T>(1);
 }
 
+/// An image of bytes, in colour or grey.
+/// @param coord  its coordinate system; 0: any.
+inline AnyKind any_image(std::int32_t coord = 0) {
+  return any_of(rgb_image<std::uint8_t>().in(coord), intensity_image<std::uint8_t>().in(coord));
+}
+
 /// A vector for every place of a grid, (height, width, components).
 template <ScalarType T>
 VectorFieldKind<T> vector_field(int components) {
