@@ -440,4 +440,14 @@ std::vector<TextLine> block_of_best(const std::vector<TextLine>& lines) {
   return block;
 }
 
+bool is_whole(const std::vector<TextLine>& block) {
+  return std::all_of(block.begin(), block.end(), [](const auto& line) { return line.is_whole; });
+}
+
+cv::Rect2f box_of(const std::vector<TextLine>& block) {
+  cv::Rect2f box = block.front().box();
+  for (const auto& line : block) box |= line.box();
+  return box;
+}
+
 }  // namespace hc::vision

@@ -41,6 +41,12 @@ std::vector<TextLine> find_text_lines(const cv::Mat& image, double min_score = 0
 /// @param lines  the best first.
 std::vector<TextLine> block_of_best(const std::vector<TextLine>& lines);
 
+/// Whether all lines of a block are.
+bool is_whole(const std::vector<TextLine>& block);
+
+/// Level, around the lines of a block, of which there is at least one [px].
+cv::Rect2f box_of(const std::vector<TextLine>& block);
+
 /// Cuts a line out: level, its letters upright, with a margin, without noise, its ground white and
 /// its letters black.
 ///

@@ -91,6 +91,17 @@ TEST(Letters, a_block_has_its_lines_from_top_to_bottom) {
   EXPECT_TRUE(block_of_best({}).empty());
 }
 
+TEST(Letters, a_block_is_as_large_as_its_lines_and_whole_where_they_all_are) {
+  TextLine upper, lower;
+  upper.corners = {cv::Point2f(10, 10), {110, 12}, {110, 32}, {10, 30}};
+  lower.corners = {cv::Point2f(40, 50), {150, 50}, {150, 70}, {40, 70}};
+  EXPECT_EQ(box_of({upper}), cv::Rect2f(10, 10, 100, 22));
+  EXPECT_EQ(box_of({upper, lower}), cv::Rect2f(10, 10, 140, 60));
+  EXPECT_TRUE(is_whole({upper, lower}));
+  lower.is_whole = false;
+  EXPECT_FALSE(is_whole({upper, lower}));
+}
+
 TEST(Letters, finds_nothing_where_nothing_is_written) {
   for (int seed = 0; seed < 5; ++seed) {
     cv::Mat image = scene("");

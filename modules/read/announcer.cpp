@@ -35,5 +35,12 @@ bool Announcer::take(const std::string& text, double confidence, std::int64_t ti
   said_ = text;
   was_heard_ = is_heard;
   said_at_ = time;
+  ++texts_;
   return true;
+}
+
+std::string Announcer::summary() const {
+  if (texts_ == 0) return {};
+  return "read " + std::to_string(texts_) + (texts_ == 1 ? " text" : " texts") + ", the last \"" +
+         said_ + "\"";
 }

@@ -25,9 +25,13 @@ class Announcer {
   bool take(const std::string& text, double confidence, std::int64_t time, const Rules& rules,
             bool is_heard = true);
 
+  /// "read 3 texts, the last "STOP""; empty while nothing was said.
+  [[nodiscard]] std::string summary() const;
+
  private:
   std::deque<std::string> readings_;  // the last ones; "" unsure
   std::string said_;                  // last, and when, and whether it was heard
   std::int64_t said_at_ = 0;
   bool was_heard_ = false;
+  int texts_ = 0;  // that were said
 };

@@ -72,6 +72,18 @@ TEST(Announcer, a_clock_that_went_back_does_not_silence_it) {
   EXPECT_TRUE(announcer.take("A", 1, 5 * kSecond, {0, 1, 10}));
 }
 
+TEST(Announcer, sums_up_what_it_said) {
+  Announcer announcer;
+  const Announcer::Rules rules{0.5, 1, 0};
+  announcer.take("A", 0.4, 1, rules);
+  EXPECT_EQ(announcer.summary(), "");
+  announcer.take("A", 1, 2, rules);
+  EXPECT_EQ(announcer.summary(), "read 1 text, the last \"A\"");
+  announcer.take("B", 1, 3, rules);
+  announcer.take("B", 1, 4, rules);
+  EXPECT_EQ(announcer.summary(), "read 2 texts, the last \"B\"");
+}
+
 TEST(Announcer, repeats_what_was_not_heard_when_it_is_heard) {
   Announcer announcer;
   const Announcer::Rules rules{0, 1, 10};

@@ -29,11 +29,34 @@ hc::vision::Reading read_line(Recogniser& recogniser, const cv::Mat& image,
 
 }  // namespace
 
-hc::vision::Reading read_block(Recogniser& recogniser, const cv::Mat& image,
-                               const std::vector<hc::vision::TextLine>& block, bool upper_case) {
+BlockReader::BlockReader(Recogniser recogniser, bool upper_case)
+    : recogniser_(std::move(recogniser)), upper_case_(upper_case) {}
+
+hc::Result<BlockReader> BlockReader::make(const std::string& language, bool upper_case) {
+  auto recogniser = Recogniser::make(language, upper_case);
+  if (!recogniser) return recogniser.error();
+  return BlockReader(std::move(*recogniser), upper_case);
+}
+
+bool BlockReader::is_due(std::int64_t time, double rate) const {
+  if (rate <= 0 || !read_at_) return true;
+  const auto since = time - *read_at_;
+  // Half a millisecond is what times of images that come evenly may differ by.
+  return since < 0 || static_cast<double>(since) + 5e5 >= 1e9 / rate;
+}
+
+std::optional<hc::vision::Reading> BlockReader::read_when_due(const cv::Mat& image,
+                                                              const Block& block, std::int64_t time,
+                                                              double rate) {
+  if (!hc::vision::is_whole(block) || !is_due(time, rate)) return std::nullopt;
+  read_at_ = time;
+  return read(image, block);
+}
+
+hc::vision::Reading BlockReader::read(const cv::Mat& image, const Block& block) {
   hc::vision::Reading all{"", 1, {}};
   for (const auto& line : block) {
-    const auto reading = read_line(recogniser, image, line, upper_case);
+    const auto reading = read_line(recogniser_, image, line, upper_case_);
     all.text += (all.text.empty() || reading.text.empty() ? "" : " ") + reading.text;
     all.confidence = std::min(all.confidence, reading.confidence);
   }

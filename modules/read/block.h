@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads what is on a board: one line or several.
+// Reads what is on a board, one line or several, and no more often than is asked for.
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <vision/letters.h>
@@ -9,8 +11,29 @@
 
 #include "recogniser.h"
 
-/// What is written in the lines of a block, joined by spaces, as sure as the least sure line.
-/// @param image  (H, W, 3) or (H, W, 1) u8.
-/// @param upper_case  there is nothing but what Recogniser::make says of it.
-hc::vision::Reading read_block(Recogniser& recogniser, const cv::Mat& image,
-                               const std::vector<hc::vision::TextLine>& block, bool upper_case);
+class BlockReader {
+ public:
+  using Block = std::vector<hc::vision::TextLine>;
+
+  /// Errors: as Recogniser::make(), which says what the parameters are.
+  static hc::Result<BlockReader> make(const std::string& language, bool upper_case);
+
+  /// What is written in the lines of a block, joined by spaces, as sure as the least sure line.
+  /// @param image  (H, W, 3) or (H, W, 1) u8.
+  hc::vision::Reading read(const cv::Mat& image, const Block& block);
+
+  /// The same where the block is whole and it is time to read again, by the images' times, since a
+  /// recording is to give the same.
+  /// @param time  of the image [ns].
+  /// @param rate  maximum number of readings a second, 0: all [Hz].
+  std::optional<hc::vision::Reading> read_when_due(const cv::Mat& image, const Block& block,
+                                                   std::int64_t time, double rate);
+
+ private:
+  BlockReader(Recogniser recogniser, bool upper_case);
+  [[nodiscard]] bool is_due(std::int64_t time, double rate) const;
+
+  Recogniser recogniser_;
+  bool upper_case_;
+  std::optional<std::int64_t> read_at_;  // the time of the last image that was due [ns]
+};

@@ -82,15 +82,15 @@ cv::Mat draw_strokes(const std::string& text, double noise) {
 
 /// How many of some texts in all fonts are read without an error, [%].
 int read(const std::vector<Text>& texts, const Look& look, bool upper_case = true) {
-  static std::map<bool, Recogniser> recognisers;
-  if (!recognisers.count(upper_case))
-    recognisers.emplace(upper_case, std::move(*Recogniser::make("eng", upper_case)));
+  static std::map<bool, BlockReader> readers;
+  if (!readers.count(upper_case))
+    readers.emplace(upper_case, std::move(*BlockReader::make("eng", upper_case)));
   int right = 0, all = 0;
   for (const auto* font : kFonts)
     for (const auto& text : texts) {
       const auto image = draw(text, font, look);
       const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
-      const auto reading = read_block(recognisers.at(upper_case), image, block, upper_case);
+      const auto reading = readers.at(upper_case).read(image, block);
       std::string truth;
       for (const auto& line : text) truth += (truth.empty() ? "" : " ") + line;
       ++all;
@@ -155,16 +155,39 @@ TEST(Block, may_be_of_small_letters_to_the_end_of_the_line) {
 // Texts that were read wrong in the simulated head: a letter read twice beside two that touch, one
 // missing, a space where there is none.
 TEST(Block, codes_are_read_letter_by_letter) {
-  auto recogniser = Recogniser::make("eng", true);
-  ASSERT_TRUE(recogniser) << recogniser.error().text();
+  auto reader = BlockReader::make("eng", true);
+  ASSERT_TRUE(reader) << reader.error().text();
   for (const double noise : {2.0, 20.0})
     for (const char* const code :
          {"LAV56X", "F90WRA", "T5ZTLA4 PO3FAN0W", "EBQID5I 9AHG5QO8", "3WSH470 RI7E9URP", "5ASDRY1",
           "VW9CXTIJ 2D03I", "IBZJ9JQF", "Y2H0NULX 6Q9KJ0", "XG6PDW9S 2DK", "OIYIWEWP"}) {
       const auto image = draw_strokes(code, noise);
       const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
-      EXPECT_EQ(read_block(*recogniser, image, block, true).text, code) << noise;
+      EXPECT_EQ(reader->read(image, block).text, code) << noise;
     }
+}
+
+TEST(Block, is_read_when_it_is_whole_and_due_by_the_times_of_images) {
+  constexpr std::int64_t kMillisecond = 1'000'000;
+  constexpr double kRate = 4;
+  auto reader = BlockReader::make("eng", true);
+  ASSERT_TRUE(reader) << reader.error().text();
+  const auto image = draw_strokes("LAV56X", 2);
+  auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
+  ASSERT_FALSE(block.empty());
+  const auto is_read = [&](std::int64_t time, double rate) {
+    return reader->read_when_due(image, block, time * kMillisecond, rate).has_value();
+  };
+  block.front().is_whole = false;
+  EXPECT_FALSE(is_read(1000, kRate));
+  block.front().is_whole = true;
+  EXPECT_TRUE(is_read(1010, kRate)) << "what was not whole was not read";
+  EXPECT_FALSE(is_read(1259, kRate));
+  EXPECT_TRUE(reader->read_when_due(image, block, 1260 * kMillisecond - 500'000, kRate))
+      << "times differ by half a millisecond";
+  EXPECT_TRUE(is_read(1270, 0)) << "all";
+  EXPECT_FALSE(is_read(1280, kRate));
+  EXPECT_TRUE(is_read(1000, kRate)) << "a recording that starts over";
 }
 
 }  // namespace

@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads letters in images, and says where they are.
-#include <algorithm>
-#include <optional>
-
 #include <hc/module/module.h>
-#include <vision/letter_shapes.h>
-#include <vision/letters.h>
 #include <vision/messages.h>
 
 #include "announcer.h"
 #include "block.h"
-#include "recogniser.h"
 
 int main(int argc, char** argv) {
   hc::Module module{"read", "Reads lines of letters on an even ground, as on a board."};
-  auto image = module.input(
-      "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "image with letters");
+  auto image = module.input("image", hc::any_image(), "image with letters");
   auto text = module.output("text", hc::string().in(hc::Coord::kText),
                             "the text, once it is certain, and when it changes");
   auto confidence =
@@ -42,50 +34,27 @@ int main(int argc, char** argv) {
       module.parameter("score", 0.4, "", "minimum similarity of a line to one on a clean board",
                        {.min = 0, .max = 1});
 
-  std::optional<Recogniser> recogniser;
+  std::optional<BlockReader> reader;
   Announcer announcer;
-  std::optional<std::int64_t> read_at;
-  int texts = 0;
-  std::string last;
   module.on_start(
-      [&] { recogniser.emplace(hc::value_or_end(Recogniser::make(*language, *upper_case))); });
-
-  /// Whether it is time to read again. By the images' times, as recordings are to give the same.
-  auto is_due = [&](std::int64_t time) {
-    if (*rate <= 0 || !read_at) return true;
-    const auto since = time - *read_at;
-    // Half a millisecond is what times of images that come evenly may differ by.
-    return since < 0 || static_cast<double>(since) + 5e5 >= 1e9 / *rate;
-  };
-
+      [&] { reader.emplace(hc::value_or_end(BlockReader::make(*language, *upper_case))); });
   module.on(image, [&](const hc::Message& message) {
     const cv::Mat pixels = hc::value_or_end(hc::as_mat(message));
     const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(pixels, *score));
     if (block.empty()) return;
-    if (target.linked()) {
-      cv::Rect2f box = block.front().box();
-      for (const auto& line : block) box |= line.box();
-      const double x = box.x + box.width / 2, y = box.y + box.height / 2;
-      target.send(hc::position<double>(x, y, box.width).in(message.header.coord));
-    }
+    const auto box = hc::vision::box_of(block);
+    target.send(hc::position<double>(box.x + box.width / 2, box.y + box.height / 2, box.width)
+                    .in(message.header.coord));
     const std::int64_t time = message.header.time != 0 ? message.header.time : module.now();
-    const bool is_whole =
-        std::all_of(block.begin(), block.end(), [](const auto& line) { return line.is_whole; });
-    if (!is_whole || !is_due(time)) return;
-    read_at = time;
-    const auto reading = read_block(*recogniser, pixels, block, *upper_case);
-    confidence.send(hc::table({reading.confidence}));
-    if (announcer.take(reading.text, reading.confidence, time, {*least, *repeat, *again},
-                       module.has_focus())) {
-      ++texts;
-      last = reading.text;
-      text.send(hc::string(last));
-    }
+    const auto reading = reader->read_when_due(pixels, block, time, *rate);
+    if (!reading) return;
+    confidence.send(hc::table({reading->confidence}));
+    if (announcer.take(reading->text, reading->confidence, time, {*least, *repeat, *again},
+                       module.has_focus()))
+      text.send(hc::string(reading->text));
   });
   module.background();
   const int status = module.run(argc, argv);
-  if (texts > 0)
-    module.log("result: read " + std::to_string(texts) + (texts == 1 ? " text" : " texts") +
-               ", the last \"" + last + "\"");
+  if (const auto summary = announcer.summary(); !summary.empty()) module.log("result: " + summary);
   return status;
 }
