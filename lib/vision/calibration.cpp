@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <hc/base/format.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -196,11 +197,24 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
     auto checked = calibration_of(text_of(result.calibration));
     if (!checked) return checked.error();
     result.rms_all = rms_all;
+    result.given = views.size();
     result.epipolar = epipolar_error(result.calibration, points);
     return result;
   } catch (const cv::Exception& e) {
     return Error{Code::Malformed, "the views do not determine the cameras: " + e.err};
   }
+}
+
+std::array<double, 6> Calibrated::numbers() const {
+  return {calibration.rms,           rms_left, rms_right, epipolar, calibration.baseline(),
+          static_cast<double>(views)};
+}
+
+std::string Calibrated::text() const {
+  return hc::format(
+      "rms {:.3f} px (left {:.3f}, right {:.3f}), rows differ by {:.3f} px, baseline {:.4f} m, "
+      "{} of {} views",
+      calibration.rms, rms_left, rms_right, epipolar, calibration.baseline(), views, given);
 }
 
 }  // namespace hc::vision

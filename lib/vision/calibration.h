@@ -3,6 +3,7 @@
 // The geometry of two cameras: how it is found from views of a chessboard, and the file it is kept
 // in. No messages; plain cv::Mat in and out. Different objects may be used from different threads.
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -107,6 +108,12 @@ struct Calibrated {
   double rms_left = 0;    ///< reprojection error of the left camera alone [px]
   double rms_right = 0;   ///< [px]
   double epipolar = 0;    ///< mean distance of corresponding rows, rectified [px]
+  std::size_t given = 0;  ///< views that there were
+
+  /// rms, that of the left and of the right camera, epipolar [px], baseline [m], views.
+  [[nodiscard]] std::array<double, 6> numbers() const;
+  /// "rms 0.214 px (left 0.197, right 0.201), rows differ by …, 12 of 13 views".
+  [[nodiscard]] std::string text() const;
 };
 
 inline constexpr std::size_t kLeastViews = 3;  ///< that a calibration takes

@@ -124,6 +124,8 @@ TEST(Calibration, LeavesOutAViewThatIsWrong) {
   auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);
   ASSERT_TRUE(found) << found.error().text();
   EXPECT_EQ(found->views, 14);
+  EXPECT_EQ(found->numbers()[5], 14);
+  EXPECT_TRUE(found->text().ends_with(" m, 14 of 15 views")) << found->text();
   EXPECT_LT(found->calibration.rms, 0.2) << "px";
 }
 

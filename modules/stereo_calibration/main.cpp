@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The geometry of two cameras, from images of a chessboard.
 #include <algorithm>
-#include <vector>
 
-#include <hc/base/format.h>
 #include <hc/module/module.h>
-#include <vision/calibration.h>
+#include <vision/board_views.h>
 #include <vision/messages.h>
-
-namespace {
-
-hc::AnyKind image(std::int32_t coord) {
-  return hc::any_of(hc::rgb_image<std::uint8_t>().in(coord),
-                    hc::intensity_image<std::uint8_t>().in(coord));
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   hc::Module module{"stereo_calibration",
                     "Finds the geometry of two cameras from views of a chessboard."};
-  auto left = module.input("left", image(hc::Coord::kLeftImage), "image of the left eye");
-  auto right =
-      module.input("right", image(hc::Coord::kRightImage), "the right eye's of the same time");
+  auto left = module.input("left", hc::any_image(hc::Coord::kLeftImage), "image of the left eye");
+  auto right = module.input("right", hc::any_image(hc::Coord::kRightImage),
+                            "the right eye's of the same time");
   auto found = module.output("view", hc::table<double>(),
                              "views so far, views wanted, with each that is taken");
   auto result = module.output("score", hc::table<double>(),
@@ -43,52 +32,29 @@ int main(int argc, char** argv) {
       "of the images' width: minimum distance of the corners from those of any other view's",
       {.min = 0, .max = 1});
 
-  hc::vision::Board board;
-  std::vector<hc::vision::BoardView> views;
-  cv::Size size;
-  std::int64_t time = 0;  // of the last view
-  bool is_done = false;
+  std::optional<hc::vision::BoardViews> views;  // until they are calibrated by
+  std::int64_t time = 0;                        // of the last view
   auto finish = [&] {
-    is_done = true;
-    auto calibrated = hc::value_or_end(hc::vision::calibrate(views, board, size));
-    const auto& calibration = calibrated.calibration;
-    if (auto written = hc::vision::write_calibration(*file, calibration); !written)
-      throw hc::ModuleError(written.error());
-    result.send(
-        hc::table({calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,
-                   calibration.baseline(), static_cast<double>(calibrated.views)})
-            .at(time));
-    module.log(hc::format(
-        "rms {:.3f} px (left {:.3f}, right {:.3f}), rows differ by {:.3f} px, baseline {:.4f} m, "
-        "{} of {} views: {}",
-        calibration.rms, calibrated.rms_left, calibrated.rms_right, calibrated.epipolar,
-        calibration.baseline(), calibrated.views, views.size(), *file));
+    if (!views) return;
+    const auto calibrated = hc::value_or_end(std::exchange(views, std::nullopt)->calibrate());
+    hc::succeed_or_end(hc::vision::write_calibration(*file, calibrated.calibration));
+    result.send(hc::table<double>(calibrated.numbers()).at(time));
+    module.log(calibrated.text() + ": " + *file);
   };
   module.on_start([&] {
-    if (*columns == *rows)
-      throw hc::ModuleError(hc::Error{hc::Code::Invalid, "columns and rows are the same number"});
-    board = {static_cast<int>(*columns), static_cast<int>(*rows), *square};
+    const hc::vision::Board board{static_cast<int>(*columns), static_cast<int>(*rows), *square};
+    views.emplace(hc::value_or_end(hc::vision::BoardViews::make(board)));
   });
   module.on(hc::together(left, right), [&](const hc::Message& l, const hc::Message& r) {
-    if (is_done) return;
-    const cv::Mat left_mat = hc::value_or_end(hc::as_mat(l));
-    const cv::Mat right_mat = hc::value_or_end(hc::as_mat(r));
-    if (left_mat.size() != right_mat.size() || (size.area() > 0 && left_mat.size() != size))
-      throw hc::ModuleError("the images have different sizes");
-    size = left_mat.size();
-    auto view = hc::vision::find_board(left_mat, right_mat, board);
-    if (!view) return;
-    const double far = *min_difference * size.width;
-    if (std::any_of(views.begin(), views.end(),
-                    [&](const auto& other) { return hc::vision::difference(*view, other) < far; }))
-      return;
-    views.push_back(std::move(*view));
+    if (!views) return;
+    const auto is_taken = views->take(hc::value_or_end(hc::as_mat(l)),
+                                      hc::value_or_end(hc::as_mat(r)), *min_difference);
+    if (!is_taken) throw hc::ModuleError(is_taken.error().detail);
+    if (!*is_taken) return;
     time = std::max(l.header.time, r.header.time);
-    found.send(hc::table({static_cast<double>(views.size()), static_cast<double>(*wanted)}));
-    if (views.size() >= static_cast<std::size_t>(*wanted)) finish();
+    found.send(hc::table({static_cast<double>(views->size()), static_cast<double>(*wanted)}));
+    if (views->size() >= static_cast<std::size_t>(*wanted)) finish();
   });
-  module.on_end([&] {
-    if (!is_done) finish();
-  });
+  module.on_end(finish);
   return module.run(argc, argv);
 }

@@ -49,6 +49,11 @@ T value_or_end(Result<T> result) {
   return std::move(*result);
 }
 
+/// A failed status ends the module.
+inline void succeed_or_end(const Status& status) {
+  if (!status) throw ModuleError(status.error());
+}
+
 namespace internal {
 struct Arguments;
 }
