@@ -114,6 +114,11 @@ std::string Access::invite(Right right) {
          "/?token=" + make_token(right);
 }
 
+std::string Access::invite_socket(Right right) {
+  return std::string(place_.is_secure ? "wss://" : "ws://") + authority() +
+         "/?token=" + begin_session(right);
+}
+
 std::optional<std::string> Access::redeem(std::string_view token) {
   const auto found =
       std::ranges::find_if(tokens_, [&](const auto& each) { return is_same(each.first, token); });

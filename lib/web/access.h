@@ -38,8 +38,6 @@ class Access {
 
   /// A new token, which counts once. Of more than 64 the oldest is forgotten.
   std::string make_token(Right right);
-  /// Where the server is reached, as in a URL: "127.0.0.1:8470".
-  [[nodiscard]] std::string authority() const;
   /// A URL with a new token.
   std::string invite(Right right);
 
@@ -47,8 +45,8 @@ class Access {
   /// @returns  the value of the session's cookie, kCookie.
   std::optional<std::string> redeem(std::string_view token);
 
-  /// Begins a session for whoever knows its name. @returns  the name, as of redeem().
-  std::string begin_session(Right right);
+  /// A URL of a WebSocket with the name of a new session, for clients that keep no cookies.
+  std::string invite_socket(Right right);
   /// What a session may do, by its name; nothing where there is none.
   [[nodiscard]] std::optional<Right> right_of_session(std::string_view name) const;
 
@@ -63,6 +61,11 @@ class Access {
 
  private:
   using Secrets = std::deque<std::pair<std::string, Right>>;  // the newest last
+
+  /// Where the server is reached, as in a URL: "127.0.0.1:8470".
+  [[nodiscard]] std::string authority() const;
+  /// @returns  its name.
+  std::string begin_session(Right right);
 
   Place place_;
   Secrets tokens_, sessions_;

@@ -69,6 +69,17 @@ TEST(Access, a_token_counts_once_and_gives_its_right) {
   EXPECT_EQ(access.right_of(access.cookie_name() + "=" + *driver), Right::Drive);
 }
 
+TEST(Access, a_socket_is_opened_by_the_name_of_a_session) {
+  auto access = local();
+  const std::string url = access.invite_socket(Right::Drive);
+  EXPECT_TRUE(url.starts_with("ws://127.0.0.1:8470/?token=")) << url;
+  EXPECT_EQ(access.right_of_session(token_of(url)), Right::Drive);
+  EXPECT_EQ(access.right_of_session(token_of(url)), Right::Drive) << "again";
+  EXPECT_FALSE(access.right_of_session(token_of(access.invite(Right::Drive))));
+  Access secure({"::1", 443, true, {}});
+  EXPECT_TRUE(secure.invite_socket(Right::View).starts_with("wss://[::1]:443/?token="));
+}
+
 TEST(Access, secrets_differ_and_the_oldest_tokens_are_forgotten) {
   auto access = local();
   const auto first = access.make_token(Right::View), second = access.make_token(Right::View);

@@ -70,6 +70,8 @@ class Site {
   virtual Reply reply(const Request& request) = 0;
   /// A WebSocket for which reply() gave 101.
   virtual void open(std::shared_ptr<WebSocket> socket, const Request& request) = 0;
+  /// Disconnects all: what they see has ended.
+  virtual void close() {}
 };
 
 /// A certificate and its key, PEM.

@@ -83,13 +83,13 @@ Bridge::Bridge(Options options, web::Access& access, web::Server& server)
       server_(server),
       session_(web::make_secret()),
       catalog_(options_.jpeg) {
-  for (const auto& joint : options_.joints) joints_[joint.child] = joint;
+  for (const auto& joint : options_.joints.fixed) joints_[joint.child] = joint;
   constexpr std::chrono::milliseconds kTick{100};
   server_.every(kTick, [this] { tick(); });
   graph_ = std::make_unique<web::GraphClient>(
       options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
       web::GraphClient::Hears{[this](const hc::Message& message) { take_graph(message); },
-                              [this] { options_.end(); }});
+                              [this] { close(); }});
 }
 
 Bridge::~Bridge() {
@@ -189,7 +189,7 @@ void Bridge::subscribe(Viewer& viewer, const Json& request) {
     if (found->second == catalog_.frames()) publish_frames();
     if (found->second.port.empty() || publishers_.contains(*channel)) continue;
     publishers_[*channel] = std::make_unique<Publisher>(
-        options_.graph, found->second, options_.frames,
+        options_.graph, found->second, options_.joints.names,
         [this](std::function<void()> call) { server_.post(std::move(call)); },
         Publisher::Hears{
             [this, channel = *channel](const Payload& payload) { publish(channel, payload); },
@@ -286,6 +286,13 @@ void Bridge::apply(const Catalog::Changes& changes) {
 
 void Bridge::publish(std::uint32_t channel, const Payload& payload) {
   for (const auto& viewer : viewers_) viewer->offer(channel, payload);
+}
+
+hc::Status Bridge::move(const hc::Message& pose) {
+  const auto joint = options_.joints.joint_of(pose);
+  if (!joint) return joint.error();
+  server_.post([this, kept = *joint] { move(kept); });
+  return {};
 }
 
 void Bridge::move(const hc::ros::Joint& joint) {

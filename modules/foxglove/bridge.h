@@ -13,6 +13,7 @@
 #include <hc/base/clock.h>
 #include <hc/observe/running.h>
 #include <ros/encode.h>
+#include <ros/joints.h>
 #include <web/access.h>
 #include <web/graph_client.h>
 #include <web/server.h>
@@ -26,10 +27,8 @@ class Bridge final : public hc::web::Site {
  public:
   struct Options {
     hc::RunningGraph graph;
-    std::map<std::int32_t, std::string> frames;  ///< their names, by number
-    std::vector<hc::ros::Joint> joints;          ///< those that do not move
+    hc::ros::GraphJoints joints;
     bool jpeg = false;
-    std::function<void()> end;  ///< called when the graph has ended
   };
 
   Bridge(Options options, hc::web::Access& access, hc::web::Server& server);
@@ -38,10 +37,10 @@ class Bridge final : public hc::web::Site {
   hc::web::Reply reply(const hc::web::Request& request) override;
   void open(std::shared_ptr<hc::web::WebSocket> socket, const hc::web::Request& request) override;
 
-  /// A pose of a frame that moves.
-  void move(const hc::ros::Joint& joint);
-  /// Disconnects all.
-  void close();
+  void close() override;
+
+  /// A pose of a frame that moves. From any thread. Errors: as GraphJoints::joint_of().
+  hc::Status move(const hc::Message& pose);
 
  private:
   void take_text(const std::shared_ptr<Viewer>& viewer, std::string_view line);
@@ -50,6 +49,7 @@ class Bridge final : public hc::web::Site {
   void get_parameters(Viewer& viewer, const Json& request);
   void set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request);
 
+  void move(const hc::ros::Joint& joint);
   void take_graph(const hc::Message& message);
   void apply(const Catalog::Changes& changes);
   void publish(std::uint32_t channel, const Payload& payload);

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows the graph in Foxglove and Lichtblick, live: topics on demand, parameters, frames, log.
-#include <cstdlib>
-#include <optional>
-#include <thread>
+#include <memory>
 
 #include <frames/default_head.h>
 #include <hc/module/module.h>
 #include <ros/joints.h>
-#include <web/inbox.h>
-#include <web/listening.h>
+#include <web/service.h>
 
 #include "bridge.h"
 
@@ -33,51 +30,31 @@ int main(int argc, char** argv) {
                                  {.fixed = true});
 
   web::Inbox inbox;
-  std::optional<hc::ros::GraphJoints> joints;
-  std::optional<web::Access> access;
-  std::unique_ptr<web::Server> server;
-  std::unique_ptr<Bridge> bridge;
-  std::thread thread;
-
-  // From any thread.
-  const auto log = [&](hc::Severity, std::string_view line) {
-    inbox.put([&, kept = std::string(line)] { module.log(kept); });
-  };
-
+  std::unique_ptr<web::Service> service;
+  Bridge* bridge = nullptr;  // that it serves
   module.on_start([&] {
-    const char* name = std::getenv("HC_GRAPH");
-    const auto graph = hc::parse_running(name == nullptr ? "" : name);
+    const auto graph = hc::own_graph();
     if (!graph)
       throw hc::ModuleError(
           "HC_GRAPH does not name a running graph, NAME.PID; run this module in a graph, or add it "
           "to one: hc graph add foxglove foxglove");
-    joints = hc::value_or_end(hc::ros::GraphJoints::read(*frames));
-    auto opened =
-        hc::value_or_end(web::open_server({*listen, static_cast<int>(*port), *tls, *hosts}, log));
-    server = std::move(opened.server);
-    access.emplace(opened.place);
-    bridge = std::make_unique<Bridge>(Bridge::Options{*graph, joints->names, joints->fixed,
-                                                      *images == "jpeg", [&] { bridge->close(); }},
-                                      *access, *server);
-    const std::string url =
-        std::string(opened.place.is_secure ? "wss://" : "ws://") + access->authority() + "/?token=";
-    module.log("notice: foxglove: " + url + access->begin_session(web::Right::Drive));
-    module.log("notice: foxglove, to view alone: " + url + access->begin_session(web::Right::View));
-    if (!opened.fingerprint.empty())
-      module.log("notice: foxglove: certificate " + opened.fingerprint);
-    thread = std::thread([&] { server->run(*bridge); });
+    auto joints = hc::value_or_end(hc::ros::GraphJoints::read(*frames));
+    service =
+        hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, inbox,
+                                            [&](std::string_view line) { module.log(line); }));
+    auto& access = service->access();
+    module.log("notice: foxglove: " + access.invite_socket(web::Right::Drive));
+    module.log("notice: foxglove, to view alone: " + access.invite_socket(web::Right::View));
+    if (!service->fingerprint().empty())
+      module.log("notice: foxglove: certificate " + service->fingerprint());
+    bridge = &service->serve(std::make_unique<Bridge>(
+        Bridge::Options{*graph, std::move(joints), *images == "jpeg"}, access, service->server()));
   });
   module.keep_running();
   module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });
   module.on(poses, [&](const auto& pose) {
-    const auto joint = joints->joint_of(pose);
-    if (!joint) return module.log_once("pose", joint.error().detail);
-    server->post([&, kept = *joint] { bridge->move(kept); });
+    if (const auto moved = bridge->move(pose); !moved)
+      module.log_once("pose", moved.error().detail);
   });
-  const int status = module.run(argc, argv);
-  if (bridge) server->post([&] { bridge->close(); });
-  if (server) server->stop();
-  if (thread.joinable()) thread.join();
-  bridge.reset();
-  return status;
+  return module.run(argc, argv);
 }

@@ -4,15 +4,13 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <mutex>
+#include <memory>
 #include <optional>
-#include <thread>
 
 #include <hc/module/module.h>
 
-#include <web/inbox.h>
-#include <web/listening.h>
 #include <web/qr.h>
+#include <web/service.h>
 #include "page.h"
 
 namespace {
@@ -62,17 +60,9 @@ int main(int argc, char** argv) {
 
   web::Inbox inbox;
   Robot robot;
-  std::optional<web::Access> access;
-  std::unique_ptr<web::Server> server;
-  std::unique_ptr<Page> page;
-  std::thread thread;
   std::optional<bool> wants_stop;  // what was last asked for; nothing: no page has
   hc::MonotonicTime seen{};        // when a page was open
 
-  // From any thread.
-  const auto log = [&](hc::Severity, std::string_view line) {
-    inbox.put([&, kept = std::string(line)] { module.log(kept); });
-  };
   auto send_stop = [&] {
     if (wants_stop) stop.send(hc::table({static_cast<std::uint8_t>(*wants_stop ? 1 : 0)}));
   };
@@ -94,19 +84,27 @@ int main(int argc, char** argv) {
     }
   };
 
+  std::unique_ptr<web::Service> service;
   module.on_start([&] {
-    const char* name = std::getenv("HC_GRAPH");
-    const auto graph = hc::parse_running(name == nullptr ? "" : name);
+    const auto graph = hc::own_graph();
     if (!graph)
       throw hc::ModuleError(
           "HC_GRAPH does not name a running graph, NAME.PID; run this module in "
           "a graph, or with hc run GRAPH --page");
-    auto opened =
-        hc::value_or_end(web::open_server({*listen, static_cast<int>(*port), *tls, *hosts}, log));
-    server = std::move(opened.server);
-    access.emplace(opened.place);
-    page = std::make_unique<Page>(
-        Page::Options{*graph, module.instance(), *frames, *recordings}, *access, *server, robot,
+    service =
+        hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, inbox,
+                                            [&](std::string_view line) { module.log(line); }));
+    auto& access = service->access();
+    const std::string url = access.invite(web::Right::Drive);
+    module.log("notice: page: " + url);
+    if (!service->fingerprint().empty())
+      module.log("notice: page: certificate " + service->fingerprint());
+    if (!web::is_local(*listen))
+      for (const auto& line : web::qr_lines(access.invite(web::Right::Drive)))
+        module.log("notice: " + line);
+    service->serve(std::make_unique<Page>(
+        Page::Options{*graph, module.instance(), *frames, *recordings}, access, service->server(),
+        robot,
         Page::Hears{[&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
                     [&](bool is_wanted) {
                       inbox.put([&, is_wanted] {
@@ -114,15 +112,7 @@ int main(int argc, char** argv) {
                         send_stop();
                       });
                     },
-                    [&] { page->close(); },
-                    [&](const std::string& line) { log(hc::Severity::Info, line); }});
-    const std::string url = access->invite(web::Right::Drive);
-    module.log("notice: page: " + url);
-    if (!opened.fingerprint.empty()) module.log("notice: page: certificate " + opened.fingerprint);
-    if (!web::is_local(*listen))
-      for (const auto& line : web::qr_lines(access->invite(web::Right::Drive)))
-        module.log("notice: " + line);
-    thread = std::thread([&] { server->run(*page); });
+                    [&](const std::string& line) { inbox.put([&, line] { module.log(line); }); }}));
     if (*browser) open_in_browser(url);
     seen = module.monotonic();
   });
@@ -148,10 +138,5 @@ int main(int argc, char** argv) {
       std::raise(SIGTERM);
     }
   });
-  const int status = module.run(argc, argv);
-  if (page) server->post([&] { page->close(); });
-  if (server) server->stop();
-  if (thread.joinable()) thread.join();
-  page.reset();
-  return status;
+  return module.run(argc, argv);
 }

@@ -104,7 +104,7 @@ Page::Page(Options options, web::Access& access, web::Server& server, Robot& rob
   graph_ = std::make_unique<web::GraphClient>(
       options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
       web::GraphClient::Hears{[this](const hc::Message& message) { take_state(message); },
-                              [this] { hears_.end(); }});
+                              [this] { close(); }});
 }
 
 Page::~Page() {

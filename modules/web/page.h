@@ -41,7 +41,6 @@ class Page final : public web::Site {
   struct Hears {
     std::function<void(Order)> order;  ///< something is commanded
     std::function<void(bool)> stop;    ///< the robot is to be stopped, or not any more
-    std::function<void()> end;         ///< the graph has ended
     std::function<void(const std::string& line)> log;
   };
 
@@ -51,8 +50,7 @@ class Page final : public web::Site {
   web::Reply reply(const web::Request& request) override;
   void open(std::shared_ptr<web::WebSocket> socket, const web::Request& request) override;
 
-  /// Has all pages closed: the graph ends.
-  void close();
+  void close() override;
 
  private:
   struct Session {

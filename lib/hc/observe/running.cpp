@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <tuple>
@@ -67,6 +68,11 @@ std::optional<RunningGraph> parse_running(std::string_view text) {
   const auto [stop, status] = std::from_chars(begin, end, graph.process);
   if (status != std::errc() || stop != end || graph.process <= 0) return std::nullopt;
   return graph;
+}
+
+std::optional<RunningGraph> own_graph() {
+  const char* name = std::getenv("HC_GRAPH");
+  return parse_running(name == nullptr ? "" : name);
 }
 
 std::vector<RunningGraph> find_running(std::string_view sockets) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace hc {
 namespace {
 
@@ -19,6 +21,16 @@ TEST(Running, graphs_are_found_among_sockets) {
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].text(), "a-B_2.7");
   EXPECT_EQ(found[1].text(), "head.12");
+}
+
+TEST(Running, a_module_knows_its_graph) {
+  ::setenv("HC_GRAPH", "head.12", 1);
+  ASSERT_TRUE(own_graph());
+  EXPECT_EQ(own_graph()->text(), "head.12");
+  ::setenv("HC_GRAPH", "head", 1);
+  EXPECT_FALSE(own_graph());
+  ::unsetenv("HC_GRAPH");
+  EXPECT_FALSE(own_graph());
 }
 
 TEST(Running, sockets_with_any_other_name_are_no_graphs) {

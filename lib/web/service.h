@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A server with the thread that runs it, beside a module's own.
+
+#include <concepts>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <hc/base/result.h>
+#include <web/access.h>
+#include <web/inbox.h>
+#include <web/listening.h>
+#include <web/server.h>
+
+namespace hc::web {
+
+class Service {
+ public:
+  /// Listens; serves once there is something to serve().
+  ///
+  /// @param inbox  takes what the server's thread hands to the module's; it lives longer.
+  /// @param log  takes lines of the server, out of the inbox.
+  /// Errors: as open_server().
+  static Result<std::unique_ptr<Service>> open(const Listening& listening, Inbox& inbox,
+                                               std::function<void(std::string_view)> log);
+  /// Closes the site, and waits a moment until what was sent last has arrived.
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  /// Serves a site until the end, on a thread of its own, to which access() belongs from then on.
+  /// To be called once.
+  template <std::derived_from<Site> S>
+  S& serve(std::unique_ptr<S> site) {
+    S& kept = *site;
+    run(std::move(site));
+    return kept;
+  }
+
+  [[nodiscard]] Server& server() { return *opened_.server; }
+  [[nodiscard]] Access& access() { return access_; }
+  /// Of the certificate; empty: no TLS.
+  [[nodiscard]] const std::string& fingerprint() const { return opened_.fingerprint; }
+
+ private:
+  explicit Service(Opened opened) : opened_(std::move(opened)), access_(opened_.place) {}
+  void run(std::unique_ptr<Site> site);
+
+  Opened opened_;
+  Access access_;
+  std::unique_ptr<Site> site_;  // before the server, to which it may still post, is destroyed
+  std::thread thread_;
+};
+
+}  // namespace hc::web

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <web/service.h>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <array>
+#include <atomic>
+#include <stdexcept>
+
+#include <hc/testing/loopback.h>
+
+namespace hc::web {
+namespace {
+
+constexpr int kWatchdog = 20'000;  // [ms]
+
+class Hello final : public Site {
+ public:
+  explicit Hello(std::atomic<int>& closed) : closed_(closed) {}
+  Reply reply(const Request& request) override {
+    if (request.path == "/fail") throw std::runtime_error("it fails");
+    Reply reply;
+    reply.body = std::make_shared<const std::string>("hello");
+    return reply;
+  }
+  void open(std::shared_ptr<WebSocket> /*socket*/, const Request& /*request*/) override {}
+  void close() override { ++closed_; }
+
+ private:
+  std::atomic<int>& closed_;
+};
+
+/// Asks for a path.
+internal::Descriptor ask(std::uint16_t port, const std::string& path) {
+  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const auto place = testing::loopback(port);
+  EXPECT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
+  const std::string request =
+      "GET " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  EXPECT_EQ(::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL),
+            std::ssize(request));
+  return socket;
+}
+
+bool is_readable(int descriptor) {
+  pollfd polled{descriptor, POLLIN, 0};
+  return ::poll(&polled, 1, kWatchdog) == 1;
+}
+
+std::string answer(int socket) {
+  std::string all;
+  std::array<char, 1024> part;
+  while (is_readable(socket)) {
+    const auto got = ::recv(socket, part.data(), part.size(), 0);
+    if (got <= 0) break;
+    all.append(part.data(), static_cast<std::size_t>(got));
+  }
+  return all;
+}
+
+TEST(Service, serves_a_site_and_closes_it_at_the_end) {
+  Inbox inbox;
+  auto service = Service::open({}, inbox, [](std::string_view) {});
+  ASSERT_TRUE(service) << service.error().text();
+  std::atomic<int> closed = 0;
+  (*service)->serve(std::make_unique<Hello>(closed));
+  const auto port = (*service)->server().port();
+  EXPECT_EQ((*service)->access().place().port, port);
+  EXPECT_EQ((*service)->fingerprint(), "");
+  EXPECT_TRUE(answer(ask(port, "/").get()).ends_with("\r\n\r\nhello"));
+  EXPECT_EQ(closed, 0);
+  service->reset();
+  EXPECT_EQ(closed, 1);
+}
+
+TEST(Service, logs_by_the_inbox_alone) {
+  Inbox inbox;
+  std::string logged;
+  auto service = Service::open({}, inbox, [&](std::string_view line) { logged = line; });
+  ASSERT_TRUE(service) << service.error().text();
+  std::atomic<int> closed = 0;
+  (*service)->serve(std::make_unique<Hello>(closed));
+  const auto failed = ask((*service)->server().port(), "/fail");
+  ASSERT_TRUE(is_readable(inbox.descriptor()));
+  EXPECT_EQ(logged, "");
+  inbox.work_off();
+  EXPECT_EQ(logged, "server: it fails");
+}
+
+TEST(Service, ends_though_it_served_nothing) {
+  Inbox inbox;
+  EXPECT_TRUE(Service::open({}, inbox, [](std::string_view) {}));
+}
+
+}  // namespace
+}  // namespace hc::web
