@@ -4,11 +4,16 @@
 #include <algorithm>
 #include <numeric>
 #include <string_view>
+#include <utility>
+
+#include <hc/base/clock.h>
+#include <hc/base/format.h>
 
 namespace {
 
 constexpr std::size_t kLeast = 5, kMost = 16;         // letters of a text
 constexpr std::size_t kLeastWord = 3, kMostWord = 8;  // of a word
+constexpr std::int64_t kSettle = 1'000'000'000;  // from the first reading to the first text [ns]
 constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
 /// The one in the middle, or the mean of the two there; 0 of none.
@@ -91,4 +96,50 @@ ReadText Attempt::result() const {
     text.work = static_cast<double>(*spoken_at_ - image_) * 1e-9;
   }
   return text;
+}
+
+std::array<double, 6> ReadingScore::numbers() const {
+  return {
+      error_rate, median, most, work, static_cast<double>(texts), static_cast<double>(unspoken)};
+}
+
+std::string ReadingScore::text() const {
+  auto line = hc::format(
+      "character error rate {:.1f} %, seen to spoken {:.2f} s median, {:.2f} s at most, of {} "
+      "texts",
+      100 * error_rate, median, most, texts);
+  if (unspoken > 0) line += hc::format("; {} not spoken in time", unspoken);
+  return line;
+}
+
+void Dictation::take_text(const std::string& text, std::int64_t image, std::int64_t now) {
+  // The head turns to what it has read.
+  if (!std::exchange(has_begun_, true)) next_at_ = now + kSettle;
+  if (attempt_) attempt_->take_text(text, image);
+}
+
+void Dictation::take_sound(std::int64_t image, std::int64_t now, double duration) {
+  heard_until_ = now + hc::duration(duration).count();
+  if (attempt_) attempt_->take_sound(image, now);
+}
+
+std::optional<ReadText> Dictation::finish(std::int64_t now, double time_out, double pause) {
+  if (!attempt_) return std::nullopt;
+  const bool is_late = now - attempt_->written_at() >= hc::duration(time_out).count();
+  if (!attempt_->is_done() && !is_late) return std::nullopt;
+  texts_.push_back(attempt_->result());
+  attempt_.reset();
+  next_at_ = std::max(now, heard_until_) + hc::duration(pause).count();
+  return texts_.back();
+}
+
+std::optional<std::string> Dictation::write(std::int64_t now) {
+  if (attempt_ || now < std::max(next_at_, heard_until_)) return std::nullopt;
+  has_begun_ = true;
+  attempt_.emplace(random_text(random_), now);
+  return attempt_->truth();
+}
+
+bool Dictation::is_done(std::int64_t texts) const {
+  return !attempt_ && std::ssize(texts_) >= texts;
 }

@@ -3,6 +3,7 @@
 // How well a robot reads aloud: texts to be read, and what became of them. Pure: times come from
 // the caller, in nanoseconds since the Unix epoch.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -27,6 +28,11 @@ struct ReadingScore {
   double median = 0, most = 0;  ///< seen to spoken, of those that were spoken [s]
   double work = 0;              ///< median of their work [s]
   std::size_t texts = 0, unspoken = 0;
+
+  /// error_rate, median, most, work, texts, unspoken.
+  [[nodiscard]] std::array<double, 6> numbers() const;
+  /// "character error rate 2.0 %, seen to spoken 0.50 s median, 0.90 s at most, of 20 texts".
+  [[nodiscard]] std::string text() const;
 };
 
 ReadingScore score_of(const std::vector<ReadText>& texts);
@@ -54,4 +60,34 @@ class Attempt {
   std::optional<std::string> read_;
   std::optional<std::int64_t> spoken_at_;
   std::int64_t image_ = 0;  // of what was spoken
+};
+
+/// Texts that are written one after the other, each until it was read and spoken. To be looked at
+/// often: finish(), then write().
+class Dictation {
+ public:
+  /// @param latest  when the first text is written if none is read before [ns].
+  Dictation(std::uint64_t seed, std::int64_t latest) : random_(seed), next_at_(latest) {}
+
+  /// As of Attempt, and what is read before the first text: it shows that all is running.
+  void take_text(const std::string& text, std::int64_t image, std::int64_t now);
+  /// @param duration  of what is spoken [s].
+  void take_sound(std::int64_t image, std::int64_t now, double duration);
+
+  /// What became of the text, once it is read and spoken or its time is over.
+  /// @param time_out  of a text [s].
+  /// @param pause  from the end of the speech to the next text [s].
+  std::optional<ReadText> finish(std::int64_t now, double time_out, double pause);
+  /// The next text, once it is to be written.
+  std::optional<std::string> write(std::int64_t now);
+
+  [[nodiscard]] bool is_done(std::int64_t texts) const;
+  [[nodiscard]] ReadingScore score() const { return score_of(texts_); }
+
+ private:
+  std::mt19937_64 random_;
+  std::vector<ReadText> texts_;  // that have ended
+  std::optional<Attempt> attempt_;
+  std::int64_t next_at_, heard_until_ = 0;  // the next text; what is spoken [ns]
+  bool has_begun_ = false;
 };

@@ -100,6 +100,50 @@ TEST(ReadingScore, is_over_all_letters_and_all_that_were_spoken) {
   EXPECT_EQ(score.unspoken, 1);
   EXPECT_NEAR(score_of({{"A", "A", 0.5, 0}, {"B", "B", 0.4, 0}}).median, 0.45, 1e-12);
   EXPECT_EQ(score_of({}).error_rate, 0);
+  EXPECT_EQ(score.numbers(), (std::array<double, 6>{score.error_rate, 0.5, 0.9, 0.2, 4, 1}));
+  EXPECT_EQ(score.text(),
+            "character error rate 28.0 %, seen to spoken 0.50 s median, 0.90 s at most, of 4 "
+            "texts; 1 not spoken in time");
+}
+
+TEST(Dictation, writes_the_next_text_after_the_speech_and_a_pause) {
+  Dictation dictation(7, 10'000 * kMillisecond);
+  const auto write = [&](std::int64_t at) { return dictation.write(at * kMillisecond); };
+  const auto finish = [&](std::int64_t at) { return dictation.finish(at * kMillisecond, 10, 0.3); };
+  EXPECT_FALSE(write(9'999));
+  const auto first = write(10'000);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(write(10'010)) << "one at a time";
+  dictation.take_text(*first, 10'100 * kMillisecond, 10'200 * kMillisecond);
+  EXPECT_FALSE(finish(10'300));
+  dictation.take_sound(10'100 * kMillisecond, 10'400 * kMillisecond, 2);
+  const auto ended = finish(10'400);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->read, *first);
+  EXPECT_FALSE(finish(10'410));
+  EXPECT_FALSE(write(12'699)) << "it is spoken until 12.4 s";
+  EXPECT_TRUE(write(12'700));
+}
+
+TEST(Dictation, begins_soon_after_something_is_read) {
+  Dictation dictation(7, 10'000 * kMillisecond);
+  dictation.take_text("WHAT STOOD THERE", 0, 2'000 * kMillisecond);
+  dictation.take_text("WHAT STOOD THERE", 0, 2'500 * kMillisecond);
+  EXPECT_FALSE(dictation.write(2'999 * kMillisecond));
+  EXPECT_TRUE(dictation.write(3'000 * kMillisecond)) << "after the first, not the second";
+}
+
+TEST(Dictation, a_text_that_is_not_read_in_time_ends) {
+  Dictation dictation(7, 0);
+  ASSERT_TRUE(dictation.write(0));
+  EXPECT_FALSE(dictation.is_done(0)) << "one is not ended";
+  EXPECT_FALSE(dictation.finish(4'999 * kMillisecond, 5, 0));
+  const auto ended = dictation.finish(5'000 * kMillisecond, 5, 0);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->read, "");
+  EXPECT_TRUE(dictation.is_done(1));
+  EXPECT_FALSE(dictation.is_done(2));
+  EXPECT_EQ(dictation.score().unspoken, 1);
 }
 
 }  // namespace
