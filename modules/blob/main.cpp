@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The blob of a colour.
-#include <cmath>
-#include <optional>
-
-#include <hc/base/format.h>
 #include <hc/module/module.h>
-#include <vision/blob.h>
 #include <vision/messages.h>
+
+#include "search.h"
 
 int main(int argc, char** argv) {
   hc::Module module{
@@ -29,69 +26,19 @@ int main(int argc, char** argv) {
   auto min_area =
       module.parameter("min_area", 60.0, "px²", "minimum area of a blob", {.min = 0, .max = 1e9});
 
-  std::optional<hc::vision::BlobFinder> finder;
-  std::optional<cv::Point2d> pointed;           // at the next image
-  std::optional<hc::vision::BlobColour> taken;  // by pointing
-  double hue_then = 0;                          // when it was taken
-  auto take = [&](const cv::Mat& pixels) {
-    const cv::Point at(static_cast<int>(std::lround(pointed->x)),
-                       static_cast<int>(std::lround(pointed->y)));
-    pointed.reset();
-    if (!cv::Rect(0, 0, pixels.cols, pixels.rows).contains(at))
-      return module.log("point: outside the image");
-    auto colour = hc::vision::colour_at(pixels, at);
-    if (!colour) return module.log(hc::format("point: no colour at {}, {}", at.x, at.y));
-    colour->hue_width = *hue_width;
-    taken = colour;
-    hue_then = *hue;
-    module.log(hc::format("point: hue {:.3f}, saturation {:.2f} and value {:.2f} at least",
-                          colour->hue, colour->min_saturation, colour->min_value));
-  };
+  Search search{[&](std::string_view line) { module.log(line); }};
   module.on(point, [&](const auto& message) {
-    constexpr double kFar = 1e6;
-    const auto numbers = message.numbers();
-    if (!(std::abs(numbers[0]) < kFar) || !(std::abs(numbers[1]) < kFar))
-      return module.log("point: outside the image");
-    pointed = {numbers[0], numbers[1]};
+    const auto at = message.numbers();
+    search.point(at[0], at[1]);
   });
-  // Once, and only while none was ever found: the light or the parameters are not right.
-  int misses = 0, images = 0, seen = 0;
-  auto warn = [&](const cv::Mat& pixels) {
-    constexpr int kMany = 40;
-    if (misses < 0 || ++misses < kMany) return;
-    misses = -1;
-    const auto faint = finder->find_faint(pixels, *min_area);
-    if (!faint) return;
-    const auto& wanted = finder->colour();
-    char line[240];
-    std::snprintf(
-        line, sizeof line,
-        "no blob in %d images: what is of hue %.2f has a mean saturation of %.2f and a mean "
-        "value of %.2f, and must have %.2f and %.2f; raise the camera's exposure, or lower "
-        "the parameters saturation or value",
-        kMany, wanted.hue, faint->min_saturation, faint->min_value, wanted.min_saturation,
-        wanted.min_value);
-    module.log(line);
-  };
   module.on(image, [&](const auto& message) {
-    const cv::Mat pixels = hc::as_mat(message);
-    if (pointed) take(pixels);
-    if (taken && *hue != hue_then) taken.reset();
-    const auto colour =
-        taken.value_or(hc::vision::BlobColour{*hue, *hue_width, *saturation, *value});
-    if (!finder || !(finder->colour() == colour)) finder.emplace(colour);
-    const auto blob = finder->find(pixels, *min_area);
-    ++images;
-    if (!blob) return warn(pixels);
-    misses = -1;
-    ++seen;
+    const auto blob =
+        search.look(hc::as_mat(message), {*hue, *hue_width, *saturation, *value}, *min_area);
+    if (!blob) return;
     target.send(hc::position(blob->x, blob->y, blob->radius).in(message.header.coord));
     area.send(hc::table({blob->area}));
   });
   const int status = module.run(argc, argv);
-  constexpr int kFew = 20;  // images that a person looks at
-  if (images > kFew)
-    module.log("result: saw its target in " + std::to_string(seen) + " of " +
-               std::to_string(images) + " images");
+  if (const auto summary = search.summary(); !summary.empty()) module.log("result: " + summary);
   return status;
 }
