@@ -5,10 +5,10 @@
 
 namespace hc::web {
 
-GraphClient::GraphClient(RunningGraph graph, Post post, Hears hears)
+GraphClient::GraphClient(RunningGraph graph, Post post, Callbacks callbacks)
     : graph_(std::move(graph)),
       post_(std::move(post)),
-      hears_(std::move(hears)),
+      callbacks_(std::move(callbacks)),
       listener_([this] { listen(); }),
       asker_([this] { work(); }) {}
 
@@ -44,11 +44,11 @@ void GraphClient::listen() {
     const auto got = (*source)->take(message);
     if (!got || *got == Got::End) break;
     if (*got == Got::Message)
-      post_([this, kept = message.keep()] { hears_.message(kept); });
+      post_([this, kept = message.keep()] { callbacks_.message(kept); });
     else if (!(*source)->wait(stop_.descriptor()))
       return;  // stopped
   }
-  post_([this] { hears_.end(); });
+  post_([this] { callbacks_.end(); });
 }
 
 void GraphClient::work() {

@@ -20,13 +20,13 @@ namespace hc::web {
 class GraphClient {
  public:
   /// Called on the server's thread.
-  struct Hears {
+  struct Callbacks {
     std::function<void(const Message&)> message;  ///< a state or a line of the log, by its src
     std::function<void()> end;                    ///< the graph has ended
   };
   using Answered = std::function<void(const std::vector<std::string>& rows)>;
 
-  GraphClient(RunningGraph graph, Post post, Hears hears);
+  GraphClient(RunningGraph graph, Post post, Callbacks callbacks);
   ~GraphClient();
   GraphClient(const GraphClient&) = delete;
   GraphClient& operator=(const GraphClient&) = delete;
@@ -45,7 +45,7 @@ class GraphClient {
 
   const RunningGraph graph_;
   const Post post_;
-  const Hears hears_;
+  const Callbacks callbacks_;
   internal::Event stop_ = internal::Event::must_make();
   std::mutex mutex_;
   std::condition_variable asked_;

@@ -21,10 +21,10 @@ void yield_to_robot() {
 
 }  // namespace
 
-Observer::Observer(RunningGraph graph, std::string port, Hears hears)
+Observer::Observer(RunningGraph graph, std::string port, Callbacks callbacks)
     : graph_(std::move(graph)),
       port_(std::move(port)),
-      hears_(std::move(hears)),
+      callbacks_(std::move(callbacks)),
       thread_([this] { run(); }) {}
 
 Observer::~Observer() {
@@ -41,7 +41,7 @@ void Observer::run() {
   yield_to_robot();
   constexpr std::chrono::seconds kRenewal{1};
   auto end = [&](const std::string& why, bool is_error) {
-    if (!is_stopped_) hears_.end(why, is_error);
+    if (!is_stopped_) callbacks_.end(why, is_error);
   };
   auto observation = Observation::make(graph_, port_, wake_.descriptor());
   if (!observation) return end(observation.error().detail, true);
@@ -50,7 +50,7 @@ void Observer::run() {
   auto source = open_source(parse_uri(observation->uri()).value(), options);
   if (!source) return end(source.error().detail, true);
   is_open_ = true;
-  hears_.open();
+  callbacks_.open();
   Message message;
   auto renewed = Clock::now();
   while (!is_stopped_) {
@@ -63,11 +63,11 @@ void Observer::run() {
       renewed = now;
     }
     if (*got == Got::Message) {
-      hears_.message(message);
+      callbacks_.message(message);
       continue;  // a newer one may be there
     }
     message = {};
-    const auto next = std::min(renewed + kRenewal, hears_.idle());
+    const auto next = std::min(renewed + kRenewal, callbacks_.idle());
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now());
     const auto waited =
         (*source)->wait(wake_.descriptor(), std::max(wait, std::chrono::milliseconds(0)));

@@ -20,7 +20,7 @@ class Observer {
   using Clock = std::chrono::steady_clock;
 
   /// Called on the thread of the observer.
-  struct Hears {
+  struct Callbacks {
     /// The output is there.
     std::function<void()> open = [] {};
     /// A message; it is valid within the call, keep() holds it.
@@ -33,7 +33,7 @@ class Observer {
   };
 
   /// @param port  MODULE.PORT; of an input, what feeds it.
-  Observer(RunningGraph graph, std::string port, Hears hears);
+  Observer(RunningGraph graph, std::string port, Callbacks callbacks);
   ~Observer();
   Observer(const Observer&) = delete;
   Observer& operator=(const Observer&) = delete;
@@ -46,7 +46,7 @@ class Observer {
 
   const RunningGraph graph_;
   const std::string port_;
-  const Hears hears_;
+  const Callbacks callbacks_;
   internal::Event wake_ = internal::Event::must_make();
   std::atomic<bool> is_open_{false}, is_stopped_{false};
   std::thread thread_;

@@ -88,8 +88,8 @@ Bridge::Bridge(Options options, web::Access& access, web::Server& server)
   server_.every(kTick, [this] { tick(); });
   graph_ = std::make_unique<web::GraphClient>(
       options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
-      web::GraphClient::Hears{[this](const hc::Message& message) { take_graph(message); },
-                              [this] { close(); }});
+      web::GraphClient::Callbacks{[this](const hc::Message& message) { take_graph(message); },
+                                  [this] { close(); }});
 }
 
 Bridge::~Bridge() {
@@ -191,7 +191,7 @@ void Bridge::subscribe(Viewer& viewer, const Json& request) {
     publishers_[*channel] = std::make_unique<Publisher>(
         options_.graph, found->second, options_.joints.names,
         [this](std::function<void()> call) { server_.post(std::move(call)); },
-        Publisher::Hears{
+        Publisher::Callbacks{
             [this, channel = *channel](const Payload& payload) { publish(channel, payload); },
             [this, topic = found->second.topic](const std::string& why) {
               for (const auto& other : viewers_)

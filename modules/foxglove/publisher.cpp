@@ -17,20 +17,21 @@ web::Bytes bytes_of(const hc::ros::Pieces& pieces) {
 }
 
 Publisher::Publisher(hc::RunningGraph graph, Channel channel,
-                     std::map<std::int32_t, std::string> frames, web::Post post, Hears hears)
+                     std::map<std::int32_t, std::string> frames, web::Post post,
+                     Callbacks callbacks)
     : channel_(std::move(channel)),
       post_(std::move(post)),
       shared_(std::make_shared<Shared>()),
-      observer_((encoder_.frames = std::move(frames), shared_->hears = std::move(hears),
+      observer_((encoder_.frames = std::move(frames), shared_->callbacks = std::move(callbacks),
                  std::move(graph)),
                 channel_.port,
                 {.message = [this](const hc::Message& message) { take(message); },
                  .end = [this](const std::string& why,
-                               bool) { call([why](const Hears& heard) { heard.end(why); }); }}) {}
+                               bool) { call([why](const Callbacks& to) { to.end(why); }); }}) {}
 
-void Publisher::call(std::function<void(const Hears&)> what) const {
+void Publisher::call(std::function<void(const Callbacks&)> what) const {
   post_([weak = std::weak_ptr(shared_), what = std::move(what)] {
-    if (const auto shared = weak.lock()) what(shared->hears);
+    if (const auto shared = weak.lock()) what(shared->callbacks);
   });
 }
 
@@ -43,16 +44,16 @@ void Publisher::take(const hc::Message& message) {
   if (!bytes) {
     // A message that is not as its port says; the same words once.
     if (std::exchange(failed_, bytes.error().detail) != failed_)
-      call([why = failed_](const Hears& heard) { heard.end(why); });
+      call([why = failed_](const Callbacks& to) { to.end(why); });
     return;
   }
   const std::int64_t time =
       message.header.time != 0 ? message.header.time : hc::SystemClock().wall();
   shared_->waiting += (*bytes)->size();
   call([payload = Payload{time, std::move(*bytes)},
-        &waiting = shared_->waiting](const Hears& hears) {
+        &waiting = shared_->waiting](const Callbacks& callbacks) {
     waiting -= payload.bytes->size();
-    hears.message(payload);
+    callbacks.message(payload);
   });
 }
 

@@ -35,7 +35,7 @@ hc::web::Bytes bytes_of(const hc::ros::Pieces& pieces);
 class Publisher {
  public:
   /// Called on the server's thread.
-  struct Hears {
+  struct Callbacks {
     std::function<void(const Payload&)> message;
     /// There is nothing more: why.
     std::function<void(const std::string&)> end;
@@ -43,7 +43,7 @@ class Publisher {
 
   /// @param frames  names of frames by their number, for frame_ids.
   Publisher(hc::RunningGraph graph, Channel channel, std::map<std::int32_t, std::string> frames,
-            hc::web::Post post, Hears hears);
+            hc::web::Post post, Callbacks callbacks);
 
   /// How many messages were dropped since the last call, as the server's thread was busy.
   std::uint64_t take_dropped() { return shared_->dropped.exchange(0); }
@@ -55,7 +55,7 @@ class Publisher {
   // On the observer's thread.
   void take(const hc::Message& message);
   hc::Result<hc::web::Bytes> encode(const hc::Message& message);
-  void call(std::function<void(const Hears&)> what) const;
+  void call(std::function<void(const Callbacks&)> what) const;
 
   const Channel channel_;
   const hc::web::Post post_;
@@ -63,7 +63,7 @@ class Publisher {
   std::string failed_;  // why the last message could not be encoded
   /// What the server's thread calls, if it is still there then; and what waits for it.
   struct Shared {
-    Hears hears;
+    Callbacks callbacks;
     std::atomic<std::size_t> waiting{0};  // [byte]
     std::atomic<std::uint64_t> dropped{0};
   };

@@ -105,14 +105,15 @@ int main(int argc, char** argv) {
     service->serve(std::make_unique<Page>(
         Page::Options{*graph, module.instance(), *frames, *recordings}, access, service->server(),
         robot,
-        Page::Hears{[&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
-                    [&](bool is_wanted) {
-                      inbox.put([&, is_wanted] {
-                        wants_stop = is_wanted;
-                        send_stop();
-                      });
-                    },
-                    [&](const std::string& line) { inbox.put([&, line] { module.log(line); }); }}));
+        Page::Callbacks{
+            [&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
+            [&](bool is_wanted) {
+              inbox.put([&, is_wanted] {
+                wants_stop = is_wanted;
+                send_stop();
+              });
+            },
+            [&](const std::string& line) { inbox.put([&, line] { module.log(line); }); }}));
     if (*browser) open_in_browser(url);
     seen = module.monotonic();
   });

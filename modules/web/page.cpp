@@ -94,17 +94,18 @@ Rows words_of(const std::string& line) {
 
 }  // namespace
 
-Page::Page(Options options, web::Access& access, web::Server& server, Robot& robot, Hears hears)
+Page::Page(Options options, web::Access& access, web::Server& server, Robot& robot,
+           Callbacks callbacks)
     : options_(std::move(options)),
       access_(access),
       server_(server),
       robot_(robot),
-      hears_(std::move(hears)) {
+      callbacks_(std::move(callbacks)) {
   server_.every(std::chrono::milliseconds(25), [this] { tick(); });
   graph_ = std::make_unique<web::GraphClient>(
       options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
-      web::GraphClient::Hears{[this](const hc::Message& message) { take_state(message); },
-                              [this] { close(); }});
+      web::GraphClient::Callbacks{[this](const hc::Message& message) { take_state(message); },
+                                  [this] { close(); }});
 }
 
 Page::~Page() {
@@ -149,7 +150,7 @@ web::Reply Page::reply_to_token(const web::Request& request) {
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
     return {303, "text/plain", {}, {}, {}, {{"Location", "/"}}};
   }
-  hears_.log("notice: page opened; for another browser: " + access_.invite(web::Right::Drive));
+  callbacks_.log("notice: page opened; for another browser: " + access_.invite(web::Right::Drive));
   return {303,
           "text/plain",
           {},
@@ -249,15 +250,15 @@ void Page::open_stream(const std::shared_ptr<web::WebSocket>& socket, const web:
   Watched& watched = watched_[number];
   watched.socket = socket;
   watched.port = port;
-  Stream::Hears hears;
-  hears.header = [socket](std::string header) { socket->send_text(std::move(header)); };
-  hears.message = [socket](web::Bytes message) { socket->send(std::move(message)); };
-  hears.end = [this, socket, number](const std::string& why, bool is_error) {
+  Stream::Callbacks callbacks;
+  callbacks.header = [socket](std::string header) { socket->send_text(std::move(header)); };
+  callbacks.message = [socket](web::Bytes message) { socket->send(std::move(message)); };
+  callbacks.end = [this, socket, number](const std::string& why, bool is_error) {
     socket->close(is_error ? kNoStream : kEnd, why);
     // Not while the viewer calls.
     server_.post([this, number] { watched_.erase(number); });
   };
-  watched.viewer = stream->view(*wanted, std::move(hears));
+  watched.viewer = stream->view(*wanted, std::move(callbacks));
   socket->on_close = [this, number] { watched_.erase(number); };
   socket->on_text = [this, number, socket](std::string_view said) {
     const auto found = watched_.find(number);
@@ -344,7 +345,7 @@ std::optional<Rows> Page::command_here(const Session& session, const Rows& words
     if (robot_.stopped < 0)
       return Rows{"this graph has no workspace that " + options_.module +
                   ".stop is linked to; end the graph with stop"};
-    hears_.stop(!clears);
+    callbacks_.stop(!clears);
     return Rows{"ok"};
   }
   if (words[0] == "record") return may_drive ? record(words) : no_right;
@@ -367,7 +368,7 @@ Rows Page::record(const Rows& words) {
   if (words.size() < 3) return {"record is followed by a name and outputs, MODULE.PORT, or by end"};
   auto begun = Recorder::begin(
       options_.graph, options_.recordings, words[1], {words.begin() + 2, words.end()},
-      [log = hears_.log, &server = server_](hc::Severity, std::string_view line) {
+      [log = callbacks_.log, &server = server_](hc::Severity, std::string_view line) {
         server.post([log, kept = std::string(line)] { log(kept); });
       });
   if (!begun) return {begun.error().detail};
@@ -376,7 +377,7 @@ Rows Page::record(const Rows& words) {
 }
 
 void Page::give(const std::vector<Order>& orders) const {
-  for (const auto& order : orders) hears_.order(order);
+  for (const auto& order : orders) callbacks_.order(order);
 }
 
 void Page::tick() {

@@ -38,13 +38,14 @@ class Page final : public web::Site {
     std::string recordings;  ///< folder
   };
   /// Called on the server's thread.
-  struct Hears {
+  struct Callbacks {
     std::function<void(Order)> order;  ///< something is commanded
     std::function<void(bool)> stop;    ///< the robot is to be stopped, or not any more
     std::function<void(const std::string& line)> log;
   };
 
-  Page(Options options, web::Access& access, web::Server& server, Robot& robot, Hears hears);
+  Page(Options options, web::Access& access, web::Server& server, Robot& robot,
+       Callbacks callbacks);
   ~Page() override;
 
   web::Reply reply(const web::Request& request) override;
@@ -88,7 +89,7 @@ class Page final : public web::Site {
   web::Access& access_;
   web::Server& server_;
   Robot& robot_;
-  const Hears hears_;
+  const Callbacks callbacks_;
   const hc::SystemClock clock_;
   std::uint64_t next_ = 1;  // number of a session or stream
   Sessions sessions_;

@@ -144,12 +144,12 @@ class Recorder::Track {
       : port_(std::move(port)), path_(std::move(path)), bytes_(bytes), log_(std::move(log)) {
     observer_.emplace(
         graph, port_,
-        web::Observer::Hears{.open = [this] { open(); },
-                             .message = [this](const hc::Message& message) { write(message); },
-                             .end =
-                                 [this](const std::string& why, bool is_error) {
-                                   if (is_error) fail(why);
-                                 }});
+        web::Observer::Callbacks{.open = [this] { open(); },
+                                 .message = [this](const hc::Message& message) { write(message); },
+                                 .end =
+                                     [this](const std::string& why, bool is_error) {
+                                       if (is_error) fail(why);
+                                     }});
   }
   ~Track() {
     observer_.reset();

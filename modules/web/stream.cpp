@@ -74,21 +74,22 @@ Stream::Stream(hc::RunningGraph graph, std::string port, web::Post post)
                  .idle = [this] { return serve(); },
                  .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
 
-void Stream::call(const std::shared_ptr<Seat>& seat, std::function<void(const Hears&)> what) const {
+void Stream::call(const std::shared_ptr<Seat>& seat,
+                  std::function<void(const Callbacks&)> what) const {
   post_([weak = std::weak_ptr(seat), what = std::move(what)] {
-    if (const auto still = weak.lock()) what(still->hears);
+    if (const auto still = weak.lock()) what(still->callbacks);
   });
 }
 
-std::unique_ptr<Stream::Viewer> Stream::view(const Wanted& wanted, Hears hears) {
+std::unique_ptr<Stream::Viewer> Stream::view(const Wanted& wanted, Callbacks callbacks) {
   auto seat = std::make_shared<Seat>();
   seat->wanted = wanted;
-  seat->hears = std::move(hears);
+  seat->callbacks = std::move(callbacks);
   const std::lock_guard lock(mutex_);
   seats_.push_back(seat);
   if (!ended_.empty())
     call(seat,
-         [why = ended_, is_error = is_error_](const Hears& page) { page.end(why, is_error); });
+         [why = ended_, is_error = is_error_](const Callbacks& page) { page.end(why, is_error); });
   observer_.wake();
   return std::make_unique<Viewer>(*this, std::move(seat));
 }
@@ -103,7 +104,7 @@ void Stream::end(const std::string& why, bool is_error) {
   ended_ = why;
   is_error_ = is_error;
   for (const auto& seat : seats_)
-    call(seat, [why, is_error](const Hears& page) { page.end(why, is_error); });
+    call(seat, [why, is_error](const Callbacks& page) { page.end(why, is_error); });
 }
 
 Stream::Clock::time_point Stream::serve() {
@@ -166,7 +167,7 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
   }
   if (!made) {
     for (const auto& seat : seats)
-      call(seat, [why = made.error().detail](const Hears& page) { page.end(why, true); });
+      call(seat, [why = made.error().detail](const Callbacks& page) { page.end(why, true); });
     return;
   }
   const web::Bytes bytes = bytes_of(*made);
@@ -182,7 +183,7 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
     }
     const bool has_header = now >= seat->header_due;
     if (has_header) seat->header_due = now + kHeader;
-    call(seat, [bytes, text = has_header ? header : std::string()](const Hears& page) {
+    call(seat, [bytes, text = has_header ? header : std::string()](const Callbacks& page) {
       if (!text.empty()) page.header(text);
       page.message(bytes);
     });

@@ -33,7 +33,7 @@ hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted = {});
 class Stream {
  public:
   /// Called on the server's thread.
-  struct Hears {
+  struct Callbacks {
     std::function<void(std::string header)> header;  ///< as it was sent
     std::function<void(web::Bytes)> message;
     /// The stream is at its end. @param is_error  there is no such output, or it failed.
@@ -44,7 +44,7 @@ class Stream {
 
   Stream(hc::RunningGraph graph, std::string port, web::Post post);
 
-  [[nodiscard]] std::unique_ptr<Viewer> view(const Wanted& wanted, Hears hears);
+  [[nodiscard]] std::unique_ptr<Viewer> view(const Wanted& wanted, Callbacks callbacks);
   [[nodiscard]] bool is_viewed();
 
  private:
@@ -62,7 +62,7 @@ class Stream {
     Clock::time_point due{}, header_due{};
     std::uint64_t frame = 0;  // number of the last frame of VP8 it was given, 0: none
     // Of the server's thread.
-    Hears hears;
+    Callbacks callbacks;
   };
   using Seats = std::vector<std::shared_ptr<Seat>>;
   struct Video {
@@ -76,7 +76,7 @@ class Stream {
   Clock::time_point serve();
   void serve_alike(const Wanted& wanted, const Seats& seats);
   /// Calls a page on the server's thread, if it is still there then.
-  void call(const std::shared_ptr<Seat>& seat, std::function<void(const Hears&)> what) const;
+  void call(const std::shared_ptr<Seat>& seat, std::function<void(const Callbacks&)> what) const;
   void end(const std::string& why, bool is_error);
 
   const web::Post post_;

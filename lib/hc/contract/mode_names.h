@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The names of a graph's modes, as a module gets them: in a parameter `mode_names` of text (G27). Pure.
+// The names of a graph's modes, as a module gets them: in a parameter `mode_names` of text (G27).
+// Pure.
 
 #include <cstdint>
 #include <map>

@@ -124,8 +124,8 @@ class Sink {
 /// How a link behaves, whatever carries it.
 struct LinkOptions {
   Limits limits;  ///< of what is read
-  /// Hears of connections that came and failed, each line with the URI before it, on the threads
-  /// that use the link's end; may be empty.
+  /// Gets a line when a connection has come or failed, with the URI before it, on the threads that
+  /// use the link's end; may be empty.
   LogSink log;
   int stop = -1;  ///< descriptor that is readable when waiting is to end; -1: none
   /// What a sink that waits for a reader, or for room, does besides.
@@ -134,7 +134,7 @@ struct LinkOptions {
     /// On the thread that sends; it may abandon() the sink. False: not to be called any more.
     std::function<bool()> call;
   } interrupt = {};
-  /// Hears when a sink that readers come to begins to wait for one, and has waited, on the thread
+  /// Called when a sink that readers come to begins to wait for one, and has waited, on the thread
   /// that sends; may be empty.
   std::function<void(bool awaits)> awaits_reader = {};
 };
