@@ -42,7 +42,7 @@ class Access {
   std::string invite(Right right);
 
   /// Begins a session; nothing for a wrong or used token. Of more than 1024 the oldest ends.
-  /// @returns  the value of the session's cookie, kCookie.
+  /// @returns  the value of the session's cookie, cookie_name().
   std::optional<std::string> redeem(std::string_view token);
 
   /// A URL of a WebSocket with the name of a new session, for clients that keep no cookies.
@@ -53,7 +53,8 @@ class Access {
   /// What the session of a `Cookie` header may do; nothing where it has none.
   [[nodiscard]] std::optional<Right> right_of(std::string_view cookies) const;
 
-  /// The name of the cookie; ports have their own, since cookies do not tell them apart.
+  /// The name of the cookie; ports have their own, since cookies are the same for all ports of a
+  /// host.
   [[nodiscard]] std::string cookie_name() const {
     return "hypercolumn_" + std::to_string(place_.port);
   }

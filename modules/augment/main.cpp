@@ -122,8 +122,7 @@ int main(int argc, char** argv) {
     cv::Mat pixels = hc::as_mat(draft), seen;
     const cv::Mat scene_depth = hc::value_or_end(hc::as_mat(metres));
     if (masks) seen = cv::Mat::zeros(pixels.size(), CV_8U);
-    auto drawn = scene->draw(sight, eye, scene_depth, pixels, masks ? &seen : nullptr);
-    if (!drawn) throw hc::ModuleError(drawn.error());
+    hc::succeed_or_end(scene->draw(sight, eye, scene_depth, pixels, masks ? &seen : nullptr));
     if (panel.shown.any()) panel.draw(sight, eye, *scene, frames, scene_depth, pixels);
     output.send(std::move(draft));
     if (!masks) return;

@@ -119,8 +119,7 @@ int main(int argc, char** argv) {
   auto compare_mask = [&](const Eigen::Isometry3d& T_world_left, const cv::Mat& scene,
                           const cv::Mat& found) {
     cv::Mat rgb, object;
-    if (auto drawn = renderer->draw(cube.items(), camera, T_world_left, {}, rgb, &object); !drawn)
-      throw hc::ModuleError(drawn.error());
+    hc::succeed_or_end(renderer->draw(cube.items(), camera, T_world_left, {}, rgb, &object));
     if (const auto share = share_right(object, scene, found)) samples.right.push_back(*share);
   };
 

@@ -10,21 +10,12 @@
 #include <vision/stereo/depth.h>
 #include <vision/stereo/matcher.h>
 
-namespace {
-
-hc::AnyKind image(std::int32_t coord) {
-  return hc::any_of(hc::rgb_image<std::uint8_t>().in(coord),
-                    hc::intensity_image<std::uint8_t>().in(coord));
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair."};
-  auto left =
-      module.input("left", image(hc::Coord::kLeftRectified), "rectified image of the left eye");
-  auto right =
-      module.input("right", image(hc::Coord::kRightRectified), "rectified image of the right eye");
+  auto left = module.input("left", hc::any_image(hc::Coord::kLeftRectified),
+                           "rectified image of the left eye");
+  auto right = module.input("right", hc::any_image(hc::Coord::kRightRectified),
+                            "rectified image of the right eye");
   auto intrinsics = module.input("intrinsics", hc::table<double>(),
                                  "fx, fy, cx, cy [px], baseline [m] of the rectified pair, from "
                                  "rectify; until then focal and baseline apply");

@@ -51,9 +51,8 @@ int main(int argc, char** argv) {
                                            parameters.follower(), *parameters.distance));
     const auto& file = *parameters.calibration_file;
     if (file.empty()) return;
-    const auto cameras = hc::value_or_end(hc::vision::read_calibration(file));
-    if (auto known = controller->targets.calibrate(cameras); !known)
-      throw hc::ModuleError(known.error());
+    hc::succeed_or_end(
+        controller->targets.calibrate(hc::value_or_end(hc::vision::read_calibration(file))));
   });
 
   auto measured = [&] {

@@ -25,10 +25,7 @@ int main(int argc, char** argv) {
 
   const hc::SystemClock clock;
   std::optional<hc::TrackedHead> head;
-  auto pass = [&] {
-    const auto status = head->pass(clock.monotonic(), hc::duration(*silence));
-    if (!status) throw hc::ModuleError(status.error());
-  };
+  auto pass = [&] { hc::succeed_or_end(head->pass(clock.monotonic(), hc::duration(*silence))); };
 
   module.on_start([&] {
     head.emplace(

@@ -40,9 +40,9 @@ struct Found {
 int main(int argc, char** argv) {
   hc::Module module{"marker",
                     "Finds ArUco, AprilTag and coloured square markers, and their poses."};
-  auto image = module.input(
-      "image", hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>()),
-      "image of the left eye, unless its coordinate system is the right one's");
+  auto image =
+      module.input("image", hc::any_image(),
+                   "image of the left eye, unless its coordinate system is the right one's");
   auto poses = module.output("poses", hc::transformation<double>(4, 4),
                              "T_eye_marker, one a marker: x right, y down, z into the marker as "
                              "seen by the viewer, origin in its middle [m]; coord = 1000 · eye + "

@@ -178,7 +178,7 @@ int main(int argc, char** argv) {
           {each, port, send, RateLimit(each.rate),
            hc::value_or_end(participant->read(each.topic, each.type, qos, wake))});
     }
-    const auto graph = hc::parse_running(environment("HC_GRAPH", ""));
+    const auto graph = hc::own_graph();
     for (const auto& each : published) {
       if (each.port == "frames") {
         open_frames(each);

@@ -27,8 +27,7 @@ void Eyes::take(Eye& eye, const Eigen::Isometry3d& T_head_eye, const View& view,
   auto light = view.light;
   light.exposure = static_cast<float>(*parameters_.exposure);
   const Eigen::Isometry3d T_world_eye = view.T_world_head * T_head_eye;
-  if (auto drawn = renderer_.draw(view.items, camera_, T_world_eye, light, rgb, depth); !drawn)
-    throw hc::ModuleError(drawn.error());
+  hc::succeed_or_end(renderer_.draw(view.items, camera_, T_world_eye, light, rgb, depth));
   eye.sensor.apply(rgb, *parameters_.blur, *parameters_.noise,
                    static_cast<std::uint64_t>(view.number));
   late_.put(view.time + static_cast<std::int64_t>(*parameters_.latency * 1e9),

@@ -27,9 +27,6 @@ int main(int argc, char** argv) {
                        {.min = 0, .max = 60, .fixed = true});
 
   std::optional<Player> player;
-  auto or_end = [](const hc::Status& status) {
-    if (!status) throw hc::ModuleError(status.error());
-  };
   module.on_start([&] {
     player.emplace(
         PlayerOptions{*device != "none", *device, *save, static_cast<int>(*rate),
@@ -39,10 +36,10 @@ int main(int argc, char** argv) {
   module.on(sound, [&](const hc::Message& message) {
     const auto format = hc::audio::format_of(message);
     if (!format) return module.log_once("no rate", "sound dropped: " + format.error().detail);
-    or_end(player->play(message, *format));
+    hc::succeed_or_end(player->play(message, *format));
   });
   module.every(Player::kLook, [&] { player->look(); });
-  module.on_end([&] { or_end(player->finish()); });
+  module.on_end([&] { hc::succeed_or_end(player->finish()); });
   const int status = module.run(argc, argv);
   if (player && player->dropped() > 0)
     module.log(std::to_string(player->dropped()) + " messages were dropped without a loudspeaker");

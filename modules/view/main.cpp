@@ -110,8 +110,7 @@ int main(int argc, char** argv) {
     return hc::vision::with_legend(bgr, span.least, span.most, unit_of(header));
   };
   auto write = [&](const Picture& picture) {
-    if (auto saved = hc::vision::save_image(picture.path, picture.bgr); !saved)
-      throw hc::ModuleError(saved.error());
+    hc::succeed_or_end(hc::vision::save_image(picture.path, picture.bgr));
     last = picture.path;
   };
   // To compress an image takes longer than to compute most.
