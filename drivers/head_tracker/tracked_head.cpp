@@ -9,8 +9,8 @@ namespace hc {
 
 Status TrackedHead::pass(MonotonicTime now, std::chrono::nanoseconds silence) {
   if (!tracker_) return backoff_.is_due(now) ? listen(now) : Status();
-  if (!heard_ || now - *heard_ < silence) return {};
-  heard_.reset();
+  if (!active_ || now - *active_ < silence) return {};
+  active_.reset();
   receives_ = false;
   log_("no packets received on UDP " + where_);
   return {};
@@ -25,7 +25,7 @@ Status TrackedHead::listen(MonotonicTime now) {
     return {};
   }
   tracker_.emplace(std::move(*opened));
-  heard_ = now;
+  active_ = now;
   where_ = options_.host + ":" + std::to_string(tracker_->port());
   log_("listening on UDP " + where_);
   return {};
@@ -38,7 +38,7 @@ Result<std::optional<TimedHeadPose>> TrackedHead::receive(MonotonicTime now) {
   if (const auto more = static_cast<std::int64_t>(tracker_->ignored() - ignored); more > 0)
     problem_("invalid packet", "ignored " + tracker_->why_ignored(), more);
   if (!pose || !*pose) return pose;
-  heard_ = now;
+  active_ = now;
   if (!std::exchange(receives_, true)) log_("receiving from the tracker");
   HeadPose& head = (*pose)->pose;
   if (std::exchange(is_first_, false) && options_.centre_first) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <drivers/head_tracker/head_tracker.h>
 #include <hc/base/backoff.h>
@@ -34,8 +35,7 @@ class TrackedHead {
   TrackedHead(TrackedHeadOptions options, Log log, Problem problem)
       : options_(std::move(options)), log_(std::move(log)), problem_(std::move(problem)) {}
 
-  /// Time passes: opens the port, again and again while it is in use, and logs when no pose came
-  /// for `silence`.
+  /// Opens the port, retrying while it is in use, and logs when no pose has come for `silence`.
   ///
   /// Errors: Invalid (the host is no address).
   Status pass(MonotonicTime now, std::chrono::nanoseconds silence);
@@ -57,7 +57,8 @@ class TrackedHead {
   std::optional<HeadTracker> tracker_;
   Backoff backoff_;
   std::string where_;
-  std::optional<MonotonicTime> heard_;  // the last pose, or since when it listens; none: silence
+  // When the last pose came, or listening began; nothing: silence was logged.
+  std::optional<MonotonicTime> active_;
   bool receives_ = false, is_first_ = true, centres_next_ = false;
   HeadPose zero_;
 };

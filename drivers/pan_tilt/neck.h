@@ -7,6 +7,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <drivers/pan_tilt/conversation.h>
 #include <drivers/pan_tilt/serial.h>
@@ -21,12 +23,12 @@ struct NeckSettings {
   int baud = 9600;
   double speed = 0, acceleration = 0;  ///< as of Conversation::set_pace()
   std::chrono::nanoseconds hold{0};    ///< as of Conversation::set_hold()
-  double age = 0.2;                    ///< maximum of a command, either way [s]
+  double age = 0.2;  ///< maximum of a command's time and now apart, past or future [s]
 };
 
 /// Where to turn to.
 struct NeckCommand {
-  double pan = 0, tilt = 0;  ///< finite [rad]
+  double pan = 0, tilt = 0;  ///< finite, as in Gaze [rad]
   std::int64_t time = 0;     ///< when it was given [ns since the Unix epoch]; 0: unknown
 };
 
@@ -40,7 +42,7 @@ class Neck {
 
   /// @param log  gets a line when the unit is connected, disconnected, or refuses something.
   /// @param problem  gets why a command is dropped, to log the first of a kind.
-  /// @param seen  gets where the head looks, when the unit has said so.
+  /// @param seen  called by read() and pass() with each measured gaze.
   Neck(Log log, Problem problem, Seen seen)
       : log_(std::move(log)), problem_(std::move(problem)), seen_(std::move(seen)) {}
   Neck(const Neck&) = delete;
@@ -56,13 +58,13 @@ class Neck {
   [[nodiscard]] int descriptor() const { return serial_ ? serial_->descriptor() : -1; }
   /// Reads what has come.
   void read(MonotonicTime now);
-  /// Time passes, with these settings from now on.
+  /// To be called every kTick: opens, reads, retries, halts. The settings hold from now on.
   void pass(MonotonicTime now, const NeckSettings& settings);
 
   void look(MonotonicTime now);
-  /// Has it turn, unless the command is older than the settings allow, as one may be that has
-  /// waited anywhere, or as far in the future.
-  /// @param wall  this moment by the clock of its time [ns since the Unix epoch].
+  /// Turns the head. A command without a time, older than the settings' `age` or as far in the
+  /// future, or for a unit that is not connected, is dropped and given to `problem`.
+  /// @param wall  now, on the clock of `command.time` [ns since the Unix epoch].
   void command(MonotonicTime now, std::int64_t wall, const NeckCommand& command);
   /// Halts a motion that was commanded, and lets go of the line; so does the destructor.
   void leave();

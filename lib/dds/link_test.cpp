@@ -393,7 +393,7 @@ TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
                 "of 1000, at byte 22; further ones of this writer are dropped in silence"});
 }
 
-TEST(Dds, WaitingEndsWhenToldToStop) {
+TEST(Dds, WaitingEndsWhenAskedToStop) {
   Stop stop;
   stop.raise();
   const auto sink = sink_of(fresh_topic(), stop.options());

@@ -148,7 +148,7 @@ TEST(Tree, AFrameMayHaveANameAlone) {
   EXPECT_EQ(refusal(tree.add("a b")), "Invalid: frames: a frame has a name with a blank");
 }
 
-TEST(Tree, TellsOfFramesThatThereAreNot) {
+TEST(Tree, NamesFramesThatThereAreNot) {
   Tree tree = head_tree();
   EXPECT_EQ(refusal(tree.lookup("world", "left_eey", kTime)),
             "NotFound: frames: there is no frame \"left_eey\", did you mean \"left_eye\"?");

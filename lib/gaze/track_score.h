@@ -39,13 +39,13 @@ struct TrackScore {
 /// within that second, there was no time to acquire it: that return does not count.
 TrackScore score_track(const std::vector<TrackSample>& samples, double within);
 
-/// The looks at a run, until they are scored.
+/// The samples of a run, to be scored.
 class Track {
  public:
-  /// The run begins: what was before counts no more. Only the first call has an effect.
+  /// Drops the samples so far; only the first call has an effect.
   void begin();
   void add(const TrackSample& sample) { samples_.push_back(sample); }
-  /// From the first look to the last [s].
+  /// From the first sample to the last [s].
   [[nodiscard]] double duration() const;
   /// @param within  as of score_track().
   [[nodiscard]] TrackScore score(double within) const { return score_track(samples_, within); }

@@ -272,7 +272,7 @@ inputs.in = "a.out"
   EXPECT_EQ(graph->links[2].policy.at("keep").value, "1024");
 }
 
-TEST(GraphFile, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {
+TEST(GraphFile, AllErrorsAreReportedAtOnceInTheOrderOfTheLines) {
   auto graph = parse(R"(speed = 3
 [modules.Eye]
 program = 3

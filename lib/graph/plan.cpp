@@ -119,6 +119,11 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
 
 }  // namespace
 
+bool has_text_parameter(const Description& description, std::string_view name) {
+  const auto* parameter = find_named(description.parameters, name);
+  return parameter != nullptr && std::holds_alternative<std::string>(parameter->value);
+}
+
 std::string suggest(const Planning& planning, std::string_view name,
                     const std::vector<std::string>& known) {
   return planning.problems.size() > kMostSuggestions ? "" : suggestion(name, known);

@@ -214,7 +214,7 @@ TEST(Plan, AnInputThatTakesAnythingFits) {
   EXPECT_TRUE(plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n"));
 }
 
-TEST(Plan, AllErrorsAreToldAtOnceInTheOrderOfTheLines) {
+TEST(Plan, AllErrorsAreReportedAtOnceInTheOrderOfTheLines) {
   auto planned = plan(R"([modules.source]
 parameters = { rat = 3, rate = 10 }
 addresses.lft = 1

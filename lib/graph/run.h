@@ -30,7 +30,7 @@ struct RunOptions {
   /// "graph".
   std::function<void(std::string_view line)> event;
   bool with_module_lines = true;  ///< false: only the last ones of a module that fails
-  /// Gets what the graph does, twice a second.
+  /// Called with the state of the graph, twice a second.
   std::function<void(const GraphState& state)> state;
   /// Where others find the graph: it has two links of that name (spec/graph.md). Empty: none.
   std::string name;

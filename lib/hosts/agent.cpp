@@ -167,7 +167,7 @@ class Agent {
     } else if (what == "kill") {
       if (auto* child = find(order.at("number"))) child->process.kill();
     } else if (what == "read") {
-      auto reader = internal::make_stand_in(*loop_, with_key(order.at("uri")));
+      auto reader = internal::make_drain(*loop_, with_key(order.at("uri")));
       if (!reader) return end(reader.error());
       readers_[order.at("number")] = std::move(*reader);
     } else if (what == "leave") {
@@ -225,8 +225,8 @@ class Agent {
     auto& child = *(children_[number] = std::make_unique<Child>(std::move(*process)));
     child.reports = std::move(*reports);
     child.commands = std::move(commands);
-    auto said =
-        loop_->watch(child.process.output(), EPOLLIN, [this, number](auto) { hear(number); });
+    auto said = loop_->watch(child.process.output(), EPOLLIN,
+                             [this, number](auto) { pass_on_log(number); });
     if (!said) return said.error();
     child.said = std::move(*said);
     auto ended =
@@ -250,7 +250,7 @@ class Agent {
   }
 
   /// Hands on a piece of what a module writes; what there is no room for is dropped, and counted.
-  void hear(std::int64_t number) {
+  void pass_on_log(std::int64_t number) {
     static std::array<char, kPiece> piece;
     auto& child = *children_.at(number);
     const ssize_t size = ::read(child.process.output(), piece.data(), piece.size());
@@ -272,7 +272,7 @@ class Agent {
     if (!status) return;
     child.reports->take();  // accepts a connection that has just been made,
     child.reports->take();  // and reads what came on it
-    for (int i = 0; i < kLastPieces && child.said; ++i) hear(number);
+    for (int i = 0; i < kLastPieces && child.said; ++i) pass_on_log(number);
     send({{"what", "ended"}, {"number", number}, {"status", *status}});
     children_.erase(number);
   }

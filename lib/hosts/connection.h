@@ -58,7 +58,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   Result<std::shared_ptr<const internal::HeldPort>> spare_port() override;
   [[nodiscard]] std::int64_t wall_offset() const override;
 
-  /// Says something to the agent, if it is connected. From any thread.
+  /// Sends an order to the agent, if it is connected. From any thread.
   void send(Json order);
 
  private:

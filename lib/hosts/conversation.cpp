@@ -85,8 +85,8 @@ std::vector<std::int64_t> read_numbers(const Message& message, std::size_t colum
 
 Result<std::unique_ptr<Conversation>> Conversation::make(internal::Loop& loop, int in, int out,
                                                          std::chrono::milliseconds patience,
-                                                         Hear hear) {
-  std::unique_ptr<Conversation> made(new Conversation(in, out, std::move(hear)));
+                                                         Callbacks callbacks) {
+  std::unique_ptr<Conversation> made(new Conversation(in, out, std::move(callbacks)));
   auto* self = made.get();
   self->heard_ = Clock::now();
   self->patience_ = patience;
@@ -139,7 +139,7 @@ void Conversation::read() {
       if (!*got) break;
       heard_ = Clock::now();
       if (std::exchange(patience_, kSilence) != kSilence) silence_.call_at(heard_ + patience_);
-      hear_.take(message);
+      callbacks_.take(message);
       if (is_over_) return;
     }
     const auto space = reader_.space();
@@ -162,7 +162,7 @@ void Conversation::close() {
 void Conversation::end(const std::string& why) {
   if (is_over_) return;
   close();
-  hear_.ended(why);
+  callbacks_.ended(why);
 }
 
 }  // namespace hc::hosts

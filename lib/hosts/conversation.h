@@ -65,7 +65,7 @@ std::int64_t monotonic_to_wall();
 /// One end of the conversation, on the thread of a loop.
 class Conversation {
  public:
-  struct Hear {
+  struct Callbacks {
     std::function<void(const Message& message)> take;
     /// It is over; called once, and not within say(). It may not destroy this object.
     std::function<void(const std::string& why)> ended;
@@ -80,7 +80,8 @@ class Conversation {
   /// @param patience  how long the first message may take.
   /// Errors: System.
   static Result<std::unique_ptr<Conversation>> make(internal::Loop& loop, int in, int out,
-                                                    std::chrono::milliseconds patience, Hear hear);
+                                                    std::chrono::milliseconds patience,
+                                                    Callbacks callbacks);
 
   void say(const Message& message);
   /// From now on nothing is taken or sent, and `ended` is not called.
@@ -89,14 +90,15 @@ class Conversation {
   [[nodiscard]] std::size_t backlog() const { return waiting_.size(); }
 
  private:
-  Conversation(int in, int out, Hear hear) : in_(in), out_(out), hear_(std::move(hear)) {}
+  Conversation(int in, int out, Callbacks callbacks)
+      : in_(in), out_(out), callbacks_(std::move(callbacks)) {}
 
   void read();
   void write();
   void end(const std::string& why);
 
   int in_, out_;
-  Hear hear_;
+  Callbacks callbacks_;
   bool is_over_ = false, is_stuck_ = false;
   StreamReader reader_{Limits{std::uint64_t{4} << 20}};
   std::string waiting_;

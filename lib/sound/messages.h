@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Sound as messages, whose coordinate system says the rate (spec/mtp-1.md, R44), and back. Header
-// only. Pure.
+// Sound as messages, whose coordinate system gives the sample rate (spec/mtp-1.md, R44), and back.
+// Header only. Pure.
 
 #include <span>
 #include <string>

@@ -68,7 +68,7 @@ TEST_F(TlsRefusal, TheWrongKey) {
   serves_others();
 }
 
-TEST_F(TlsRefusal, AWriterWithTheWrongKeyIsToldBeforeItSends) {
+TEST_F(TlsRefusal, AWriterWithTheWrongKeyIsRefusedBeforeItSends) {
   auto sink = open_sink(*parse_uri("tls:" + place_ + options("c", "a")));
   ASSERT_FALSE(sink);
   EXPECT_EQ(sink.error().text(), "Closed: connect(" + place_ +

@@ -14,7 +14,7 @@ Result<BoardViews> BoardViews::make(const Board& board) {
 
 Result<bool> BoardViews::take(const cv::Mat& left, const cv::Mat& right, double min_difference) {
   if (left.size() != right.size() || (!image_size_.empty() && left.size() != image_size_))
-    return Error{Code::Invalid, "the images have different sizes"};
+    return Error{Code::Unsupported, "the images have different sizes"};
   image_size_ = left.size();
   auto view = find_board(left, right, board_);
   const double far = min_difference * image_size_.width;

@@ -17,15 +17,16 @@ class BoardViews {
   /// Errors: Invalid (as many corners in a row as in a column).
   static Result<BoardViews> make(const Board& board);
 
-  /// Takes the board's view in a pair of images, unless another one has it at about the same place.
+  /// Finds the board in a pair of images, and keeps the view unless it is too similar to another.
   ///
   /// @param left, right  as of find_board().
-  /// @param min_difference  minimum difference() from any other view, of the images' width.
-  /// @returns  whether it took one. Errors: Invalid (images of another size).
+  /// @param min_difference  minimum difference() from any other view, as a share of the
+  ///     images' width, 0 … 1.
+  /// @returns  whether it took one. Errors: Unsupported (images of another size).
   Result<bool> take(const cv::Mat& left, const cv::Mat& right, double min_difference);
 
   [[nodiscard]] std::size_t size() const { return views_.size(); }
-  /// What the views say of the cameras; errors and cost as of calibrate().
+  /// Calibrates the cameras by the views so far; errors and cost as of calibrate().
   [[nodiscard]] Result<Calibrated> calibrate() const;
 
  private:

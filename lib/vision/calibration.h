@@ -108,7 +108,7 @@ struct Calibrated {
   double rms_left = 0;    ///< reprojection error of the left camera alone [px]
   double rms_right = 0;   ///< [px]
   double epipolar = 0;    ///< mean distance of corresponding rows, rectified [px]
-  std::size_t given = 0;  ///< views that there were
+  std::size_t given = 0;  ///< views it was given
 
   /// rms, that of the left and of the right camera, epipolar [px], baseline [m], views.
   [[nodiscard]] std::array<double, 6> numbers() const;

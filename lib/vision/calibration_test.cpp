@@ -129,7 +129,7 @@ TEST(Calibration, LeavesOutAViewThatIsWrong) {
   EXPECT_LT(found->calibration.rms, 0.2) << "px";
 }
 
-TEST(Calibration, CamerasThatAreMixedUpAreTold) {
+TEST(Calibration, CamerasThatAreMixedUpAreReported) {
   auto pairs = made_up(squinting(), 6, 0.1);
   for (auto& view : pairs.views) std::swap(view.left, view.right);
   auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);

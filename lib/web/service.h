@@ -18,12 +18,15 @@
 
 namespace hc::web {
 
+/// Listens for HTTP and WebSockets, and serves a site on a thread of its own. For the module's
+/// thread; server().post() from any.
 class Service {
  public:
   /// Listens; serves once there is something to serve().
   ///
   /// @param inbox  takes what the server's thread hands to the module's; it lives longer.
-  /// @param log  takes lines of the server, out of the inbox.
+  /// @param log  called by Inbox::work_off() with lines of the server; those that come after its
+  ///     last call are lost.
   /// Errors: as open_server().
   static Result<std::unique_ptr<Service>> open(const Listening& listening, Inbox& inbox,
                                                std::function<void(std::string_view)> log);
@@ -52,7 +55,7 @@ class Service {
 
   Opened opened_;
   Access access_;
-  std::unique_ptr<Site> site_;  // before the server, to which it may still post, is destroyed
+  std::unique_ptr<Site> site_;  // destroyed before the server, to which it may still post
   std::thread thread_;
 };
 

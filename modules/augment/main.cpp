@@ -70,7 +70,8 @@ int main(int argc, char** argv) {
                                     {.min = 0, .max = 10});
   auto shown =
       module.parameter("instruments", "", "", "to be shown: gaze, frames, depth, confidence, task");
-  auto modes = module.parameter(hc::kModeNames, "", "", "names of modes, by `hc run`");
+  auto modes = module.parameter(hc::kModeNames, "", "",
+                                "names of modes, e.g. read=5,track=4: set by `hc run`");
   auto cursor_x = module.parameter("cursor_x", -1.0, "px", "where depth is shown, -1: the middle",
                                    {.min = -1, .max = 65535});
   auto cursor_y =

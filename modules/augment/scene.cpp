@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <graphics/occlusion.h>
+#include <hc/base/clock.h>
 
 namespace {
 
@@ -26,7 +27,7 @@ void Markers::see(int number, std::int64_t time, const Eigen::Isometry3d& T_worl
   const auto [at, is_new] = seen_.try_emplace(number, Seen{time, T_world_marker});
   if (is_new) return;
   auto& [last, pose] = at->second;
-  const double passed = static_cast<double>(time - last) * 1e-9;
+  const double passed = hc::seconds(time - last);
   const bool is_moved = (pose.translation() - T_world_marker.translation()).norm() > kMoved;
   const double share =
       is_moved || smoothing <= 0 || passed < 0 ? 1 : 1 - std::exp(-passed / smoothing);

@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
     double rate = 0;
     if (last && time > last->first)
       rate = Eigen::AngleAxisd(last->second.linear().transpose() * pose.linear()).angle() /
-             (static_cast<double>(time - last->first) * 1e-9);
+             hc::seconds(time - last->first);
     last.emplace(time, pose);
     return rate;
   };

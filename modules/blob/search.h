@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <vision/blob.h>
 #include <opencv2/core.hpp>
@@ -14,8 +15,8 @@ class Search {
  public:
   explicit Search(std::function<void(std::string_view)> log) : log_(std::move(log)) {}
 
-  /// Has the colour at a pixel of the next image be searched from then on, until the hue that is
-  /// set changes.
+  /// Searches from the next image on for the colour at this pixel of it, until the hue that is set
+  /// changes. @param x, y  [px].
   void point(double x, double y);
 
   /// @param rgb  (H, W, 3) u8, the next of a sequence.

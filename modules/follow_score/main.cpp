@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   std::int64_t waits[2] = {};  // looks since one of each
   auto take = [](auto& samples, auto& wait, const auto& message) {
     wait = 0;
-    const double time = static_cast<double>(message.header.time) * 1e-9;
+    const double time = hc::seconds(message.header.time);
     const auto q = hc::value_or_end(hc::rotation_of(message));
     if (samples.empty() || time > samples.back().time)
       samples.push_back({time, hc::gaze::angles_of(q)});

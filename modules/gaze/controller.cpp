@@ -13,7 +13,7 @@ std::optional<Angles> Controller::follow(std::int64_t now, const Angles& measure
   if (!is_fresh(follower.last(), now))
     return *parameters_.idle_salience > 0 ? std::optional(parameters_.within_limits({0, 0}))
                                           : std::nullopt;
-  const auto motion = *follower.at(seconds(now) + *parameters_.predict);
+  const auto motion = *follower.at(hc::seconds(now) + *parameters_.predict);
   if (hc::gaze::between(motion.angles, measured) < *parameters_.dead_zone) return std::nullopt;
   return command(motion);
 }
@@ -21,12 +21,12 @@ std::optional<Angles> Controller::follow(std::int64_t now, const Angles& measure
 void Controller::push(std::int64_t now, double left, double down, const Angles& measured) {
   const double full = *parameters_.stick_rate;
   stick_.push({std::clamp(left, -1.0, 1.0) * full, std::clamp(down, -1.0, 1.0) * full},
-              seconds(now), measured);
+              hc::seconds(now), measured);
 }
 
 std::optional<Angles> Controller::steer(std::int64_t now, const Angles& measured) {
   constexpr double kLead = 0.02;  // so that it moves at once, and on if a push comes late [s]
-  auto motion = stick_.at(seconds(now), measured);
+  auto motion = stick_.at(hc::seconds(now), measured);
   if (!motion) return std::nullopt;
   motion->angles.pan += motion->pan_rate * kLead;
   motion->angles.tilt += motion->tilt_rate * kLead;

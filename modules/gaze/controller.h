@@ -31,7 +31,7 @@ class Controller {
 
  private:
   [[nodiscard]] bool is_fresh(std::optional<double> last, std::int64_t now) const {
-    return last && seconds(now) - *last <= *parameters_.timeout;
+    return last && hc::seconds(now) - *last <= *parameters_.timeout;
   }
   /// The command for what moves so: ahead of it by the unit's braking distance, within its limits.
   [[nodiscard]] hc::gaze::Angles command(const hc::gaze::Motion& motion) const;

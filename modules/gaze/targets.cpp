@@ -3,10 +3,6 @@
 
 using hc::gaze::Side;
 
-double seconds(std::int64_t time) {
-  return static_cast<double>(time) * 1e-9;
-}
-
 hc::Status Targets::calibrate(const hc::vision::StereoCalibration& cameras) {
   cameras_ = cameras;
   eyes_.set_baseline(cameras.baseline());
@@ -36,7 +32,7 @@ void Targets::see(std::int64_t time, std::int32_t coord, const Eigen::Vector3d& 
       in_frame = eyes_.T_head_eye(side) * p;
   }
   if (!in_frame) return;
-  follower_.see(seconds(time), hc::gaze::aim(T_robot_frame * *in_frame, eyes_.cyclopean()));
+  follower_.see(hc::seconds(time), hc::gaze::aim(T_robot_frame * *in_frame, eyes_.cyclopean()));
 }
 
 std::optional<Eigen::Vector3d> Targets::place(std::int64_t time, Side side, Eigen::Vector2d pixel) {

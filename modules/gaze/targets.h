@@ -7,13 +7,12 @@
 
 #include <gaze/binocular.h>
 #include <gaze/follower.h>
+#include <hc/base/clock.h>
 #include <vision/calibration.h>
 
 /// Coordinate systems of targets (spec/mtp-1.md, R44).
 inline constexpr std::int32_t kRobot = 2, kHead = 3, kLeftEye = 4, kRightEye = 5, kLeftImage = 7,
                               kRightImage = 8;
-
-double seconds(std::int64_t time);  ///< [ns] in [s]
 
 /// Times are in nanoseconds since any one origin.
 class Targets {
@@ -35,7 +34,7 @@ class Targets {
            const Eigen::Isometry3d& T_robot_frame);
   /// Angles to take, as of a target.
   void set(std::int64_t time, const hc::gaze::Angles& setpoint) {
-    follower_.see(seconds(time), setpoint);
+    follower_.see(hc::seconds(time), setpoint);
   }
 
   /// The target, by all that was seen [s].

@@ -28,7 +28,7 @@ TEST(Names, AHueIsTheClosestOfThoseThatAreAlike) {
   EXPECT_FALSE(find_name(*names, MarkerKind::Colour, 200));
 }
 
-TEST(Names, WhatIsWrongIsToldByItsWord) {
+TEST(Names, WhatIsWrongIsNamedByItsWord) {
   for (const char* text :
        {"aruco", "aruco:5", "aruco=5", "aruco:5=", "aruco:=5", "aruco:x=5", "aruco:-1=5",
         "aruco:5=nan", "aruco:5=inf", "aruco:5=1000", "aruco:5=0", "aruco:5=1.5", "colour:360=5",

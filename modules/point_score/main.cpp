@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   });
   module.on(motion, [&](const auto& message) {
     const auto q = hc::value_or_end(hc::rotation_of(message));
-    pusher->hear(hc::seconds(message.header.time), hc::gaze::angles_of(q));
+    pusher->take(hc::seconds(message.header.time), hc::gaze::angles_of(q));
   });
   module.on(report, [&](const auto&) { is_ready = true; });
   module.generate([&] {

@@ -59,7 +59,7 @@ bool Pusher::move(double time) {
   return true;
 }
 
-void Pusher::hear(double time, const hc::gaze::Angles& angles) {
+void Pusher::take(double time, const hc::gaze::Angles& angles) {
   heard_ = time;
   if (!rests_at_ || way(angles, *rests_at_) > kStill) {
     rests_at_ = angles;

@@ -24,17 +24,17 @@ class Pusher {
   };
   explicit Pusher(const Options& options) : options_(options), random_(options.seed) {}
 
-  /// How the stick is.
+  /// Position of the stick.
   struct Stick {
     double left = 0, down = 0;  ///< -1 … 1
   };
-  /// Moves the stick as it is time to. Nothing is pushed before the head is at rest.
+  /// Moves the stick when it is time. Nothing is pushed before the head is at rest.
   ///
   /// @param rate  how often the stick is repeated while it is out of its middle [Hz].
   /// @returns  what is to be sent now: the stick, where it has moved or is to be repeated.
   std::optional<Stick> look(double time, double rate);
   /// Takes the measured head orientation. @param time  grows.
-  void hear(double time, const hc::gaze::Angles& angles);
+  void take(double time, const hc::gaze::Angles& angles);
 
   [[nodiscard]] bool is_done() const { return pushes_ >= options_.count && !pushed_; }
   /// From a push to the first motion, each but those that had no effect. [s]

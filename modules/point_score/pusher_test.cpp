@@ -36,7 +36,7 @@ Pusher play(const Pusher::Options& options, double delay, std::vector<Sent>* all
       speed = before + options.unit.acceleration * step;
       pan += sign * (before + speed) / 2 * step;
     }
-    pusher.hear(t, {pan, 0});
+    pusher.take(t, {pan, 0});
   }
   return pusher;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <hc/base/clock.h>
+
 namespace {
 
 /// Whether two texts are the same but for a letter or two that are read so or so.
@@ -29,7 +31,7 @@ bool Announcer::take(const std::string& text, double confidence, std::int64_t ti
   const auto first = readings_.end() - std::min(std::ssize(readings_), 2 * wanted - 1);
   if (!is_sure || std::count(first, readings_.end(), text) < wanted) return false;
   // A clock that went back, as when a recording starts over, does not silence it.
-  const auto since = static_cast<double>(time - said_at_) * 1e-9;
+  const auto since = hc::seconds(time - said_at_);
   const bool is_due = rules.again > 0 && (since >= rules.again || since < 0);
   if (text == said_ && !is_due && (was_heard_ || !is_heard)) return false;
   said_ = text;

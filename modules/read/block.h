@@ -22,8 +22,8 @@ class BlockReader {
   /// @param image  (H, W, 3) or (H, W, 1) u8.
   hc::vision::Reading read(const cv::Mat& image, const Block& block);
 
-  /// The same where the block is whole and it is time to read again, by the images' times, since a
-  /// recording is to give the same.
+  /// The same, if the block is whole and the last reading is 1 / rate ago by the times of the
+  /// images, so that a recording gives the same result.
   /// @param time  of the image [ns].
   /// @param rate  maximum number of readings a second, 0: all [Hz].
   std::optional<hc::vision::Reading> read_when_due(const cv::Mat& image, const Block& block,

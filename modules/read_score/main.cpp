@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a robot reads aloud what is written before it.
 #include <hc/module/module.h>
+#include <sound/format.h>
 
 #include "read_score.h"
 
@@ -33,8 +34,8 @@ int main(int argc, char** argv) {
     dictation->take_text(std::string(message.characters()), message.header.time, module.now());
   });
   module.on(sound, [&](const auto& message) {
-    constexpr double kRate = 22050;  // of coordinate system 22 [Hz]
-    dictation->take_sound(message.header.time, module.now(), message.header.width / kRate);
+    const double rate = *hc::audio::rate_of(message.header.coord);  // [Hz]
+    dictation->take_sound(message.header.time, module.now(), message.header.width / rate);
   });
   module.generate([&] {
     constexpr double kLook = 100;  // [Hz]

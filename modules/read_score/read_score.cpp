@@ -92,8 +92,8 @@ void Attempt::take_sound(std::int64_t image, std::int64_t now) {
 ReadText Attempt::result() const {
   ReadText text{truth_, read_.value_or(""), std::nullopt};
   if (spoken_at_) {
-    text.seen_to_spoken = static_cast<double>(*spoken_at_ - written_at_) * 1e-9;
-    text.work = static_cast<double>(*spoken_at_ - image_) * 1e-9;
+    text.seen_to_spoken = hc::seconds(*spoken_at_ - written_at_);
+    text.work = hc::seconds(*spoken_at_ - image_);
   }
   return text;
 }

@@ -62,14 +62,15 @@ class Attempt {
   std::int64_t image_ = 0;  // of what was spoken
 };
 
-/// Texts that are written one after the other, each until it was read and spoken. To be looked at
-/// often: finish(), then write().
+/// Texts that are written one after the other, each until it was read and spoken. Call finish() and
+/// then write() often.
 class Dictation {
  public:
   /// @param latest  when the first text is written if none is read before [ns].
   Dictation(std::uint64_t seed, std::int64_t latest) : random_(seed), next_at_(latest) {}
 
-  /// As of Attempt, and what is read before the first text: it shows that all is running.
+  /// As Attempt's. The first text that is read shows that all is running, and the dictation begins
+  /// 1 s later.
   void take_text(const std::string& text, std::int64_t image, std::int64_t now);
   /// @param duration  of what is spoken [s].
   void take_sound(std::int64_t image, std::int64_t now, double duration);
@@ -81,6 +82,7 @@ class Dictation {
   /// The next text, once it is to be written.
   std::optional<std::string> write(std::int64_t now);
 
+  /// Whether so many texts have ended.
   [[nodiscard]] bool is_done(std::int64_t texts) const;
   [[nodiscard]] ReadingScore score() const { return score_of(texts_); }
 

@@ -16,13 +16,13 @@ std::string text_of(const Json& value) {
 
 }  // namespace
 
-std::unique_ptr<GraphMetadata> GraphMetadata::observe(const char* graph) {
-  auto running = hc::parse_running(graph == nullptr ? "" : graph);
-  if (!running) return nullptr;
-  std::unique_ptr<GraphMetadata> metadata(new GraphMetadata(*running));
+std::unique_ptr<GraphMetadata> GraphMetadata::observe(
+    const std::optional<hc::RunningGraph>& graph) {
+  if (!graph) return nullptr;
+  std::unique_ptr<GraphMetadata> metadata(new GraphMetadata(*graph));
   hc::LinkOptions options;
   options.limits.element_bytes = hc::kMaxStateBytes;
-  auto source = hc::open_source(*hc::parse_uri(running->state_uri()), options);
+  auto source = hc::open_source(*hc::parse_uri(graph->state_uri()), options);
   if (!source) return nullptr;
   metadata->source_ = std::move(*source);
   return metadata;

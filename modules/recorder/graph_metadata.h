@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -17,8 +18,8 @@
 /// Observes the graph that one is a module of.
 class GraphMetadata {
  public:
-  /// Null where there is no such graph.
-  static std::unique_ptr<GraphMetadata> observe(const char* graph);
+  /// Null where there is no such graph, or nobody publishes its state.
+  static std::unique_ptr<GraphMetadata> observe(const std::optional<hc::RunningGraph>& graph);
   ~GraphMetadata();
 
   /// Readable when record() has something to do.

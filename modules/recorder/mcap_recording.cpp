@@ -64,7 +64,7 @@ class McapRecording : public Recording {
   const McapOptions options_;
   const std::vector<std::string> streams_;
   std::unique_ptr<hc::mcap::Recorder> recorder_;
-  std::unique_ptr<GraphMetadata> metadata_ = GraphMetadata::observe(std::getenv("HC_GRAPH"));
+  std::unique_ptr<GraphMetadata> metadata_ = GraphMetadata::observe(hc::own_graph());
   bool was_set_ = false;
 };
 

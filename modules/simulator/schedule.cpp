@@ -15,6 +15,6 @@ bool Schedule::begins_second() const {
 
 void Schedule::catch_up(std::int64_t now) {
   if (number_ == 0) return;
-  const double passed = static_cast<double>(now - start_) * 1e-9;
+  const double passed = hc::seconds(now - start_);
   number_ = std::max(number_, static_cast<std::int64_t>(std::floor(passed * rate_)));
 }

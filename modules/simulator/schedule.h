@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include <hc/base/clock.h>
+
 /// When so many periods have passed, without adding up errors. [ns]
 /// @param rate  [Hz]
 std::int64_t period_end(std::int64_t number, double rate);
@@ -17,7 +19,7 @@ class Schedule {
   [[nodiscard]] std::int64_t number() const { return number_; }
   [[nodiscard]] std::int64_t time() const { return start_ + period_end(number_, rate_); }
   /// From the start to the next pair [s].
-  [[nodiscard]] double seconds() const { return static_cast<double>(time() - start_) * 1e-9; }
+  [[nodiscard]] double seconds() const { return hc::seconds(time() - start_); }
   /// Whether the next pair is the first that is taken of a second, counted in pairs.
   [[nodiscard]] bool begins_second() const;
 

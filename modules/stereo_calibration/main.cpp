@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The geometry of two cameras, from images of a chessboard.
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <hc/module/module.h>
 #include <vision/board_views.h>
@@ -47,10 +49,9 @@ int main(int argc, char** argv) {
   });
   module.on(hc::together(left, right), [&](const hc::Message& l, const hc::Message& r) {
     if (!views) return;
-    const auto is_taken = views->take(hc::value_or_end(hc::as_mat(l)),
-                                      hc::value_or_end(hc::as_mat(r)), *min_difference);
-    if (!is_taken) throw hc::ModuleError(is_taken.error().detail);
-    if (!*is_taken) return;
+    if (!hc::value_or_end(views->take(hc::value_or_end(hc::as_mat(l)),
+                                      hc::value_or_end(hc::as_mat(r)), *min_difference)))
+      return;
     time = std::max(l.header.time, r.header.time);
     found.send(hc::table({static_cast<double>(views->size()), static_cast<double>(*wanted)}));
     if (views->size() >= static_cast<std::size_t>(*wanted)) finish();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
+#include <map>
 #include <string>
 
 #include <hc/contract/mode_names.h>
@@ -9,10 +10,6 @@
 #include "workspace.h"
 
 namespace {
-
-std::chrono::nanoseconds seconds(double value) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(value));
-}
 
 /// Logs refused bids, once a second at most.
 class Complaints {
@@ -60,15 +57,20 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       module.parameter("expiry", 1.0, "s", "how long a bid is valid", {.min = 0.001, .max = 86400});
   auto person_expiry = module.parameter(
       "person_expiry", 60.0, "s", "how long a person's bid is valid", {.min = 0.001, .max = 86400});
-  auto modes = module.parameter(hc::kModeNames, "", "", "names of modes, by `hc run`");
+  auto modes = module.parameter(hc::kModeNames, "", "",
+                                "names of modes, e.g. read=5,track=4: set by `hc run`");
 
   Workspace workspace;
   Complaints complaints;
+  std::map<std::int32_t, std::string> names;
   auto log_change = [&] {
-    const auto names = hc::parse_mode_names(*modes);
-    if (!names) module.log_once("mode_names", names.error().detail);
-    module.log("focus: " + workspace.last_change(names ? *names : decltype(*names){}));
+    if (auto read = hc::parse_mode_names(*modes))
+      names = std::move(*read);
+    else
+      module.log_once("invalid mode_names", read.error().detail);
+    module.log("focus: " + workspace.last_change(names));
   };
+  module.on_start([&] { names = hc::value_or_end(hc::parse_mode_names(*modes)); });
   auto take = [&](const hc::Message& message, auto bid) {
     auto now = module.monotonic();
     auto numbers = hc::value_or_end(message.view<double>()).numbers();
@@ -92,7 +94,8 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   });
   module.every(rate, [&] {
     auto now = module.monotonic();
-    workspace.set_options({*margin, seconds(*dwell), seconds(*expiry), seconds(*person_expiry)});
+    workspace.set_options(
+        {*margin, hc::duration(*dwell), hc::duration(*expiry), hc::duration(*person_expiry)});
     if (workspace.decide(now)) log_change();
     module.report_focus(workspace.focus());
     const std::int64_t time = module.now();

@@ -9,7 +9,7 @@
 
 #include "workspace.h"
 
-/// Hears what is bid and decided, and expects that each decision keeps the rules.
+/// Takes what is bid and decided, and expects that each decision keeps the rules.
 class FocusRules {
  public:
   explicit FocusRules(const WorkspaceOptions& options = {}) : options_(options) {}

@@ -33,7 +33,7 @@ TEST(Doctor, DevicesThatAreNotThereAreNotesAndNoIllness) {
   EXPECT_EQ(find(findings, "memory", Mark::Ok)->text, "16.0 GB, 8.0 GB free");
 }
 
-TEST(Doctor, DevicesThatMayNotBeOpenedAreTold) {
+TEST(Doctor, DevicesThatMayNotBeOpenedAreReported) {
   auto facts = good_facts();
   facts.cameras = {{"/dev/video0", true}, {"/dev/video1", false}};
   auto findings = diagnose(facts);

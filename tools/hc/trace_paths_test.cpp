@@ -206,7 +206,7 @@ TEST_F(Chain, GoesThroughARouterThatForwards) {
   EXPECT_EQ(words(paths[0]), "joystick.stick 0/0/10, router: in → out 5/1/2, neck.command 7/0/5");
 }
 
-TEST_F(Chain, AModuleThatTellsNothingIsOneStep) {
+TEST_F(Chain, AModuleWithoutATraceIsOneStep) {
   of("eye").sent("left", 1, 10);
   of("neck").took("command", 7, 100).handled("command", 7, 100, 101);
   traced.links = {{"eye.left", "finder.image"}, {"finder.target", "neck.command"}};

@@ -183,9 +183,7 @@ class Frames {
 
 bool takes_frames(const Planning& planning, const std::string& module) {
   const Description* description = planning.description_of(module);
-  if (description == nullptr) return false;
-  const auto* parameter = find_named(description->parameters, kFrames);
-  return parameter != nullptr && std::holds_alternative<std::string>(parameter->value);
+  return description != nullptr && has_text_parameter(*description, kFrames);
 }
 
 void link_frames(Planning& planning) {

@@ -54,7 +54,7 @@ TEST(Frames, OfAnIncludedFileHaveTheNamesThatItGivesThem) {
             "head 3 world 0 0 1 0 0 0 1; cup 0 head 0 0 0 0 0 0 1");
 }
 
-TEST(Frames, OfTwoHeadsAreToldApart) {
+TEST(Frames, OfTwoHeadsAreDistinguished) {
   auto planned = plan(
       "[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n"
       "[graphs.two]\nfile = \"head.toml\"\n",
@@ -130,7 +130,7 @@ TEST(Frames, PosesMakeNoLoop) {
             "seeker.command neck.command all\nneck.pose seeker.frames 1024\n");
 }
 
-TEST(Frames, WhatMovesThemTellsPoses) {
+TEST(Frames, WhatMovesThemSendsPoses) {
   EXPECT_EQ(wrong("[modules.source]\n[modules.seeker]\n[frames.head]\nparent = \"robot\"\n"
                   "moved_by = \"source.left\"\n"),
             "g.toml:6: source.left sends map of 1 x f32 in coordinate system left_image (7), "

@@ -59,10 +59,9 @@ class Modes {
     return is_right;
   }
 
-  /// Gives a module that has a parameter `mode_names` what they are called, to show them.
+  /// Sets the parameter `mode_names` of a module that has one.
   void name_modes(const Description& description, PlannedModule& planned) {
-    const auto* parameter = find_named(description.parameters, kModeNames);
-    if (parameter == nullptr || !std::holds_alternative<std::string>(parameter->value)) return;
+    if (planning_.plan.modes.empty() || !has_text_parameter(description, kModeNames)) return;
     planned.parameters.try_emplace(kModeNames, mode_names_text(planning_.plan.modes));
   }
 

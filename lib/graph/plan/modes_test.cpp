@@ -29,7 +29,7 @@ module = "workspace"
                            link_text("read.bid", "workspace.bids");
 const std::string kBid = link_text("track.bid", "workspace.bids");
 
-TEST(Modes, ModulesAreToldTheirModes) {
+TEST(Modes, ModulesGetTheirModes) {
   auto planned = plan(kModes + kBid);
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"read", 3}, {"track", 1}}));
@@ -53,6 +53,9 @@ TEST(Modes, ModulesThatShowThemGetTheirNames) {
   EXPECT_EQ(planned->modules[0].parameters.at("mode_names"), "read=3,track=1");
   EXPECT_EQ(planned->modules[1].parameters.at("mode_names"), "mine=1");
   EXPECT_FALSE(planned->modules[2].parameters.contains("mode_names"));
+  const auto without = plan("[modules.titled]\n");
+  ASSERT_TRUE(without) << without.error().detail;
+  EXPECT_FALSE(without->modules[0].parameters.contains("mode_names"));
 }
 
 TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {

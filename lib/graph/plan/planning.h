@@ -62,6 +62,9 @@ struct Planning {
   }
 };
 
+/// Whether a program has a parameter of that name that is a string.
+bool has_text_parameter(const Description& description, std::string_view name);
+
 /// ", did you mean "camera"?", unless too much is wrong to look for it all.
 std::string suggest(const Planning& planning, std::string_view name,
                     const std::vector<std::string>& known);

@@ -24,7 +24,7 @@ class ChangeTest : public ::testing::Test {
   PlannedModule before_, after_;
 };
 
-TEST_F(ChangeTest, NothingIsToldOfWhatStaysAsItIs) {
+TEST_F(ChangeTest, WhatStaysAsItIsNeedsNoCommand) {
   EXPECT_TRUE(change().is_empty());
   after_.restart = Restart::Never;  // the runner's affair
   EXPECT_TRUE(change().is_empty());
@@ -41,7 +41,7 @@ TEST_F(ChangeTest, AParameterIsSet) {
   EXPECT_FALSE(change().needs_restart);
 }
 
-TEST_F(ChangeTest, WhatCannotBeToldNeedsARestart) {
+TEST_F(ChangeTest, WhatNoCommandChangesNeedsARestart) {
   after_.parameters["source"] = "1";
   EXPECT_TRUE(change().needs_restart) << "fixed";
   after_ = before_;

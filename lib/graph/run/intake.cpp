@@ -46,7 +46,7 @@ void Intake::take() {
   again_ = loop_.call_at(std::chrono::steady_clock::now(), [this] { take(); });
 }
 
-Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri) {
+Result<std::unique_ptr<Intake>> make_drain(Loop& loop, const std::string& reader_uri) {
   auto uri = parse_uri(reader_uri);
   if (!uri) return uri.error();
   constexpr std::array<std::string_view, 4> kWhoMay = {"same_user", "key", "peer", "interface"};

@@ -41,6 +41,6 @@ class Intake {
 ///     message from being overwritten.
 ///
 /// Errors: as Intake::make.
-Result<std::unique_ptr<Intake>> make_stand_in(Loop& loop, const std::string& reader_uri);
+Result<std::unique_ptr<Intake>> make_drain(Loop& loop, const std::string& reader_uri);
 
 }  // namespace hc::internal

@@ -19,25 +19,25 @@ class Lines {
   /// In a line for the person at the terminal alone, such as a secret: it is not kept.
   static constexpr std::string_view kNotice = ": notice: ";
 
-  using Hear = std::function<void(const std::string& line)>;
+  using Take = std::function<void(const std::string& line)>;
 
-  /// Takes what was read; `hear` gets each line that is whole now, and none that is empty.
-  void add(std::string_view piece, const Hear& hear) {
+  /// Takes what was read; `take` gets each line that is whole now, and none that is empty.
+  void add(std::string_view piece, const Take& take) {
     for (char c : piece) {
       if (c != '\n') begun_ += c;
-      if (c == '\n' || begun_.size() >= kMaxLine) finish(hear);
+      if (c == '\n' || begun_.size() >= kMaxLine) finish(take);
     }
   }
 
   /// Takes what was begun as a line: there comes no more of it.
-  void finish(const Hear& hear) {
+  void finish(const Take& take) {
     if (begun_.empty()) return;
     const std::string line = std::exchange(begun_, {});
     if (line.find(kNotice) == std::string::npos) {
       if (last_.size() == kLast) last_.pop_front();
       last_.push_back(line);
     }
-    hear(line);
+    take(line);
   }
 
   /// The last lines, the newest at the end.

@@ -147,7 +147,7 @@ TEST_F(LiveChange, WhoHasEndedRestsUntilThereIsMoreToRead) {
   EXPECT_EQ(count("reader: started"), 2);
 }
 
-TEST_F(LiveChange, TheStateIsToldAsJson) {
+TEST_F(LiveChange, TheStateIsPublishedAsJson) {
   add("camera").mode = "track";
   plan_.modes = {{"track", 1}};
   std::string text, line;

@@ -90,7 +90,7 @@ class LiveChange : public Run, private GraphLoader {
     return was_reloaded_;
   }
 
-  std::function<void(int stop)> plans_;  // hears that it is planned
+  std::function<void(int stop)> plans_;  // called when it is planned
   std::thread thread_;
 
  private:

@@ -24,9 +24,9 @@ class Listener {
   std::unique_ptr<Source> source_;
 };
 
-using LiveTold = LiveChange;
+using LiveCommands = LiveChange;
 
-TEST_F(LiveTold, AModuleThatListensIsTold) {
+TEST_F(LiveCommands, ReachAModuleThatListens) {
   auto& camera = add("camera");
   camera.parameters = {{"rate", "30"}};
   camera.ends = {{false, "left", "shm:t.left?readers=1", ""}};
@@ -51,7 +51,7 @@ TEST_F(LiveTold, AModuleThatListensIsTold) {
   EXPECT_TRUE(said("camera: set rate=10"));
 }
 
-TEST_F(LiveTold, ACommandThatAModuleRefusesIsTold) {
+TEST_F(LiveCommands, AreReportedWhereAModuleRefusesOne) {
   add("camera");
   stop_at_ = "camera: command \"set rate=-1\": too small";
   thread_ = std::thread([&] {
@@ -65,7 +65,7 @@ TEST_F(LiveTold, ACommandThatAModuleRefusesIsTold) {
   ASSERT_TRUE(run());
 }
 
-TEST_F(LiveTold, WhoComesToListenIsToldTheDifference) {
+TEST_F(LiveCommands, WhoComesToListenGetsTheDifference) {
   auto& camera = add("camera");
   camera.parameters = {{"rate", "0"}};
   camera.ends = {{true, "in", "unix:@a?reconnect=1", ""}};
@@ -92,7 +92,7 @@ TEST_F(LiveTold, WhoComesToListenIsToldTheDifference) {
   EXPECT_EQ(count("graph: unchanged"), 1);
 }
 
-TEST_F(LiveTold, AnotherProgramMayTakeCommandsWhereTheFirstDidNot) {
+TEST_F(LiveCommands, AnotherProgramMayTakeCommandsWhereTheFirstDidNot) {
   add("a");
   Plan with = plan_;
   with.modules[0].parameters = {{"rate", "1"}};
@@ -113,7 +113,7 @@ TEST_F(LiveTold, AnotherProgramMayTakeCommandsWhereTheFirstDidNot) {
   EXPECT_EQ(count("a: started"), 3);
 }
 
-TEST_F(LiveTold, AReaderIsToldThatItsWriterHasEnded) {
+TEST_F(LiveCommands, AReaderLearnsThatItsWriterHasEnded) {
   const std::string out = "shm:t.out?readers=1&stay=1", in = "shm:t.out?reconnect=86400";
   add("writer", "exit 0").ends = {{false, "out", out, ""}};
   add("reader").ends = {{true, "in", in, ""}};

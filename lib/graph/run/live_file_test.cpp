@@ -66,7 +66,7 @@ TEST_F(LiveFile, AnotherEditTakesThePlaceOfTheOneThatIsRead) {
   EXPECT_FALSE(said("graph: keeping the running version"));
 }
 
-TEST_F(LiveFile, AFileThatIsTakenAwayIsToldOnce) {
+TEST_F(LiveFile, AFileThatIsTakenAwayIsLoggedOnce) {
   add("a");
   plan_next(plan_);
   const std::string is_gone = "graph: " + file_ + " has been removed; keeping the running version";

@@ -34,7 +34,7 @@ TEST(ProcessLook, FindsAllThatDescends) {
   EXPECT_GT(usage_of(all, true).memory, usage_of({program}, true).memory);
 }
 
-TEST(ProcessLook, TellsWhatIsUsed) {
+TEST(ProcessLook, SaysWhatIsUsed) {
   auto process = shell("echo; while :; do :; done");
   auto all = descendants(process.guard_number());
   while (usage_of(all, false).processor < 50ms) ::sched_yield();

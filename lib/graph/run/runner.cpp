@@ -93,27 +93,27 @@ Status Runner::begin() {
 
 Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
   const std::string& name = module.name;
-  Supervised::Hear hear;
-  hear.event = [this, name](const std::string& line) { say(with_name(name, line)); };
-  hear.said = [this, name](const std::string& line) { this->hear(with_name(name, line)); };
-  hear.failed = [this, name](const std::deque<std::string>& last_words) {
+  Supervised::Callbacks callbacks;
+  callbacks.event = [this, name](const std::string& line) { log(with_name(name, line)); };
+  callbacks.said = [this, name](const std::string& line) { take_line(with_name(name, line)); };
+  callbacks.failed = [this, name](const std::deque<std::string>& last_words) {
     if (!options_.with_module_lines)
-      for (const auto& line : last_words) emit(with_name(name, line));
+      for (const auto& line : last_words) print(with_name(name, line));
   };
-  hear.changed = [this] {
+  callbacks.changed = [this] {
     is_unsettled_ = true;
     if (observation_) observation_->changed();
   };
-  hear.ended = [this, name] {
+  callbacks.ended = [this, name] {
     const Supervised* ended = find(name);
     if (ended == nullptr || ended->status() != ModuleStatus::GivenUp || is_stopping_) return;
     const bool is_failure = ended->plan().restart == Restart::Never;
     if (is_failure) failures_.push_back({name, ended->exit().value_or(0)});
   };
-  hear.interrupted = [this, name] {
+  callbacks.interrupted = [this, name] {
     for (auto* each : cut_off_by(name)) each->note_interruption();
   };
-  hear.has_work = [this, name] {
+  callbacks.has_work = [this, name] {
     bool has_writers = false, is_written_to = false, is_read = false;
     for (const auto& link : plan_.links) {
       const Supervised *from = at(link.from), *to = at(link.to);
@@ -124,7 +124,7 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
     }
     return !is_stopping_ && (has_writers ? is_written_to : is_read);
   };
-  return Supervised::make(*loop_, module, options_.limits, std::move(hear), options_.hosts);
+  return Supervised::make(*loop_, module, options_.limits, std::move(callbacks), options_.hosts);
 }
 
 Supervised* Runner::find(const std::string& name) const {
@@ -164,29 +164,28 @@ std::set<Supervised*> Runner::cut_off_by(const std::string& name) const {
   return cut_off;
 }
 
-void Runner::emit(const std::string& line) const {
+void Runner::print(const std::string& line) const {
   if (options_.event) options_.event(line);
 }
 
-void Runner::say(const std::string& line) {
-  emit(line);
+void Runner::log(const std::string& line) {
+  print(line);
   if (observation_) observation_->log(line);
 }
 
-/// Takes a line of a module's log, with its name before it.
-void Runner::hear(std::string line) {
+void Runner::take_line(std::string line) {
   constexpr std::string_view kResult = ": result: ";
   // Its peers are stopping too.
   if (is_stopping_ && (line.ends_with("reconnecting") || line.ends_with("connecting again")))
     return;
   line = with_link_names(std::move(line));
   if (const auto found = line.find(Lines::kNotice); found != std::string::npos)
-    return emit(line.erase(found + 2, Lines::kNotice.size() - 2));
+    return print(line.erase(found + 2, Lines::kNotice.size() - 2));
   if (auto found = line.find(kResult); found != std::string::npos) {
     line.erase(found, kResult.size() - 2);
     if (results_.size() < kMaxResults) results_.push_back(line);
   }
-  if (options_.with_module_lines) emit(line);
+  if (options_.with_module_lines) print(line);
   if (observation_) observation_->log(line);
 }
 
@@ -220,7 +219,7 @@ void Runner::tick() {
 
 /// A host has been lost, or is there again.
 void Runner::look_at_hosts() {
-  for (const auto& line : options_.hosts->take_events()) say(line);
+  for (const auto& line : options_.hosts->take_events()) log(line);
   for (auto& [name, module] : modules_) module->look_at_host();
   is_unsettled_ = true;
   if (observation_) observation_->changed();
@@ -255,7 +254,7 @@ void Runner::settle_failures() {
 
 void Runner::end_all() {
   if (std::exchange(is_stopping_, true)) return;
-  if (is_stopped_) say("graph: stopping");
+  if (is_stopped_) log("graph: stopping");
   refuse_changes();
   for (auto& [name, module] : modules_) module->end();
 }
@@ -275,18 +274,18 @@ void Runner::settle_links() {
     reader->finish_input({true, port, link.reader_uri, {}},
                          writer->status() == ModuleStatus::Ended);
   }
-  std::erase_if(stand_ins_, [&](const auto& entry) { return !to_read.contains(entry.first); });
+  std::erase_if(drains_, [&](const auto& entry) { return !to_read.contains(entry.first); });
   for (const auto& [name, link] : to_read) {
-    if (stand_ins_.contains(name)) continue;
-    auto stand_in = stand_in_for(at(link->to)->plan(), link->reader_uri);
-    if (!stand_in) say("graph: " + link->reader_uri + ": " + stand_in.error().text());
-    stand_ins_[name] = stand_in ? std::move(*stand_in) : nullptr;
+    if (drains_.contains(name)) continue;
+    auto drain = drain_for(at(link->to)->plan(), link->reader_uri);
+    if (!drain) log("graph: " + link->reader_uri + ": " + drain.error().text());
+    drains_[name] = drain ? std::move(*drain) : nullptr;
   }
   end_unneeded();
 }
 
 /// What reads in the place of a module that is over, on its host.
-Result<std::shared_ptr<void>> Runner::stand_in_for(const PlannedModule& reader,
+Result<std::shared_ptr<void>> Runner::drain_for(const PlannedModule& reader,
                                                    const std::string& uri) const {
   if (!reader.host.empty() && options_.hosts != nullptr)
     if (auto host = options_.hosts->find(reader.host)) return host->read_in_place(uri);
@@ -294,7 +293,7 @@ Result<std::shared_ptr<void>> Runner::stand_in_for(const PlannedModule& reader,
   std::string ours = uri;
   if (const auto key = ours.find(kKeyFile); key != std::string::npos && options_.hosts != nullptr)
     ours.replace(key, kKeyFile.size(), "/proc/self/fd/" + std::to_string(options_.hosts->key()));
-  auto intake = make_stand_in(*loop_, ours);
+  auto intake = make_drain(*loop_, ours);
   if (!intake) return intake.error();
   return std::shared_ptr<void>(std::move(*intake));
 }

@@ -50,9 +50,12 @@ class Runner {
   [[nodiscard]] std::set<Supervised*> neighbours_of(const std::string& name) const;
   [[nodiscard]] std::set<Supervised*> cut_off_by(const std::string& name) const;
 
-  void emit(const std::string& line) const;
-  void say(const std::string& line);
-  void hear(std::string line);
+  /// Gives a line to the options' `event`.
+  void print(const std::string& line) const;
+  /// Prints an event, and publishes it in the log.
+  void log(const std::string& line);
+  /// Takes a line of a module's log, with the module's name before it.
+  void take_line(std::string line);
   [[nodiscard]] std::string with_link_names(std::string line) const;
 
   void tick();
@@ -81,7 +84,7 @@ class Runner {
   [[nodiscard]] GraphState state() const;
   [[nodiscard]] LinkState state_of(const PlannedLink& link) const;
 
-  [[nodiscard]] Result<std::shared_ptr<void>> stand_in_for(const PlannedModule& reader,
+  [[nodiscard]] Result<std::shared_ptr<void>> drain_for(const PlannedModule& reader,
                                                            const std::string& uri) const;
 
   static constexpr std::size_t kMaxResults = 100;
@@ -104,7 +107,7 @@ class Runner {
   std::unique_ptr<FileWatch> files_;
   std::unique_ptr<Aside> planning_;
   // In the place of readers that are over; null: it failed.
-  std::map<LinkName, std::shared_ptr<void>> stand_ins_;
+  std::map<LinkName, std::shared_ptr<void>> drains_;
   std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
   Loop::Handle stop_, tick_, hosts_;
 };

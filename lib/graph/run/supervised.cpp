@@ -41,23 +41,23 @@ std::string end_in_words(int status) {
   return "failed with status " + std::to_string(status);
 }
 
-Supervised::Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear,
-                       Hosts* hosts)
+Supervised::Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits,
+                       Callbacks callbacks, Hosts* hosts)
     : loop_(loop),
       plan_(std::move(plan)),
       told_(plan_),
       limits_(limits),
-      hear_(std::move(hear)),
+      callbacks_(std::move(callbacks)),
       hosts_(hosts),
       restarts_(plan_.restart, limits.restarts,
                 static_cast<std::uint32_t>(std::hash<std::string>()(plan_.manage_uri))),
       reports_(plan_.ends) {}
 
 Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule plan,
-                                                     const SupervisionLimits& limits, Hear hear,
-                                                     Hosts* hosts) {
+                                                     const SupervisionLimits& limits,
+                                                     Callbacks callbacks, Hosts* hosts) {
   std::unique_ptr<Supervised> module(
-      new Supervised(loop, std::move(plan), limits, std::move(hear), hosts));
+      new Supervised(loop, std::move(plan), limits, std::move(callbacks), hosts));
   auto& self = *module;
   LinkOptions options;
   options.limits.element_bytes = kMostReported;
@@ -113,7 +113,7 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
   if (status_ == status && detail_ == detail) return;
   status_ = status;
   detail_ = detail;
-  hear_.changed();
+  callbacks_.changed();
 }
 
 std::shared_ptr<Host> Supervised::host() const {
@@ -171,7 +171,7 @@ Status Supervised::start() {
   auto ended = loop_.watch(process_->ended(), EPOLLIN, [this](auto) { note_end(); });
   if (!ended) return ended.error();
   ended_ = std::move(*ended);
-  hear_.event("started");
+  callbacks_.event("started");
   change(control_ ? ModuleStatus::Starting : ModuleStatus::Running);
   return {};
 }
@@ -179,7 +179,7 @@ Status Supervised::start() {
 void Supervised::start_again() {
   auto started = start();
   if (started) return;
-  hear_.event(started.error().detail);
+  callbacks_.event(started.error().detail);
   forget_process();
   go_on(kCannotExecute);
 }
@@ -200,7 +200,7 @@ void Supervised::restart() {
   restarts_.reset();
   if (!process_) return start_again();
   wish_ = Wish::Restart;
-  hear_.interrupted();
+  callbacks_.interrupted();
   ask_to_end();
 }
 
@@ -210,7 +210,7 @@ void Supervised::ask_to_end() {
     timer_.reset();
     awaits_cause_ = awaits_host_ = false;
     change(ModuleStatus::Ended);
-    hear_.ended();
+    callbacks_.ended();
     return;
   }
   if (status_ == ModuleStatus::Stopping) return;
@@ -238,7 +238,7 @@ ModuleChange Supervised::adopt(PlannedModule plan) {
   }
   if (is_heard()) set_told();
   for (const auto& command : change.outputs)
-    if (command.starts_with("set ")) hear_.event(command);
+    if (command.starts_with("set ")) callbacks_.event(command);
   return change;
 }
 
@@ -249,7 +249,7 @@ bool Supervised::is_heard() const {
 void Supervised::send_commands(const std::vector<std::string>& commands) {
   for (const auto& command : commands) {
     if (!is_heard() || wish_ == Wish::Restart || control_->say(command_message(command))) continue;
-    hear_.event("does not accept commands; restarting");
+    callbacks_.event("does not accept commands; restarting");
     restart();
   }
 }
@@ -270,7 +270,7 @@ void Supervised::note_end() {
   manage_->take();  // and reads what came on it
   // Its last lines are in the pipe; who else still holds that open may do so for ever.
   for (int piece = 0; piece < kLastPieces && said_; ++piece) read_lines();
-  lines_.finish(hear_.said);
+  lines_.finish(callbacks_.said);
   forget_process();
   go_on(*status);
 }
@@ -295,16 +295,16 @@ void Supervised::go_on(int status) {
   // A process that the signal ended before it could handle it has done as it was asked.
   const bool is_as_asked = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
   if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_asked) {
-    hear_.event(is_as_asked ? end_in_words(0) : words);
+    callbacks_.event(is_as_asked ? end_in_words(0) : words);
     if (wish_ == Wish::Restart) {
-      hear_.interrupted();
+      callbacks_.interrupted();
       return start_again();
     }
     change(ModuleStatus::Ended);
-    return hear_.ended();
+    return callbacks_.ended();
   }
-  if (status != 0) hear_.failed(lines_.last());
-  if (status == 0 && can_be_cut_off() && hear_.has_work()) {
+  if (status != 0) callbacks_.failed(lines_.last());
+  if (status == 0 && can_be_cut_off() && callbacks_.has_work()) {
     awaits_cause_ = true;
     change(ModuleStatus::Waiting, words);
     timer_ = loop_.call_at(MonotonicClock::now() + kCauseDelay, [this] { decide(0); });
@@ -317,29 +317,29 @@ void Supervised::go_on(int status) {
 void Supervised::decide(int status) {
   awaits_cause_ = false;
   const auto words = end_in_words(status);
-  const bool is_cut_off = status == 0 && is_interrupted_ && hear_.has_work();
+  const bool is_cut_off = status == 0 && is_interrupted_ && callbacks_.has_work();
   const auto decision = status == Host::kHostLost
                             ? restarts_.lost(now())
                             : restarts_.ended(is_cut_off ? kCutOff : status, now());
   using Next = Restarts::Next;
-  if (decision.next == Next::Again) hear_.interrupted();
+  if (decision.next == Next::Again) callbacks_.interrupted();
   if (decision.next == Next::Again && decision.delay.count() == 0) {
-    hear_.event(words + "; restarting");
+    callbacks_.event(words + "; restarting");
     return start_again();
   }
   if (decision.next == Next::Again) {
-    hear_.event(words + "; restarting in " + seconds_in_words(decision.delay));
+    callbacks_.event(words + "; restarting in " + seconds_in_words(decision.delay));
     change(ModuleStatus::Waiting, words);
     timer_ = loop_.call_at(MonotonicClock::now() + decision.delay, [this] { start_again(); });
     return;
   }
   bool is_given_up = decision.next == Next::GiveUp;
-  hear_.event(is_given_up && plan_.restart != Restart::Never
-                  ? words + "; failed permanently" +
-                        (starts_ > 1 ? " after " + std::to_string(starts_) + " starts" : "")
-                  : words);
+  callbacks_.event(is_given_up && plan_.restart != Restart::Never
+                       ? words + "; failed permanently" +
+                             (starts_ > 1 ? " after " + std::to_string(starts_) + " starts" : "")
+                       : words);
   change(is_given_up ? ModuleStatus::GivenUp : ModuleStatus::Ended, is_given_up ? words : "");
-  hear_.ended();
+  callbacks_.ended();
 }
 
 bool Supervised::can_be_cut_off() const {

@@ -37,8 +37,8 @@ std::string end_in_words(int status);
 
 class Supervised {
  public:
-  /// Who hears of it. None may destroy it.
-  struct Hear {
+  /// Called when something happens to it. None may destroy it.
+  struct Callbacks {
     std::function<void(const std::string& line)> event;  ///< "started"
     std::function<void(const std::string& line)> said;   ///< by the module itself
     std::function<void(const std::deque<std::string>& last_words)> failed;
@@ -52,8 +52,8 @@ class Supervised {
   /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
   /// @param hosts  that it may run on; null: this one alone.
   static Result<std::unique_ptr<Supervised>> make(Loop& loop, PlannedModule plan,
-                                                  const SupervisionLimits& limits, Hear hear,
-                                                  Hosts* hosts = nullptr);
+                                                  const SupervisionLimits& limits,
+                                                  Callbacks callbacks, Hosts* hosts = nullptr);
 
   /// Starts it. Errors: NotFound, System; of later starts they are events.
   Status start();
@@ -71,7 +71,8 @@ class Supervised {
   /// that accepts no commands is restarted.
   void send_commands(const std::vector<std::string>& commands);
 
-  /// Notes that an input's writer has ended for good, or is there again.
+  /// Sends it `finish` when an input's writer has ended for good, and `link` when there is one
+  /// again; each once.
   void finish_input(const PlannedEnd& end, bool is_finished);
   /// A module that it is linked to is interrupted. One without `control` takes that for the end of
   /// its work, and is restarted when it ends.
@@ -106,7 +107,7 @@ class Supervised {
   [[nodiscard]] std::string said_of(const std::string& uri) const;
 
  private:
-  Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Hear hear,
+  Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Callbacks callbacks,
              Hosts* hosts);
 
   /// What its process has been asked to end for.
@@ -144,7 +145,7 @@ class Supervised {
   PlannedModule plan_;
   PlannedModule told_;  // as its process knows it, which may know links by their older URIs
   SupervisionLimits limits_;
-  Hear hear_;
+  Callbacks callbacks_;
   Hosts* hosts_;
   bool awaits_host_ = false;
   std::int64_t wall_offset_ = 0;  // as its process knows it, of another host [ns]

@@ -70,7 +70,7 @@ void Supervised::read_lines() {
   const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
   if (size == 0) said_.reset();
   if (size <= 0) return;
-  lines_.add({piece.data(), static_cast<std::size_t>(size)}, hear_.said);
+  lines_.add({piece.data(), static_cast<std::size_t>(size)}, callbacks_.said);
   said_at_ = now();
 }
 
@@ -79,12 +79,12 @@ void Supervised::take_report(const Message& message) {
   const bool has_changed = reports_.take(message, heard_);
   if (message.header.src == static_cast<int>(Report::Refusal) &&
       message.header.info.type == MatrixType::String)
-    for (const auto& line : rows_of(message)) hear_.event(line);
-  if (status_ == ModuleStatus::Stalled) hear_.event("resumed");
+    for (const auto& line : rows_of(message)) callbacks_.event(line);
+  if (status_ == ModuleStatus::Stalled) callbacks_.event("resumed");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
       status_ == ModuleStatus::Running)
     change(ModuleStatus::Running);
-  if (has_changed) hear_.changed();
+  if (has_changed) callbacks_.changed();
 }
 
 void Supervised::look(MonotonicTime time) {
@@ -97,14 +97,14 @@ void Supervised::look(MonotonicTime time) {
   if (!process_ || time - heard_ < limits_.stall) return;
   const bool is_stopped = process_->usage(false).is_stopped;
   if (is_blocked && !is_stopped) {
-    if (is_stalled) hear_.event("resumed");
+    if (is_stalled) callbacks_.event("resumed");
     const auto output = reports_.blocked_output();
     return change(ModuleStatus::Running,
                   "blocked: no reader" + (output.empty() ? "" : " on output " + output));
   }
   if (is_stalled) return;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
-  hear_.event("unresponsive: " + detail_);
+  callbacks_.event("unresponsive: " + detail_);
 }
 
 /// Asks the kernel whether a module that sends no reports has been stopped by a signal.
@@ -115,7 +115,7 @@ void Supervised::look_at_silent() {
   if (is_stopped == is_stalled) return;
   change(is_stopped ? ModuleStatus::Stalled : ModuleStatus::Running,
          is_stopped ? "stopped by a signal" : "");
-  hear_.event(is_stopped ? "unresponsive: " + detail_ : "resumed");
+  callbacks_.event(is_stopped ? "unresponsive: " + detail_ : "resumed");
 }
 
 void Supervised::measure(MonotonicTime time, bool with_memory) {

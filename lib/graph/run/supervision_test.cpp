@@ -134,7 +134,7 @@ TEST_F(Supervision, WhoDoesNotEndWhenAskedToIsKilled) {
   EXPECT_TRUE(said("a: killed by signal 9"));
 }
 
-TEST_F(Supervision, AQuietOneTellsItsLastLinesWhenItFails) {
+TEST_F(Supervision, AQuietOnePrintsItsLastLinesWhenItFails) {
   options_.with_module_lines = false;
   add("a", "seq 1 30 >&2; exit 2");
   ASSERT_TRUE(run());

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kDay = 86'400'000'000'000, kMs = 1'000'000;
 
-TEST(DistantWall, IsTheMonotonicClockPlusWhatItIsTold) {
+TEST(DistantWall, IsTheMonotonicClockPlusWhatIsSet) {
   DistantWall wall;
   EXPECT_FALSE(wall.is_set());
   wall.set(kDay, 5s);

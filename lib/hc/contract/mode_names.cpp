@@ -15,7 +15,8 @@ std::string mode_names_text(const std::map<std::string, std::int64_t>& numbers) 
 
 Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view text) {
   std::map<std::int32_t, std::string> names;
-  while (!text.empty()) {
+  for (bool is_more = !text.empty(); is_more;) {
+    is_more = text.find(',') != std::string_view::npos;
     const auto word = text.substr(0, text.find(','));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
     const auto name = word.substr(0, word.find('='));
@@ -23,10 +24,11 @@ Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view te
                *end = word.data() + word.size();
     std::int32_t number = 0;
     const auto [after, error] = std::from_chars(begin, end, number);
-    if (name.empty() || error != std::errc() || after != end || number < 1)
+    if (name.empty() || error != std::errc() || after != end || number < 1 ||
+        !names.emplace(number, name).second)
       return Error{Code::Invalid, std::string(kModeNames) + ": \"" + std::string(word) +
-                                      "\" is not NAME=NUMBER, as in read=5,track=4"};
-    names[number] = name;
+                                      "\" is not NAME=NUMBER with a number of its own, as in "
+                                      "read=5,track=4"};
   }
   return names;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The names of a graph's modes, as a module gets them: in a parameter `mode_names` of text (G27).
+// The names of a graph's modes, as a module gets them: in a parameter `mode_names` of text (G25).
 // Pure.
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace hc {
 
-/// What `hc run` gives to a module that has such a parameter.
+/// The name of the parameter that `hc run` sets.
 inline constexpr const char* kModeNames = "mode_names";
 
 /// "read=5,track=4" of the numbers by their names.
 std::string mode_names_text(const std::map<std::string, std::int64_t>& numbers);
 
-/// The names by their numbers, of which each is 1 or more.
+/// The names by their numbers; an empty text has none.
 ///
-/// Errors: Invalid, which names the word that is not NAME=NUMBER.
+/// Errors: Invalid (a word that is not NAME=NUMBER, with a number from 1 on that no other has).
 Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view text);
 
 }  // namespace hc

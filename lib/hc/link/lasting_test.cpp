@@ -132,7 +132,7 @@ TEST_P(LastingLink, ASourceWithoutAConnectionFinishesAtOnce) {
   EXPECT_EQ(*source->take(message), Got::End);
 }
 
-TEST_P(LastingLink, AnEndThatIsFollowedByItsOwnIsNotTold) {
+TEST_P(LastingLink, AnEndThatIsFollowedByItsOwnIsNotLogged) {
   begin("", "?reconnect=60");
   sink_.reset();
   while (!*source_->wait(-1, std::chrono::milliseconds(0))) {

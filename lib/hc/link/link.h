@@ -124,7 +124,7 @@ class Sink {
 /// How a link behaves, whatever carries it.
 struct LinkOptions {
   Limits limits;  ///< of what is read
-  /// Gets a line when a connection has come or failed, with the URI before it, on the threads that
+  /// Gets a line when a connection was made or failed, with the URI before it, on the threads that
   /// use the link's end; may be empty.
   LogSink log;
   int stop = -1;  ///< descriptor that is readable when waiting is to end; -1: none

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How the ends of links are opened that are not between sockets (stream/ends.h). table.cpp lists
-// them by their schemes. Internal.
+// Opens the ends of links that do not use sockets; stream/ends.h has the others. Internal.
 
 #include <memory>
 

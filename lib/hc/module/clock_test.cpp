@@ -180,7 +180,7 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
                         "timer at 14"}));
 }
 
-TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHearsOfTheFocus) {
+TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHasTheFocus) {
   feed("focus", {table({4})});
   const std::vector<TraceEvent> events = {
       {TraceEvent::What::Began, "", 0, 0, 0, at(3).header.time, TraceEvent::kGenerator},

@@ -80,7 +80,7 @@ TEST_F(RunningModule, ObeysCommands) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(RunningModule, WhoReportsToNobodyTellsOnStandardErrorWhatIsWrong) {
+TEST_F(RunningModule, WhoReportsToNobodyLogsOnStandardErrorWhatIsWrong) {
   Module module{"gauge", "Waits."};
   auto in = module.input("in", table<double>(), "");
   module.on(in, [](const auto&) {});
@@ -191,8 +191,8 @@ TEST_F(RunningModule, KnowsWhetherItsModeHasTheFocus) {
     EXPECT_EQ(join(), 0);
     return has;
   };
-  constexpr std::int32_t kNobodyTells = -1;
-  EXPECT_TRUE(has_focus({"--mode=2"}, kNobodyTells));
+  constexpr std::int32_t kNoFocus = -1;
+  EXPECT_TRUE(has_focus({"--mode=2"}, kNoFocus));
   EXPECT_FALSE(has_focus({"--mode=2"}, 0));
   EXPECT_FALSE(has_focus({"--mode=2"}, 1));
   EXPECT_TRUE(has_focus({"--mode=2"}, 2));
@@ -217,7 +217,7 @@ TEST_F(RunningModule, ARateMayBeAsLowAsOneLikes) {
   EXPECT_EQ(ticks, 0);
 }
 
-TEST_F(RunningModule, ATimerHearsOfItsRateAtOnce) {
+TEST_F(RunningModule, ATimerFollowsItsRateAtOnce) {
   Module module{"clock", "Ticks."};
   auto rate = module.parameter("rate", 0.0, "Hz", "");
   auto sink = sink_of(uri("control"));

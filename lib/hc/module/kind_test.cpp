@@ -64,6 +64,14 @@ TEST(Kind, AnotherCountOfNumbersThanTheShapesIsABug) {
   EXPECT_DEATH(static_cast<void>(dense_graph<double>(2, numbers)), "check failed");
 }
 
+TEST(Kind, AnyImageIsInColourOrGrey) {
+  const AnyKind kind = any_image(7);
+  ASSERT_EQ(kind.types.size(), 2U);
+  EXPECT_EQ(in_words(kind.types), in_words({rgb_image<std::uint8_t>().in(7).type,
+                                            intensity_image<std::uint8_t>().in(7).type}));
+  EXPECT_EQ(any_image().types[0].coord, 0);
+}
+
 TEST(Finite, NeitherNaNNorInfinity) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(finite(position(1.0, 2.0, 3.0).numbers()));

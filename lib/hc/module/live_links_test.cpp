@@ -31,7 +31,7 @@ TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
   EXPECT_EQ(join(), 0);
 }
 
-TEST_F(RunningModule, TellsThatItWaitsForAReader) {
+TEST_F(RunningModule, ReportsThatItWaitsForAReader) {
   const std::string name = "early." + std::to_string(::getpid());
   for (const auto& [listens, comes] :
        {std::pair("shm:" + name, "shm:" + name), {"unix-listen:@" + name, "unix:@" + name}}) {
@@ -136,7 +136,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   for (std::size_t i : {11U, 12U, 13U}) EXPECT_GE(row[i], 0);  // gaps
 }
 
-TEST_F(RunningModule, HasOnlyTheLinksThatItIsToldOf) {
+TEST_F(RunningModule, HasOnlyTheLinksOfItsCommands) {
   Module module{"relay", "Sends on."};
   auto in = module.input("in", table<double>(), "");
   auto out = module.output("out", table<double>(), "");
@@ -195,7 +195,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   EXPECT_EQ(join(), 0);
 }
 
-TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersTold) {
+TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersReported) {
   Module module{"relay", "Sends on."};
   auto in = module.input("in", table<double>(), "");
   auto out = module.output("out", table<double>(), "");

@@ -498,5 +498,19 @@ TEST(Module, HandlersFailWithOneLine) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "broken: no camera\n");
 }
 
+TEST(Module, AFailedStatusEndsItAsItsCodeSays) {
+  for (const auto& [code, status] : {std::pair{Code::System, 1}, {Code::Invalid, 2}}) {
+    Module module{"broken", "Fails."};
+    const Status failed = Error{code, "no camera"};
+    module.on_start([&] {
+      succeed_or_end({});
+      succeed_or_end(failed);
+    });
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(run(module, {}), status);
+    EXPECT_NE(::testing::internal::GetCapturedStderr().find("no camera"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace hc

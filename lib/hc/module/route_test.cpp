@@ -14,7 +14,7 @@ TEST(Route, TakesWhatIsNamed) {
   EXPECT_EQ(route->peer, "eye");
 }
 
-TEST(Route, TakesAllUnlessTold) {
+TEST(Route, TakesAllByDefault) {
   EXPECT_TRUE(parse_route("")->takes(7));
   EXPECT_TRUE(parse_route("to=*")->takes(-7));
   EXPECT_TRUE(parse_route("peer=eye")->takes(0));

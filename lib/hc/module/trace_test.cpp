@@ -66,7 +66,7 @@ std::vector<TraceEvent> events_of(Source& trace) {
   return all;
 }
 
-TEST_F(RunningModule, TellsWhenItTookHandledAndSent) {
+TEST_F(RunningModule, ReportsWhenItTookHandledAndSent) {
   ManualClock clock;
   Module module{"slow", "Takes 3 ms.", clock};
   auto in = module.input("in", table<double>(), "");
@@ -89,7 +89,7 @@ TEST_F(RunningModule, TellsWhenItTookHandledAndSent) {
   EXPECT_EQ(events[3].moment - events[2].moment, 1'000'000);
 }
 
-TEST_F(RunningModule, TellsOfEachMessageThatIsTakenTogether) {
+TEST_F(RunningModule, ReportsEachMessageThatIsTakenTogether) {
   Module module{"pair", "Takes two together."};
   auto left = module.input("left", table<double>(), ""),
        right = module.input("right", table<double>(), "");

@@ -172,7 +172,7 @@ TEST(Text, R27_FloatsAreRoundedToTheNearest) {
   }
 }
 
-TEST(Text, R27_TheMiddleOfTwoFloatsIsToldFromItsNeighbours) {
+TEST(Text, R27_TheMiddleOfTwoFloatsIsDistinguishedFromItsNeighbours) {
   std::mt19937_64 random(10);
   for (int i = 0; i < 100'000; ++i) {
     // An odd number of 54 bits is the middle of two f64, and of 25 bits that of two f32.

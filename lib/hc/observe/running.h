@@ -39,8 +39,8 @@ inline constexpr std::chrono::milliseconds kSilence{5000};
 /// "NAME.PROCESS"; nothing where it is none, such as what anybody may bind.
 std::optional<RunningGraph> parse_running(std::string_view text);
 
-/// The graph that this program is a module of, as `hc run` says by HC_GRAPH; nothing outside of
-/// one.
+/// The graph that this program is a module of, from HC_GRAPH, which `hc run` sets; nothing outside
+/// a graph.
 std::optional<RunningGraph> own_graph();
 
 /// Those of all users, by name and process number, from a table as /proc/net/unix is.

@@ -46,7 +46,7 @@ TEST(WriteAll, WaitsForASlowReader) {
   ::close(ends[1]);
 }
 
-TEST(WriteAll, OtherErrorsAreTold) {
+TEST(WriteAll, OtherErrorsAreReported) {
   int full = ::open("/dev/full", O_WRONLY);
   ASSERT_GE(full, 0);
   EXPECT_EQ(write_all(full, "x").error().text(), "System: write: No space left on device");

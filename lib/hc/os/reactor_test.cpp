@@ -39,7 +39,7 @@ struct Event {
   void raise() const { EXPECT_EQ(::eventfd_write(descriptor.get(), 1), 0); }
 };
 
-TEST(Watch, TellsOfWhatIsWantedUntilItIsNot) {
+TEST(Watch, ReportsWhatIsWantedUntilItIsNot) {
   Event event;
   std::promise<std::uint32_t> third;
   std::unique_ptr<Watch> watch;
@@ -56,7 +56,7 @@ TEST(Watch, TellsOfWhatIsWantedUntilItIsNot) {
   EXPECT_EQ(count, 3);
 }
 
-TEST(Watch, TellsThatTheOtherSideHasGoneThoughOnlyErrorsAreWanted) {
+TEST(Watch, ReportsThatTheOtherSideHasGoneThoughOnlyErrorsAreWanted) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   Descriptor reader(ends[0]), writer(ends[1]);

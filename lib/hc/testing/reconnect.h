@@ -25,7 +25,7 @@ TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
   EXPECT_EQ(source->traffic().messages, 3U);
 }
 
-TEST_P(SocketLink, ALossIsToldAndItsEnd) {
+TEST_P(SocketLink, ALossIsLoggedAndItsEnd) {
   Warnings warnings;
   auto source = source_of(with(dial(), "reconnect=60"), warnings.options());
   Message message;
@@ -130,7 +130,7 @@ TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
   EXPECT_EQ(sent.error().code, Code::Closed);
 }
 
-TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
+TEST_P(SocketLink, WhoWaitsLongForSomebodyIsLoggedOnce) {
   Warnings warnings;
   auto source = source_of(with(dial(), "reconnect=60"), warnings.options());
   Message message;
@@ -148,7 +148,7 @@ TEST_P(SocketLink, WhoWaitsLongForSomebodyIsToldOnce) {
   EXPECT_EQ(warnings.lines[1], with(dial(), "reconnect=60") + ": connected");
 }
 
-TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {
+TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsInterrupted) {
   Stop stop;
   auto options = stop.options();
   int lines = 0;
@@ -161,7 +161,7 @@ TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsToldMeanwhile) {
   EXPECT_EQ(lines, 1);
 }
 
-TEST_P(SocketLink, ConnectingEndsWhenToldToStop) {
+TEST_P(SocketLink, ConnectingEndsWhenAskedToStop) {
   Stop stop;
   stop.raise();
   auto sink = sink_of(with(dial(), "reconnect=60"), stop.options());

@@ -108,7 +108,7 @@ TEST_P(SocketLink, WaitsForAListener) {
   late.join();
 }
 
-TEST_P(SocketLink, WaitingEndsWhenToldToStop) {
+TEST_P(SocketLink, WaitingEndsWhenAskedToStop) {
   Stop stop;
   stop.raise();
   auto options = stop.options();
@@ -216,7 +216,7 @@ TEST_P(SocketLink, AHostilePeerDisturbsNobody) {
                 "integer, at byte 0");
 }
 
-TEST_P(SocketLink, AMessageThatIsCutIsTold) {
+TEST_P(SocketLink, AMessageThatIsCutIsReported) {
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());
   std::string bytes = encode(numbered(1, 100)) + encode(numbered(2, 100)).substr(0, 60);
@@ -446,7 +446,7 @@ TEST_P(SocketLink, OneSlowReaderHoldsUpNoOther) {
   }
 }
 
-TEST_P(SocketLink, EveryStreamThatIsCutIsToldOnce) {
+TEST_P(SocketLink, EveryStreamThatIsCutIsLoggedOnce) {
   std::minstd_rand random(1);
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());

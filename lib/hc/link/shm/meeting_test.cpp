@@ -10,7 +10,7 @@
 namespace hc::testing {
 namespace {
 
-TEST(ShmMeeting, OneWhoComesLaterHearsWhatIsSentFromThenOn) {
+TEST(ShmMeeting, OneWhoComesLaterGetsWhatIsSentFromThenOn) {
   auto name = fresh_name();
   auto sink = sink_of(name);
   auto first = source_of(name);

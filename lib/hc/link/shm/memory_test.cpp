@@ -146,7 +146,7 @@ TEST_F(NoPages, WhatTheHostHasNoPagesForIsNotWritten) {
   EXPECT_EQ(sink_->traffic().messages, 10U);
 }
 
-TEST_F(NoPages, WhoLosesNothingIsToldThatTheHostHasNone) {
+TEST_F(NoPages, WhoLosesNothingGetsAnErrorThatTheHostHasNone) {
   Status sent;
   if (!send("", 10, sent)) GTEST_SKIP() << "no seccomp here";
   ASSERT_FALSE(sent);

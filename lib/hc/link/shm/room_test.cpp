@@ -81,7 +81,7 @@ TEST(ShmRoom, ASlowReaderDoesNotHoldUpAnother) {
   EXPECT_EQ(slow->traffic().superseded, 2999U);
 }
 
-TEST(ShmRoom, AReaderThatHoldsTooManyIsToldAndGetsCopies) {
+TEST(ShmRoom, AReaderThatHoldsTooManyGetsCopiesWhichIsLogged) {
   auto name = fresh_name();
   auto sink = sink_of(name);
   int told = 0;
@@ -135,7 +135,7 @@ TEST(ShmRoom, APublisherWaitsForRoomUntilItIsLetGo) {
   publisher.join();
 }
 
-TEST(ShmRoom, AProgramThatKeepsAllLoansIsToldSo) {
+TEST(ShmRoom, AProgramThatKeepsAllLoansGetsAnError) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?memory=2M");
   auto source = source_of(name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The ends of links between sockets: those that connect, with `wait` and `reconnect`, and those
-// that listen, with any number of peers that come and go; and where each transport has its sockets.
+// that listen, with any number of peers that come and go; and the sockets of each transport.
 // Internal.
 
 #include <functional>

@@ -74,7 +74,7 @@ TEST(File, R40_IsReadOnBehindDamage) {
   EXPECT_FALSE(*receive(*source, message));
 }
 
-TEST(File, AFullDiskIsTold) {
+TEST(File, AFullDiskIsReported) {
   auto sink = sink_of("file:/dev/full");
   auto sent = sink->send(numbered(0, 10));
   ASSERT_FALSE(sent);
@@ -150,7 +150,7 @@ TEST(Fifo, HasNoEndBeforeAWriterHasCome) {
   EXPECT_FALSE(*receive(*source, message));
 }
 
-TEST(Fifo, WaitingForAReaderEndsWhenToldToStop) {
+TEST(Fifo, WaitingForAReaderEndsWhenAskedToStop) {
   Stop stop;
   stop.raise();
   auto sink = open_sink(*parse_uri(make_fifo().second), stop.options());

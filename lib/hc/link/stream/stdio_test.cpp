@@ -89,7 +89,7 @@ TEST_F(Stdio, AReaderThatHasGoneIsAnEnd) {
   EXPECT_EQ(sink->send(numbered(0, 10)).error().code, Code::Closed);
 }
 
-TEST_F(Stdio, WaitingEndsWhenToldToStop) {
+TEST_F(Stdio, WaitingEndsWhenAskedToStop) {
   Stop stop;
   stop.raise();
   auto sink = sink_of("-", stop.options());
@@ -112,7 +112,7 @@ TEST_F(Stdio, AMessageThatWasBegunIsFinishedBeforeItStops) {
   reader.join();
 }
 
-TEST_F(Stdio, AMessageThatCannotBeFinishedIsTold) {
+TEST_F(Stdio, AMessageThatCannotBeFinishedIsReported) {
   Stop stop;
   stop.raise();
   auto sink = sink_of("-", stop.options());
