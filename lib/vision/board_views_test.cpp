@@ -50,9 +50,9 @@ TEST(BoardViews, takes_none_without_a_board) {
 TEST(BoardViews, images_are_of_one_size) {
   auto views = make();
   const cv::Mat board = board_at({60, 60}), large = board_at({60, 60}, {800, 600});
-  EXPECT_EQ(views.take(board, large, 0).error().code, Code::Invalid);
+  EXPECT_EQ(views.take(board, large, 0).error().code, Code::Unsupported);
   EXPECT_TRUE(*views.take(board, board, 0));
-  EXPECT_EQ(views.take(large, large, 0).error().code, Code::Invalid);
+  EXPECT_EQ(views.take(large, large, 0).error().code, Code::Unsupported);
 }
 
 TEST(BoardViews, a_board_has_more_corners_in_a_row_than_in_a_column_or_fewer) {
