@@ -21,11 +21,12 @@ class Late(AssertionError):
 
 
 def record_again(test):
-    """Repeats a test, twice at most, where a module was late; what is broken fails each time."""
+    """Repeats a test, four times at most, where a module was late; what is broken fails each
+    time."""
 
     @functools.wraps(test)
     def tried(self):
-        for _ in range(2):
+        for _ in range(4):
             try:
                 return test(self)
             except Late as late:

@@ -286,7 +286,7 @@ void Runner::settle_links() {
 
 /// What reads in the place of a module that is over, on its host.
 Result<std::shared_ptr<void>> Runner::drain_for(const PlannedModule& reader,
-                                                   const std::string& uri) const {
+                                                const std::string& uri) const {
   if (!reader.host.empty() && options_.hosts != nullptr)
     if (auto host = options_.hosts->find(reader.host)) return host->read_in_place(uri);
   // Modules find the key of this host at another descriptor.

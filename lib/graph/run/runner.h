@@ -85,7 +85,7 @@ class Runner {
   [[nodiscard]] LinkState state_of(const PlannedLink& link) const;
 
   [[nodiscard]] Result<std::shared_ptr<void>> drain_for(const PlannedModule& reader,
-                                                           const std::string& uri) const;
+                                                        const std::string& uri) const;
 
   static constexpr std::size_t kMaxResults = 100;
 

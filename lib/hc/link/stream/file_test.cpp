@@ -82,7 +82,7 @@ TEST(File, AFullDiskIsReported) {
 }
 
 /// Files become no larger, as on a full disk.
-class FullDisk : public ::testing::TestWithParam<std::tuple<int, const char*>> {
+class FullDisk : public ::testing::TestWithParam<std::tuple<int, std::string>> {
  protected:
   FullDisk() {
     EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &limit_), 0);
@@ -102,7 +102,7 @@ class FullDisk : public ::testing::TestWithParam<std::tuple<int, const char*>> {
 };
 
 TEST_P(FullDisk, LeavesWholeMessages) {
-  const auto [size, options] = GetParam();
+  const auto& [size, options] = GetParam();
   auto sink = sink_of("file:" + (folder_ / "eyes.mtp") + options);
   Status sent;
   for (int i = 0; sent && i < 20'000; ++i) sent = sink->send(numbered(i, size));
@@ -125,7 +125,8 @@ TEST_P(FullDisk, LeavesWholeMessages) {
 // With a rate, messages wait in the queue.
 INSTANTIATE_TEST_SUITE_P(SmallAndLarge, FullDisk,
                          ::testing::Combine(::testing::Values(100, 30'000),
-                                            ::testing::Values("", "?rate=5000")));
+                                            ::testing::Values(std::string(),
+                                                              std::string("?rate=5000"))));
 
 std::pair<std::string, std::string> make_fifo() {
   static Folder folder;
