@@ -26,6 +26,14 @@ class Running(Graphs):
         self.assertEqual(self.ask(second, "stop", name="other"), ["ok"])
         self.assertEqual(second.wait(timeout=WATCHDOG), 0)
 
+    def test_a_closed_terminal_ends_it_cleanly(self):
+        self.write_graph(GRAPH)
+        process = self.run_graph()
+        process.send_signal(signal.SIGHUP)
+        _, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertIn(b"graph: stopping", err)
+
     def test_an_edited_file_changes_the_graph(self):
         self.write_graph(GRAPH)
         process = self.run_graph()

@@ -270,7 +270,7 @@ class Module {
   [[nodiscard]] bool has_focus() const { return focus_.has_own_focus(); }
 
   /// Runs the module as the command line says, until its inputs end, all its readers have
-  /// disconnected, or it is asked to stop (SIGINT, SIGTERM).
+  /// disconnected, or it is asked to stop (SIGINT, SIGTERM, SIGHUP).
   /// @returns  what main() is to return: 0 done, 1 failure, 2 bad arguments.
   int run(int argc, char** argv);
 

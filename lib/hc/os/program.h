@@ -9,12 +9,12 @@
 
 namespace hc {
 
-/// A descriptor that is readable once SIGINT or SIGTERM has come, caught from the first call on; a
-/// second signal of the kind kills, as usual. SIGPIPE is ignored from then on. Every call gives the
-/// same descriptor. For the main thread.
+/// A descriptor that is readable once SIGINT, SIGTERM or, unless it is ignored as under nohup,
+/// SIGHUP has come, caught from the first call on; a second signal of the kind kills, as usual.
+/// SIGPIPE is ignored from then on. Every call gives the same descriptor. For the main thread.
 int stop_descriptor();
 
-/// Whether SIGINT or SIGTERM has come since. For loops that may never wait.
+/// Whether such a signal has come since. For loops that may never wait.
 bool stop_requested();
 
 /// Writes all of a text, waiting where the descriptor would block.

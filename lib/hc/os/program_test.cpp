@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -22,6 +23,27 @@ TEST(Program, ASignalIsNoticedByThoseWhoWaitAndThoseWhoAsk) {
   std::raise(SIGTERM);
   EXPECT_TRUE(stop_requested());
   EXPECT_EQ(::poll(&waiting, 1, 0), 1);
+}
+
+/// In a process of its own, since what is caught stays so.
+bool is_stopped_by(int signal, bool is_ignored) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(signal, is_ignored ? SIG_IGN : SIG_DFL);
+    static_cast<void>(stop_descriptor());
+    std::raise(signal);
+    ::_exit(stop_requested() ? 1 : 0);
+  }
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  return WEXITSTATUS(status) == 1;
+}
+
+TEST(Program, AClosedTerminalStopsItUnlessThatIsIgnored) {
+  EXPECT_TRUE(is_stopped_by(SIGINT, false));
+  EXPECT_TRUE(is_stopped_by(SIGHUP, false));
+  EXPECT_FALSE(is_stopped_by(SIGHUP, true));
 }
 
 TEST(WriteAll, WaitsForASlowReader) {
