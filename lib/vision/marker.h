@@ -11,6 +11,9 @@
 
 namespace hc::vision {
 
+/// Of a table of markers as a message, which `marker` describes.
+inline constexpr int kMarkerColumns = 12;
+
 enum class MarkerKind { Aruco = 0, AprilTag = 1, Colour = 2 };
 
 /// A marker in an image.

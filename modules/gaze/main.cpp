@@ -7,6 +7,7 @@
 #include <frames/module_frames.h>
 #include <gaze/stick.h>
 #include <hc/module/module.h>
+#include <vision/marker.h>
 
 #include "controller.h"
 #include "seen.h"
@@ -24,11 +25,12 @@ constexpr std::int64_t kAhead = 200'000'000;
 int main(int argc, char** argv) {
   hc::Module module{"gaze",
                     "Turns the head to a target, and bids for the head while there is one."};
-  auto target = module.input(
-      "target",
-      hc::any_of(hc::position<double>(), hc::transformation<double>(4, 4), hc::table<double>()),
-      "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
-      "pose of marker, or its table");
+  auto target =
+      module.input("target",
+                   hc::any_of(hc::position<double>(), hc::transformation<double>(4, 4),
+                              hc::table<double>().of(hc::vision::kMarkerColumns, 0)),
+                   "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
+                   "pose of marker, or its table");
   auto setpoint =
       module.input("setpoint", hc::rotation<double>(), "setpoint: roll, tilt, pan [rad]");
   auto stick = module.input("stick", hc::table<double>().of(2, 1).finite(),

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
                              "seen by the viewer, origin in its middle [m]; coord = 1000 · eye + "
                              "frame of the marker, 0 where it has none");
   auto markers = module.output(
-      "markers", hc::table<double>(),
+      "markers", hc::table<double>().of(hc::vision::kMarkerColumns, 0),
       "12 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
       "side [m], x y z [m] and qx qy qz qw in the eye, which is coord, reprojection error, mean "
       "side [px]");
@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
       poses.send(hc::transformation(found.T_eye_marker()).in(1000 * eye + found.frame));
   };
   auto send_table = [&](const std::vector<Found>& all, std::int32_t eye) {
-    auto draft = markers.loan(12, static_cast<std::int32_t>(all.size()));
+    auto draft = markers.loan(hc::vision::kMarkerColumns, static_cast<std::int32_t>(all.size()));
     draft.header.coord = eye;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto& [marker, metres, pose, frame] = all[i];
