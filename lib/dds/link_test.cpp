@@ -170,20 +170,19 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
       message.header.src = static_cast<int>(i);
       EXPECT_TRUE(sink->send(message));
     }
-    sink->abandon();
+    if (i > 0) sink->abandon();
     EXPECT_TRUE(sink->close());
     sent.at(i) = sink->traffic();
   }
   EXPECT_TRUE(keeper->close());
   receiver.join();
-  std::uint64_t all = 0, cut = 0;
+  std::uint64_t cut = 0;
   for (std::size_t i = 0; i < kSinks; ++i) {
     EXPECT_LE(received.at(i), sent.at(i).messages - sent.at(i).cut) << i;
-    all += received.at(i);
     cut += sent.at(i).cut;
   }
-  // Some sinks were abandoned while samples were on their way.
-  EXPECT_GT(all, 0U);
+  EXPECT_EQ(received.at(0), 900U);  // it waited for its reader
+  // Some of the others were abandoned while samples were on their way.
   EXPECT_GT(cut, 0U);
 }
 
@@ -457,7 +456,8 @@ TEST(Dds, APlaceIsChecked) {
   EXPECT_EQ(wrong("dds:1a"),
             "Invalid: \"1a\" is no topic of DDS: it takes letters, digits, _ and "
             "/, and begins with no digit");
-  EXPECT_EQ(wrong("dds:a?domain=233"), "Invalid: option domain is a whole number from 0 to 232");
+  EXPECT_EQ(wrong("dds:a?domain=233"),
+            "Invalid: option domain is a whole number from 0 to 232, not \"233\"");
   EXPECT_EQ(wrong("dds:a?interface=robot"),
             "Invalid: option interface is an IPv4 address of this host, or several with commas "
             "between, not \"robot\"");

@@ -160,7 +160,7 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"[modules.source]\nparameters.rate = 10",
        "g.toml:3: module source: parameter rate: \"10\" is not from 0 to 9"},
       {"[modules.source]\n\nparameters.mode = \"slow\"",
-       "g.toml:4: module source: parameter mode: \"slow\" is not one of fast good"},
+       "g.toml:4: module source: parameter mode: \"slow\" is not one of fast, good"},
       {link("sorce.left", "filter.in"), "g.toml:5: no module \"sorce\", did you mean \"source\"?"},
       {link("source.up", "filter.in"), "g.toml:5: module source has no output \"up\""},
       {link("source.left", "filter.into"), "g.toml:5: module filter has no input \"into\""},

@@ -169,6 +169,15 @@ class Tool(Pipes):
         self.assertEqual((got["encoding"], got["scalar"]), ("zstd", "f32"))
         self.assertEqual(got["elements"], [[1, 0], [0, 1]])
 
+    def test_cat_prints_each_row_of_a_text_on_its_own_line(self):
+        self.write("t.mtp", "1 7 0 0 8 0 60100 0 30 5 2\nhelloyou  \n")
+        lines = self.shell("hc cat t.mtp").splitlines()
+        self.assertEqual(lines[1:], ["  hello", "  you"])
+
+    def test_help_names_ranges_and_choices(self):
+        out = self.shell("hc gaze --help")
+        self.assertRegex(out, r"--salience +\S.* \(from 0 to 1; default 0.5\)")
+
     def test_send_takes_images_and_arrays(self):
         self.shell(
             PYTHON

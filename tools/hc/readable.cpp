@@ -8,6 +8,7 @@
 
 #include <hc/base/format.h>
 #include <hc/mtp/coords.h>
+#include <hc/mtp/rows.h>
 
 #include "number.h"
 
@@ -88,8 +89,10 @@ std::string to_readable(const hc::Message& message) {
     return text +
            hc::format("  {} bytes of {}\n", message.elements.size(), name(header.info.encoding));
   if (header.empty()) return text;
-  if (header.info.type == hc::MatrixType::String)
-    return text + "  " + harmless(message.characters()) + "\n";
+  if (header.info.type == hc::MatrixType::String) {
+    for (const auto& row : hc::rows_of(message)) text += "  " + harmless(row) + "\n";
+    return text;
+  }
   hc::visit_scalar(header.info.scalar,
                    [&](auto zero) { text += rows_of(*message.view<decltype(zero)>()); });
   return text;

@@ -16,10 +16,15 @@ bool read_all(std::string_view text, T& value) {
 }
 
 std::string number_text(double value) {
+  constexpr double kExact = 1e15;
+  if (std::abs(value) < kExact && std::trunc(value) == value)
+    return std::to_string(static_cast<std::int64_t>(value));
   std::array<char, 32> written;
   return {written.data(),
           std::to_chars(written.data(), written.data() + written.size(), value).ptr};
 }
+
+}  // namespace
 
 std::string range_in_words(const ParameterOptions& options) {
   const bool has_least = std::isfinite(options.min), has_most = std::isfinite(options.max);
@@ -30,10 +35,8 @@ std::string range_in_words(const ParameterOptions& options) {
   if (has_least && has_most)
     return "from " + number_text(options.min) + " to " + number_text(options.max);
   if (has_least) return "at least " + number_text(options.min);
-  return has_most ? "at most " + number_text(options.max) : "a number";
+  return has_most ? "at most " + number_text(options.max) : "";
 }
-
-}  // namespace
 
 std::string_view type_name(const ParameterValue& value) {
   constexpr std::array<std::string_view, 4> kNames = {"bool", "integer", "number", "string"};
@@ -61,8 +64,9 @@ Status ParameterState::set(std::string_view given) {
   if (auto* string = std::get_if<std::string>(&value)) {
     const auto& choices = options.choices;
     if (!choices.empty() && std::find(choices.begin(), choices.end(), given) == choices.end()) {
-      std::string wanted = "one of";
-      for (const auto& choice : choices) wanted.append(" ").append(choice);
+      std::string wanted;
+      for (const auto& choice : choices)
+        wanted.append(wanted.empty() ? "one of " : ", ").append(choice);
       return refuse(wanted);
     }
     *string = given;
@@ -76,7 +80,10 @@ Status ParameterState::set(std::string_view given) {
   const bool is_within = number >= options.min && number <= options.max;
   const bool is_step = !whole || options.step == 1 || !std::isfinite(options.min) ||
                        (integer - static_cast<std::int64_t>(options.min)) % options.step == 0;
-  if (!is_within || !is_step || std::isnan(number)) return refuse(range_in_words(options));
+  if (!is_within || !is_step || std::isnan(number)) {
+    const std::string range = range_in_words(options);
+    return refuse(range.empty() ? "a number" : range);
+  }
   if (whole)
     value = integer;
   else

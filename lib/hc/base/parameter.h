@@ -43,6 +43,9 @@ struct ParameterState {
   Status set(std::string_view text);
 };
 
+/// "from 0 to 1", "at least 0"; empty: any number.
+std::string range_in_words(const ParameterOptions& options);
+
 /// "bool", "integer", "number", "string"
 std::string_view type_name(const ParameterValue& value);
 

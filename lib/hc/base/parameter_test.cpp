@@ -47,7 +47,7 @@ TEST(Parameter, KeepsItsRange) {
   EXPECT_EQ(side.set("23").error().detail, "parameter p: \"23\" is not 1, 3, …, 21");
   auto choice = state(std::string("auto"), {.choices = {"auto", "yes"}});
   EXPECT_TRUE(choice.set("yes"));
-  EXPECT_EQ(choice.set("no").error().detail, "parameter p: \"no\" is not one of auto yes");
+  EXPECT_EQ(choice.set("no").error().detail, "parameter p: \"no\" is not one of auto, yes");
 }
 
 }  // namespace

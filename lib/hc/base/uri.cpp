@@ -102,7 +102,8 @@ Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::in
     return Error{Code::Invalid, "option " + std::string(key) + " is a whole number from " +
                                     std::to_string(range.least) + " to " +
                                     std::to_string(range.most) +
-                                    (range.has_units ? ", also as K, M or G" : "")};
+                                    (range.has_units ? ", also as K, M or G" : "") + ", not \"" +
+                                    std::string(uri.option(key, "")) + '"'};
   return value << shift;
 }
 

@@ -64,13 +64,13 @@ TEST(Open, NumbersHaveARange) {
   for (const char* end : {"tcp:localhost:1", "unix:@nobody", "shm:nobody"})
     for (std::string option : {"wait", "reconnect"})
       EXPECT_EQ(source_error(end + ("?" + option) + "=86401"),
-                "Invalid: option " + option + " is a whole number from 0 to 86400");
+                "Invalid: option " + option + " is a whole number from 0 to 86400, not \"86401\"");
   EXPECT_EQ(sink_error("tcp-listen:0?readers=257"),
-            "Invalid: option readers is a whole number from 0 to 256");
+            "Invalid: option readers is a whole number from 0 to 256, not \"257\"");
   EXPECT_EQ(sink_error("unix-listen:@x?readers=257"),
-            "Invalid: option readers is a whole number from 0 to 256");
+            "Invalid: option readers is a whole number from 0 to 256, not \"257\"");
   EXPECT_EQ(sink_error("shm:x?readers=65"),
-            "Invalid: option readers is a whole number from 0 to 64");
+            "Invalid: option readers is a whole number from 0 to 64, not \"65\"");
   EXPECT_EQ(sink_error("-?burst=2"), "Invalid: option burst wants rate beside it");
 }
 

@@ -31,8 +31,10 @@ std::string parameter_line(const ParameterState& parameter) {
   if (!parameter.unit.empty()) right += " [" + parameter.unit + "]";
   for (const auto& choice : parameter.options.choices)
     right += (&choice == &parameter.options.choices.front() ? ": " : ", ") + choice;
+  const std::string range = range_in_words(parameter.options);
   std::string default_value = text(parameter.default_value);
-  return line(left, right + " (default " + (default_value.empty() ? "none" : default_value) + ")");
+  return line(left, right + " (" + range + (range.empty() ? "" : "; ") + "default " +
+                        (default_value.empty() ? "none" : default_value) + ")");
 }
 
 }  // namespace

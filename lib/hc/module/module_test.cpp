@@ -469,8 +469,9 @@ TEST(Module, DescribesItself) {
   std::string help = internal::help(module);
   for (const char* part :
        {"Usage: hc blob", "image (rgb_image of 3 x u8 in coordinate system left_image (7))",
-        "Taken together, by their times: image, depth\n", "colour [turn] (default 0.5)",
-        "way: fast, good (default fast)", "--exclusive PORT", "--route 'PORT=URI WORDS'"})
+        "Taken together, by their times: image, depth\n",
+        "colour [turn] (from 0 to 1; default 0.5)", "way: fast, good (default fast)",
+        "--exclusive PORT", "--route 'PORT=URI WORDS'"})
     EXPECT_NE(help.find(part), std::string::npos) << help;
 }
 
