@@ -3,19 +3,25 @@
 """What @NAME@ does, seen from outside. Needs `hc` on the PATH."""
 
 import json
+import os
 import pathlib
 import subprocess
+import sys
 import unittest
 
 PROGRAM = str(pathlib.Path(__file__).resolve().parent / "@NAME@")
 IN = b"1 7 0 0 8 1763683200000000000 120190 0 0 3 1\n1 2.5 -3\n"
+# The program runs by the Python that runs this test.
+PATH = os.path.dirname(sys.executable) + ":" + os.environ["PATH"]
 OUT = b"1 1 0 0 8 1763683200000000000 120190 0 0 3 1\n2 5 -6\n"
 
 
 class Module(unittest.TestCase):
     def run_module(self, data, *arguments):
         command = ["hc", PROGRAM, *arguments]
-        done = subprocess.run(command, input=data, capture_output=True, timeout=60)
+        done = subprocess.run(
+            command, input=data, capture_output=True, timeout=60, env={**os.environ, "PATH": PATH}
+        )
         return done.returncode, done.stdout, done.stderr.decode()
 
     def test_it_doubles(self):

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <hc/base/format.h>
 
@@ -53,13 +54,19 @@ void write_file(const fs::path& path, const std::string& text) {
                     fs::perm_options::add);
 }
 
-/// How CMake finds the library that came with this command, where it does not look by default.
-std::string prefix_option() {
-  const fs::path prefix = module_folder().parent_path().parent_path();
-  if (prefix == "/usr" || prefix == "/usr/local") return "";
-  const bool is_installed = fs::exists(prefix / "include" / "hc");
-  return " -DCMAKE_PREFIX_PATH=" +
-         (is_installed ? prefix.string() : "WHERE_HYPERCOLUMN_IS_INSTALLED");
+/// What builds and tests a module in C++ with the library that came with this command, which CMake
+/// finds by default in /usr alone; in a folder where it was built it is installed first.
+std::string build_commands() {
+  fs::path prefix = module_folder().parent_path().parent_path();
+  std::string install, option;
+  if (fs::exists(prefix / "CMakeCache.txt")) {
+    const auto build = std::exchange(prefix, prefix / "installed");
+    install = "cmake --install " + build.string() + " --prefix " + prefix.string() + " && ";
+  }
+  if (prefix != "/usr" && prefix != "/usr/local")
+    option = " -DCMAKE_PREFIX_PATH=" + prefix.string();
+  return install + "cmake -S . -B build" + option +
+         " && cmake --build build && ctest --test-dir build";
 }
 
 void begin(const NewOptions& options) {
@@ -81,10 +88,8 @@ void begin(const NewOptions& options) {
     remove_licence(text);
     write_file(folder / path, text);
   }
-  std::string test = hc::format("python3 {}_test.py", options.name);
-  if (!options.is_python)
-    test = "cmake -S . -B build" + prefix_option() +
-           " && cmake --build build && ctest --test-dir build";
+  const std::string test =
+      options.is_python ? hc::format("python3 {}_test.py", options.name) : build_commands();
   print(hc::format("created {}/; next: cd {} && {}\n", folder.string(), folder.string(), test));
 }
 
