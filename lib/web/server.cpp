@@ -366,8 +366,10 @@ class BeastServer final : public Server {
       if (!error || error != asio::error::address_in_use) break;
     }
     if (error)
-      return Error{Code::System, "listen on " + address + ", port " + std::to_string(first) + ": " +
-                                     error.message()};
+      return Error{Code::System,
+                   "listen on " + address + ", port " + std::to_string(first) +
+                       (ports > 1 ? " to " + std::to_string(first + ports - 1) : std::string()) +
+                       ": " + error.message()};
     return {};
   }
 

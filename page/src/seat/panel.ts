@@ -100,7 +100,9 @@ class SeatPanel {
           event.preventDefault();
           const text = this.text.value.trim();
           const mode = modesInFocus(server.state)[0]?.number ?? 0;
-          if (text && this.seat.speak(text, mode)) this.text.value = "";
+          if (!text || !this.seat.speak(text, mode)) return;
+          this.text.value = "";
+          host.say(`Sent to be spoken: ${text}`);
         },
       },
       h("label", { for: "seat-text" }, "Say"),

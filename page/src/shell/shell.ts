@@ -17,6 +17,9 @@ import { themeButton } from "./theme";
 export type DefaultLayout = (state: GraphState, session: Session, width: number) => Layout;
 
 /** The page: header, panels, status line. */
+/** How long a sentence is in the status line [ms]. */
+const sentenceLife = 10_000;
+
 export class Shell {
   readonly element: HTMLElement;
   /** Room in the header for what is always visible: the stop button. */
@@ -35,6 +38,7 @@ export class Shell {
     role: "status",
     "aria-live": "polite",
   });
+  private silence = 0; // the timer that clears it
   private readonly board: Board;
 
   constructor(
@@ -82,9 +86,11 @@ export class Shell {
     else this.say(`There is no panel ${args.kind}.`);
   }
 
-  /** Says a sentence in the status line. */
+  /** Says a sentence in the status line, for as long as it takes to read it. */
   say(sentence: string): void {
     this.status.textContent = sentence;
+    window.clearTimeout(this.silence);
+    this.silence = window.setTimeout(() => (this.status.textContent = ""), sentenceLife);
   }
 
   private store(): void {
