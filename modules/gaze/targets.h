@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include <gaze/binocular.h>
 #include <gaze/follower.h>
@@ -18,8 +19,8 @@ inline constexpr std::int32_t kRobot = 2, kHead = 3, kLeftEye = 4, kRightEye = 5
 class Targets {
  public:
   /// @param distance  of a target that one eye alone has seen [m].
-  Targets(const hc::gaze::Eyes& eyes, const hc::gaze::FollowerOptions& options, double distance)
-      : eyes_(eyes), distance_(distance), follower_(options) {}
+  Targets(hc::gaze::Eyes eyes, const hc::gaze::FollowerOptions& options, double distance)
+      : eyes_(std::move(eyes)), distance_(distance), follower_(options) {}
 
   /// Takes cameras, and how they sit on the head, as measured.
   /// Errors: Malformed (of `head`, see hc::gaze::HeadCalibration::of).
