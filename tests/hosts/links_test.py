@@ -152,9 +152,9 @@ class Links(HostsTest):
 
         def follows():
             fars.append(self.follow(host, duration))
-            return fars[-1] < near + (2 if FULL else 4)
+            return fars[-1] < near + (2 if FULL else 6)  # some 30° if it did not follow
 
-        self.assertTrue(succeeds_once(follows, 1 if FULL else 3), (near, fars))
+        self.assertTrue(succeeds_once(follows, 1 if FULL else 5), (near, fars))
         report("follows a ball: RMS error %.2f° on one host, %.2f° over the network", near, fars[0])
         self.assert_empty(host)
 
