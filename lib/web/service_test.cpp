@@ -61,9 +61,9 @@ std::string answer(int socket) {
 
 TEST(Service, serves_a_site_and_closes_it_at_the_end) {
   Inbox inbox;
+  std::atomic<int> closed = 0;  // when the service ends, too
   auto service = Service::open({}, inbox, [](std::string_view) {});
   ASSERT_TRUE(service) << service.error().text();
-  std::atomic<int> closed = 0;
   (*service)->serve(std::make_unique<Hello>(closed));
   const auto port = (*service)->server().port();
   EXPECT_EQ((*service)->access().place().port, port);
@@ -77,9 +77,9 @@ TEST(Service, serves_a_site_and_closes_it_at_the_end) {
 TEST(Service, logs_by_the_inbox_alone) {
   Inbox inbox;
   std::string logged;
+  std::atomic<int> closed = 0;  // when the service ends, too
   auto service = Service::open({}, inbox, [&](std::string_view line) { logged = line; });
   ASSERT_TRUE(service) << service.error().text();
-  std::atomic<int> closed = 0;
   (*service)->serve(std::make_unique<Hello>(closed));
   const auto failed = ask((*service)->server().port(), "/fail");
   ASSERT_TRUE(is_readable(inbox.descriptor()));

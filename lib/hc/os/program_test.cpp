@@ -14,18 +14,7 @@
 namespace hc {
 namespace {
 
-TEST(Program, ASignalIsNoticedByThoseWhoWaitAndThoseWhoAsk) {
-  EXPECT_FALSE(stop_requested());
-  int stop = stop_descriptor();
-  EXPECT_EQ(stop_descriptor(), stop);
-  pollfd waiting{stop, POLLIN, 0};
-  EXPECT_EQ(::poll(&waiting, 1, 0), 0);
-  std::raise(SIGTERM);
-  EXPECT_TRUE(stop_requested());
-  EXPECT_EQ(::poll(&waiting, 1, 0), 1);
-}
-
-/// In a process of its own, since what is caught stays so.
+/// In a process of its own, since what is caught stays so; before this one catches anything.
 bool is_stopped_by(int signal, bool is_ignored) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -44,6 +33,17 @@ TEST(Program, AClosedTerminalStopsItUnlessThatIsIgnored) {
   EXPECT_TRUE(is_stopped_by(SIGINT, false));
   EXPECT_TRUE(is_stopped_by(SIGHUP, false));
   EXPECT_FALSE(is_stopped_by(SIGHUP, true));
+}
+
+TEST(Program, ASignalIsNoticedByThoseWhoWaitAndThoseWhoAsk) {
+  EXPECT_FALSE(stop_requested());
+  int stop = stop_descriptor();
+  EXPECT_EQ(stop_descriptor(), stop);
+  pollfd waiting{stop, POLLIN, 0};
+  EXPECT_EQ(::poll(&waiting, 1, 0), 0);
+  std::raise(SIGTERM);
+  EXPECT_TRUE(stop_requested());
+  EXPECT_EQ(::poll(&waiting, 1, 0), 1);
 }
 
 TEST(WriteAll, WaitsForASlowReader) {
