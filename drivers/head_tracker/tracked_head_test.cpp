@@ -20,7 +20,7 @@ class TrackedHeadTest : public ::testing::Test {
               problems.push_back(kind + ": " + std::string(line) + ": " + std::to_string(count));
             }};
   }
-  /// One that listens, and who sends to it.
+  /// A tracker that listens, and a sender of packets to it.
   hc::TrackedHead connected(bool centre_first = true) {
     auto made = head(0, centre_first);
     EXPECT_TRUE(made.pass(now, kSilence));

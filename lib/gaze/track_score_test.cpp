@@ -51,7 +51,7 @@ TEST(TrackScore, one_that_comes_back_when_no_time_is_left_is_no_failure) {
   EXPECT_TRUE(score_track(samples, 0.05).again.empty());
 }
 
-TEST(Track, begins_anew_once_and_lasts_from_its_first_look_to_its_last) {
+TEST(Track, restarts_once_and_lasts_from_its_first_sample_to_its_last) {
   Track track;
   EXPECT_EQ(track.duration(), 0);
   track.add({1, 0.4, 1});
