@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 #include <random>
+#include <vector>
 
 #include <hc/compress/compress.h>
 #include <hc/mtp/codec.h>

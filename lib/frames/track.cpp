@@ -2,6 +2,7 @@
 #include <frames/track.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace hc::frames {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <room/markers.h>
 
+#include <cmath>
 #include <string_view>
 
 #include <room/paint.h>

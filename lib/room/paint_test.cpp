@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <room/paint.h>
 
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include <opencv2/aruco.hpp>

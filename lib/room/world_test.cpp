@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <room/world.h>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include <room/ball.h>

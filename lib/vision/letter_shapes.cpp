@@ -2,6 +2,8 @@
 #include <vision/letter_shapes.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vision/letters.h>
 
+#include <cstdint>
+#include <string>
+
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 

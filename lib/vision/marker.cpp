@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>

@@ -2,6 +2,7 @@
 #include <vision/letters.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 
 #include <opencv2/imgproc.hpp>

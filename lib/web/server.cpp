@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/server.h>
 
+#include <algorithm>
 #include <array>
 #include <deque>
+#include <exception>
 #include <optional>
 #include <set>
 #include <type_traits>

@@ -5,6 +5,7 @@
 #include <array>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 

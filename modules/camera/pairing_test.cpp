@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pairing.h"
 
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace {

@@ -2,6 +2,7 @@
 #include "announcer.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <hc/base/clock.h>
 

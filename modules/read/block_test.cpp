@@ -3,6 +3,7 @@
 // from the side, in several lines.
 #include "block.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Capital letters and digits, 5 to 16 of them with the space: a word of 5 to 8, or two of 3 to 8.

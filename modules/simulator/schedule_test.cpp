@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "schedule.h"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 namespace {

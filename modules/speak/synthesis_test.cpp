@@ -2,6 +2,7 @@
 #include "synthesis.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <random>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The extension _hypercolumn, of which the package's Python files make what people use.
+#include <exception>
 #include <utility>
 
 #include <hc/module/module.h>

@@ -3,6 +3,7 @@
 // one at the end. dds_peer read TOPIC: prints the octets of samples until an empty one. By Cyclone
 // DDS alone.
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>

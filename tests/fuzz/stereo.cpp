@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any two images, of any sizes and types: a result of the left one's size whose disparities are
 // within the search, or one clear error.
+
+#include <cstdint>
+
 #include <hc/base/check.h>
 #include <vision/stereo/matcher.h>
 

@@ -2,6 +2,7 @@
 // What graphs/depth.toml computes, in one process and with OpenCV alone, but for the cutting of the
 // images. Prints the sentence that depth_score says.
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 

@@ -3,6 +3,7 @@
 // Messages that tell whether they are whole: the header's `time` is a checksum over its src and seq
 // and over the elements. Pure.
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <span>

@@ -2,6 +2,7 @@
 #include "trace_paths.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/run/restarts.h>
 
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 namespace hc::internal {

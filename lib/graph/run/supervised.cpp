@@ -3,6 +3,7 @@
 #include <graph/run/supervised.h>
 
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/paced_source.h>
 
+#include <tuple>
+
 #include <hc/os/loop.h>
 
 namespace hc::internal {

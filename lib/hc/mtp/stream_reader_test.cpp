@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <vector>
 
 #include <hc/mtp/codec.h>
 #include <hc/testing/decode.h>

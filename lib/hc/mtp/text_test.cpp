@@ -10,6 +10,7 @@
 #include <cstring>
 #include <random>
 #include <span>
+#include <vector>
 
 namespace hc {
 namespace {

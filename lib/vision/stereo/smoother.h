@@ -4,6 +4,9 @@
 //
 // Source: Lee, Digital Image Smoothing and the Sigma Filter, 1983.
 
+#include <cstddef>
+#include <cstdint>
+
 #include <opencv2/core.hpp>
 
 namespace hc::vision {

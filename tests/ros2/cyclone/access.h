@@ -2,9 +2,11 @@
 #pragma once
 // How what idlc made is named and changed (../samples.h).
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <type_traits>
 
 #include "ros.h"
 

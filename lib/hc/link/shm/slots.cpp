@@ -2,6 +2,7 @@
 #include <hc/link/shm/slots.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include <hc/link/shm/layout.h>
 

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <tuple>
 
 #include <hc/mtp/codec.h>
 #include <hc/testing/link_conformance.h>

@@ -11,6 +11,7 @@
 #include <array>
 #include <csignal>
 #include <ctime>
+#include <tuple>
 
 #include <hc/os/socket.h>
 
