@@ -86,6 +86,19 @@ program = "seer"
             (std::map<std::string, std::string>{{"memory", "8M"}, {"rate", "10"}}));
 }
 
+TEST(Plan, AnInputSaysHowManyMessagesItsLinksKeep) {
+  auto planned =
+      plan("[modules.source]\n[modules.keeper]\n" + link_text("source.left", "keeper.in") +
+           link_text("source.left", "keeper.some") +
+           link_text("source.right", "keeper.in", "keep = \"all\"\n") +
+           link_text("source.right", "keeper.some", "keep = 3\n"));
+  ASSERT_TRUE(planned) << planned.error().detail;
+  std::vector<std::string> keeps;
+  for (const auto& link : planned->links) keeps.push_back(link.keep);
+  EXPECT_EQ(keeps, (std::vector<std::string>{"latest", "all", "16", "3"}));
+  EXPECT_TRUE(planned->links[2].sender_uri.ends_with("&keep=16")) << planned->links[2].sender_uri;
+}
+
 TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
   const std::string text = "[modules.source]\n[modules.java]\ninputs.in = \"source.left\"\n" +
                            link_text("java.out", "filter.in") + "[modules.filter]\n";

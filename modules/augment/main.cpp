@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
                              "or right (8) image [px], or a place in any frame [m]");
   auto confidence = module.input("confidence", hc::intensity_image<std::uint8_t>(),
                                  "of the depth, for the instrument confidence");
+  module.keep(target);
   auto left_out = module.output("left", hc::rgb_image<std::uint8_t>(), "the left image, augmented");
   auto right_out =
       module.output("right", hc::rgb_image<std::uint8_t>(), "the right image, augmented");
@@ -121,7 +122,7 @@ int main(int argc, char** argv) {
     auto draft = like(image, output);
     std::ranges::copy(image.elements, draft.elements().begin());
     cv::Mat pixels = hc::as_mat(draft), seen;
-    const cv::Mat scene_depth = hc::value_or_end(hc::as_mat(metres));
+    const cv::Mat scene_depth = hc::value_or_drop(hc::as_mat(metres));
     if (masks) seen = cv::Mat::zeros(pixels.size(), CV_8U);
     hc::succeed_or_end(scene->draw(sight, eye, scene_depth, pixels, masks ? &seen : nullptr));
     if (panel.shown.any()) panel.draw(sight, eye, *scene, frames, scene_depth, pixels);
@@ -163,7 +164,7 @@ int main(int argc, char** argv) {
                                                   const hc::Message& metres) {
     const auto &l = left_image.header, &r = right_image.header, &d = metres.header;
     if (l.width != r.width || l.height != r.height || l.width != d.width || l.height != d.height)
-      throw hc::ModuleError("the images and the depth have different sizes");
+      throw hc::BadMessage("the images and the depth have different sizes");
     if (l.empty()) return;
     frames.when_known("world", "left_eye", l.time,
                       [&, l_image = left_image.keep(), r_image = right_image.keep(),

@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
                              std::span<const double> found) {
     const auto all = cube.corners();
     if (found.size() != 4 * all.size())
-      throw hc::ModuleError("corners: are not those of one object");
+      throw hc::BadMessage("corners: are not those of one object");
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t eye = 0; eye < 2; ++eye) {
         const Eigen::Vector3d p = eyes[eye].inverse() * all[i];
@@ -134,8 +134,8 @@ int main(int argc, char** argv) {
             [&](const auto& left, const auto& right, const auto& scene, const auto& found_corners,
                 const auto& found_mask) {
               waits = 0;
-              const std::array eyes = {hc::value_or_end(hc::pose_of(left)).T_to_from,
-                                       hc::value_or_end(hc::pose_of(right)).T_to_from};
+              const std::array eyes = {hc::value_or_drop(hc::pose_of(left)).T_to_from,
+                                       hc::value_or_drop(hc::pose_of(right)).T_to_from};
               const double rate = turn(left.header.time, eyes[0]);
               if (rate < *turning) return;
               samples.fastest = std::max(samples.fastest, rate);

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   auto mean = module.output("mean", hc::table<double>(), "mean of all its numbers, 0 … 255");
 
   module.on(image, [&](const hc::Message& message) {
-    auto numbers = hc::value_or_end(message.view<std::uint8_t>()).numbers();
+    auto numbers = hc::value_or_drop(message.view<std::uint8_t>()).numbers();
     auto sum = std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
     mean.send(hc::table({static_cast<double>(sum) / static_cast<double>(numbers.size())}));
   });

@@ -133,11 +133,11 @@ int main(int argc, char** argv) {
     if (!is_there || time < rests_from + kRests) return;
     HeadView view;
     view.unit = measured;
-    cv::cvtColor(hc::value_or_end(hc::as_mat(one)), view.first, cv::COLOR_RGB2GRAY);
-    cv::cvtColor(hc::value_or_end(hc::as_mat(other)), view.second, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(hc::value_or_drop(hc::as_mat(one)), view.first, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(hc::value_or_drop(hc::as_mat(other)), view.second, cv::COLOR_RGB2GRAY);
     if (view.first.size() != view.second.size() ||
         (!views.empty() && view.first.size() != views[0].first.size()))
-      throw hc::ModuleError("the images have different sizes");
+      throw hc::BadMessage("the images have different sizes");
     if (cameras.M1(0, 0) == 0)
       cameras = hc::vision::ideal_pair(view.first.size(), *focal, mounted->baseline());
     if (cameras.size.area() == 0) cameras.size = view.first.size();

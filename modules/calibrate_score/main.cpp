@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   bool is_done = false;
   module.on(result, [&](const auto& message) {
     const auto found = message.matrix().numbers();
-    if (found.size() < 6) throw hc::ModuleError("the result is not one of calibrate");
+    if (found.size() < 6) throw hc::BadMessage("the result is not one of calibrate");
     const bool is_right = (found[0] != 0) == *swapped;
     const double zero = std::hypot(found[1] - *zero_pan, found[2] - *zero_tilt);
     const double offset =

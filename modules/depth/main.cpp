@@ -82,14 +82,14 @@ int main(int argc, char** argv) {
   module.on(hc::together(left, right), [&](const hc::Message& left_image,
                                            const hc::Message& right_image) {
     const auto width = left_image.header.width, height = left_image.header.height;
-    const cv::Mat left_mat = hc::value_or_end(hc::as_mat(left_image));
+    const cv::Mat left_mat = hc::value_or_drop(hc::as_mat(left_image));
     auto disparity_draft = disparity.loan(width, height);
     auto confidence_draft = confidence.loan(width, height);
     auto depth_draft = depth.loan(width, height);
     hc::vision::Disparities found{hc::as_mat(disparity_draft), hc::as_mat(confidence_draft)};
-    const cv::Mat right_mat = hc::value_or_end(hc::as_mat(right_image));
+    const cv::Mat right_mat = hc::value_or_drop(hc::as_mat(right_image));
     if (auto matched = matcher->match(left_mat, right_mat, found); !matched)
-      throw hc::ModuleError(matched.error().detail);
+      throw hc::BadMessage(matched.error().detail);
     cv::Mat metres = hc::as_mat(depth_draft);
     if (depth.linked() || points.linked())
       hc::vision::depth_of(found.disparity, geometry(left_image.header), metres);

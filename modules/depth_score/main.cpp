@@ -23,11 +23,11 @@ int main(int argc, char** argv) {
 
   module.on(hc::together(disparity, truth),
             [&](const hc::Message& found, const hc::Message& known) {
-              cv::Mat levels = hc::value_or_end(hc::as_mat(known));
+              cv::Mat levels = hc::value_or_drop(hc::as_mat(known));
               if (levels.channels() > 1) cv::extractChannel(levels.clone(), levels, 0);
-              const cv::Mat found_mat = hc::value_or_end(hc::as_mat(found));
+              const cv::Mat found_mat = hc::value_or_drop(hc::as_mat(found));
               if (found_mat.size() != levels.size())
-                throw hc::ModuleError("the disparities and the truth have different sizes");
+                throw hc::BadMessage("the disparities and the truth have different sizes");
               cv::Mat true_mat;
               levels.convertTo(true_mat, CV_32F, *truth_scale);
               auto score = hc::vision::score(found_mat, true_mat, *threshold);

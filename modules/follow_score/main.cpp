@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   auto take = [](auto& samples, auto& wait, const auto& message) {
     wait = 0;
     const double time = hc::seconds(message.header.time);
-    const auto q = hc::value_or_end(hc::rotation_of(message));
+    const auto q = hc::value_or_drop(hc::rotation_of(message));
     if (samples.empty() || time > samples.back().time)
       samples.push_back({time, hc::gaze::angles_of(q)});
   };

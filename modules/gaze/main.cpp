@@ -36,6 +36,10 @@ int main(int argc, char** argv) {
   auto stick = module.input("stick", hc::table<double>().of(2, 1).finite(),
                             "turn to the left, turn down, -1 … 1 of stick_rate");
   auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
+  module.keep(target);
+  module.keep(setpoint);
+  module.keep(stick);
+  module.keep(calibration);
   auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
   auto bid = module.output("bid", hc::table<double>(),
@@ -96,8 +100,8 @@ int main(int argc, char** argv) {
     if (!time) return;
     const std::int32_t frame = Targets::frame_of(seen->coord);
     if (auto chain = frames.tree().chain(kRobot, frame); !chain)
-      throw hc::ModuleError("target: coordinate system " + std::to_string(seen->coord) +
-                            " is no image of an eye (7, 8), and " + chain.error().detail);
+      throw hc::BadMessage("coordinate system " + std::to_string(seen->coord) +
+                           " is no image of an eye (7, 8), and " + chain.error().detail);
     frames.when_known(kRobot, frame, *time, [&, time, frame, seen](const auto& T_robot_frame) {
       controller->targets.see(
           *time, seen->coord, seen->p,

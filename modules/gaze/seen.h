@@ -18,10 +18,10 @@ inline std::optional<Seen> seen_of(const hc::Message& message) {
   Seen seen{header.coord, {}};
   if (header.empty()) return std::nullopt;
   if (header.info.type == hc::MatrixType::Transformation) {
-    const auto T = hc::value_or_end(hc::as_eigen<double>(message));
+    const auto T = hc::value_or_drop(hc::as_eigen<double>(message));
     seen = {header.coord / 1000, T.topRightCorner<3, 1>()};
   } else {
-    const auto numbers = hc::value_or_end(hc::as_eigen<double>(message));
+    const auto numbers = hc::value_or_drop(hc::as_eigen<double>(message));
     const int from = header.info.type == hc::MatrixType::Table ? kPlace : 0;
     if (numbers.cols() < from + 3) return std::nullopt;
     seen.p = numbers.block<1, 3>(0, from).transpose();

@@ -7,6 +7,7 @@
 int main(int argc, char** argv) {
   hc::Module module{"hearing", "Measures the level and the direction of stereo sound."};
   auto sound = module.input("sound", hc::sound<std::int16_t>(2), "left and right ear");
+  module.keep(sound, 64);  // the eyes of a simulation must not wait for the ears
   auto level = module.output("level", hc::table<double>(),
                              "root of the mean square of each message, 1 is full scale");
   auto direction = module.output("direction", hc::rotation<double>().in(hc::Coord::kHead),

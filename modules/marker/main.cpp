@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
 
   module.on(image, [&](const hc::Message& message) {
     read_parameters();
-    const cv::Mat pixels = hc::value_or_end(hc::as_mat(message));
+    const cv::Mat pixels = hc::value_or_drop(hc::as_mat(message));
     if (pixels.empty()) return;
     const auto coord = message.header.coord;
     const bool is_rectified = coord == Coord::kLeftRectified || coord == Coord::kRightRectified;
@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
                                 {}}};
     if (calibration) {
       if (calibration->size.area() > 0 && calibration->size != pixels.size())
-        throw hc::ModuleError("the calibration is for images of another size");
+        throw hc::BadMessage("the calibration is for images of another size");
       view = hc::vision::camera_of(*calibration, eye, is_rectified);
     }
     std::vector<Found> all;

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   auto acceleration = module.parameter("acceleration", 0.0, "rad/s2",
                                        "of each axis, 0: the unit's own", {.min = 0, .max = 1000});
   module.actor(command);
+  module.keep(command);
 
   auto now = [] { return hc::SystemClock().monotonic(); };
   hc::pan_tilt::Neck neck(

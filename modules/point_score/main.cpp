@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
                                    .unit = {*acceleration, *base_speed}});
   });
   module.on(motion, [&](const auto& message) {
-    const auto q = hc::value_or_end(hc::rotation_of(message));
+    const auto q = hc::value_or_drop(hc::rotation_of(message));
     pusher->take(hc::seconds(message.header.time), hc::gaze::angles_of(q));
   });
   module.on(report, [&](const auto&) { is_ready = true; });

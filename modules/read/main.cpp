@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   module.on_start(
       [&] { reader.emplace(hc::value_or_end(BlockReader::make(*language, *upper_case))); });
   module.on(image, [&](const hc::Message& message) {
-    const cv::Mat pixels = hc::value_or_end(hc::as_mat(message));
+    const cv::Mat pixels = hc::value_or_drop(hc::as_mat(message));
     const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(pixels, *score));
     if (block.empty()) return;
     const auto box = hc::vision::box_of(block);

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   auto right = module.input("right", image.in(Coord::kRightImage), "image of the right eye");
   auto head =
       module.input("calibration", hc::table<double>(), "mounting of the eyes: calibrate's result");
+  module.keep(head);
   auto left_rectified =
       module.output("left", image.in(Coord::kLeftRectified), "rectified image of the left eye");
   auto right_rectified =
@@ -79,7 +80,7 @@ int main(int argc, char** argv) {
     if (file->empty()) calibration = hc::vision::ideal_pair(size, *focal, baseline);
     if (calibration->size.area() == 0) calibration->size = size;
     if (has_message) hc::vision::turn(*calibration, mounting.R_left_right());
-    rectifier = hc::value_or_end(Rectifier::make(*calibration, eye, size));
+    rectifier = hc::value_or_drop(Rectifier::make(*calibration, eye, size));
   };
 
   module.on_start([&] {

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   hc::Module module{"speak", "Speaks text aloud, by eSpeak NG."};
   auto text =
       module.input("text", hc::string(), "what to say; UTF-8, at most 2000 characters of it");
+  module.keep(text, 16);  // as many as are said in a minute or two
   auto sound = module.output("sound", hc::sound<std::int16_t>(1).in(hc::Coord::kSound22k),
                              "a message for each text");
   auto words = module.output("words", hc::string().in(hc::Coord::kText),

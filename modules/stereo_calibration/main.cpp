@@ -49,8 +49,8 @@ int main(int argc, char** argv) {
   });
   module.on(hc::together(left, right), [&](const hc::Message& l, const hc::Message& r) {
     if (!views) return;
-    if (!hc::value_or_end(views->take(hc::value_or_end(hc::as_mat(l)),
-                                      hc::value_or_end(hc::as_mat(r)), *min_difference)))
+    if (!hc::value_or_drop(views->take(hc::value_or_drop(hc::as_mat(l)),
+                                       hc::value_or_drop(hc::as_mat(r)), *min_difference)))
       return;
     time = std::max(l.header.time, r.header.time);
     found.send(hc::table({static_cast<double>(views->size()), static_cast<double>(*wanted)}));

@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
   module.on(begin, [&](const auto&) { track.begin(); });
   module.on(
       hc::together(eye, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {
-        const auto T_world_left_eye = hc::value_or_end(hc::pose_of(pose)).T_to_from;
+        const auto T_world_left_eye = hc::value_or_drop(hc::pose_of(pose)).T_to_from;
         const auto p = place.numbers();
         const Eigen::Vector3d to = T_world_left_eye.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
                                    frames.fixed("left_eye", "right_eye").translation() / 2;

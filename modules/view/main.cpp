@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
   module.on(image, [&](const hc::Message& message) {
     const hc::Header& header = message.header;
     if (header.empty() || (*count > 0 && seen == *count)) return;
-    const cv::Mat bgr = visible(header, hc::value_or_end(hc::as_mat(message)));
+    const cv::Mat bgr = visible(header, hc::value_or_drop(hc::as_mat(message)));
     if (*stereo == "none") return show(header, bgr);
     if (header.time != eyes.header.time) eyes = {header, {}, {}};
     (is_right(header) ? eyes.right : eyes.left) = bgr.clone();

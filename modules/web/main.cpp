@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat."};
   auto stopped = module.input("stopped", hc::table<std::uint8_t>().of(1, 1),
                               "from workspace: 1 while the robot is stopped");
+  module.keep(stopped);
   auto stick = module.output("stick", hc::table<double>().of(2, 1),
                              "left > 0, down > 0, each -1 to 1, from who drives");
   auto rotation = module.output("rotation", hc::rotation<double>().in(hc::Coord::kSupervisor),

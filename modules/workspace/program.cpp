@@ -36,6 +36,10 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
                              "the same from a person, above all others while it is valid");
   auto stop = module.input("stop", hc::table<std::uint8_t>().of(1, 1),
                            "1: no mode has the focus until a 0 comes");
+  // More than one, since bids for several modes, and stops of several sources, may share a link.
+  module.keep(bids, 16);
+  module.keep(person, 16);
+  module.keep(stop, 16);
   auto focus = module.output("focus", hc::table<std::int32_t>().of(1, 1),
                              "number of the mode in focus, 0 none; each period");
   auto standings = module.output(
@@ -73,7 +77,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   module.on_start([&] { names = hc::value_or_end(hc::parse_mode_names(*modes)); });
   auto take = [&](const hc::Message& message, auto bid) {
     auto now = module.monotonic();
-    auto numbers = hc::value_or_end(message.view<double>()).numbers();
+    auto numbers = hc::value_or_drop(message.view<double>()).numbers();
     // Without its one number a bid has a salience that is refused as any other.
     double salience = numbers.size() == 1 ? numbers[0] : -1;
     auto taken = (workspace.*bid)(message.header.mode, salience, now);

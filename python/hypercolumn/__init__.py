@@ -18,7 +18,7 @@ doc/python.md is a tour of ten minutes.
 
 import importlib.util
 
-from hypercolumn.errors import Error, Stopped, no_numpy, other_python
+from hypercolumn.errors import BadMessage, Error, Stopped, no_numpy, other_python
 
 if importlib.util.find_spec("numpy") is None:
     raise ImportError(no_numpy())
@@ -63,6 +63,7 @@ from hypercolumn.streams import open, read
 setattr(Message, "_repr_png_", png)  # how notebooks show an image
 
 __all__ = [
+    "BadMessage",
     "Error",
     "Frames",
     "Graph",

@@ -20,6 +20,13 @@ class Error(RuntimeError):
         self.code = code
 
 
+class BadMessage(Exception):
+    """Raised by a handler since the message that it got says what it cannot use.
+
+    That message is dropped, counted and logged, once for each input, and the module goes on.
+    """
+
+
 class Stopped(BaseException):
     """Ends the module cleanly: nobody reads its outputs any more, or it was asked to stop.
 

@@ -46,11 +46,20 @@ class Module(_hypercolumn.Module):
         super().__init__(name, summary)
         self._handled: List[str] = []
 
-    def input(self, name: str, kind: Kind, doc: str, *, actor: bool = False) -> Input:
-        """Declares an input. An `actor` moves something: several writers need an arbiter then."""
+    def input(
+        self, name: str, kind: Kind, doc: str, *, actor: bool = False, keep: int = 0
+    ) -> Input:
+        """Declares an input.
+
+        An `actor` moves something: several writers need an arbiter then. With `keep`, only so many
+        of the newest messages count while the module is busy, so that no link to it in a graph
+        makes its writer wait, unless the link says otherwise.
+        """
         port = self._input(name, kind, doc)
         if actor:
             self._actor(port)
+        if keep:
+            self._keep(port, keep)
         return port
 
     def output(self, name: str, kind: Kind, doc: str) -> Output:

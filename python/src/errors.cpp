@@ -22,6 +22,11 @@ PyObject* error_type() {
   return type;
 }
 
+PyObject* bad_message_type() {
+  static PyObject* type = import_error("BadMessage");
+  return type;
+}
+
 PyObject* stopped_type() {
   static PyObject* type = import_error("Stopped");
   return type;

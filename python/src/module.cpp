@@ -265,6 +265,8 @@ void add_modules(py::module_& extension) {
       .def("_output", add_output)
       .def("_parameter", add_parameter, py::keep_alive<0, 1>())
       .def("_actor", [](Self& self, const PyInput& input) { self.module().actor(input.input); })
+      .def("_keep", [](Self& self, const PyInput& input,
+                       std::uint32_t count) { self.module().keep(input.input, count); })
       .def("_on", on)
       .def("_on_together", on_together<>)
       .def("_every", every)

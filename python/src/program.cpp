@@ -59,6 +59,7 @@ void Program::end_by_error() {
   failure_ = nullptr;
   py::error_already_set raised;
   const auto text = py::str(raised.value()).cast<std::string>();
+  if (raised.matches(bad_message_type())) throw hc::BadMessage(text);
   if (raised.matches(error_type())) {
     const py::object code = py::getattr(raised.value(), "code", py::str(""));
     throw module_error(text, py::str(code).cast<std::string>());

@@ -59,8 +59,9 @@ struct Guard<kFunction> {
 template <auto kFunction>
 constexpr auto guarded = Guard<kFunction>::call;
 
-/// hypercolumn.Error and hypercolumn.Stopped, from hypercolumn/errors.py.
+/// hypercolumn.Error, BadMessage and Stopped, from hypercolumn/errors.py.
 PyObject* error_type();
+PyObject* bad_message_type();
 PyObject* stopped_type();
 
 /// A line of Python.

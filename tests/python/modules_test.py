@@ -18,7 +18,7 @@ import hypercolumn as hc
 module = hc.Module("camera_like", "Has a bit of everything.")
 image = module.input("image", hc.image(), "an image")
 pose = module.input("pose", hc.any_of(hc.transformation(), hc.rotation().of(1, 1).in_("gaze")),
-                    "where", actor=True)
+                    "where", actor=True, keep=3)
 any = module.input("any", hc.anything(), "all")
 mean = module.output("mean", hc.table().of(1, 3).in_(7), "numbers")
 sound = module.output("sound", hc.sound(2).in_("sound_16k"), "noise")
@@ -211,6 +211,13 @@ class Ended(Modules):
         self.assertEqual(lines[0], "Traceback (most recent call last):")
         self.assertIn("in echo", self.err)
         self.assertEqual(lines[-1], "echo: ZeroDivisionError: division by zero")
+
+    def test_a_bad_message_is_dropped_and_the_next_handled(self):
+        body = "if message.numbers[0] == 1: raise hc.BadMessage('it is one')\n    out.send(message)"
+        data = IN + IN.replace(b"1 2.5", b"7 2.5")
+        self.assertIn("\n7 2.5 -3\n", self.echo("table()", body, "", data, status=1))
+        self.assertIn("echo: numbers: dropped: it is one", self.err)
+        self.assertIn("echo: total: 1 bad at numbers", self.err)
 
     def test_an_error_ends_it_with_a_line(self):
         self.echo("table()", "raise hc.Error('no face in sight')", status=1)

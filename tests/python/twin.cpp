@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
                                       hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze)),
                            "where");
   module.actor(pose);
+  module.keep(pose, 3);
   module.input("any", hc::anything(), "all");
   auto mean = module.output("mean", hc::table<double>().of(3, 1).in(7), "numbers");
   module.output("sound", hc::sound<std::int16_t>(2).in(hc::Coord::kSound16k), "noise");

@@ -28,9 +28,11 @@ std::string digest(std::string_view text) {
 }
 
 /// Keys of a policy that need a sending end of the link's own, over sockets or shared memory and
-/// over DDS; and those that a reader of shared memory, and of a topic, keeps.
+/// over DDS; one that links with an end in common have in common; and those that a reader of shared
+/// memory, and of a topic, keeps.
 constexpr std::array<std::string_view, 4> kOfSender = {"memory", "as", "quality", "scale"};
 constexpr auto kConversion = std::span(kOfSender).subspan<1>();
+constexpr std::array<std::string_view, 1> kTimeout = {"timeout"};
 constexpr std::array<std::string_view, 3> kOfTopicReader = {"rate", "burst", "memory"};
 constexpr auto kPace = std::span(kOfTopicReader).first<2>();
 
@@ -148,9 +150,13 @@ class LinkPlanner {
   std::string name_of(std::size_t number) const {
     const GraphPort& from = graph_.links[number].from;
     const GraphPort& to = graph_.links[number].to;
-    const std::string name = is_common(number)
-                                 ? link_name({from.module, from.port})
-                                 : link_name({from.module, from.port, to.module, to.port});
+    std::string name;
+    if (!is_common(number))
+      name = link_name({from.module, from.port, to.module, to.port});
+    else if (const auto& policy = graph_.links[number].policy; policy.contains("timeout"))
+      name = link_name({from.module, from.port, "timeout_" + policy.at("timeout").value});
+    else
+      name = link_name({from.module, from.port});
     return transport_of(planning_, graph_.links[number]) == "dds" ? topic_of(name) : name;
   }
 
@@ -207,12 +213,15 @@ class LinkPlanner {
     return ::inet_pton(AF_INET, address.c_str(), &read) == 1;
   }
 
-  /// Images are as good as they are new, so that the newest alone waits for who is slow; of
-  /// anything else all.
+  /// What the reader says of its input; images are as good as they are new, so that the newest
+  /// alone waits for who is slow; of anything else all.
   std::string keep_of(const GraphLink& link) const {
     if (auto given = link.policy.find("keep"); given != link.policy.end())
       return given->second.value;
     if (!link.from.uri.empty() || link.to.uri.starts_with("file:")) return "all";
+    if (const Description* reader = planning_.description_of(link.to.module); reader != nullptr)
+      if (const auto keep = find_input(*reader, link.to.port)->keep; keep != 0)
+        return keep == 1 ? "latest" : std::to_string(keep);
     const Description& description = *planning_.description_of(link.from.module);
     const auto& types = find_output(description, link.from.port)->types;
     bool is_image = !types.empty() && (types.front().info.type == MatrixType::RgbImage ||
@@ -290,7 +299,8 @@ class LinkPlanner {
     if (sender.uri.empty()) {
       sender.uri = "dds:" + name + "?readers=" + std::to_string(sender.readers) +
                    "&stay=1&interface=" + interfaces_of(name, true, link) +
-                   (all == "all" ? "" : "&keep=" + all) + options_of(link, kConversion);
+                   (all == "all" ? "" : "&keep=" + all) + options_of(link, kConversion) +
+                   options_of(link, kTimeout);
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }
     const std::string reader_uri = "dds:" + name + (lasts(link) ? "?reconnect=86400" : "?wait=60") +
@@ -319,7 +329,7 @@ class LinkPlanner {
       sender.uri = scheme + (by_memory ? ":" : "-listen:") + ends.writer +
                    "?readers=" + std::to_string(sender.readers) + "&stay=1" + ends.writer_trusts +
                    (is_common(number) ? "" : and_keep) + options_of(link, kOfSender) +
-                   (by_memory ? "" : pace);
+                   options_of(link, kTimeout) + (by_memory ? "" : pace);
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }
     const std::string reader_uri = scheme + ":" + ends.reader +

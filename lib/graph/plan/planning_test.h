@@ -32,6 +32,9 @@ inline Result<std::string> describe(const std::string& program, const std::strin
     std::string text = module(port("left", "map", 0) + "," + port("right", "map", 0), "");
     return text.replace(text.size() - 1, 1, R"(,"together":[["left","right"]]})");
   }
+  if (program == "keeper")  // of one input the newest counts, of the other some
+    return module(R"({"name":"in","types":[],"keep":1},{"name":"some","types":[],"keep":16})",
+                  port("out", "map", 0));
   if (program == "any") return module(R"({"name":"in","types":[]})", "");
   const std::string transports = R"(,"transports":["-","unix","unix-listen","shm"]})";
   auto shares = [&](std::string text) { return text.replace(text.size() - 1, 1, transports); };

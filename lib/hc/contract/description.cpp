@@ -38,6 +38,7 @@ Json to_json(const PortDescription& port, bool is_output) {
   Json json = {{"name", port.name}, {"types", Json::array()}};
   for (const auto& type : port.types) json["types"].push_back(to_json(type));
   if (port.actor) json["actor"] = true;
+  if (port.keep != 0) json["keep"] = port.keep;
   if (is_output && !port.types.empty()) json["encoding"] = name(port.types.front().info.encoding);
   json["doc"] = port.doc;
   return json;
@@ -134,6 +135,7 @@ class Reader {
                           .need("types", port.types)
                           .read("doc", port.doc)
                           .read("actor", port.actor)
+                          .read("keep", port.keep)
                           .read("encoding", encoding)
                           .good();
     for (auto& type : port.types) type.info.encoding = encoding;
@@ -239,7 +241,7 @@ Status check_names(const Description& description) {
 
 const PortDescription& focus_input() {
   static const PortDescription kFocus{
-      "focus", "", {{{MatrixType::Table, 1, Scalar::I32, Encoding::Text}, 1, 1, 0}}};
+      "focus", "", {{{MatrixType::Table, 1, Scalar::I32, Encoding::Text}, 1, 1, 0}}, false, 1};
   return kFocus;
 }
 

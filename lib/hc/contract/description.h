@@ -3,6 +3,7 @@
 // What a program says of itself with --describe: one struct, written and read here alone
 // (spec/module.md). Pure.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@ struct PortDescription {
   std::string name, doc;
   std::vector<PortType> types;  ///< an output has one; empty: anything
   bool actor = false;           ///< an input that moves something: one writer at a time
+  /// Of an input: how many of the newest messages its links keep unless they say otherwise; 0: it
+  /// does not matter to it.
+  std::uint32_t keep = 0;
 };
 
 struct Description {

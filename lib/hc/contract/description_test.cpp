@@ -13,7 +13,8 @@ TEST(Description, ComesBackAsItWasWritten) {
   description.inputs = {{"image",
                          "an image",
                          {{{MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 0, 0, 7}},
-                         true},
+                         true,
+                         16},
                         {"any", "", {}}};
   description.outputs = {
       {"pose", "", {{{MatrixType::Transformation, 1, Scalar::F64, Encoding::Binary}, 4, 4, 0}}}};
@@ -32,6 +33,8 @@ TEST(Description, ComesBackAsItWasWritten) {
   auto parsed = parse_description(json);
   ASSERT_TRUE(parsed) << json;
   EXPECT_EQ(to_json(*parsed), json);
+  EXPECT_EQ(parsed->inputs[0].keep, 16U);
+  EXPECT_EQ(parsed->inputs[1].keep, 0U);
   EXPECT_EQ(std::get<double>(parsed->parameters[0].default_value), 0.5);
   EXPECT_TRUE(std::get<bool>(parsed->parameters[3].default_value));
   EXPECT_TRUE(parsed->knows("tcp"));
@@ -70,6 +73,10 @@ TEST(Description, WhatIsNoneIsRefused) {
   EXPECT_FALSE(with(changed("\"width\":0", "\"width\":-1"), ""));
   EXPECT_FALSE(with(changed("\"coord\":0", "\"coord\":99999999999"), ""));
   EXPECT_FALSE(with(changed("\"width\":0,", ""), ""));
+  for (const char* keep : {"-1", "1.5", "\"all\"", "99999999999"})
+    EXPECT_FALSE(parse_description(R"({"inputs":[{"name":"in","types":[],"keep":)" +
+                                   std::string(keep) + R"(}],"outputs":[],"parameters":[]})"))
+        << keep;
   EXPECT_TRUE(with("", R"({"name":"a","type":"integer","min":1,"step":2,"default":null})"));
   EXPECT_FALSE(with("", R"({"name":"a","type":"float"})"));
   EXPECT_FALSE(with("", R"({"name":"a","type":"integer","step":0})"));

@@ -44,7 +44,7 @@ Description description_of(const Module& module) {
   description.name = module.name();
   description.summary = module.summary();
   for (const auto& port : module.inputs())
-    description.inputs.push_back({port->name, port->doc, port->types, port->is_actor});
+    description.inputs.push_back({port->name, port->doc, port->types, port->is_actor, port->keep});
   for (const auto& port : module.outputs())
     description.outputs.push_back({port->name, port->doc, port->types});
   for (const auto& together : module.together()) {

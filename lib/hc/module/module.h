@@ -54,6 +54,25 @@ inline void succeed_or_end(const Status& status) {
   if (!status) throw ModuleError(status.error());
 }
 
+/// Thrown by a handler, or by what it calls, since the message that it got says what it cannot use:
+/// that message is dropped, counted (`bad`) and logged, once for each input, and the module goes
+/// on.
+struct BadMessage : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The value of a result; a failed one drops the message that is being handled.
+template <typename T>
+T value_or_drop(Result<T> result) {
+  if (!result) throw BadMessage(result.error().detail);
+  return std::move(*result);
+}
+
+/// A failed status drops the message that is being handled.
+inline void succeed_or_drop(const Status& status) {
+  if (!status) throw BadMessage(status.error().detail);
+}
+
 namespace internal {
 struct Arguments;
 }
@@ -124,6 +143,14 @@ class Module {
   template <typename K>
   void actor(const Input<K>& input) {
     input.state_->is_actor = true;
+  }
+  /// Declares that of an input only the newest messages count, so that no link to it in a graph
+  /// makes its writer wait, unless the link says otherwise: setpoints, bids, what a person sends.
+  /// @param count  of what waits while the module is busy; 1: the newest alone. Where several
+  ///   sources share a link, enough for one of each.
+  template <typename K>
+  void keep(const Input<K>& input, std::uint32_t count = 1) {
+    input.state_->keep = count;
   }
   /// Declares that the outputs route by address: a link gets the messages of its `--route` alone.
   void route_outputs() { routes_ = true; }

@@ -45,6 +45,7 @@ struct InputState {
   bool is_actor = false;      ///< moves something: one writer at a time is to have it
   bool is_exclusive = false;  ///< takes messages of the mode in focus alone
   bool is_finite = false;     ///< drops messages with NaN or infinity
+  std::uint32_t keep = 0;     ///< see Module::keep(); 0: not said
 };
 
 /// What an output takes over from the message that is being handled.
