@@ -43,6 +43,8 @@ class DdsSink final : public Sink {
         wanted_(readers),
         stays_(stays),
         options_(std::move(options)),
+        patience_(policy.timeout, options_.awaits_reader),
+        absence_(policy.timeout),
         queue_(policy) {}
 
   ~DdsSink() override { end(); }
@@ -81,11 +83,13 @@ class DdsSink final : public Sink {
       if (has_ended_)
         return Error{Code::Closed,
                      has_lost_all_ ? "all readers disconnected" : "the link is closed"};
-      const bool needs_none = wanted_ == 0 || (has_begun_ && stays_ && !waits_);
+      if (readers_ != 0) absence_.renew();
+      const bool is_awaited = waits_ && !absence_.is_over();
+      const bool needs_none = wanted_ == 0 || (has_begun_ && stays_ && !is_awaited);
       if (readers_ == 0 && needs_none) {
         has_begun_ = true;
         ++messages_;
-        ++losses_.cut;
+        ++(absence_.is_over() ? losses_.timed_out : losses_.cut);
         return {};
       }
       if (readers_ < needed()) {
@@ -94,8 +98,17 @@ class DdsSink final : public Sink {
       }
       has_begun_ = true;
       if (!waits_ || (queue_.size() < kCapacity && queue_.has_memory(size))) break;
-      if (auto waited = wait(lock); !waited) return waited;
+      if (!has_patience()) {
+        ++messages_;
+        ++losses_.timed_out;
+        return {};
+      }
+      if (auto waited = wait(lock, patience_.due()); !waited) {
+        patience_.end();
+        return waited;
+      }
     }
+    patience_.end();
     auto sample = make_sample(participant_->type(), pieces, message);
     const bool follows = waits_ && size <= kMostCopied && steady_clock::now() - sent_ < kFollowTime;
     following_ = follows ? following_ + 1 : 0;
@@ -181,12 +194,31 @@ class DdsSink final : public Sink {
     losses_.bytes -= std::exchange(joined_bytes_, 0);
   }
 
-  /// Waits until something has changed; the lock is free meanwhile.
-  Status wait(std::unique_lock<std::mutex>& lock) {
+  /// Whether the readers, of which there is one reckoning, are to be waited for. With the mutex.
+  bool has_patience() {
+    const auto taken = messages_ - losses_.timed_out - queue_.size() - joined_messages_;
+    const bool was_over = patience_.is_over();
+    if (patience_.is_over(taken)) return false;
+    if (was_over) log(internal::Patience::kAgain);
+    if (patience_.waits(taken, steady_clock::now())) return true;
+    log(patience_.line());
+    return false;
+  }
+  void log(std::string_view line) const {
+    if (options_.log) options_.log(Severity::Warning, line);
+  }
+
+  /// Waits until something has changed, or for so long; the lock is free meanwhile.
+  Status wait(std::unique_lock<std::mutex>& lock, TimePoint until = TimePoint::max()) {
     if (event_.clear()) return {};
     lock.unlock();
     auto& [interrupter, call] = options_.interrupt;
-    auto ready = wait_readable(std::array{event_.descriptor(), interrupter}, options_.stop);
+    auto timeout = std::chrono::milliseconds(-1);
+    if (until != TimePoint::max())
+      timeout = std::max(std::chrono::milliseconds(0),
+                         std::chrono::ceil<std::chrono::milliseconds>(until - steady_clock::now()));
+    auto ready =
+        wait_readable(std::array{event_.descriptor(), interrupter}, options_.stop, timeout);
     if (ready && *ready == 1 && !call()) interrupter = -1;
     lock.lock();
     return ready ? Status() : ready.error();
@@ -201,7 +233,14 @@ class DdsSink final : public Sink {
     };
     say(true);
     Status outcome;
-    while (outcome && readers_ < needed() && !has_ended_) outcome = wait(lock);
+    while (outcome && readers_ < needed() && !has_ended_) {
+      if (has_begun_ && !absence_.waits(0, steady_clock::now())) {
+        log(absence_.line());
+        break;
+      }
+      outcome = wait(lock, absence_.due());
+    }
+    absence_.end();
     say(false);
     return outcome;
   }
@@ -337,6 +376,7 @@ class DdsSink final : public Sink {
   const std::int64_t wanted_;  // readers before the first message and the end; -1: one, none
   const bool stays_;
   LinkOptions options_;
+  internal::Patience patience_, absence_;  // with readers; with all that have left
   Encoder encoder_;
   internal::Event event_;  // readable when something has changed that is waited for
 

@@ -22,15 +22,24 @@ struct Traffic {
   std::uint64_t over_memory = 0;
   /// … because the connection was lost while they were on their way (`reconnect`).
   std::uint64_t cut = 0;
+  /// … because the reader had taken nothing for so long (`timeout`).
+  std::uint64_t timed_out = 0;
+  /// Messages that came and were dropped by the reader since they were damaged, did not fit, or
+  /// said what cannot be.
+  std::uint64_t bad = 0;
 
   Traffic& operator+=(const Traffic& other);
-  [[nodiscard]] std::uint64_t lost() const { return superseded + over_rate + over_memory + cut; }
+  /// Messages that did not arrive.
+  [[nodiscard]] std::uint64_t lost() const {
+    return superseded + over_rate + over_memory + cut + timed_out;
+  }
 };
 
 /// Its members in the order in which a module reports them.
 constexpr std::array kTrafficMembers = {
-    &Traffic::messages,  &Traffic::bytes,       &Traffic::kept_back, &Traffic::superseded,
-    &Traffic::over_rate, &Traffic::over_memory, &Traffic::cut};
+    &Traffic::messages,   &Traffic::bytes,     &Traffic::kept_back,
+    &Traffic::superseded, &Traffic::over_rate, &Traffic::over_memory,
+    &Traffic::cut,        &Traffic::timed_out, &Traffic::bad};
 
 inline Traffic& Traffic::operator+=(const Traffic& other) {
   for (auto member : kTrafficMembers) this->*member += other.*member;

@@ -9,8 +9,13 @@ namespace hc {
 namespace {
 
 using Row = std::array<std::int64_t, kCounterColumns.size()>;
-constexpr std::size_t kIgnored = kTrafficMembers.size(), kAge = kIgnored + 1, kGap = kAge + 3;
-static_assert(kGap + 3 == kCounterColumns.size());
+constexpr std::size_t kIgnored = 7, kAge = kIgnored + 1, kGap = kAge + 3, kMore = kGap + 3;
+
+/// Where a member of the traffic is: the last ones were added behind all others.
+constexpr std::size_t column_of(std::size_t member) {
+  return member < kIgnored ? member : kMore + member - kIgnored;
+}
+static_assert(column_of(kTrafficMembers.size()) == kCounterColumns.size());
 
 template <std::size_t kColumns>
 Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
@@ -24,11 +29,11 @@ Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
 
 LinkCounters counters_of(std::span<const std::int64_t> given) {
   Row row{};
-  std::fill(row.begin() + kAge, row.end(), -1);
+  std::fill(row.begin() + kAge, row.begin() + kMore, -1);
   std::copy_n(given.begin(), std::min(given.size(), row.size()), row.begin());
   LinkCounters link;
   for (std::size_t i = 0; i < kTrafficMembers.size(); ++i)
-    link.traffic.*kTrafficMembers[i] = static_cast<std::uint64_t>(row[i]);
+    link.traffic.*kTrafficMembers[i] = static_cast<std::uint64_t>(row[column_of(i)]);
   link.ignored = static_cast<std::uint64_t>(row[kIgnored]);
   std::copy_n(row.begin() + kAge, link.age.size(), link.age.begin());
   std::copy_n(row.begin() + kGap, link.gap.size(), link.gap.begin());
@@ -42,7 +47,7 @@ Message make_counters(std::span<const LinkCounters> links) {
   for (const auto& link : links) {
     Row& row = rows.emplace_back();
     for (std::size_t i = 0; i < kTrafficMembers.size(); ++i)
-      row[i] = static_cast<std::int64_t>(link.traffic.*kTrafficMembers[i]);
+      row[column_of(i)] = static_cast<std::int64_t>(link.traffic.*kTrafficMembers[i]);
     row[kIgnored] = static_cast<std::int64_t>(link.ignored);
     std::copy(link.age.begin(), link.age.end(), row.begin() + kAge);
     std::copy(link.gap.begin(), link.gap.end(), row.begin() + kGap);

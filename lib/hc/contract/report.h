@@ -35,7 +35,7 @@ struct LinkCounters {
 struct CounterColumn {
   std::string_view name, meaning;
 };
-constexpr std::array<CounterColumn, 14> kCounterColumns = {{
+constexpr std::array<CounterColumn, 16> kCounterColumns = {{
     {"messages", "messages that went over the link"},
     {"bytes", "their bytes"},
     {"throttled", "messages delayed by `rate`; they went later, or are among the dropped"},
@@ -50,6 +50,8 @@ constexpr std::array<CounterColumn, 14> kCounterColumns = {{
     {"gap_median", "time between messages [ns]"},
     {"gap_p99", "its 99th percentile [ns]"},
     {"gap_max", "its maximum [ns]"},
+    {"timed_out", "dropped: the reader had taken nothing for too long (`timeout`)"},
+    {"bad", "received and dropped: damaged, or not what the input takes"},
 }};
 
 /// A table of i64, a row for each link.

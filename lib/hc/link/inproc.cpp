@@ -21,6 +21,7 @@ struct Channel {
   std::mutex mutex;
   SendQueue<Message> messages{Policy{}};
   Traffic losses;
+  std::uint64_t taken = 0;  // messages, by the source
   bool has_source = false, has_sink = false;
   bool source_left = false, sink_left = false;
   Event readable;         // messages wait, or the sink has left
@@ -86,6 +87,7 @@ class InprocSource final : public Source {
       return Got::Nothing;
     }
     message = messages.pop(now);
+    ++channel_->taken;
     ++traffic_.messages;
     traffic_.bytes += message.elements.size();
     channel_->writable.raise();
@@ -102,8 +104,11 @@ class InprocSource final : public Source {
 
 class InprocSink final : public Sink {
  public:
-  InprocSink(std::shared_ptr<Channel> channel, const Policy& policy, int stop)
-      : channel_(std::move(channel)), waits_(policy.writer_waits()), stop_(stop) {}
+  InprocSink(std::shared_ptr<Channel> channel, const Policy& policy, const LinkOptions& options)
+      : channel_(std::move(channel)),
+        waits_(policy.writer_waits()),
+        options_(options),
+        patience_(policy.timeout, options.awaits_reader) {}
   ~InprocSink() override { leave(); }
 
   Status send(const Message& message) override {
@@ -118,13 +123,23 @@ class InprocSink final : public Sink {
           channel_->readable.raise();
           ++messages_;
           bytes_ += message.elements.size();
-          return {};
+          break;
+        }
+        if (!has_patience()) {
+          ++messages_;
+          ++channel_->losses.timed_out;
+          break;
         }
         channel_->writable.clear();
       }
-      if (auto room = wait_for(channel_->writable.descriptor(), POLLIN, stop_); !room)
+      auto room = wait_for(channel_->writable.descriptor(), POLLIN, options_.stop, patience_.due());
+      if (!room) {
+        patience_.end();
         return room.error();
+      }
     }
+    patience_.end();
+    return {};
   }
 
   Status close() override {
@@ -141,6 +156,18 @@ class InprocSink final : public Sink {
   }
 
  private:
+  bool has_patience() {
+    const bool was_over = patience_.is_over();
+    if (patience_.is_over(channel_->taken)) return false;
+    if (was_over) log(Patience::kAgain);
+    if (patience_.waits(channel_->taken, std::chrono::steady_clock::now())) return true;
+    log(patience_.line());
+    return false;
+  }
+  void log(std::string_view line) const {
+    if (options_.log) options_.log(Severity::Warning, line);
+  }
+
   void leave() {
     std::lock_guard lock(channel_->mutex);
     channel_->sink_left = true;
@@ -149,7 +176,8 @@ class InprocSink final : public Sink {
 
   std::shared_ptr<Channel> channel_;
   bool waits_;
-  int stop_;
+  LinkOptions options_;
+  Patience patience_;
   std::uint64_t messages_ = 0, bytes_ = 0;
 };
 
@@ -167,7 +195,7 @@ Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions
   auto joined = channels().join(uri.rest, &Channel::has_sink);
   if (!joined) return joined.error();
   auto& channel = **joined;
-  std::unique_ptr<Sink> sink(new InprocSink(*joined, *policy, options.stop));
+  std::unique_ptr<Sink> sink(new InprocSink(*joined, *policy, options));
   if (policy->is_paced()) {
     auto started = channel.timer.start(-1, [&channel](auto) { channel.readable.raise(); });
     if (!started) return started.error();

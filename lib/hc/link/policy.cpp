@@ -26,6 +26,10 @@ Result<Policy> parse_policy(const Uri& uri) {
     if (!number) return number.error();
     *value = static_cast<std::uint64_t>(*number);
   }
+  constexpr std::int64_t kLongest = 86'400;  // [s]
+  const auto timeout = number_option(uri, "timeout", 0, {0, kLongest});
+  if (!timeout) return timeout.error();
+  policy.timeout = std::chrono::seconds(*timeout);
   if (policy.rate == 0 && !uri.option("burst", "").empty())
     return Error{Code::Invalid, "option burst wants rate beside it"};
   return policy;
@@ -59,6 +63,37 @@ void TokenBucket::take(TimePoint now) {
   if (rate_ == 0) return;
   fill(now);
   level_ -= kTick;
+}
+
+bool Patience::waits(std::uint64_t taken, TimePoint now) {
+  if (!began_) began_ = now;
+  if (!last_taken_ || std::exchange(taken_, taken) != taken) last_taken_ = now;
+  taken_ = taken;
+  if (timeout_.count() > 0 && now - *last_taken_ >= timeout_) {
+    end();
+    is_over_ = true;
+    return false;
+  }
+  if (tell_ && now - *began_ >= kLong && !std::exchange(is_told_, true)) tell_(true);
+  return true;
+}
+
+void Patience::end() {
+  began_.reset();
+  last_taken_.reset();
+  if (std::exchange(is_told_, false)) tell_(false);
+}
+
+TimePoint Patience::due() const {
+  auto due = TimePoint::max();
+  if (last_taken_ && timeout_.count() > 0) due = *last_taken_ + timeout_;
+  if (began_ && tell_ && !is_told_) due = std::min(due, *began_ + kLong);
+  return due;
+}
+
+std::string Patience::line() const {
+  return "the reader has taken nothing for " + std::to_string(timeout_.count()) +
+         " s: messages to it are dropped until it does";
 }
 
 }  // namespace hc::internal

@@ -6,8 +6,12 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include <hc/base/result.h>
 #include <hc/base/uri.h>
@@ -26,13 +30,14 @@ struct Policy {
   std::uint64_t rate = 0;   ///< [message/s]; 0: as fast as they come
   std::uint64_t burst = 1;  ///< messages that may follow at once when none came for long
   std::uint64_t memory = std::uint64_t{64} << 20;  ///< of the messages that wait [byte]
+  std::chrono::seconds timeout{0};  ///< of a writer that waits; 0: none. See Patience
 
   [[nodiscard]] bool writer_waits() const { return keep == kAll; }
   [[nodiscard]] bool is_paced() const { return rate > 0; }
 };
 
 /// Reads `keep=all|latest|N`, `rate=`, `burst=` (default 1) and `memory=`, which is bytes, perhaps
-/// with a suffix K, M or G (of 1024).
+/// with a suffix K, M or G (of 1024), and `timeout=` [s].
 ///
 /// Errors: Invalid; also for a burst without its rate.
 Result<Policy> parse_policy(const Uri& uri);
@@ -59,6 +64,49 @@ class TokenBucket {
   std::int64_t capacity_;  // [1e-9 token]
   std::int64_t level_;     // the same
   TimePoint filled_ = TimePoint::min();
+};
+
+/// How a writer that loses nothing waits for one reader: it says so when that takes long, and gives
+/// the reader up when that has taken nothing for the policy's `timeout`. From then on messages to
+/// it are dropped, until it takes some again. One rule for all transports.
+class Patience {
+ public:
+  /// So long a wait is said: a reader that gets through is not worth it.
+  static constexpr std::chrono::milliseconds kLong{200};
+
+  /// @param timeout  0: it is waited for as long as it takes.
+  /// @param tell  called with true when a wait gets long, and with false when it ends; may be
+  /// empty.
+  explicit Patience(std::chrono::seconds timeout, std::function<void(bool)> tell = {})
+      : timeout_(timeout), tell_(std::move(tell)) {}
+
+  /// Looks at a reader that is to be waited for, each time before one waits.
+  /// @param taken  what it has taken so far, in whatever it is counted.
+  /// @returns  whether to wait, until due() at most; if not, it has just been given up.
+  bool waits(std::uint64_t taken, TimePoint now);
+  /// There is room for a message, or the wait was given up.
+  void end();
+  [[nodiscard]] TimePoint due() const;
+
+  /// Whether it is given up still; it is not when it has taken something since.
+  [[nodiscard]] bool is_over(std::uint64_t taken) {
+    is_over_ = is_over_ && taken == taken_;
+    return is_over_;
+  }
+  [[nodiscard]] bool is_over() const { return is_over_; }
+  /// It is waited for again, whatever it has taken.
+  void renew() { is_over_ = false; }
+
+  /// For the log, when it has been given up: "has taken nothing for 5 s: …".
+  [[nodiscard]] std::string line() const;
+  static constexpr std::string_view kAgain = "the reader takes messages again";
+
+ private:
+  std::chrono::seconds timeout_;
+  std::function<void(bool)> tell_;
+  std::uint64_t taken_ = 0;
+  std::optional<TimePoint> began_, last_taken_;  // the wait, and the reader's last sign in it
+  bool is_told_ = false, is_over_ = false;
 };
 
 }  // namespace hc::internal

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include <hc/link/queue.h>
 
@@ -28,6 +29,47 @@ TEST(Policy, TheWriterWaitsUnlessAskedOtherwise) {
   EXPECT_TRUE(policy_of("?keep=all")->writer_waits());
 }
 
+TEST(Patience, IsOverWhenAReaderTakesNothingForTheTimeout) {
+  Patience patience(seconds(5));
+  EXPECT_TRUE(patience.waits(7, kBegin));
+  EXPECT_EQ(patience.due(), kBegin + seconds(5));
+  EXPECT_TRUE(patience.waits(8, kBegin + seconds(4))) << "it has taken one";
+  EXPECT_TRUE(patience.waits(8, kBegin + seconds(8)));
+  EXPECT_FALSE(patience.waits(8, kBegin + seconds(9)));
+  EXPECT_TRUE(patience.is_over(8));
+  EXPECT_FALSE(patience.is_over(9)) << "it takes messages again";
+  EXPECT_FALSE(patience.is_over(9));
+}
+
+TEST(Patience, CountsFromTheBeginningOfEachWait) {
+  Patience patience(seconds(5));
+  EXPECT_TRUE(patience.waits(7, kBegin));
+  patience.end();
+  EXPECT_TRUE(patience.waits(7, kBegin + seconds(60)));
+  EXPECT_FALSE(patience.waits(7, kBegin + seconds(65)));
+}
+
+TEST(Patience, WithoutATimeoutItIsEndless) {
+  Patience patience(seconds(0));
+  EXPECT_TRUE(patience.waits(7, kBegin));
+  EXPECT_TRUE(patience.waits(7, kBegin + std::chrono::hours(100)));
+  EXPECT_EQ(patience.due(), TimePoint::max());
+}
+
+TEST(Patience, TellsOfALongWaitAndItsEnd) {
+  std::vector<bool> told;
+  Patience patience(seconds(5), [&](bool waits) { told.push_back(waits); });
+  EXPECT_TRUE(patience.waits(7, kBegin));
+  EXPECT_EQ(patience.due(), kBegin + Patience::kLong);
+  patience.end();
+  EXPECT_TRUE(told.empty()) << "it was short";
+  EXPECT_TRUE(patience.waits(7, kBegin));
+  EXPECT_TRUE(patience.waits(7, kBegin + Patience::kLong));
+  EXPECT_EQ(told, std::vector<bool>{true});
+  EXPECT_FALSE(patience.waits(7, kBegin + seconds(5)));
+  EXPECT_EQ(told, (std::vector<bool>{true, false}));
+}
+
 TEST(Policy, IsReadFromOptions) {
   auto policy = policy_of("?keep=5&rate=30&burst=3&memory=1G");
   ASSERT_TRUE(policy) << policy.error().text();
@@ -37,6 +79,8 @@ TEST(Policy, IsReadFromOptions) {
   EXPECT_EQ(policy->memory, 1U << 30);
   EXPECT_EQ(policy_of("?keep=latest")->keep, 1U);
   EXPECT_EQ(policy_of("?memory=7K")->memory, 7U << 10);
+  EXPECT_EQ(policy_of("")->timeout, seconds(0));
+  EXPECT_EQ(policy_of("?timeout=5")->timeout, seconds(5));
 }
 
 TEST(Policy, WhatMakesNoSenseIsRefused) {

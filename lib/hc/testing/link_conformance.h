@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <hc/link/link.h>
 #include <hc/os/event.h>
@@ -78,14 +80,15 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LinkConformance);
 class LinkConformance : public ::testing::TestWithParam<Transport> {
  protected:
   /// @param options  of the sink. @param pace  of the end that keeps it.
-  void open(const std::string& options = "", const std::string& pace = "") {
+  void open(const std::string& options = "", const std::string& pace = "",
+            const LinkOptions& of_sink = {}) {
     auto [from, to] = GetParam().make();
     if (!options.empty()) to = with(to, options);
     auto& paced = GetParam().drops_at_source ? from : to;
     if (!pace.empty()) paced = with(paced, pace);
-    if (GetParam().sink_first) sink_ = sink_of(to);
+    if (GetParam().sink_first) sink_ = sink_of(to, of_sink);
     source_ = source_of(from);
-    if (!GetParam().sink_first) sink_ = sink_of(to);
+    if (!GetParam().sink_first) sink_ = sink_of(to, of_sink);
   }
 
   /// Sends from another thread, takes here, compares.
@@ -205,6 +208,35 @@ TEST_P(LinkConformance, ASlowReaderLosesNothing) {
     std::this_thread::yield();
   }
   sender.join();
+}
+
+TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
+  constexpr std::int64_t kPlenty = 1200;  // more than any memory takes
+  LinkOptions options;
+  std::vector<bool> awaits;
+  options.awaits_reader = [&](bool does) { awaits.push_back(does); };
+  open("timeout=1", "", options);
+  std::int64_t count = 0;
+  while (count < kPlenty) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
+  EXPECT_EQ(awaits, (std::vector<bool>{true, false})) << "it waited for it once";
+  std::atomic<bool> is_heard_again{false};
+  std::thread reader([&] {
+    Message message;
+    std::int64_t seq = -1;
+    while (seq < kPlenty) {
+      auto got = receive(*source_, message);
+      ASSERT_TRUE(got && *got && message.header.seq > seq) << "behind " << seq;
+      seq = message.header.seq;
+      ASSERT_EQ(message.characters(), numbered(seq, 100'000).characters());
+    }
+    is_heard_again = true;
+    while (message.elements.size() > 1) ASSERT_TRUE(*receive(*source_, message));
+  });
+  while (!is_heard_again) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
+  ASSERT_TRUE(sink_->send(numbered(count, 1)));
+  reader.join();
+  EXPECT_GT(losses().timed_out, 0U);
+  EXPECT_EQ(losses().timed_out, losses().lost());
 }
 
 TEST_P(LinkConformance, AMessageMayBeHeldForAsLongAsOneLikes) {

@@ -11,8 +11,8 @@
 
 namespace hc::internal {
 Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
-                                                     const SharedMemory& memory,
-                                                     std::uint64_t keep) {
+                                                     const SharedMemory& memory, std::uint64_t keep,
+                                                     const Patience& patience) {
   auto event = Event::make();
   if (!event) return event.error();
   auto read_only = memory.read_only();
@@ -22,6 +22,7 @@ Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
   readers->head_ = reinterpret_cast<const Head*>(memory.data());
   readers->bytes_ = memory.size();
   readers->keep_ = keep;
+  readers->patience_ = patience;
   readers->socket_.admit = [](int peer) -> Status {
     auto own = check_own(unix_peer_user(peer), "refused a reader of ");
     if (!own) refuse(peer, "another user");
@@ -70,6 +71,7 @@ void ShmReaders::accept_all() {
     });
     if (!started) return started;
     reader->socket = std::move(peer);
+    reader->patience = patience_;
     std::shared_ptr<ShmReader> silent;
     {
       std::lock_guard lock(mutex_);
@@ -168,10 +170,28 @@ void ShmReaders::refresh() {
   current_.swap(known);
 }
 
-std::uint64_t ShmReaders::taken_by_all(std::uint64_t published) const {
+/// Whether a reader has been given up, and has taken nothing since.
+bool ShmReaders::is_given_up(ShmReader& reader, std::uint64_t published) {
+  if (!reader.patience.is_over()) return false;
+  if (reader.patience.is_over(reader.cursor(published))) return true;
+  remark(std::string(Patience::kAgain));
+  return false;
+}
+
+bool ShmReaders::have_given_up() const {
+  return std::any_of(current_.begin(), current_.end(),
+                     [](const auto& reader) { return reader->patience.is_over(); });
+}
+
+void ShmReaders::end_waits() {
+  for (const auto& reader : current_) reader->patience.end();
+}
+
+std::uint64_t ShmReaders::taken_by_all(std::uint64_t published) {
   std::uint64_t taken = published;
   for (const auto& reader : current_)
-    if (reader->keep == 0) taken = std::min(taken, reader->cursor(published));
+    if (reader->keep == 0 && !is_given_up(*reader, published))
+      taken = std::min(taken, reader->cursor(published));
   return taken;
 }
 
@@ -185,9 +205,10 @@ std::uint64_t ShmReaders::wanted_by_none(std::uint64_t published) const {
   return end;
 }
 
-std::shared_ptr<const ShmReader> ShmReaders::blocker(std::uint64_t published) const {
+std::shared_ptr<ShmReader> ShmReaders::blocker(std::uint64_t published) {
   std::shared_ptr<ShmReader> slowest, holder;
   for (const auto& reader : current_) {
+    if (is_given_up(*reader, published)) continue;
     auto cursor = reader->cursor(published);
     if (reader->keep == 0 && cursor < published &&
         (slowest == nullptr || cursor < slowest->cursor(published)))

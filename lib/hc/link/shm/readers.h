@@ -9,6 +9,7 @@
 #include <mutex>
 #include <vector>
 
+#include <hc/link/policy.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/shm/layout.h>
 #include <hc/link/stream/remarks.h>
@@ -28,6 +29,7 @@ struct ShmReader {
   std::uint64_t begin = 0;  ///< position of its first message
   std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
+  Patience patience{{}};    ///< of a publisher that waits for it, on whose thread it is used
   Watch watch;              ///< last, so that it ends first
 
   /// Whether it has said what it is; a stranger has not.
@@ -49,9 +51,10 @@ struct ShmReader {
 class ShmReaders {
  public:
   /// @param head  of `memory`; says where a reader that comes begins.
-  /// @param keep  for readers that do not say.
+  /// @param keep  for readers that do not say. @param patience  with each.
   static Result<std::unique_ptr<ShmReaders>> make(ListeningSocket socket,
-                                                  const SharedMemory& memory, std::uint64_t keep);
+                                                  const SharedMemory& memory, std::uint64_t keep,
+                                                  const Patience& patience);
   ~ShmReaders();
   ShmReaders(const ShmReaders&) = delete;
   ShmReaders& operator=(const ShmReaders&) = delete;
@@ -70,13 +73,18 @@ class ShmReaders {
 
   // Of those there are, on the publisher's thread; `published` is the position it publishes next.
 
-  /// The position below which every reader that loses nothing has taken all.
-  [[nodiscard]] std::uint64_t taken_by_all(std::uint64_t published) const;
+  /// The position below which every reader that loses nothing has taken all, but for those that
+  /// have been given up.
+  [[nodiscard]] std::uint64_t taken_by_all(std::uint64_t published);
   /// The position below which no reader wants anything any more.
   [[nodiscard]] std::uint64_t wanted_by_none(std::uint64_t published) const;
   /// Whom a publisher waits for: the slowest of those that lose nothing, if it has not taken all,
-  /// else anybody who holds something; null when it is nobody.
-  [[nodiscard]] std::shared_ptr<const ShmReader> blocker(std::uint64_t published) const;
+  /// else anybody who holds something; null when it is nobody, but for those that it has given up.
+  [[nodiscard]] std::shared_ptr<ShmReader> blocker(std::uint64_t published);
+  /// Whether there are some that have been given up.
+  [[nodiscard]] bool have_given_up() const;
+  /// Nobody is waited for any more.
+  void end_waits();
   /// Wakes those who sleep; whether there were any.
   bool wake();
 
@@ -94,6 +102,7 @@ class ShmReaders {
   void note_leaving(const ShmReader& reader);
   void tell_change(const ShmReader& reader);
   void remark(std::string line);
+  bool is_given_up(ShmReader& reader, std::uint64_t published);
 
   ListeningSocket socket_;
   Event event_;
@@ -101,6 +110,7 @@ class ShmReaders {
   Remarks remarks_;
   const Head* head_ = nullptr;
   std::uint64_t bytes_ = 0, keep_ = 0;
+  Patience patience_{{}};
   std::vector<std::shared_ptr<ShmReader>> current_;
   std::atomic<bool> changed_{false};
 

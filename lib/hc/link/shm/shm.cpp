@@ -69,7 +69,8 @@ Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& o
   auto memory = SharedMemory::make(policy->memory / kPageBytes * kPageBytes, kSlotsBegin);
   if (!memory) return memory.error();
   auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted, *stays == 1,
-                                        policy->writer_waits() ? 0 : policy->keep, options);
+                                        policy->writer_waits() ? 0 : policy->keep, policy->timeout,
+                                        options);
   if (auto begun = sink->begin(std::move(*socket)); !begun) return begun.error();
   return std::unique_ptr<Sink>(std::move(sink));
 }

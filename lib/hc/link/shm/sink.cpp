@@ -50,14 +50,15 @@ Status ShmSink::send(const Message& message) {
       return {};
     }
     if (counted_ > 0 && !stays_) return Error{Code::Closed, "the readers disconnected"};
-    if (keep_ == 0) {
+    if (keep_ == 0 && !absence_.is_over())
       if (auto came = await_readers(1); !came) return came;
-    } else if (stays_) {
+    if (present_ == 0 && stays_) {
       ++traffic_.messages;
-      ++traffic_.cut;
+      ++(absence_.is_over() ? traffic_.timed_out : traffic_.cut);
       return {};
     }
   }
+  absence_.renew();
   // The header's line and the elements behind it, if they are small, in words.
   std::array<std::uint64_t, Cell::kWords + kMaxHeaderBytes / sizeof(std::uint64_t)> words;
   char* text = reinterpret_cast<char*>(words.data());

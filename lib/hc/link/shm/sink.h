@@ -22,9 +22,9 @@ class ShmSink final : public Sink {
   ///     others may come; 0: nobody is ever waited for. @param stays  continues when all of those
   ///     have left.
   /// @param keep  newest messages that wait for a reader that does not say; 0: all, it is waited
-  ///     for.
+  ///     for, no longer than `timeout` says.
   ShmSink(SharedMemory memory, std::int64_t counted, bool stays, std::uint64_t keep,
-          LinkOptions options)
+          std::chrono::seconds timeout, LinkOptions options)
       : memory_(std::make_shared<SharedMemory>(std::move(memory))),
         head_(*reinterpret_cast<Head*>(memory_->data())),
         cells_(reinterpret_cast<Cell*>(memory_->data() + kRingBegin)),
@@ -32,12 +32,15 @@ class ShmSink final : public Sink {
         counted_(counted),
         stays_(stays),
         keep_(keep),
-        options_(std::move(options)) {}
+        timeout_(timeout),
+        options_(std::move(options)),
+        absence_(timeout) {}
   ~ShmSink() override { end(); }
 
   /// Lets readers in; before all else. Errors: System.
   Status begin(ListeningSocket socket) {
-    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_);
+    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_,
+                                    Patience(timeout_, options_.awaits_reader));
     if (!readers) return readers.error();
     readers_ = std::move(*readers);
     return {};
@@ -85,7 +88,9 @@ class ShmSink final : public Sink {
   std::int64_t counted_;
   bool stays_;  // when all of them have left
   std::uint64_t keep_;
+  std::chrono::seconds timeout_;
   LinkOptions options_;
+  Patience absence_;  // with all readers that have left
 
   std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
   std::array<Slot*, kCells> slot_of_cell_{};

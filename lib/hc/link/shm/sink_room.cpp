@@ -60,9 +60,20 @@ Status ShmSink::await_readers(std::size_t count) {
   if (options_.awaits_reader) options_.awaits_reader(true);
   Status outcome;
   while (outcome && present_ < count) {
-    outcome = wait(readers_->event(), std::chrono::milliseconds(-1));
+    const auto now = std::chrono::steady_clock::now();
+    auto timeout = std::chrono::milliseconds(-1);
+    if (begun_) {  // who has left is awaited no longer than the policy says
+      if (!absence_.waits(0, now)) {
+        if (options_.log) options_.log(Severity::Warning, absence_.line());
+        break;
+      }
+      if (absence_.due() != TimePoint::max())
+        timeout = std::chrono::ceil<std::chrono::milliseconds>(absence_.due() - now);
+    }
+    outcome = wait(readers_->event(), timeout);
     if (outcome) refresh();
   }
+  absence_.end();
   if (options_.awaits_reader) options_.awaits_reader(false);
   return outcome;
 }
@@ -76,7 +87,7 @@ bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
   };
   taken_ = std::max(taken_, oldest_);
   if (!seems_so()) return false;
-  taken_ = readers_->taken_by_all(published_);
+  taken_ = std::max(readers_->taken_by_all(published_), oldest_);
   return seems_so();
 }
 
@@ -89,12 +100,16 @@ Status ShmSink::let_catch_up(std::uint64_t bytes) {
   return wait_for_room(wanted, [&] { return readers_->taken_by_all(published_) >= wanted; });
 }
 
-/// Waits until `has_room()`, or the readers that were counted have left.
+/// Waits until `has_room()`, or all whom to wait for have been given up.
 Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room) {
   struct Wish {
     Head& head;
-    ~Wish() { head.wanted.store(0, memory_order_relaxed); }
-  } wish{head_};
+    ShmReaders& readers;
+    ~Wish() {
+      head.wanted.store(0, memory_order_relaxed);
+      readers.end_waits();
+    }
+  } wish{head_, *readers_};
   head_.wanted.store(wanted, memory_order_relaxed);
   while (true) {
     refresh();
@@ -104,11 +119,17 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
     std::atomic_thread_fence(memory_order_seq_cst);  // room
     if (has_room()) return {};
     if (readers_->changed()) continue;
+    if (reader == nullptr && readers_->have_given_up()) return {};
     if (reader == nullptr && !host_)
       return Error{Code::System,
                    "no room left: the host has no memory to share: " + host_.error().detail};
     if (reader == nullptr)
       return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
+    auto& patience = reader->patience;
+    if (!patience.waits(reader->cursor(published_), std::chrono::steady_clock::now())) {
+      if (options_.log) options_.log(Severity::Warning, patience.line());
+      continue;
+    }
     HC_CRASH_POINT("publisher waits for room");
     futex_wait(reader->page().progress, progress, kStopCheckPeriod);
     if (auto waited = wait(-1, std::chrono::milliseconds(0)); !waited) return waited;

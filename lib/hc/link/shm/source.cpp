@@ -68,6 +68,7 @@ void ShmSource::skip_to(std::uint64_t position, std::uint64_t Traffic::*why) {
 /// there was no memory for it, or no cell.
 void ShmSource::skip_withdrawn(std::uint64_t oldest) {
   auto published = attachment_->head().published.load(memory_order_acquire);
+  if (keep_ == 0) return skip_to(oldest, &Traffic::timed_out);
   if (published > keep_) skip_to(std::min(oldest, published - keep_), &Traffic::superseded);
   skip_to(oldest, &Traffic::over_memory);
 }
@@ -163,8 +164,7 @@ Result<Got> ShmSource::take(Message& message) {
       bool fits = copy(cell);
       HC_CRASH_POINT("reader copied");
       auto hold = cell.slot == 0 ? kNoHold : take_hold(cell.slot);
-      // Who loses nothing is waited for; others have to see that they were not overtaken meanwhile.
-      if (keep_ == 0 || !is_withdrawn()) {
+      if (!is_withdrawn(hold != kNoHold)) {
         finish_cell(cell.slot != 0);
         auto delivered = fits ? deliver(cell, message, hold) : damaged("the sizes of a cell");
         if (!delivered) {
@@ -192,8 +192,9 @@ void ShmSource::fetch_ahead() {
     __builtin_prefetch(reinterpret_cast<const char*>(&later) + line);
 }
 
-bool ShmSource::is_withdrawn() const {
-  std::atomic_thread_fence(memory_order_seq_cst);  // hold
+/// Whether the publisher has taken the cell back by now, whose slot is held, or which was copied.
+bool ShmSource::is_withdrawn(bool holds) const {
+  std::atomic_thread_fence(holds ? memory_order_seq_cst : memory_order_acquire);  // hold
   return attachment_->head().oldest.load(memory_order_acquire) > cursor_;
 }
 

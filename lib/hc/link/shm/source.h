@@ -92,7 +92,7 @@ class ShmSource final : public Source {
   Status deliver(const Copy& cell, Message& message, std::size_t hold);
   std::size_t take_hold(std::uint64_t slot);
   void fetch_ahead();
-  [[nodiscard]] bool is_withdrawn() const;
+  [[nodiscard]] bool is_withdrawn(bool holds) const;
   void finish_cell(bool has_slot);
 
   [[nodiscard]] bool attached() const { return attachment_->memory.data() != nullptr; }

@@ -83,6 +83,11 @@ Result<bool> Connection::send(Outgoing& message, TimePoint now) {
 
 Result<bool> Connection::hand_over(std::unique_lock<std::mutex>& lock, Outgoing& message,
                                    TimePoint now) {
+  if (patience_.is_over()) {
+    advance(now);
+    if (failed_) return *failed_;
+    if (drops_for_reader(message, now)) return false;
+  }
   if (connected() && !blocked_ && queue_.pass(now)) {
     put(message.borrowed(), now);
   } else {
@@ -92,8 +97,10 @@ Result<bool> Connection::hand_over(std::unique_lock<std::mutex>& lock, Outgoing&
   if (failed_) return *failed_;
   bool is_pending = blocked_ || !queue_.empty() || !connected();
   if (writer_waits_ && is_pending) {
-    if (auto drained = drain(lock, false); !drained) return drained.error();
-    return true;
+    auto drained = drain(lock, &message);
+    patience_.end();
+    if (!drained) return drained.error();
+    return !patience_.is_over();
   }
   if (writer_.borrows()) writer_.keep(message.kept());
   if (is_pending) arm(now);
@@ -233,9 +240,11 @@ TimePoint Connection::due(TimePoint now) {
 }
 
 /// Waits until all has been written.
+/// @param message  that is being sent; null: the link is being closed, which needs no connection.
 /// @param give_up  set when it is to stop inside a message.
-Status Connection::drain(std::unique_lock<std::mutex>& lock, bool closing,
+Status Connection::drain(std::unique_lock<std::mutex>& lock, Outgoing* message,
                          std::optional<TimePoint> give_up) {
+  const bool closing = message == nullptr;
   while (true) {
     auto now = clock_now();
     advance(now);
@@ -247,6 +256,12 @@ Status Connection::drain(std::unique_lock<std::mutex>& lock, bool closing,
             begun ? "asked to stop, and the reader did not take the rest of a message"
                   : "asked to stop, and the reader did not take all messages"});
       return *failed_;
+    }
+    if (!give_up && !has_patience(now)) {
+      if (closing) fail({Code::Closed, "the reader takes nothing"});
+      if (closing) return *failed_;
+      give_up_reader(*message);
+      break;
     }
     flush_log();
     auto waited = wait(lock, give_up, now);
@@ -262,6 +277,40 @@ Status Connection::drain(std::unique_lock<std::mutex>& lock, bool closing,
   return {};
 }
 
+/// Whether it is to be waited for the reader. What waits for its turn alone does not wait for it.
+bool Connection::has_patience(TimePoint now) {
+  if (blocked_ || !connected()) return patience_.waits(writer_.total(), now);
+  patience_.end();
+  return true;
+}
+
+/// Drops the message that a thread waits with, or lets it be written whenever the reader takes it
+/// where it was begun.
+void Connection::give_up_reader(Outgoing& message) {
+  if (take_back()) {
+    ++losses_.timed_out;
+    losses_.bytes -= message.size();
+  } else if (writer_.borrows()) {
+    writer_.keep(message.kept());
+  }
+  remarks_.add(patience_.line());
+  flush_log();
+}
+
+/// Drops a message where the reader that was given up has taken nothing since.
+bool Connection::drops_for_reader(const Outgoing& message, TimePoint now) {
+  if (connected() && all_written()) patience_.renew();
+  if (!patience_.is_over(writer_.total())) {
+    remarks_.add(std::string(Patience::kAgain));
+    flush_log();
+    return false;
+  }
+  ++losses_.timed_out;
+  losses_.bytes -= message.size();
+  arm(now);
+  return true;
+}
+
 /// Takes back the message that a thread waits with; false when it was begun.
 bool Connection::take_back() {
   if (queue_.empty()) return writer_.take_back();
@@ -274,7 +323,7 @@ Result<bool> Connection::wait(std::unique_lock<std::mutex>& lock, std::optional<
                               TimePoint now) {
   int descriptor = !connected() ? dialer_->descriptor() : blocked_ ? writer_.descriptor() : -1;
   if (wanted_ != EPOLLERR) want(0);  // this thread sees to it
-  const auto until = std::min(due(now), give_up.value_or(TimePoint::max()));
+  const auto until = std::min({due(now), patience_.due(), give_up.value_or(TimePoint::max())});
   const short events = awaited_events();
   waits_ = true;
   lock.unlock();
@@ -288,7 +337,8 @@ Status Connection::close(bool patient) {
   std::unique_lock lock(mutex_);
   std::optional<TimePoint> give_up;
   if (!patient) give_up = clock_now();
-  Status closed = failed_ ? Status(*failed_) : drain(lock, true, give_up);
+  Status closed = failed_ ? Status(*failed_) : drain(lock, nullptr, give_up);
+  patience_.end();
   stop_watching();
   const bool is_connected = connected();
   if (!failed_) failed_ = Error{Code::Closed, "the link was closed"};

@@ -99,7 +99,8 @@ class Connection {
         stop_(options.stop),
         log_(options.log),
         dialer_(std::move(dialer)),
-        queue_(policy) {
+        queue_(policy),
+        patience_(policy.timeout, options.awaits_reader) {
     if (dialer_ != nullptr)
       dialer_->log_to([this](std::string line) { remarks_.add(std::move(line)); });
   }
@@ -124,7 +125,10 @@ class Connection {
   [[nodiscard]] TimePoint due(TimePoint now);
   [[nodiscard]] TimePoint flush_due() const { return oldest_ + 2 * kFlushAge; }
   bool take_back();
-  Status drain(std::unique_lock<std::mutex>& lock, bool closing,
+  bool drops_for_reader(const Outgoing& message, TimePoint now);
+  bool has_patience(TimePoint now);
+  void give_up_reader(Outgoing& message);
+  Status drain(std::unique_lock<std::mutex>& lock, Outgoing* message,
                std::optional<TimePoint> give_up = std::nullopt);
   Result<bool> wait(std::unique_lock<std::mutex>& lock, std::optional<TimePoint> give_up,
                     TimePoint now);
@@ -135,8 +139,9 @@ class Connection {
   const LogSink log_;
   std::unique_ptr<Dialer> dialer_;
   SendQueue<Parcel> queue_;  // not begun
-  StreamWriter writer_;      // begun
-  bool blocked_ = false;     // the last write found no room for all
+  Patience patience_;
+  StreamWriter writer_;   // begun
+  bool blocked_ = false;  // the last write found no room for all
   bool is_tcp_ = false;
   Gathering gathering_;
   TimePoint connected_at_, last_write_, oldest_;  // the last: when the first was gathered

@@ -29,7 +29,8 @@ class ListeningSink final : public Sink {
         readers_(readers),
         stays_(stays),
         policy_(policy),
-        options_(std::move(options)) {}
+        options_(std::move(options)),
+        absence_(policy.timeout) {}
 
   Status begin() {
     auto watched = loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); });
@@ -43,13 +44,14 @@ class ListeningSink final : public Sink {
     while (true) {
       if (begun_ && readers_ > 0 && !stays_ && peers_.empty())
         return Error{Code::Closed, "all readers disconnected"};
-      if (peers_.empty() && (readers_ == 0 || (begun_ && stays_ && !policy_.writer_waits()))) {
+      if (peers_.empty() && !waits_for_peer()) {
         let_in();
         if (peers_.empty()) {
           ++traffic_.messages;
-          ++traffic_.cut;
+          ++(absence_.is_over() ? traffic_.timed_out : traffic_.cut);
           return {};
         }
+        absence_.renew();
       }
       auto now = std::chrono::steady_clock::now();
       bool follows = now - last_send_ < kFollowTime && now - last_look_ < kNewPeerPeriod;
@@ -129,19 +131,33 @@ class ListeningSink final : public Sink {
     static_cast<void>(loop_->turn(std::chrono::milliseconds(0)));
   }
 
-  /// Waits for those that the next message is for, or for all before the first one.
+  /// Whether a message without a reader waits for one.
+  [[nodiscard]] bool waits_for_peer() const {
+    if (readers_ == 0) return false;
+    return !begun_ || !stays_ || (policy_.writer_waits() && !absence_.is_over());
+  }
+
+  /// Waits for those that the next message is for, or for all before the first one. Who has left
+  /// is awaited no longer than the policy says.
   Status await_readers() {
     const bool any = begun_ ? readers_ != 0 : readers_ < 0;
     const auto readers = any ? 1 : begun_ ? 0 : static_cast<std::size_t>(readers_);
     let_in();
     const bool awaits = peers_.size() < readers && options_.awaits_reader;
     if (awaits) options_.awaits_reader(true);
-    for (; peers_.size() < readers; let_in()) {
-      auto come = wait_for(loop_->descriptor(), POLLIN, options_.stop);
-      if (!come) return come.error();
+    Status outcome;
+    for (; outcome && peers_.size() < readers; let_in()) {
+      const auto now = std::chrono::steady_clock::now();
+      if (begun_ && !absence_.waits(0, now)) {
+        if (options_.log) options_.log(Severity::Warning, absence_.line());
+        break;
+      }
+      auto come = wait_for(loop_->descriptor(), POLLIN, options_.stop, absence_.due());
+      if (!come) outcome = come.error();
     }
+    absence_.end();
     if (awaits) options_.awaits_reader(false);
-    return {};
+    return outcome;
   }
 
   void leave(std::size_t peer) {
@@ -210,6 +226,7 @@ class ListeningSink final : public Sink {
   bool stays_;            // when all who were waited for have left
   Policy policy_;         // of each peer
   LinkOptions options_;
+  Patience absence_;                 // with all peers that have left
   bool begun_ = false;               // the readers that were to be waited for have come
   TimePoint last_send_, last_look_;  // the latter: who wants to be let in
   Encoder encoder_;

@@ -116,6 +116,7 @@ Result<bool> StreamWriter::write() {
 }
 
 void StreamWriter::advance(std::size_t size) {
+  total_ += size;
   std::size_t small = std::min(size, gathered());
   written_ += small;
   if (gathered() == 0) {

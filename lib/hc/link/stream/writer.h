@@ -26,6 +26,8 @@ class StreamWriter {
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
   [[nodiscard]] bool is_socket() const { return is_socket_; }
   [[nodiscard]] bool empty() const { return gathered() == 0 && large_left_ == 0 && !has_unsent(); }
+  /// Bytes that have been written, over all descriptors.
+  [[nodiscard]] std::uint64_t total() const { return total_; }
   /// Bytes in the buffer that are not written yet.
   [[nodiscard]] std::size_t gathered() const { return bytes_.size() - written_; }
 
@@ -85,6 +87,7 @@ class StreamWriter {
   std::vector<std::size_t> ends_;  // of the messages in bytes_
   Parcel large_;
   std::size_t large_left_ = 0;  // to be written of it [byte]
+  std::uint64_t total_ = 0;
 };
 
 }  // namespace hc::internal
