@@ -19,38 +19,39 @@ struct CatOptions {
   std::uint64_t limit = kDefaultLimit;
 };
 
-/// Takes the next message, its elements expanded unless they go out as they came; false at the end.
-bool take(const CatOptions& options, hc::Source& source, hc::Message& message,
-          hc::Message& expanded) {
-  if (!receive(source, message, options.uri)) return false;
-  if (!options.raw) expanded = value_or_fail(hc::expand(message), options.uri);
-  return true;
-}
-
 void run(const CatOptions& options) {
   auto source = open_source(source_uri(options.uri, options.of), options.limit);
   std::unique_ptr<hc::Sink> raw;
   if (options.raw) raw = open_sink("-");
   Skipper skipper("hc cat");
-  hc::Message message, expanded;
+  hc::Message message;
+  std::uint64_t damaged = 0;  // whole messages, whose compressed elements are
   for (std::uint64_t shown = 0; options.count == 0 || shown < options.count;) {
     try {
-      if (!take(options, *source, message, expanded)) break;
+      if (!receive(*source, message, options.uri)) break;
     } catch (const Failure& failure) {
       if (!options.skip) throw;
       skipper.skip(*source, failure, options.uri);
       continue;
     }
+    auto expanded = options.raw ? hc::Result<hc::Message>(message) : hc::expand(message);
+    if (!expanded) {
+      if (damaged++ == 0) say(hc::format("hc cat: {}: {}", options.uri, expanded.error().text()));
+      continue;
+    }
     // In JSON the header is printed unchanged.
     bool is_read = options.raw    ? send(*raw, message, "-")
-                   : options.json ? write_json(expanded, message.header, print)
-                                  : print(to_readable(expanded));
+                   : options.json ? write_json(*expanded, message.header, print)
+                                  : print(to_readable(*expanded));
     if (!is_read) break;
     skipper.whole_message();
     ++shown;
   }
   if (raw != nullptr) static_cast<void>(raw->close());
   say_losses("hc cat", options.uri, source->traffic());
+  if (damaged > 0 && !options.skip)
+    throw Failure(options.uri,
+                  {hc::Code::Malformed, hc::format("{} damaged messages were left out", damaged)});
 }
 
 }  // namespace

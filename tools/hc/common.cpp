@@ -91,7 +91,8 @@ std::string losses_in_words(const hc::Traffic& traffic) {
   for (auto [count, reason] : {std::pair(traffic.over_rate, "throttled"),
                                {traffic.superseded, "dropped (newer arrived)"},
                                {traffic.over_memory, "dropped (no memory left)"},
-                               {traffic.cut, "lost without a reader"}})
+                               {traffic.cut, "lost without a reader"},
+                               {traffic.timed_out, "dropped (the reader hung)"}})
     if (count > 0) reasons += hc::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
   return reasons;
 }

@@ -14,6 +14,9 @@ namespace {
 /// that the bytes cannot keep. A block of zstd takes 4 bytes at least, 3 of them its header, and
 /// holds 128 KiB at most (RFC 8878, 3.1.1.2).
 constexpr std::uint64_t kMaxExpansion = (std::uint64_t{128} << 10) / 4;
+/// What is larger than this must not become more than so many times what came, so that memory
+/// follows what has arrived: flat images do, and a few thousand bytes cannot take all there is.
+constexpr std::uint64_t kLarge = std::uint64_t{64} << 20, kMaxLargeExpansion = 256;
 
 }  // namespace
 
@@ -21,6 +24,12 @@ Result<Message> expand_zstd(const Message& message) {
   std::uint64_t promised = message.header.element_bytes();
   if (message.elements.empty()) return damaged(36, "no zstd frame", message);
   if (promised / kMaxExpansion > message.elements.size()) return too_few_bytes(36, message);
+  if (promised > kLarge && promised / kMaxLargeExpansion > message.elements.size())
+    return Error{Code::TooLarge, "R36 elements: " + std::to_string(message.elements.size()) +
+                                     " compressed bytes for " + std::to_string(promised) +
+                                     " are fewer than one in " +
+                                     std::to_string(kMaxLargeExpansion) + ", at byte " +
+                                     std::to_string(message.byte)};
   // All in one call: it writes into our bytes alone, needs no window, and stops at their end.
   SharedBytes bytes = allocate_bytes(promised);
   std::size_t size =

@@ -18,8 +18,9 @@ using internal::kNoPort;
 using internal::LinkedSink;
 using internal::Stopped;
 
-constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
-constexpr const char* kSetsKept = "4";      // by links whose newest complete set is handled
+constexpr const char* kReportsKept = "64";     // for one who does not listen for a while
+constexpr const char* kSetsKept = "4";         // by links whose newest complete set is handled
+constexpr const char* kTimeoutInGraphs = "5";  // [s]; where the graph does not say (G16)
 /// A line about a link waits for so long: at the end of a graph it means nothing.
 constexpr std::chrono::milliseconds kLineDelay{200};
 constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
@@ -116,6 +117,10 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   if (const auto* commands = management_.commands(); commands != nullptr)
     options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
   Uri opened = uri;
+  // By the clock of messages nothing is ever lost.
+  const bool is_live = management_.commands() != nullptr && !module_.message_time_;
+  if (is_live && opened.option("timeout", "").empty())
+    opened.options.emplace_back("timeout", kTimeoutInGraphs);
   auto conversion = take_conversion(opened);
   if (!conversion) fail(name_of(uri.text(), port), conversion.error());
   auto sink = open_sink(opened, options);
@@ -184,6 +189,7 @@ bool Module::Loop::join_renewed() {
     }
     renewed->past += link->past;
     renewed->ignored += link->ignored;
+    renewed->bad += link->bad;
     renewed->number = link->number;
     link = sources_.erase(link);
     any = true;
@@ -341,7 +347,14 @@ bool Module::Loop::take_each() {
 }
 
 void Module::Loop::handle_newest() {
-  for (auto& together : module_.together_) module_.handle(*together);
+  for (auto& together : module_.together_) {
+    if (together->set.empty()) continue;
+    const auto link = std::ranges::find_if(sources_, [&](const auto& each) {
+      return each.inputs.front()->together == together.get();
+    });
+    if (link == sources_.end()) continue;  // it was unlinked
+    drop_bad(*link, link->inputs.front()->name, [&] { module_.handle(*together); });
+  }
 }
 
 bool Module::Loop::take_one(Inlet& link) {
@@ -382,7 +395,7 @@ bool Module::Loop::is_linked(const internal::InputState& input) const {
 }
 
 void Module::Loop::end(Inlet& link) {
-  link.past = link.traffic();
+  link.past += link.source->traffic();
   link.source.reset();
   link.head.reset();
   for (auto* input : link.inputs)
@@ -443,24 +456,32 @@ void Module::Loop::deliver(Inlet& link, Message& message) {
     }
     if (input->is_raw || message.plain()) return call(*input, link, message);
     auto plain = expand(message);
-    if (!plain) fail(input->name, plain.error());
+    if (!plain) return drop(link, input->name, plain.error().text());
     return call(*input, link, *plain);
   }
-  refuse(link, message);
+  const bool is_one = link.inputs.size() == 1;
+  drop(link, is_one ? link.inputs.front()->name : link.uri, misfit_of(link, message).text());
 }
 
-/// Ends the module, since a message fits no input of its link.
-void Module::Loop::refuse(const Inlet& link, const Message& message) const {
+/// Drops a message; it was handed over, so that its link goes on. The first is logged.
+void Module::Loop::drop(Inlet& link, const std::string& who, std::string_view why) {
+  ++link.bad;
+  has_failed_input_ = has_failed_input_ || link.is_file();
+  module_.log_once("bad at " + who, who + ": dropped: " + std::string(why));
+}
+
+/// Why a message fits no input of its link.
+Error Module::Loop::misfit_of(const Inlet& link, const Message& message) {
   const auto& only = *link.inputs.back();
   if (link.inputs.size() == 1 && only.types.size() == 1)
-    fail(only.name, misfit(message.header, only.types[0]));
+    return misfit(message.header, only.types[0]);
   std::string takers;
   for (const auto* input : link.inputs)
     takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
   const Header& header = message.header;
   std::string what = matrix_text(header.info, header.width, header.height);
   if (header.coord != 0) what += " in coordinate system " + coord_and_number(header.coord);
-  fail(link.uri, Error{Code::Malformed, what + " fits no input: " + takers});
+  return {Code::Malformed, what + " fits no input: " + takers};
 }
 
 void Module::Loop::call(const internal::InputState& input, Inlet& link, Message& message) {
@@ -469,14 +490,14 @@ void Module::Loop::call(const internal::InputState& input, Inlet& link, Message&
     return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
   }
   module_.handled_ = internal::Handled(message.header, &link.route.peer);
-  if (trace_ == nullptr || input.together != nullptr) [[likely]] {
-    input.handler(message);
-  } else {
+  drop_bad(link, input.name, [&] {
+    if (trace_ == nullptr || input.together != nullptr) [[likely]]
+      return input.handler(message);
     const Header header = message.header;  // a handler may move the message away
     note(TraceEvent::What::Began, input.name, header, link.number);
     input.handler(message);
     note(TraceEvent::What::Ended, input.name, header, link.number);
-  }
+  });
   module_.handled_ = {};
 }
 

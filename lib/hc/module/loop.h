@@ -37,14 +37,18 @@ struct Inlet {
   bool is_latest = false;          ///< keep=latest, of an input that is taken together with others
   Traffic past = {};               ///< of sources that have ended
   std::uint64_t ignored = 0;       ///< messages that no handler got: another mode has the focus
+  std::uint64_t bad = 0;           ///< messages that were dropped; see BadMessage
   Quantiles ages = {}, gaps = {};  ///< of the messages since the last report; gaps between them
   MonotonicTime last_come{0};      ///< the message before; 0: none
 
   [[nodiscard]] Traffic traffic() const {
     Traffic all = past;
     if (source != nullptr) all += source->traffic();
+    all.bad += bad;
     return all;
   }
+  /// Whether it cannot go on, once all has been read: a file, or standard input.
+  [[nodiscard]] bool is_file() const { return uri == "-" || uri.starts_with("file:"); }
   [[nodiscard]] bool is_same(const Inlet& other) const {
     return uri == other.uri && inputs == other.inputs;
   }
@@ -69,6 +73,9 @@ struct Module::Loop {
   void pause(const std::function<MonotonicTime()>& due);
   /// Ends the outputs.
   void close();
+  /// Whether a file or standard input had messages that were dropped since they were bad, so that
+  /// the module has not done its work.
+  [[nodiscard]] bool has_failed_input() const { return has_failed_input_; }
   /// @param blocked  the link whose reader the module waits for; null: none.
   void report_state(const internal::LinkedSink* blocked = nullptr);
   /// Notes a moment in the way of a message, while the module is traced.
@@ -106,7 +113,18 @@ struct Module::Loop {
   void measure(internal::Inlet& link, std::int64_t sensed, MonotonicTime come);
   void handle(internal::Inlet& link, Message& message);
   void deliver(internal::Inlet& link, Message& message);
-  [[noreturn]] void refuse(const internal::Inlet& link, const Message& message) const;
+  static Error misfit_of(const internal::Inlet& link, const Message& message);
+  void drop(internal::Inlet& link, const std::string& who, std::string_view why);
+  /// Handles a message, or a set of them, which may be bad.
+  template <typename Handle>
+  void drop_bad(internal::Inlet& link, const std::string& who, const Handle& handle) {
+    try {
+      handle();
+    } catch (const BadMessage& bad) {
+      module_.handled_ = {};
+      drop(link, who, bad.what());
+    }
+  }
   void call(const internal::InputState& input, internal::Inlet& link, Message& message);
   void fire_timers();
   void read_watched();
@@ -174,6 +192,7 @@ struct Module::Loop {
   MonotonicTime reported_{0}, attended_{0};
   // With --clock messages: whether the generator is called next; has been since the last message,
   // and keeps no rate; and whether all messages have been handled.
+  bool has_failed_input_ = false;
   bool generates_next_ = false, has_generated_ = false, has_ended_ = false;
 };
 

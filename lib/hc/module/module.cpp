@@ -324,6 +324,7 @@ int Module::run_loop(const internal::Arguments& arguments) {
       if (finishes_) loop.take_rest();
     }
     loop.close();
+    if (loop.has_failed_input()) return kFailure;  // as has been logged
   } catch (const internal::Stopped&) {
     // Stopped while its links opened or closed.
   } catch (const ModuleError& error) {

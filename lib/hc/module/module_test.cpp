@@ -368,16 +368,89 @@ TEST(Module, OneInTheBackgroundYieldsTheProcessor) {
   EXPECT_EQ(policy, SCHED_BATCH);
 }
 
-TEST(Module, AMessageThatDoesNotFitIsOneCleanLine) {
+TEST(Module, ABadMessageIsOneBadMessage) {
   Module module{"strict", "Takes positions."};
-  auto in = module.input("in", position<double>(), "");
-  module.on(in, [](const auto&) { FAIL(); });
+  auto in = module.input("in", any_of(position<double>(), rgb_image<std::uint8_t>()), "");
+  int handled = 0;
+  module.on(in, [&](const Message& message) {
+    if (message.header.seq == 3) throw BadMessage("it is the third");
+    ++handled;
+  });
   auto sink = sink_of("inproc:m4");
-  ASSERT_TRUE(sink->send(table({1.0})));
+  auto reports = source_of("inproc:m4_reports");
+  Message image;
+  image.header.info = {MatrixType::RgbImage, 3, Scalar::U8, Encoding::Jpeg};
+  image.header.width = image.header.height = 8;
+  const std::string garbage(36, 'x');
+  image.elements = std::as_bytes(std::span(garbage));
+  Message frame = image;
+  frame.header.info.encoding = Encoding::Zstd;
+  Message refused = position(1.0, 2.0, 3.0);
+  refused.header.seq = 3;
+  for (const Message& message : std::initializer_list<Message>{
+           position(1.0, 2.0, 3.0), table({1.0}), image, frame, refused, position(1.0, 2.0, 3.0)})
+    ASSERT_TRUE(sink->send(message));
+  ASSERT_TRUE(sink->close());
   ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in", "inproc:m4", "--name", "north"}), 1);
+  EXPECT_EQ(run(module, {"--in", "inproc:m4", "--name", "north", "--manage=inproc:m4_reports"}), 0);
+  EXPECT_EQ(handled, 2);
+  EXPECT_EQ(
+      ::testing::internal::GetCapturedStderr(),
+      "north: in: dropped: Malformed: table 1 x 1 of 1 x f64 fits no input: in takes position "
+      "of 3 x f64 or rgb_image of 3 x u8 (further ones are counted, not logged)\n"
+      "north: total: 4 bad at in\n");
+  Message report;
+  std::uint64_t bad = 0;
+  while (*reports->take(report) == Got::Message)
+    if (report.header.src == static_cast<int>(Report::Counters))
+      bad = read_counters(report).at(0).traffic.bad;
+  EXPECT_EQ(bad, 4U);
+}
+
+TEST(Module, ABadSetIsDropped) {
+  Module module{"pair", "Takes pairs."};
+  auto left = module.input("left", table<double>(), "");
+  auto right = module.input("right", table<double>(), "");
+  int handled = 0;
+  module.on(together(left, right), [&](const auto& one, const auto&) {
+    if (one.header.time == 1) throw BadMessage("it does not belong");
+    ++handled;
+  });
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (const char* name : {"inproc:m_left", "inproc:m_right"}) {
+    auto sink = sink_of(name);
+    for (std::int64_t time : {1, 2}) ASSERT_TRUE(sink->send(table({1.0}).at(time)));
+    ASSERT_TRUE(sink->close());
+    sinks.push_back(std::move(sink));
+  }
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "left=inproc:m_left", "--in", "right=inproc:m_right"}), 0);
+  EXPECT_EQ(handled, 1);
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("pair: total: 1 bad at "),
+            std::string::npos);
+}
+
+TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
+  const std::string file = ::testing::TempDir() + "bad_messages.mtp";
+  {
+    auto sink = sink_of("file:" + file);
+    for (double number : {1.0, 2.0}) {
+      ASSERT_TRUE(sink->send(position(1.0, 2.0, 3.0)));
+      ASSERT_TRUE(sink->send(table({number})));
+    }
+    ASSERT_TRUE(sink->close());
+  }
+  Module module{"adder", "Adds."};
+  auto in = module.input("in", table<double>(), "");
+  double sum = 0;
+  module.on(in, [&](const auto& message) { sum += message.matrix().at(0, 0); });
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "file:" + file}), 1);
+  EXPECT_EQ(sum, 3);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
-            "north: Malformed: in: R17 info: table does not fit, the port takes position\n");
+            "adder: in: dropped: Malformed: R17 info: position does not fit, the port takes table "
+            "(further ones are counted, not logged)\nadder: total: 2 bad at in\n");
+  std::remove(file.c_str());
 }
 
 TEST(Module, EndsWhenNobodyReadsItAnyMore) {

@@ -43,6 +43,11 @@ class StreamReader {
     return state_ == State::Body ? body_size_ - body_filled_ : 0;
   }
 
+  /// Whether a part of a header line has come, and not its end.
+  [[nodiscard]] bool in_header() const {
+    return state_ == State::Head && begin_ != end_ && unread().find('\n') == std::string_view::npos;
+  }
+
   /// Takes the next whole message; false when more bytes are needed first.
   ///
   /// Errors: Malformed, Unsupported, TooLarge, with rule, field and byte; the same again from then

@@ -46,6 +46,30 @@ TEST_P(SocketLink, ALossIsLoggedAndItsEnd) {
                                 with(dial(), "reconnect=60") + ": reconnected"}));
 }
 
+TEST_P(SocketLink, GarbageIsTheEndOfAConnectionAndNotOfTheLink) {
+  Warnings warnings;
+  auto options = warnings.options();
+  options.limits.element_bytes = 1000;
+  auto source = source_of(with(dial(), "reconnect=60"), options);
+  Message message;
+  for (int i = 0; i < 2; ++i) {
+    auto sink = sink_of(with(listen(), "readers=1"));
+    std::thread sender([&] {
+      ASSERT_TRUE(sink->send(numbered(i, 10)));
+      if (i == 0) static_cast<void>(sink->send(numbered(9, 2000)));  // whose header is refused
+    });
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, i);
+    while (i == 0 && source->traffic().bad == 0) {
+      ASSERT_EQ(*source->take(message), Got::Nothing);
+      ASSERT_TRUE(source->wait());
+    }
+    sender.join();
+  }
+  EXPECT_EQ(source->traffic().bad, 1U);
+  EXPECT_NE(warnings.lines.at(0).find("TooLarge: "), std::string::npos) << warnings.lines[0];
+}
+
 TEST_P(SocketLink, ASinkThatLosesNothingWaitsForEachReader) {
   auto sink = sink_of(with(dial(), "reconnect=60"));
   std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });

@@ -35,6 +35,7 @@ Result<ConnectedSocket> Dialer::dial(TimePoint now) {
   if (now >= log_due_) log_loss();
   if (has_connected) {
     was_there_ = true;
+    connected_at_ = now;
     set_up_connection(attempt_.get());
     return std::move(attempt_);
   }
@@ -74,7 +75,7 @@ void Dialer::lost(TimePoint now, bool was_of_use, std::string why,
   log_due_ = now + log_after;
   if (log_due_ <= now) log_loss();
   give_up_ = now + patience_;
-  if (was_of_use) backoff_.reset();
+  if (was_of_use || now - connected_at_ >= kFirstPause) backoff_.reset();
   next_try_ = was_of_use ? now : std::min(now + draw_pause(backoff_, random_), give_up_);
 }
 

@@ -85,7 +85,8 @@ class Dialer {
   /// The owner uses the connection that it has got.
   void in_use();
   /// The owner has lost it. The next try is made at once, or after a pause where the connection was
-  /// of no use: a peer that accepts and closes each time costs no more than a refusing one.
+  /// of no use: a peer that accepts and closes each time costs no more than a refusing one. Pauses
+  /// grow where it lived for less than the first of them.
   /// @param why  for the log, and the error once patience is at its end.
   /// @param log_after  … which is not logged if a connection is in use by then.
   void lost(TimePoint now, bool was_of_use, std::string why,
@@ -105,7 +106,7 @@ class Dialer {
   bool is_awaited_ = false;  // as has been logged
   std::minstd_rand random_{std::random_device{}()};
   Backoff backoff_;
-  TimePoint begin_, give_up_, next_try_;
+  TimePoint begin_, give_up_, next_try_, connected_at_;
   std::size_t turn_ = 0;  // of the addresses
   bool is_refused_ = false, was_silent_ = false;
   ConnectedSocket attempt_;

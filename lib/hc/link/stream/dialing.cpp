@@ -39,11 +39,13 @@ class DialingSource final : public Source {
         if (source_ == nullptr) break;
       }
       auto got = source_->take(message);
-      bool is_lost = got ? *got == Got::End
-                         : got.error().code == Code::Truncated || got.error().code == Code::Closed;
-      if (!is_lost) return got;
-      if (!got && got.error().code == Code::Truncated) ++past_.cut;
-      lose_connection(got ? "" : in_words(got.error()));
+      if (got && *got != Got::End) return got;
+      if (!got && got.error().code == Code::System) return got;
+      const auto code = got ? Code::Closed : got.error().code;
+      if (code == Code::Truncated) ++past_.cut;
+      const bool is_bad = code != Code::Truncated && code != Code::Closed;
+      if (is_bad) ++past_.bad;
+      lose_connection(got ? "" : in_words(got.error()), is_bad);
     }
     message = {};
     return ended_ ? Got::End : Got::Nothing;
@@ -87,15 +89,15 @@ class DialingSource final : public Source {
     return {};
   }
 
-  /// @param why  empty: the sender has closed.
-  void lose_connection(const std::string& why) {
+  /// @param why  empty: the sender has closed. @param is_bad  it has said what is no message.
+  void lose_connection(const std::string& why, bool is_bad) {
     const bool was_heard = source_->traffic().messages > 0;
     past_ += source_->traffic();
     watch_.reset();
     source_.reset();
     if (finishing_) return;
     auto now = std::chrono::steady_clock::now();
-    const bool was_of_use = was_heard && now - connected_at_ >= Dialer::kUseTime;
+    const bool was_of_use = !is_bad && was_heard && now - connected_at_ >= Dialer::kUseTime;
     if (why.empty())
       dialer_->lost(now, was_of_use, "sender closed", kLogAfter);
     else

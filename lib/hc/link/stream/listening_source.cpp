@@ -12,6 +12,9 @@
 namespace hc::internal {
 namespace {
 
+/// Who is silent inside a message for so long gives its place to who waits for one.
+constexpr std::chrono::seconds kLongSilence{30};
+
 /// Takes turns with those of its peers who have messages; see listening_source().
 class ListeningSource final : public Source {
  public:
@@ -37,12 +40,16 @@ class ListeningSource final : public Source {
       Peer& peer = *ready_[turn_];
       auto got = peer.source->take(message);
       if (!got || *got == Got::End) {
-        leave(peer, got ? "" : "closed a connection: " + in_words(got.error()));
+        const bool is_bad = !got && got.error().code != Code::Truncated &&
+                            got.error().code != Code::Closed && got.error().code != Code::System;
+        leave(peer, got ? "" : "closed a connection: " + in_words(got.error()), is_bad);
       } else if (*got == Got::Nothing) {
         peer.is_ready = false;
         std::erase(ready_, &peer);
+        await_rest(peer);
       } else {
         peer.heard = ++count_;
+        peer.header_due.reset();
         ++turn_;
         return Got::Message;
       }
@@ -62,8 +69,21 @@ class ListeningSource final : public Source {
     std::unique_ptr<StreamSource> source;
     std::uint64_t heard = 0;  // when: the number of messages and peers that had come by then
     bool is_ready = false;    // is in ready_
-    Loop::Handle watch;
+    TimePoint said_at;        // something of a message, last
+    Loop::Handle watch, header_due;
   };
+
+  /// A peer that begins a message must say its header in time; inside a message it may be silent
+  /// for long only as long as nobody else waits for its place.
+  void await_rest(Peer& peer) {
+    constexpr std::chrono::seconds kHeaderTime{5};
+    peer.said_at = std::chrono::steady_clock::now();
+    if (!peer.source->in_header()) return peer.header_due.reset();
+    if (peer.header_due) return;
+    peer.header_due = loop_->call_at(peer.said_at + kHeaderTime, [this, each = &peer] {
+      leave(*each, "closed a connection: no whole header in 5 s");
+    });
+  }
 
   /// Lets in who waits, as far as there is room or can be made.
   void accept_all() {
@@ -87,24 +107,27 @@ class ListeningSource final : public Source {
     });
   }
 
-  /// The peer whose last message was longest ago, of those that say nothing now; peers_.size() when
-  /// there is none.
+  /// The peer whose last message was longest ago, of those that say nothing now, or are silent for
+  /// long inside a message; peers_.size() when there is none.
   [[nodiscard]] std::size_t find_idlest() const {
     std::size_t idlest = peers_.size();
     for (std::size_t i = 0; i < peers_.size(); ++i) {
       const auto& source = peers_[i]->source;
       int unread = 0;
       if (idlest < peers_.size() && peers_[i]->heard > peers_[idlest]->heard) continue;
-      if (!source->between_messages() || ::ioctl(source->descriptor(), FIONREAD, &unread) != 0)
+      const bool is_inside = !source->between_messages();
+      if (is_inside && std::chrono::steady_clock::now() - peers_[i]->said_at < kLongSilence)
         continue;
+      if (::ioctl(source->descriptor(), FIONREAD, &unread) != 0) continue;
       if (unread == 0) idlest = i;
     }
     return idlest;
   }
 
-  void leave(const Peer& peer, std::string_view why) {
+  void leave(const Peer& peer, std::string_view why, bool is_bad = false) {
     if (!why.empty() && options_.log) options_.log(Severity::Warning, why);
     left_ += peer.source->traffic();
+    left_.bad += is_bad ? 1 : 0;
     std::erase(ready_, &peer);
     std::erase_if(peers_, [&](const auto& entry) { return entry.get() == &peer; });
   }

@@ -29,6 +29,8 @@ class StreamSource final : public Source {
   Status resume() override;
   /// Whether nothing has come yet of the next message.
   [[nodiscard]] bool between_messages() const { return reader_.finish().has_value(); }
+  /// Whether a part of the next message's header line has come.
+  [[nodiscard]] bool in_header() const { return reader_.in_header(); }
 
  private:
   [[nodiscard]] bool awaits_writer() const;
