@@ -35,12 +35,15 @@ class GraphReader {
     if (!root || !check_version(*root)) return graph;
     including_.push_back(std::filesystem::path(graph.file).lexically_normal().string());
     Restart restart = Restart::Failure;
+    Lined<std::int64_t> timeout, hang;
     auto module = [&](const Node& node) { add_module(graph, node); };
     auto included = [&](const Node& node) { include(graph, node); };
     const std::size_t before = problems_.size();
     fields_.read(*root, "at the top of the file",
                  {{"version", [](const Node&) {}},
                   {"restart", internal::read_restart(fields_, restart)},
+                  {"timeout", fields_.integer(timeout, 0, internal::kMaxSeconds)},
+                  {"hang", fields_.integer(hang, 0, internal::kMaxSeconds)},
                   {"modules", fields_.each(module)},
                   {"hosts", internal::read_hosts(fields_, graph)},
                   {"modes", internal::read_modes(fields_, graph)},
@@ -53,6 +56,13 @@ class GraphReader {
     for (auto& each : graph.modules)  // of those that do not say it themselves
       if (const Node* table = root->find("modules")->find(each.name); !table->find("restart"))
         each.restart = restart;
+    for (auto& each : graph.modules)
+      if (each.hang.place.line == 0) each.hang = hang;
+    if (timeout.place.line != 0)
+      for (auto& link : graph.links)
+        if (link.from.uri.empty())
+          link.policy.try_emplace("timeout",
+                                  Lined<std::string>{std::to_string(timeout.value), timeout.place});
     if (const Node* graphs = root->find("graphs")) fields_.each(included)(*graphs);
     including_.pop_back();
     if (root->find("workspace") != nullptr)

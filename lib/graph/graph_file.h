@@ -59,6 +59,7 @@ struct GraphModule {
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports
   std::map<std::string, Lined<Addressee>> to;            ///< of output ports
   Restart restart = Restart::Failure;
+  Lined<std::int64_t> hang;  ///< without a report for so long it is restarted [s]; 0: never
   std::optional<Lined<std::string>> mode;     ///< a task's
   std::vector<Lined<std::string>> modes;      ///< it works in; empty: all
   std::vector<Lined<std::string>> exclusive;  ///< inputs that take the mode in focus alone
@@ -154,8 +155,8 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
                   const ReadFile& read_file = {});
 
 /// The keys of a link's policy, in the order in which they are read.
-inline constexpr std::array<std::string_view, 7> kPolicyKeys = {
-    "keep", "rate", "burst", "memory", "as", "quality", "scale"};
+inline constexpr std::array<std::string_view, 8> kPolicyKeys = {
+    "keep", "rate", "burst", "memory", "timeout", "as", "quality", "scale"};
 
 /// Whether a policy makes sense as far as it is in a URI's options. Errors: Invalid.
 Status check_policy(Uri policy);

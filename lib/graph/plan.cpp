@@ -32,6 +32,7 @@ class ModulePlanner {
     planned_.group = module_.group;
     planned_.options = {"--name", module_.name};
     planned_.restart = module_.restart;
+    planned_.hang = std::chrono::seconds(module_.hang.value);
     planned_.ends_graph = module_.ends_graph;
     planned_.manage_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name + ".manage";
     if (description.control && !description.knows("unix"))
@@ -210,6 +211,8 @@ Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Pr
   internal::plan_frames(planning);
   if (!problems.empty()) return std::move(planning.plan);
   internal::plan_links(planning);
+  internal::check_motion(planning);
+  planning.plan.warnings = problems.warnings();
   for (const auto& module : planning.graph.modules)
     for (const auto& output : planning.described.at(module.name).outputs)
       if (const GraphPort port{module.name, output.name, {}}; !planning.is_read(port))

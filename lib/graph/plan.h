@@ -3,6 +3,7 @@
 // From a graph to the commands that run it: every name is checked against what the modules say of
 // themselves (--describe), and every link gets its two ends. Pure.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -43,6 +44,7 @@ struct PlannedModule {
   std::string manage_uri;                         ///< where the runner listens to it
   std::string control_uri;  ///< where it listens to the runner; empty: it does not
   Restart restart = Restart::Failure;
+  std::chrono::seconds hang{0};     ///< without a report for so long it is restarted; 0: never
   std::string mode;                 ///< of a task; empty: none
   std::vector<std::string> modes;   ///< it works in; empty: all
   std::string workspace;            ///< whose focus it obeys; empty: none
@@ -79,6 +81,7 @@ struct Plan {
   std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
   std::set<std::string> workspaces;               ///< modules that publish the focus
   std::vector<std::string> unlinked;              ///< outputs without a link, "MODULE.PORT"
+  std::vector<std::string> warnings;              ///< what may not be meant, as Problems::lines()
   /// Of links over TCP, by their names: the port is theirs for as long as a plan has it.
   std::map<std::string, std::shared_ptr<const internal::HeldPort>> ports;
   std::string frames;  ///< as text (G31), by the names of the file

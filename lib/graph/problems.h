@@ -36,6 +36,8 @@ class Problems {
   }
 
   void add(const Place& place, std::string what) { found_.push_back({place, std::move(what)}); }
+  /// Notes what is not wrong, and may not be meant.
+  void warn(const Place& place, std::string what) { warnings_.push_back({place, std::move(what)}); }
 
   [[nodiscard]] bool empty() const { return found_.empty(); }
   [[nodiscard]] std::size_t size() const { return found_.size(); }
@@ -46,8 +48,17 @@ class Problems {
 
   /// Each as "FILE:LINE: WHAT", "--set: WHAT" or "WHAT", in the order of the files and their lines,
   /// after those in no file; what would end a line is shown as \x0a.
-  [[nodiscard]] std::vector<std::string> lines() const {
-    auto sorted = found_;
+  [[nodiscard]] std::vector<std::string> lines() const { return lines_of(found_); }
+  /// The warnings in the same way.
+  [[nodiscard]] std::vector<std::string> warnings() const { return lines_of(warnings_); }
+
+ private:
+  struct Problem {
+    Place place;
+    std::string what;
+  };
+
+  [[nodiscard]] std::vector<std::string> lines_of(std::vector<Problem> sorted) const {
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
       return std::pair(a.place.file, a.place.line) < std::pair(b.place.file, b.place.line);
     });
@@ -57,7 +68,6 @@ class Problems {
     return lines;
   }
 
- private:
   [[nodiscard]] std::string before(const Place& place) const {
     if (place.line == 0) return place.file == kCommandLine.file ? "--set: " : "";
     return file(place.file) + ":" + std::to_string(place.line) + ": ";
@@ -76,13 +86,8 @@ class Problems {
     return result;
   }
 
-  struct Problem {
-    Place place;
-    std::string what;
-  };
-
   std::vector<std::string> files_;
-  std::vector<Problem> found_;
+  std::vector<Problem> found_, warnings_;
 };
 
 }  // namespace hc

@@ -69,6 +69,8 @@ void visit_module(Module& module, Visit visit) {
   visit("workspace", module.workspace);
   visit("in_focus", module.in_focus);
   visit("in_workspace", module.in_workspace);
+  visit("waits_for", module.waits_for);
+  visit("waits", module.waits);
   visit("last_line", module.last_line);
   visit("last_line_age", module.last_line_age);
   visit("parameters", module.parameters);
@@ -102,7 +104,9 @@ void visit_link(Link& link, Visit visit) {
   visit("dropped_newer", link.traffic.superseded);
   visit("dropped_memory", link.traffic.over_memory);
   visit("dropped_disconnect", link.traffic.cut);
+  visit("dropped_timeout", link.traffic.timed_out);
   visit("ignored", link.ignored);
+  visit("bad", link.traffic.bad);
   visit("age", link.age);
   visit("gap", link.gap);
   visit("in_workspace", link.in_workspace);

@@ -48,6 +48,8 @@ struct ModuleState {
   double last_line_age = 0;        ///< [s]
   bool in_focus = true;
   bool in_workspace = false;
+  std::string waits_for;        ///< the input whose reader it waits for; empty: unknown
+  std::optional<double> waits;  ///< since when [s]; nothing: it does not wait
   std::map<std::string, std::string> parameters;
 };
 

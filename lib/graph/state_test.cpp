@@ -59,11 +59,11 @@ TEST(State, IsOneLineOfJson) {
       R"("modules":[{"name":"camera","program":"camera","host":"robot","group":"",)"
       R"("pid":0,"status":"given up","detail":"failed with status 1","restarts":0,"exit":1,)"
       R"("cpu":0.0,"memory":0,"mode":"","modes":[],"workspace":"left","in_focus":true,"in_workspace":false,)"
-      R"("last_line":"no device","last_line_age":2.0,)"
+      R"("waits_for":"","waits":null,"last_line":"no device","last_line_age":2.0,)"
       R"("parameters":{"source":"a \"b\"\n"}}],"links":[{"from":"camera.left",)"
       R"("to":"view.image","transport":"shm","status":"","keep":"latest","rate":5.0,"messages":7,"bytes":0,)"
       R"("per_second":0.0,"bytes_per_second":0.0,"delayed":0,"throttled":4,"dropped_newer":3,)"
-      R"("dropped_memory":0,"dropped_disconnect":0,"ignored":0,"age":[0.5,1.0,2.0],"gap":null,)"
+      R"("dropped_memory":0,"dropped_disconnect":0,"dropped_timeout":0,"ignored":0,"bad":0,"age":[0.5,1.0,2.0],"gap":null,)"
       R"("in_workspace":false}]})");
 }
 

@@ -280,20 +280,72 @@ class Watching(Graphs):
         end = "unix-listen:@hc_%d" % os.getpid()
         text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
         name, process = self.run_named("waits", text, "camera: started")
+        waits = "camera .* waits for %s since [0-9.]+ .?s\n" % end
+        wait_until(lambda: re.search(waits, self.hc("top " + name)))
         wait_until(
-            lambda: re.search(
-                "camera .* blocked: no reader on output left\n", self.hc("top " + name)
-            )
-        )
-        self.assertIn(
-            "camera  (blocked: no reader on output left)\n", self.hc("graph --of " + name)
+            lambda: "camera  (blocked: output left waits for its reader)\n"
+            in self.hc("graph --of " + name)
         )
         self.assertRegex(self.hc("ps"), name + " .* 1/1 .* running\n")
         camera = self.module(self.state(self.observe(process, name), lambda state: True), "camera")
         os.kill(camera["pid"], signal.SIGSTOP)
         wait_until(lambda: "stalled: stopped by a signal" in self.hc("top " + name))
         os.kill(camera["pid"], signal.SIGCONT)
-        wait_until(lambda: "blocked: no reader on output left" in self.hc("top " + name))
+        wait_until(lambda: re.search(waits, self.hc("top " + name)))
+        self.stop_named(name, process)
+
+    def test_a_reader_that_hangs_holds_nobody_for_long(self):
+        readers = ("one", "two", "three")
+        text = GRAPH.partition("[modules.brightness]")[0] + "".join(
+            """[modules.%s]
+program = "brightness"
+inputs.image = { from = "camera.left", keep = "all", timeout = 1 }
+"""
+            % reader
+            for reader in readers
+        )
+        name, process = self.run_named("held", text, "three: started")
+        messages = self.observe(process, name)
+
+        def taken(state, reader):
+            link = next(each for each in state["links"] if each["to"] == reader + ".image")
+            return link["per_second"] > 0
+
+        for hung in readers:
+            others = [each for each in readers if each != hung]
+            state = self.state(messages, lambda state: all(taken(state, r) for r in readers))
+            pid = self.module(state, hung)["pid"]
+            os.kill(pid, signal.SIGSTOP)
+            waiting = self.state(
+                messages, lambda state: self.module(state, "camera")["waits"] is not None
+            )
+            self.assertEqual(self.module(waiting, "camera")["waits_for"], hung + ".image")
+            self.state(
+                messages,
+                lambda state: self.module(state, "camera")["waits"] is None
+                and all(taken(state, other) for other in others)
+                and not taken(state, hung),
+            )
+            os.kill(pid, signal.SIGCONT)
+            self.state(
+                messages,
+                lambda state: next(
+                    each["dropped_timeout"] > 0
+                    for each in state["links"]
+                    if each["to"] == hung + ".image"
+                ),
+            )
+        self.stop_named(name, process)
+
+    def test_a_module_that_hangs_is_restarted(self):
+        name, process = self.run_named("hangs", "hang = 1\n" + GRAPH)
+        messages = self.observe(process, name)
+        running = lambda state: self.module(state, "brightness")["status"] == "running"
+        pid = self.module(self.state(messages, running), "brightness")["pid"]
+        os.kill(pid, signal.SIGSTOP)
+        self.await_lines(process, "brightness: hung for 1 s; restarting")
+        again = self.state(messages, lambda state: running(state) and self.module(state, "brightness")["restarts"] == 1)
+        self.assertEqual(self.module(again, "camera")["restarts"], 0)
         self.stop_named(name, process)
 
     def test_help_says_what_each_word_is(self):

@@ -17,6 +17,7 @@ void add_check(CLI::App& app) {
   verb->callback([options] {
     const auto hosts = make_hosts();
     auto plan = load_plan("check", *options, hosts.get());
+    for (const auto& line : plan.warnings) say(hc::format("hc check: warning: {}", line));
     bool is_missing = false;
     for (const auto& finding : diagnose(plan, *hosts)) {
       if (finding.mark != Mark::Missing) continue;

@@ -134,9 +134,13 @@ TEST(Screen, SaysWhyAModuleDoesNotWork) {
   EXPECT_FALSE(is_in_trouble(module));
   module.in_focus = false;
   EXPECT_EQ(status_text(module), "idle (not in focus)");
-  module.detail = "blocked: no reader on output left";
+  module.detail = "blocked: output left waits for its reader";
   EXPECT_EQ(status_text(module), module.detail);
   EXPECT_TRUE(is_in_trouble(module));
+  module.waits_for = "augment.focus";
+  module.waits = 11;
+  EXPECT_EQ(status_text(module), "waits for augment.focus since 11 s");
+  module.waits.reset();
   module.detail = "";
   module.last_line = "/dev/ttyUSB0: disconnected";
   EXPECT_TRUE(is_in_trouble(module));

@@ -196,6 +196,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
     if (link.rate > 0) note("at most " + short_number(link.rate) + "/s");
     note(losses_in_words(link.traffic));
     if (link.ignored > 0) note("ignored: not in focus");
+    if (link.traffic.bad > 0) note(std::to_string(link.traffic.bad) + " bad");
     const auto text = fitted(link.from + " → " + link.to, name) + cells(columns, link) + notes;
     lines.push_back({text, link.in_workspace, !link.status.empty()});
   }
@@ -222,7 +223,7 @@ std::string painted(Line line, const Screen& screen) {
 bool is_in_trouble(const hc::ModuleState& module) {
   using enum hc::ModuleStatus;
   if (module.status == GivenUp || module.status == Stalled || module.status == Waiting) return true;
-  if (module.status == Running && !module.detail.empty()) return true;
+  if (module.status == Running && (module.waits || !module.detail.empty())) return true;
   if (module.status == Ended) return false;
   constexpr std::array kWords = {"disconnect",   "reconnecting", "retrying",  "trying again",
                                  "unresponsive", "cannot be",    "failed",    "refused",
@@ -237,6 +238,8 @@ std::string status_text(const hc::ModuleState& module) {
   std::string status{name(module.status)};
   const bool is_running = module.status == hc::ModuleStatus::Running;
   if (is_running && !module.in_focus) status = "idle (not in focus)";
+  if (is_running && module.waits && !module.waits_for.empty())
+    return hc::format("waits for {} since {}", module.waits_for, seconds_in_words(*module.waits));
   if (module.detail.empty()) return status;
   return is_running ? module.detail : status + ": " + module.detail;
 }

@@ -7,6 +7,9 @@
 namespace hc::internal {
 
 /// `restart`, of a file or a module.
+/// Longest `timeout` and `hang`. [s]
+inline constexpr std::int64_t kMaxSeconds = 86'400;
+
 Fields::Take read_restart(const Fields& fields, Restart& to);
 
 /// [modules.NAME]: what it says goes over what the module has.

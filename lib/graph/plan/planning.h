@@ -111,4 +111,7 @@ std::string_view transport_of(const Planning& planning, const GraphLink& link);
 /// Gives each link its two ends.
 void plan_links(Planning& planning);
 
+/// Warns of links and loops by which a robot may come to harm; behind plan_links().
+void check_motion(Planning& planning);
+
 }  // namespace hc::internal

@@ -141,10 +141,19 @@ bool Reports::take_state(const StateReport& state) {
   return before != state;
 }
 
-std::string Reports::blocked_output() const {
+/// "out PORT URI"; empty: none, or unknown.
+std::string Reports::blocked_key() const {
   const auto row = static_cast<std::size_t>(state_.blocked_row);
-  if (state_.blocked_row <= 0 || row > order_.size()) return "";
-  const auto& key = order_[row - 1];  // "out PORT URI"
+  return state_.blocked_row <= 0 || row > order_.size() ? "" : order_[row - 1];
+}
+
+bool Reports::is_blocked_on(const PlannedLink& link) const {
+  const auto port = link.from.substr(link.from.find('.') + 1);
+  return !link.sender_uri.empty() && blocked_key() == end_key(false, port, link.sender_uri);
+}
+
+std::string Reports::blocked_output() const {
+  const auto key = blocked_key();
   return key.starts_with("out ") ? key.substr(4, key.find(' ', 4) - 4) : "";
 }
 

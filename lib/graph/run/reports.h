@@ -42,6 +42,9 @@ class Reports {
   [[nodiscard]] const EndReport* find(const PlannedEnd& end) const;
   [[nodiscard]] const std::map<std::string, std::string>& parameters() const { return parameters_; }
   [[nodiscard]] const StateReport& state() const { return state_; }
+  /// Whether a link, or one that has its sending end in common with it, is that for whose reader
+  /// the module waits.
+  [[nodiscard]] bool is_blocked_on(const PlannedLink& link) const;
   /// The output for whose reader the module waits, where it says which.
   [[nodiscard]] std::string blocked_output() const;
 
@@ -59,6 +62,7 @@ class Reports {
   static void count(Counted& counted, const LinkCounters& row, bool is_input, MonotonicTime now);
   bool take_links(const Message& message);
   bool take_state(const StateReport& state);
+  [[nodiscard]] std::string blocked_key() const;
 
   std::vector<std::string> order_;       // keys of ends, as the rows of counters come
   bool has_links_ = false;               // the module has reported them

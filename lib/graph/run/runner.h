@@ -83,6 +83,7 @@ class Runner {
 
   [[nodiscard]] GraphState state() const;
   [[nodiscard]] LinkState state_of(const PlannedLink& link) const;
+  [[nodiscard]] std::string waited_for(const std::string& name) const;
 
   [[nodiscard]] Result<std::shared_ptr<void>> drain_for(const PlannedModule& reader,
                                                         const std::string& uri) const;

@@ -35,6 +35,8 @@ GraphState Runner::state() const {
     if (focus != state.focus.end() && focus->second == 0)
       focus->second = module->reports().state().focus;
   }
+  for (auto& module : state.modules)
+    if (module.waits) module.waits_for = waited_for(module.name);
   for (const auto& link : plan_.links) state.links.push_back(state_of(link));
   std::map<std::string, std::string> focus;
   for (const auto& [name, number] : state.focus) focus[name] = state.mode_name(number);
@@ -42,6 +44,26 @@ GraphState Runner::state() const {
   for (auto& module : state.modules) module.in_workspace = workspace.modules.contains(module.name);
   for (auto number : workspace.links) state.links.at(number).in_workspace = true;
   return state;
+}
+
+/// The input for which a module waits. Where several share what it writes to, it is one of those
+/// that do not run, or else of those that lose nothing.
+std::string Runner::waited_for(const std::string& name) const {
+  std::vector<const PlannedLink*> links;
+  for (const auto& link : plan_.links)
+    if (link.from.starts_with(name + ".") && find(name)->waits_on(link)) links.push_back(&link);
+  auto keep_some = [&](const auto& is_wanted) {
+    if (std::ranges::any_of(links, is_wanted))
+      std::erase_if(links, [&](const auto* link) { return !is_wanted(link); });
+  };
+  keep_some([](const auto* link) { return link->keep == "all"; });
+  keep_some([this](const auto* link) {
+    const auto* reader = at(link->to);
+    return reader != nullptr && reader->status() != ModuleStatus::Running;
+  });
+  std::string names;
+  for (const auto* link : links) names += (names.empty() ? "" : " or ") + link->to;
+  return names;
 }
 
 LinkState Runner::state_of(const PlannedLink& link) const {

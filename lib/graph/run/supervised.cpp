@@ -149,6 +149,7 @@ Status Supervised::start() {
     return {};
   }
   is_interrupted_ = awaits_cause_ = false;
+  hung_.clear();
   finished_.clear();
   lines_.forget();
   if (auto opened = open_control(); !opened) return opened;
@@ -278,7 +279,7 @@ void Supervised::note_end() {
 
 void Supervised::forget_process() {
   reports_.end();
-  heard_ = MonotonicTime(0);
+  heard_ = silence_ = blocked_ = MonotonicTime(0);
   said_.reset();
   ended_.reset();
   timer_.reset();
@@ -292,7 +293,7 @@ void Supervised::forget_process() {
 /// Does what is to be done when a process has ended.
 void Supervised::go_on(int status) {
   exit_ = status;
-  auto words = end_in_words(status);
+  auto words = why_ended(status);
   // A process that the signal ended before it could handle it has done as it was asked.
   const bool is_as_asked = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
   if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_asked) {
@@ -317,7 +318,7 @@ void Supervised::go_on(int status) {
 /// Restarts a process that has ended unasked, or gives it up.
 void Supervised::decide(int status) {
   awaits_cause_ = false;
-  const auto words = end_in_words(status);
+  const auto words = why_ended(status);
   const bool is_cut_off = status == 0 && is_interrupted_ && callbacks_.has_work();
   const auto decision = status == Host::kHostLost
                             ? restarts_.lost(now())
@@ -341,6 +342,10 @@ void Supervised::decide(int status) {
                        : words);
   change(is_given_up ? ModuleStatus::GivenUp : ModuleStatus::Ended, is_given_up ? words : "");
   callbacks_.ended();
+}
+
+std::string Supervised::why_ended(int status) const {
+  return hung_.empty() ? end_in_words(status) : hung_;
 }
 
 bool Supervised::can_be_cut_off() const {

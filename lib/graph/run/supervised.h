@@ -103,6 +103,8 @@ class Supervised {
   [[nodiscard]] std::optional<int> exit() const { return exit_; }
   [[nodiscard]] const Reports& reports() const { return reports_; }
   [[nodiscard]] ModuleState state() const;
+  /// Whether a link is the one for whose reader it waits.
+  [[nodiscard]] bool waits_on(const PlannedLink& link) const;
   /// What the log said last of a link: "sender closed; reconnecting"; empty: nothing, lately.
   [[nodiscard]] std::string said_of(const std::string& uri) const;
 
@@ -135,10 +137,12 @@ class Supervised {
   void read_lines();
   void take_report(const Message& message);
   void look_at_silent();
+  bool look_whether_hung(MonotonicTime time, bool is_blocked);
   void forget_process();
   void go_on(int status);
   void decide(int status);
   [[nodiscard]] bool can_be_cut_off() const;
+  [[nodiscard]] std::string why_ended(int status) const;
   void start_again();
 
   Loop& loop_;
@@ -160,7 +164,10 @@ class Supervised {
   Lines lines_;
   MonotonicTime said_at_{0};  // the last of them
   Reports reports_;
-  MonotonicTime heard_{0};  // when this process reported last; 0: it has not
+  MonotonicTime heard_{0};                // when this process reported last; 0: it has not
+  MonotonicTime looked_{0}, silence_{0};  // the last look; without a report, as far as one looked
+  MonotonicTime blocked_{0};              // since when it waits for a reader; 0: it does not
+  std::string hung_;  // why this process was killed: "hung for 5 s"; empty: it was not
   Usage usage_;
   MonotonicTime measured_{0};
   double processor_ = 0;

@@ -76,7 +76,11 @@ void Supervised::read_lines() {
 
 void Supervised::take_report(const Message& message) {
   heard_ = now();
+  silence_ = MonotonicTime(0);
   const bool has_changed = reports_.take(message, heard_);
+  const bool is_blocked = reports_.state().blocked_row != 0;
+  if (!is_blocked) blocked_ = MonotonicTime(0);
+  if (is_blocked && blocked_ == MonotonicTime(0)) blocked_ = heard_;
   if (message.header.src == static_cast<int>(Report::Refusal) &&
       message.header.info.type == MatrixType::String)
     for (const auto& line : rows_of(message)) callbacks_.event(line);
@@ -93,18 +97,36 @@ void Supervised::look(MonotonicTime time) {
   if (process_ && heard_ == MonotonicTime(0)) return look_at_silent();
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const bool is_blocked = reports_.state().blocked_row != 0;
+  if (look_whether_hung(time, is_blocked)) return;
   if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
   if (!process_ || time - heard_ < limits_.stall) return;
   const bool is_stopped = process_->usage(false).is_stopped;
   if (is_blocked && !is_stopped) {
     if (is_stalled) callbacks_.event("resumed");
     const auto output = reports_.blocked_output();
-    return change(ModuleStatus::Running,
-                  "blocked: no reader" + (output.empty() ? "" : " on output " + output));
+    return change(
+        ModuleStatus::Running,
+        "blocked: " + (output.empty() ? "" : "output " + output + " ") + "waits for its reader");
   }
   if (is_stalled) return;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
   callbacks_.event("unresponsive: " + detail_);
+}
+
+/// Whether it has been killed since it has not reported for as long as the graph allows. One that
+/// is looked at in a debugger, or waits for a reader and runs, has a reason. Time in which nobody
+/// looked, as this process was stopped or starved itself, counts as a second at most.
+bool Supervised::look_whether_hung(MonotonicTime time, bool is_blocked) {
+  constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1);
+  if (looked_ != MonotonicTime(0)) silence_ += std::min(time - looked_, kMostAtOnce);
+  looked_ = time;
+  if (!process_ || !hung_.empty() || status_ == ModuleStatus::Stopping) return false;
+  if (plan_.hang.count() == 0 || silence_ < plan_.hang) return false;
+  const auto usage = process_->usage(false);
+  if (usage.is_traced || (is_blocked && !usage.is_stopped)) return false;
+  hung_ = "hung for " + std::to_string(plan_.hang.count()) + " s";
+  process_->kill();
+  return true;
 }
 
 /// Asks the kernel whether a module that sends no reports has been stopped by a signal.
@@ -142,6 +164,10 @@ std::string Supervised::said_of(const std::string& uri) const {
   return "";
 }
 
+bool Supervised::waits_on(const PlannedLink& link) const {
+  return blocked_ != MonotonicTime(0) && reports_.is_blocked_on(link);
+}
+
 ModuleState Supervised::state() const {
   ModuleState state;
   state.name = plan_.name;
@@ -159,6 +185,8 @@ ModuleState Supervised::state() const {
   state.modes = plan_.modes;
   state.workspace = plan_.workspace;
   state.in_focus = reports_.state().in_focus;
+  if (blocked_ != MonotonicTime(0))
+    state.waits = std::chrono::duration<double>(now() - blocked_).count();
   if (!lines_.last().empty()) {
     state.last_line = lines_.last().back();
     state.last_line_age = std::chrono::duration<double>(now() - said_at_).count();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <map>
+#include <set>
 #include <thread>
 
 #include <graph/run/running_test.h>
@@ -216,8 +219,63 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
   };
   auto report = run();
   ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_EQ(seen, (std::vector<std::string>{"blocked: no reader", "stopped by a signal",
-                                            "blocked: no reader"}));
+  EXPECT_EQ(seen, (std::vector<std::string>{"blocked: waits for its reader", "stopped by a signal",
+                                            "blocked: waits for its reader"}));
+}
+
+TEST_F(Supervision, OneThatHangsIsKilledAndRestarted) {
+  add("hung", "exec sleep 1000").hang = 1s;
+  add("stopped", "exec sleep 1000").hang = 1s;
+  add("waits", "exec sleep 1000").hang = 1s;  // for a reader, which is not its fault
+  add("patient", "exec sleep 1000");
+  std::map<std::string, std::unique_ptr<Reporter>> reporters;
+  std::set<std::string> again;
+  heard_ = [&](std::string_view line) {
+    const std::string name(line.substr(0, line.find(':')));
+    if (line.ends_with(": started")) {
+      const auto module = std::ranges::find(plan_.modules, name, &PlannedModule::name);
+      if (reporters.contains(name)) again.insert(name);
+      reporters[name] = std::make_unique<Reporter>(module->manage_uri);
+      reporters[name]->publish_state(name == "waits");
+    }
+    if (again == std::set<std::string>{"hung", "stopped"}) stop();
+  };
+  options_.state = [&](const GraphState& state) {
+    for (const auto& module : state.modules)
+      if (module.name == "stopped" && module.process > 0 && !again.contains("stopped"))
+        ::kill(module.process, SIGSTOP);
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(said("hung: hung for 1 s; restarting"));
+  EXPECT_TRUE(said("stopped: hung for 1 s; restarting"));
+  EXPECT_EQ(module(*report, "hung").restarts, 1);
+  EXPECT_EQ(module(*report, "waits").restarts, 0);
+  EXPECT_EQ(module(*report, "patient").restarts, 0);
+}
+
+TEST_F(Supervision, OneThatWaitsSaysForWhomSinceWhen) {
+  const std::string uri = "unix-listen:@" + token_ + ".a.out";
+  add("a", "exec sleep 1000").ends = {{false, "out", uri, ""}};
+  add("b", "exec sleep 1000").ends = {{true, "in", peer_of(uri), ""}};
+  plan_.links = {{"a.out", "b.in", uri, peer_of(uri), "all", {}, false}};
+  std::unique_ptr<Reporter> reporter;
+  heard_ = [&](std::string_view line) {
+    if (line != "a: started") return;
+    reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
+    reporter->publish_state(true);
+  };
+  std::optional<double> waits;
+  options_.state = [&](const GraphState& state) {
+    const auto& a = state.modules.at(0);
+    if (!a.waits) return;
+    EXPECT_EQ(a.waits_for, "b.in");
+    if (waits && *a.waits > *waits) stop();
+    waits = a.waits;
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(waits);
 }
 
 TEST_F(Supervision, CountsAreThoseOfAllProcesses) {

@@ -97,6 +97,7 @@ Usage usage_of(const std::vector<pid_t>& processes, bool with_memory) {
     if (name_end == std::string::npos || name_end + 4 > text.size()) continue;
     const char state = text[name_end + 2];
     usage.is_stopped = usage.is_stopped || state == 'T' || state == 't';
+    usage.is_traced = usage.is_traced || state == 't';
     auto numbers = numbers_in(std::string_view(text).substr(name_end + 4));
     for (std::size_t i = kFirstTime; i < kFirstTime + kTimes && i < numbers.size(); ++i)
       usage.processor += numbers[i] * tick;

@@ -20,7 +20,8 @@ std::vector<pid_t> descendants(pid_t process);
 struct Usage {
   std::chrono::nanoseconds processor{0};  ///< with what those children used that have ended
   std::uint64_t memory = 0;               ///< their part of what they share (PSS) [byte]
-  bool is_stopped = false;                ///< one of them, by a signal
+  bool is_stopped = false;                ///< one of them, by a signal or a debugger
+  bool is_traced = false;                 ///< one of them is stopped in a debugger
 };
 
 /// @param with_memory  whether `memory` is wanted, which takes the kernel longer than the rest.

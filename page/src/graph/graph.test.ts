@@ -143,7 +143,7 @@ test("a broken module says why", () => {
   });
   const stalled = moduleNamed("a", { status: "stalled", detail: "stopped by a signal" });
   assert.deepEqual(moduleCondition(stalled), { is: "broken", why: "stopped by a signal" });
-  const blocked = moduleNamed("a", { detail: "blocked: no reader on output left" });
+  const blocked = moduleNamed("a", { detail: "blocked: output left waits for its reader" });
   assert.equal(moduleCondition(blocked).is, "slow");
 });
 
