@@ -82,6 +82,25 @@ outputs.other = "tcp-listen:3"
             "a.out file:x route\na.out tcp:2 route\na.other tcp-listen:3\n");
 }
 
+TEST(GraphFile, TimeoutAndHangAtTheTopAreDefaults) {
+  auto graph = parse(R"(timeout = 9
+hang = 7
+[modules.a]
+inputs.in = ["b.out", { from = "c.out", timeout = 0 }, "tcp:1"]
+[modules.b]
+hang = 0
+)");
+  ASSERT_TRUE(graph) << graph.error().detail;
+  std::string text;
+  for (const auto& link : graph->links)
+    text += link.policy.contains("timeout") ? link.policy.at("timeout").value + " " : "none ";
+  EXPECT_EQ(text, "9 0 none ") << "a link from outside is its sender's affair";
+  EXPECT_EQ(graph->modules[0].hang.value, 7);
+  EXPECT_EQ(graph->modules[1].hang.value, 0);
+  EXPECT_FALSE(parse("hang = -1\n[modules.a]\n"));
+  EXPECT_FALSE(parse("[modules.a]\ninputs.in = { from = \"b.out\", timeout = \"some\" }\n"));
+}
+
 TEST(GraphFile, LettersOutsideAsciiAndTildesComeThrough) {
   auto graph = parse("# größe → ~\n[modules.a]\nparameters.p = \"grün ~/x~y ~7\"\n");
   ASSERT_TRUE(graph) << graph.error().detail;

@@ -253,7 +253,7 @@ void add_graph(CLI::App& app) {
   add_change(
       *verb, options, "link", "Add a link, or change its policy", {from, to},
       {"POLICY",
-       "a setting of the policy, as KEY=VALUE: keep, rate, burst, memory, as, quality, scale"});
+       "a setting of the policy, as KEY=VALUE: keep, rate, burst, memory, timeout, as, quality, scale"});
   add_change(*verb, options, "unlink", "Remove a link", {from, to});
   add_changes(*verb, options, "set", "Set parameters, all or none",
               {"SETTING", "a parameter and its new value, as MODULE.PARAMETER=VALUE"});

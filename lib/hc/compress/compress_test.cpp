@@ -103,6 +103,18 @@ TEST(Expand, R36_R37_NoMemoryIsSetAsideForWhatCannotCome) {
   }
 }
 
+TEST(Expand, R36_MemoryFollowsWhatHasArrived) {
+  Draft draft =
+      Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 16384, 8192);
+  std::fill(draft.elements().begin(), draft.elements().end(), std::byte{0});
+  const auto bomb = compress(std::move(draft).finish(), Encoding::Zstd);
+  ASSERT_TRUE(bomb);
+  EXPECT_LT(bomb->elements.size(), 16000U) << "it would become 128 MiB";
+  const auto refused = expand(*bomb);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Code::TooLarge);
+}
+
 TEST(Expand, R36_R37_TheFlattestImagesComeBack) {
   Draft draft =
       Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 8000, 8000);

@@ -193,12 +193,26 @@ TEST_F(DialerTest, AfterOneOfNoUseItGoesOnWithItsPauses) {
     tire(dialer);
     listen();
     EXPECT_TRUE(connects(dialer));
+    now_ += internal::kFirstPause - nanoseconds(1);
     dialer.lost(now_, false, "it has gone");
     EXPECT_LE(dialer.due() - now_, internal::kLongestPause);
     longest = std::max(longest, nanoseconds(dialer.due() - now_));
     listening_ = {};
   }
   EXPECT_GT(longest, 3 * internal::kFirstPause);
+}
+
+TEST_F(DialerTest, AfterOneThatLivedItsPausesAreShortAgain) {
+  for (int i = 0; i < 20; ++i) {
+    auto dialer = this->dialer();
+    tire(dialer);
+    listen();
+    EXPECT_TRUE(connects(dialer));
+    now_ += internal::kFirstPause;
+    dialer.lost(now_, false, "it was killed");
+    EXPECT_LE(dialer.due() - now_, internal::kFirstPause);
+    listening_ = {};
+  }
 }
 
 TEST_F(DialerTest, PatienceBeginsAnewWithEachLoss) {
