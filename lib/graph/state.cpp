@@ -118,6 +118,7 @@ void visit_graph(Graph& graph, Visit visit) {
   visit("file", graph.file);
   visit("pid", graph.process);
   visit("uptime", graph.uptime);
+  visit("stopped", graph.stopped);
   visit("modes", graph.modes);
   visit("addresses", graph.addresses);
 }
@@ -150,6 +151,14 @@ std::string GraphState::focus_in_words() const {
     words += workspace + ": " + (number == 0 ? "none" : mode_name(number));
   }
   return is_any ? words : "";
+}
+
+std::string GraphState::stopped_in_words() const {
+  std::string words = stopped.empty() ? "" : "stopped";
+  if (focus.size() == 1) return words;
+  for (const auto& workspace : stopped)
+    words += (workspace == *stopped.begin() ? ": " : ", ") + workspace;
+  return words;
 }
 
 std::string to_json(const GraphState& state) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -85,6 +86,7 @@ struct GraphState {
   double uptime = 0;  ///< [s]
   bool is_stopping = false;
   std::map<std::string, std::int64_t> focus;  ///< of each workspace, the mode in focus; 0: none
+  std::set<std::string> stopped;              ///< the workspaces that have been stopped
   std::vector<HostState> hosts;
   std::vector<ModuleState> modules;
   std::vector<LinkState> links;
@@ -98,6 +100,8 @@ struct GraphState {
   /// The modes in focus: "track", and of several workspaces "left: track, right: none"; empty: no
   /// workspace has one.
   [[nodiscard]] std::string focus_in_words() const;
+  /// "stopped", and of several workspaces which, "stopped: left, right"; empty: none is.
+  [[nodiscard]] std::string stopped_in_words() const;
 };
 
 /// The state as one line of JSON, as spec/graph.md describes it.

@@ -13,6 +13,7 @@ GraphState some_state() {
   state.process = 12;
   state.uptime = 3.25;
   state.focus = {{"left", 1}, {"right", 0}};
+  state.stopped = {"right"};
   state.modes = {{"read", 2}, {"track", 1}};
   state.addresses = {{"eyes.command", 21}};
   ModuleState module;
@@ -51,7 +52,7 @@ GraphState some_state() {
 TEST(State, IsOneLineOfJson) {
   EXPECT_EQ(
       to_json(some_state()),
-      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,)"
+      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,"stopped":["right"],)"
       R"("modes":{"read":2,"track":1},"addresses":{"eyes.command":21},)"
       R"("status":"running","focus":{"left":{"mode":"track","number":1},"right":null},)"
       R"("hosts":[{"name":"robot","connected":true,"detail":"","offset":3600.5,"error":0.25,)"
@@ -94,11 +95,15 @@ TEST(State, AFocusWithoutANameIsItsNumber) {
   state.modes = {{"read", 2}};
   EXPECT_NE(to_json(state).find(R"({"mode":"7","number":7})"), std::string::npos);
   EXPECT_EQ(state.focus_in_words(), "7");
+  EXPECT_EQ(state.stopped_in_words(), "");
+  state.stopped = {"workspace"};
+  EXPECT_EQ(state.stopped_in_words(), "stopped");
 }
 
 TEST(State, TheFocusOfTwoWorkspacesIsShownForEach) {
   auto state = some_state();
   EXPECT_EQ(state.focus_in_words(), "left: track, right: none");
+  EXPECT_EQ(state.stopped_in_words(), "stopped: right");
   EXPECT_EQ(state.focus_of(state.modules.at(0)), "track");
   state.modules[0].workspace = "right";
   EXPECT_EQ(state.focus_of(state.modules.at(0)), "");

@@ -24,6 +24,7 @@ std::string row(const std::string& name, const hc::GraphState& state, bool is_pl
   for (auto trouble : {hc::ModuleStatus::Stalled, hc::ModuleStatus::GivenUp})
     if (auto number = count(trouble); number > 0)
       status += hc::format(", {} {}", number, hc::name(trouble));
+  if (const auto stopped = state.stopped_in_words(); !stopped.empty()) status += ", " + stopped;
   const bool is_red = std::any_of(state.modules.begin(), state.modules.end(), is_in_trouble);
   const bool is_painted = is_red && !is_plain;
   const auto focus = state.focus_in_words();

@@ -58,11 +58,12 @@ std::string heading(const hc::GraphState& state) {
     load += module.processor;
   }
   for (const auto& link : state.links) rate += link.per_second;
-  const auto focus = state.focus_in_words();
+  const auto focus = state.focus_in_words(), stopped = state.stopped_in_words();
   return hc::format("{}: {} {}, {}/{} modules up, {} messages/s, {:.0f} % CPU{}", state.name,
                     state.is_stopping ? "stopping" : "running", seconds_in_words(state.uptime), up,
                     state.modules.size(), short_number(rate), 100 * load,
-                    focus.empty() ? "" : ", focus " + focus);
+                    focus.empty() ? "" : ", focus " + focus) +
+         (stopped.empty() ? "" : ", " + stopped);
 }
 
 std::string bids_line(const std::vector<Bid>& bids) {

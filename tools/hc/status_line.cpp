@@ -25,6 +25,7 @@ std::string summary_of(const hc::GraphState& state) {
   for (const auto& link : state.links) rate += link.per_second;
   std::string text = hc::format("{} | {:.0f} messages/s", modules, rate);
   if (const auto focus = state.focus_in_words(); !focus.empty()) text += " | focus: " + focus;
+  if (const auto stopped = state.stopped_in_words(); !stopped.empty()) text += " | " + stopped;
   return text;
 }
 

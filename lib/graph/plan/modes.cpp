@@ -20,6 +20,7 @@ class Modes {
     for (const auto& module : graph_.modules)
       if (PlannedModule* planned = planning_.planned(module.name)) {
         name_modes(*planning_.description_of(module.name), *planned);
+        name_sources(*planning_.description_of(module.name), *planned);
         if (planning_.description_of(module.name)->control) add_options(module, *planned);
         if (!planning_.plan.workspaces.contains(module.workspace)) continue;
         planned->workspace = module.workspace;
@@ -63,6 +64,18 @@ class Modes {
   void name_modes(const Description& description, PlannedModule& planned) {
     if (planning_.plan.modes.empty() || !has_text_parameter(description, kModeNames)) return;
     planned.parameters.try_emplace(kModeNames, mode_names_text(planning_.plan.modes));
+  }
+
+  /// Sets the parameter `source_names` of a module that has one.
+  void name_sources(const Description& description, PlannedModule& planned) {
+    if (!has_text_parameter(description, kSourceNames)) return;
+    std::map<std::string, std::int64_t> names;
+    for (const auto& link : graph_.links) {
+      const auto source = planning_.plan.sources.find(link.from.module + "." + link.from.port);
+      if (link.to.module == planned.name && source != planning_.plan.sources.end())
+        names.insert(*source);
+    }
+    if (!names.empty()) planned.parameters.try_emplace(kSourceNames, mode_names_text(names));
   }
 
   static bool wants_focus(const GraphModule& module) {

@@ -38,6 +38,7 @@ TEST(Modes, ModulesGetTheirModes) {
   EXPECT_EQ(values_of(planned->modules[1], "--modes"), (Words{"3"}));
   EXPECT_EQ(values_of(planned->modules[2], "--exclusive"), (Words{"command"}));
   EXPECT_EQ(planned->modules[3].parameters.at("mode_names"), "read=3,track=1");
+  EXPECT_EQ(planned->modules[3].parameters.at("source_names"), "read.bid=4,track.bid=2");
   EXPECT_EQ(planned->modules[0].mode, "track");
   EXPECT_EQ(planned->modules[1].modes, (Words{"read"}));
   EXPECT_EQ(planned->modules[2].exclusive, (std::set<std::string>{"command"}));

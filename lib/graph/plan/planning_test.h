@@ -84,7 +84,8 @@ inline Result<std::string> describe(const std::string& program, const std::strin
                R"({"name":"focus","types":[{"type":"table","components":1,"scalar":"i32",)"
                R"("width":1,"height":1,"coord":0}]})"));
     return text.replace(text.find("\"parameters\":["), 14,
-                        R"("parameters":[{"name":"mode_names","type":"string"},)");
+                        R"("parameters":[{"name":"mode_names","type":"string"},)"
+                        R"({"name":"source_names","type":"string"},)");
   }
   if (program == "titled")
     return std::string(R"({"name":"x","inputs":[],"outputs":[],"parameters":[)"

@@ -28,6 +28,8 @@ GraphState Runner::state() const {
     const auto* module = find(planned.name);
     if (module == nullptr) continue;
     state.modules.push_back(module->state());
+    // A stop outlives the process that was told of it.
+    if (any_stops(module->reports().state().stops)) state.stopped.insert(planned.name);
     // Reported by modules that receive the focus or decide it; stale unless they run.
     if (module->status() != ModuleStatus::Running) continue;
     const bool decides = plan_.workspaces.contains(planned.name);

@@ -156,13 +156,16 @@ Status Supervised::start() {
   restarts_.started(now());
   ++starts_;
   wall_offset_ = there && control_ ? there->wall_offset() : 0;
+  PlannedModule plan = plan_;
+  // One that decides on the focus begins with the stops that its last process knew of.
+  if (const auto& stops = reports_.state().stops; !stops.empty() && plan.known.contains(kStops))
+    plan.parameters.try_emplace(kStops, stops_text(stops));
   if (there) {
-    PlannedModule plan = plan_;
     if (control_) plan.add_option("--wall_offset", std::to_string(wall_offset_));
     process_ = there->start(plan);
     if (!process_) return Error{Code::System, plan_.name + ": it cannot be listened to"};
   } else {
-    auto process = start_here(plan_.command(), hosts_ == nullptr ? -1 : hosts_->key());
+    auto process = start_here(plan.command(), hosts_ == nullptr ? -1 : hosts_->key());
     if (!process) return Error{process.error().code, plan_.name + ": " + process.error().detail};
     process_ = std::move(*process);
   }

@@ -13,7 +13,8 @@ std::string mode_names_text(const std::map<std::string, std::int64_t>& numbers) 
   return text;
 }
 
-Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view text) {
+Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view text,
+                                                             std::string_view parameter) {
   std::map<std::int32_t, std::string> names;
   for (bool is_more = !text.empty(); is_more;) {
     is_more = text.find(',') != std::string_view::npos;
@@ -26,7 +27,7 @@ Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view te
     const auto [after, error] = std::from_chars(begin, end, number);
     if (name.empty() || error != std::errc() || after != end || number < 1 ||
         !names.emplace(number, name).second)
-      return Error{Code::Invalid, std::string(kModeNames) + ": \"" + std::string(word) +
+      return Error{Code::Invalid, std::string(parameter) + ": \"" + std::string(word) +
                                       "\" is not NAME=NUMBER with a number of its own, as in "
                                       "read=5,track=4"};
   }

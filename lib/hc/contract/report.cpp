@@ -9,6 +9,7 @@ namespace hc {
 namespace {
 
 using Row = std::array<std::int64_t, kCounterColumns.size()>;
+using StateRow = std::array<std::int64_t, 4>;
 constexpr std::size_t kIgnored = 7, kAge = kIgnored + 1, kGap = kAge + 3, kMore = kGap + 3;
 
 /// Where a member of the traffic is: the last ones were added behind all others.
@@ -99,9 +100,10 @@ std::map<std::string, std::string> read_parameters(const Message& message, std::
 }
 
 Message make_state(const StateReport& state) {
-  const std::array<std::int64_t, 4> row = {state.mode, state.focus, state.in_focus ? 1 : 0,
-                                           state.blocked_row};
-  return make_table<row.size()>(std::span(&row, 1));
+  std::vector<StateRow> rows = {
+      {state.mode, state.focus, state.in_focus ? 1 : 0, state.blocked_row}};
+  for (const auto& [source, is_stop] : state.stops) rows.push_back({source, is_stop ? 1 : 0, 0, 0});
+  return make_table<std::tuple_size_v<StateRow>>(rows);
 }
 
 std::optional<StateReport> read_state(const Message& message) {
@@ -109,7 +111,11 @@ std::optional<StateReport> read_state(const Message& message) {
   if (!table || table->empty()) return std::nullopt;
   const auto numbers = table->numbers();
   if (numbers.size() < 3) return std::nullopt;
-  return StateReport{numbers[0], numbers[1], numbers[2] != 0, numbers.size() > 3 ? numbers[3] : 0};
+  StateReport state{
+      numbers[0], numbers[1], numbers[2] != 0, numbers.size() > 3 ? numbers[3] : 0, {}};
+  for (std::size_t i = 1; i < table->height() && table->row(i).size() > 1; ++i)
+    state.stops[static_cast<std::int32_t>(table->row(i)[0])] = table->row(i)[1] != 0;
+  return state;
 }
 
 }  // namespace hc

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <hc/base/traffic.h>
+#include <hc/contract/stops.h>
 #include <hc/mtp/message.h>
 
 namespace hc {
@@ -80,6 +81,7 @@ struct StateReport {
   bool in_focus = true;    ///< whether it works in that mode
   /// Row, from 1 on, of the link for whose reader it waits; 0: it does not.
   std::int64_t blocked_row = 0;
+  Stops stops;  ///< of who decides on the focus
   bool operator==(const StateReport&) const = default;
 };
 Message make_state(const StateReport& state);

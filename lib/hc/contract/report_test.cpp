@@ -45,7 +45,8 @@ TEST(Report, LinksParametersAndStateComeBack) {
   const std::map<std::string, std::string> values = {{"rate", "30"}, {"text", "a = b"}};
   EXPECT_EQ(read_parameters(make_parameters(values), 9), values);
   EXPECT_EQ(read_parameters(make_parameters(values), 1).size(), 1U);
-  EXPECT_EQ(read_state(make_state({3, 2, false, 4})), (StateReport{3, 2, false, 4}));
+  const StateReport state{3, 2, false, 4, {{12, true}, {14, false}}};
+  EXPECT_EQ(read_state(make_state(state)), state);
 }
 
 TEST(Report, WhatMakesNoSenseIsIgnored) {

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include <hc/base/clock.h>
+#include <hc/contract/stops.h>
 
 namespace hc::internal {
 
-/// How long a message of the focus counts. The workspace repeats it four times as often, so when it
+/// How long a message of the focus counts. The workspace repeats it six times as often, so when it
 /// hangs or dies, exclusive inputs take nothing until it is back.
-constexpr std::chrono::milliseconds kFocusExpiry{200};
+constexpr std::chrono::milliseconds kFocusExpiry{120};
 
 /// Modes are numbers from 1 on; 0 is none.
 struct Focus {
@@ -22,6 +23,7 @@ struct Focus {
   std::int32_t current = 0;   ///< mode in focus, as last received; 0: none, or that has expired
   MonotonicTime received{0};  ///< when `current` was
   std::int32_t decided = 0;   ///< of who decides on the focus: which has it
+  Stops stops;                ///< of who decides on the focus: who holds it back
   bool is_linked = false;     ///< whether there is a link from a workspace
 
   [[nodiscard]] bool in_focus() const {

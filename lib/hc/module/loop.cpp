@@ -48,6 +48,10 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   options_.limits = arguments.limits;
   options_.stop = stop;
   module_.focus_ = arguments.focus;
+  // What the process before has reported counts until this one knows better.
+  for (const auto& parameter : module_.parameters_)
+    if (parameter->name == kStops)
+      module_.focus_.stops = value_or_end(parse_stops(text(parameter->value)));
   if (arguments.wall_offset)
     internal::distant_wall.set(*arguments.wall_offset, module_.clock_.monotonic());
   std::unique_ptr<Sink> reports;

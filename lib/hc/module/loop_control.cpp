@@ -313,7 +313,7 @@ void Module::Loop::report_state(const LinkedSink* blocked) {
                                   [&](const auto& sink) { return sink.get() == blocked; });
   const auto row = static_cast<std::int64_t>(sources_.size()) + (found - sinks_.begin()) + 1;
   send(Report::State, make_state({focus.own, focus.decided != 0 ? focus.decided : focus.current,
-                                  focus.in_focus(), blocked == nullptr ? 0 : row}));
+                                  focus.in_focus(), blocked == nullptr ? 0 : row, focus.stops}));
 }
 
 }  // namespace hc

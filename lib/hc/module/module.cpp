@@ -161,8 +161,11 @@ void Timeout::restart(std::chrono::nanoseconds duration) {
   state_->due = now + std::clamp(duration, MonotonicTime(0), internal::kLongestPeriod);
 }
 
-void Module::report_focus(std::int32_t mode) {
-  if (std::exchange(focus_.decided, mode) != mode) loop_->report_state();
+void Module::report_focus(std::int32_t mode, const Stops& stops) {
+  const bool is_new = focus_.decided != mode || focus_.stops != stops;
+  focus_.decided = mode;
+  focus_.stops = stops;
+  if (is_new && loop_ != nullptr) loop_->report_state();
 }
 
 void Module::keep_rate(double rate) {

@@ -285,12 +285,13 @@ class Module {
     return message_time_ ? MonotonicTime(*message_time_) : clock_.monotonic();
   }
 
-  /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 200 ms.
+  /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 120 ms.
   [[nodiscard]] std::int32_t focus() const { return focus_.current; }
 
-  /// For who decides on the focus, and so does not hear it: reports which mode has it, as `hc ps`
-  /// shows it. Nothing else changes.
-  void report_focus(std::int32_t mode);
+  /// For who decides on the focus, and so does not hear it: reports which mode has it, and who
+  /// holds it back, as `hc ps` shows it. Its next process gets `stops` back, in the parameter
+  /// kStops.
+  void report_focus(std::int32_t mode, const Stops& stops = {});
 
   /// Whether the module's mode has the focus, so that exclusive inputs take what it sends. Also
   /// when it has no mode of its own (`--mode`), and when it has no link from a workspace.
