@@ -314,8 +314,12 @@ void Conversation::pass(MonotonicTime now) {
   if (!awaited_.empty() && now >= overdue_)
     return fail(now, {Code::Closed, "the unit does not answer"});
   send_pace(now);
-  if (!is_late(now) || !heading_ || awaits(Awaits::Halted) || arrived()) return;
-  wanted_.reset();
+  if (is_late(now)) halt(now);
+}
+
+void Conversation::halt(MonotonicTime now) {
+  forget();
+  if (phase_ != Phase::Ready || !heading_ || awaits(Awaits::Halted) || arrived()) return;
   is_heading_sure_ = false;  // and is no heading any more once the answer has come
   say(now, pan_tilt::command("h"), {Awaits::Halted});
 }

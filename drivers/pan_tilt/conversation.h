@@ -69,6 +69,10 @@ class Conversation {
   /// Halts a motion that was commanded when no command was taken for so long, and what the unit may
   /// be at when it is met; 0: never.
   void set_hold(std::chrono::nanoseconds hold) { hold_ = hold; }
+  /// A command that has not been sent yet is not sent any more.
+  void forget() { wanted_.reset(); }
+  /// Halts a motion that was commanded, at once.
+  void halt(MonotonicTime now);
   /// What ends the motion that was commanded, if there may be one: for the end of a program.
   [[nodiscard]] std::string last_words() const { return heading_ ? "h " : ""; }
 

@@ -124,10 +124,21 @@ void Neck::command(MonotonicTime now, std::int64_t wall, const NeckCommand& comm
   if (std::abs(old) > settings_.age)
     return problem_("stale", format("command dropped: {:.3f} s {}", std::abs(old),
                                     old > 0 ? "old" : "in the future"));
+  if (std::exchange(mode_, command.mode) != command.mode) turn_ = Turn<std::int32_t>(kTurn);
+  if (!turn_.take(command.source, now))
+    return problem_("second source", format("command of source {} dropped: source {} commands",
+                                            command.source, *turn_.holder(now)));
   const bool is_taken = conversation_.command(now, command.pan, command.tilt,
                                               duration(settings_.age - std::max(old, 0.0)));
   work(now);
   if (!is_taken) problem_("no unit", "command dropped: pan-tilt unit not connected");
+}
+
+void Neck::set_focus(MonotonicTime now, std::int32_t mode) {
+  if (std::exchange(focus_, mode) == mode) return;
+  conversation_.forget();
+  if (mode == 0) conversation_.halt(now);
+  work(now);
 }
 
 void Neck::leave() {

@@ -14,6 +14,7 @@
 #include <drivers/pan_tilt/serial.h>
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
+#include <hc/base/turn.h>
 
 namespace hc::pan_tilt {
 
@@ -28,14 +29,16 @@ struct NeckSettings {
 
 /// Where to turn to.
 struct NeckCommand {
-  double pan = 0, tilt = 0;  ///< finite, as in Gaze [rad]
-  std::int64_t time = 0;     ///< when it was given [ns since the Unix epoch]; 0: unknown
+  double pan = 0, tilt = 0;           ///< finite, as in Gaze [rad]
+  std::int64_t time = 0;              ///< when it was given [ns since the Unix epoch]; 0: unknown
+  std::int32_t mode = 0, source = 0;  ///< whose it is
 };
 
 class Neck {
  public:
   static constexpr std::chrono::seconds kSettled{1};  ///< without a fault, before it counts as well
   static constexpr std::chrono::milliseconds kTick{10};  ///< how often pass() is to be called
+  static constexpr std::chrono::milliseconds kTurn{150};
   using Log = std::function<void(std::string_view line)>;
   using Problem = std::function<void(const std::string& kind, std::string_view line)>;
   using Seen = std::function<void(const Gaze& gaze)>;
@@ -63,9 +66,13 @@ class Neck {
 
   void look(MonotonicTime now);
   /// Turns the head. A command without a time, older than the settings' `age` or as far in the
-  /// future, or for a unit that is not connected, is dropped and given to `problem`.
+  /// future, or for a unit that is not connected, is dropped and given to `problem`; and so are
+  /// those of a second source of the same mode, until the first has been silent for kTurn.
   /// @param wall  now, on the clock of `command.time` [ns since the Unix epoch].
   void command(MonotonicTime now, std::int64_t wall, const NeckCommand& command);
+  /// Says which mode has the focus; to be called before commands and read(). When it changes, a
+  /// command that waits to be sent is forgotten. When nobody has it any more, the motion is halted.
+  void set_focus(MonotonicTime now, std::int32_t mode);
   /// Halts a motion that was commanded, and lets go of the line; so does the destructor.
   void leave();
 
@@ -94,6 +101,9 @@ class Neck {
   std::set<std::string> remarks_;
   bool was_ready_ = false;
   MonotonicTime well_since_{0};
+  Turn<std::int32_t> turn_{kTurn};  // of a source
+  std::int32_t mode_ = 0;           // of the last command
+  std::int32_t focus_ = 0;
 };
 
 }  // namespace hc::pan_tilt

@@ -126,6 +126,50 @@ TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
                                       "no unit: command dropped: pan-tilt unit not connected"}));
 }
 
+TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) {
+  plug();
+  open();
+  run(milliseconds(100));
+  auto say = [&](std::int32_t mode, std::int32_t source, double pan) {
+    neck_.command(now_, kWall, {pan, 0, kWall, mode, source});
+    run(milliseconds(20));
+  };
+  for (int i = 0; i < 50; ++i) {  // two that contradict each other
+    say(1, 5, 0.5);
+    say(1, 6, -0.5);
+  }
+  EXPECT_NEAR(unit_.pan(9), 557, 0.5);
+  EXPECT_EQ(problems_.front(), "second source: command of source 6 dropped: source 5 commands");
+  say(2, 6, -0.25);
+  EXPECT_NEAR(unit_.pan(9), -278, 1);
+  run(Neck::kTurn + milliseconds(1));
+  say(2, 5, 0.25);
+  EXPECT_NEAR(unit_.pan(9), 278, 1);
+}
+
+TEST_F(NeckTest, halts_when_nobody_has_the_focus_and_obeys_again) {
+  plug();
+  open();
+  settings_.hold = milliseconds(0);
+  run(milliseconds(100));
+  neck_.set_focus(now_, 7);
+  command(2, 0);
+  run(milliseconds(100));
+  command(1, 0);
+  command(0.5, 0);  // waits for the answer to the one before
+  neck_.set_focus(now_, 0);
+  run(milliseconds(1000));
+  const double pan = unit_.pan(9);
+  EXPECT_GT(pan, 10);
+  EXPECT_LT(pan, 400);
+  EXPECT_EQ(unit_.pan(10), pan);
+  run(milliseconds(1000));
+  neck_.set_focus(now_, 7);
+  command(2, 0);
+  run(milliseconds(3000));
+  EXPECT_NEAR(unit_.pan(9), 2228, 1);
+}
+
 TEST_F(NeckTest, a_command_that_has_waited_lives_for_the_rest_of_its_age) {
   plug();
   open();

@@ -8,7 +8,8 @@ int main(int argc, char** argv) {
   hc::Module module{"pan_tilt", "Turns the head by a FLIR pan-tilt unit; reports where it looks."};
   auto command =
       module.input("command", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze).finite(),
-                   "roll (ignored), tilt, pan to take [rad]; the newest is used");
+                   "roll (ignored), tilt, pan to take [rad]; the newest is used, of one source of "
+                   "a mode at a time");
   auto device_input = module.input("device", hc::string(), "device to open; none when empty");
   auto gaze = module.output("gaze", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze),
                             "0, tilt, pan as measured [rad]");
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
         if (pose.linked()) pose.send(hc::transformation(T_robot_head).at(time));
       });
   auto pass = [&] {
+    neck.set_focus(now(), module.focus());
     neck.pass(now(),
               {*device, static_cast<int>(*baud), *speed, *acceleration, hc::duration(*hold), *age});
   };
@@ -51,11 +53,18 @@ int main(int argc, char** argv) {
   module.on_start(pass);
   module.every(hc::pan_tilt::Neck::kTick, pass);
   module.every(rate, [&] { neck.look(now()); });
-  module.on_readable([&] { return neck.descriptor(); }, [&] { neck.read(now()); });
+  module.on_readable([&] { return neck.descriptor(); },
+                     [&] {
+                       neck.set_focus(now(), module.focus());
+                       neck.read(now());
+                     });
   module.on(device_input, [&](const auto& name) { neck.set_device(now(), name.characters()); });
   module.on(command, [&](const auto& message) {
+    neck.set_focus(now(), module.focus());
     const auto angles = message.numbers();
-    neck.command(now(), module.now(), {angles[2], angles[1], message.header.time});
+    neck.command(
+        now(), module.now(),
+        {angles[2], angles[1], message.header.time, message.header.mode, message.header.src});
   });
   return module.run(argc, argv);
 }
