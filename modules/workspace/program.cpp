@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
-#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <hc/contract/mode_names.h>
+#include <hc/contract/stops.h>
 #include <hc/module/module.h>
 
 #include "workspace.h"
@@ -31,11 +33,13 @@ class Complaints {
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", clock};
   auto bids = module.input("bids", hc::table<double>(),
-                           "salience 0 … 1 of the message's mode; 0 withdraws");
+                           "salience 0 … 1 of the message's mode and src; 0 withdraws that one");
   auto person = module.input("person", hc::table<double>(),
                              "the same from a person, above all others while it is valid");
   auto stop = module.input("stop", hc::table<std::uint8_t>().of(1, 1),
-                           "1: no mode has the focus until a 0 comes");
+                           "of its src, 1: no mode has the focus until the same src says 0; 0, "
+                           "repeated: it guards, and its silence halts too; 2: a person clears all "
+                           "stops; 3: it guards no more");
   // More than one, since bids for several modes, and stops of several sources, may share a link.
   module.keep(bids, 16);
   module.keep(person, 16);
@@ -45,11 +49,12 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   auto standings = module.output(
       "standings", hc::table<double>(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
-  auto stopped = module.output("stopped", hc::table<std::uint8_t>().of(1, 1),
-                               "1 while it is stopped, else 0; ten times a second");
+  auto stopped =
+      module.output("stopped", hc::table<std::uint8_t>().of(1, 1),
+                    "1 while it is stopped, else 0; at each change, and ten times a second");
   auto rate = module.parameter(
-      "rate", 20.0, "Hz",
-      "how often the focus is decided and repeated; an exclusive input trusts it for 0.2 s",
+      "rate", 50.0, "Hz",
+      "how often the focus is decided and repeated; an exclusive input trusts it for 0.12 s",
       {.min = 20, .max = 1000});
   auto margin =
       module.parameter("margin", 0.1, "", "a challenger must bid more than the focus does by this",
@@ -63,45 +68,84 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       "person_expiry", 60.0, "s", "how long a person's bid is valid", {.min = 0.001, .max = 86400});
   auto modes = module.parameter(hc::kModeNames, "", "",
                                 "names of modes, e.g. read=5,track=4: set by `hc run`");
+  auto sources = module.parameter(hc::kSourceNames, "", "",
+                                  "names of who bids and stops, by src, e.g. web.stop=12: set by "
+                                  "`hc run`");
+  auto stops = module.parameter(
+      hc::kStops, "", "",
+      "who has stopped (1) or guards (0) the robot, by src, e.g. 12=1,14=0: set by `hc run` at a "
+      "restart",
+      {.fixed = true});
 
   Workspace workspace;
   Complaints complaints;
-  std::map<std::int32_t, std::string> names;
-  auto log_change = [&] {
-    if (auto read = hc::parse_mode_names(*modes))
-      names = std::move(*read);
-    else
-      module.log_once("invalid mode_names", read.error().detail);
-    module.log("focus: " + workspace.last_change(names));
+  std::string modes_read, sources_read;
+  auto read_names = [&](auto checked) {
+    if (std::exchange(modes_read, *modes) != *modes)
+      if (auto names = checked(hc::parse_mode_names(modes_read)))
+        workspace.set_modes(std::move(*names));
+    if (std::exchange(sources_read, *sources) != *sources)
+      if (auto names = checked(hc::parse_mode_names(sources_read, hc::kSourceNames)))
+        workspace.brake.set_names(std::move(*names));
   };
-  module.on_start([&] { names = hc::value_or_end(hc::parse_mode_names(*modes)); });
+  auto report = [&] { module.report_focus(workspace.focus(), workspace.brake.stops()); };
+  auto send_stopped = [&] {
+    const std::uint8_t is_stopped = workspace.brake.is_stopped() ? 1 : 0;
+    stopped.send(hc::table({is_stopped}).at(module.now()));
+  };
+  /// When a message was made, by the clock of bids.
+  auto made_at = [&](const hc::Header& header) {
+    const auto age = header.time == 0 ? 0 : module.now() - header.time;
+    return module.monotonic() - std::chrono::nanoseconds(age);
+  };
+  module.on_start([&] {
+    read_names([](auto names) { return std::optional(hc::value_or_end(std::move(names))); });
+    workspace.brake.restore(hc::value_or_end(hc::parse_stops(*stops)));
+    if (workspace.brake.is_stopped())
+      module.log(workspace.brake.reason(module.monotonic()) + ", before the restart");
+  });
   auto take = [&](const hc::Message& message, auto bid) {
-    auto now = module.monotonic();
-    auto numbers = hc::value_or_drop(message.view<double>()).numbers();
+    const auto now = module.monotonic();
+    const auto numbers = hc::value_or_drop(message.view<double>()).numbers();
     // Without its one number a bid has a salience that is refused as any other.
-    double salience = numbers.size() == 1 ? numbers[0] : -1;
-    auto taken = (workspace.*bid)(message.header.mode, salience, now);
+    const double salience = numbers.size() == 1 ? numbers[0] : -1;
+    const Bidder who{message.header.mode, message.header.src};
+    auto taken = (workspace.*bid)(who, salience, made_at(message.header), now);
     if (!taken) complaints.log(module, taken.error(), workspace.refused(), now);
   };
   module.on(bids, [&](const auto& message) { take(message, &Workspace::bid); });
   module.on(person, [&](const auto& message) { take(message, &Workspace::bid_of_person); });
 
   module.on(stop, [&](const auto& message) {
-    const bool is_stopped = message.numbers()[0] != 0;
-    if (is_stopped != workspace.is_stopped()) module.log(is_stopped ? "stopped" : "stop cleared");
-    workspace.stop(is_stopped);
+    auto& brake = workspace.brake;
+    const auto& header = message.header;
+    const auto now = module.monotonic();
+    const auto word = message.numbers()[0];
+    const bool was_stopped = brake.is_stopped();
+    const auto taken = brake.take({header.src, word, header.seq, made_at(header)}, now);
+    if (!taken) return module.log_once("stop refused", "stop refused: " + taken.error().detail);
+    report();
+    const auto source = brake.name(header.src);
+    if (word == Brake::Free && brake.stops_robot(header.src))
+      module.log_once("stop kept", "the stop of " + source +
+                                       " holds: it was silent or restarted meanwhile, and may not "
+                                       "know of it; clear it in the page");
+    if (was_stopped == brake.is_stopped()) return;
+    module.log(was_stopped ? "stop cleared by " + source : brake.reason(now));
+    send_stopped();
   });
 
-  module.every(std::chrono::milliseconds(100), [&] {
-    const std::uint8_t is_stopped = workspace.is_stopped() ? 1 : 0;
-    stopped.send(hc::table({is_stopped}).at(module.now()));
-  });
+  module.every(std::chrono::milliseconds(100), send_stopped);
   module.every(rate, [&] {
     auto now = module.monotonic();
+    read_names([&](auto names) {  // while it runs, wrong ones end nothing
+      if (!names) module.log_once("invalid names", names.error().detail);
+      return names;
+    });
     workspace.set_options(
         {*margin, hc::duration(*dwell), hc::duration(*expiry), hc::duration(*person_expiry)});
-    if (workspace.decide(now)) log_change();
-    module.report_focus(workspace.focus());
+    if (workspace.decide(now)) module.log("focus: " + workspace.last_change());
+    report();
     const std::int64_t time = module.now();
     auto message = hc::table({workspace.focus()});
     message.header.time = time;
@@ -123,7 +167,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   int status = module.run(argc, argv);
   if (const Refused& refused = workspace.refused(); refused.total() > 0)
     module.log("bids refused: " + std::to_string(refused.salience) + " for their salience, " +
-               std::to_string(refused.mode) + " for their mode, " +
-               std::to_string(refused.crowded) + " that were too many");
+               std::to_string(refused.mode) + " for their mode, " + std::to_string(refused.time) +
+               " for their time, " + std::to_string(refused.crowded) + " that were too many");
   return status;
 }

@@ -4,66 +4,101 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "workspace.h"
 
-/// Takes what is bid and decided, and expects that each decision keeps the rules.
+/// Takes what is bid, said to the brake and decided, and expects that each decision keeps the
+/// rules.
 class FocusRules {
  public:
   explicit FocusRules(const WorkspaceOptions& options = {}) : options_(options) {}
 
-  void bid(std::int32_t mode, double salience, hc::MonotonicTime now) {
-    tasks_[mode] = {salience, now + options_.expiry};
+  void bid(const Bidder& who, double salience, hc::MonotonicTime now) {
+    take(who, salience, now, tasks_, options_.expiry);
   }
-  void bid_of_person(std::int32_t mode, double salience, hc::MonotonicTime now) {
-    if (salience == 0 && mode != person_mode_) return;  // of another mode
-    person_ = {salience, now + options_.person_expiry};
-    person_mode_ = mode;
+  void bid_of_person(const Bidder& who, double salience, hc::MonotonicTime now) {
+    take(who, salience, now, persons_, options_.person_expiry);
+  }
+  /// What is said to the brake, whose rules are tested by themselves.
+  void stop(const Brake::Message& message, hc::MonotonicTime now) {
+    EXPECT_TRUE(brake_.take(message, now));
   }
 
   /// To be called for every decision, with the focus that it left.
   void decided(std::int32_t focus, hc::MonotonicTime now) {
-    const bool is_held = person_.is_valid(now);
-    const bool any = std::any_of(tasks_.begin(), tasks_.end(),
-                                 [&](const auto& task) { return task.second.is_valid(now); });
-    if (is_held) {
-      EXPECT_EQ(focus, person_mode_);  // within one period
+    auto tasks = best(tasks_, now), persons = best(persons_, now);
+    if (!brake_.reason(now).empty()) {
+      EXPECT_EQ(focus, 0);
+    } else if (!persons.empty()) {
+      decided_by_persons(persons, focus);
     } else {
-      // An expired bid never holds focus; and none is in focus only where none bids.
-      EXPECT_TRUE(focus == 0 ? !any : tasks_[focus].is_valid(now));
+      decided_by_tasks(tasks, focus, now);
     }
-    if (focus != focus_) {
-      if (!is_held && tasks_[focus_].is_valid(now)) {  // so neither by expiry nor by a person
-        EXPECT_GE(now - changed_, options_.dwell);
-        EXPECT_GT(tasks_[focus].salience, tasks_[focus_].salience + options_.margin);
-      }
-      focus_ = focus;
-      changed_ = now;
-    }
-    // Nobody is kept out behind the dwell time.
-    if (is_held || !any || now - changed_ < options_.dwell) return;
-    for (const auto& [mode, task] : tasks_) {
-      if (!task.is_valid(now)) continue;
-      EXPECT_LE(task.salience, tasks_[focus].salience + options_.margin);
-    }
+    if (focus != focus_) changed_ = now;
+    focus_ = focus;
   }
 
  private:
   struct Bid {
     double salience = 0;
-    hc::MonotonicTime expires{};
-
+    hc::MonotonicTime expires{}, began{};
     [[nodiscard]] bool is_valid(hc::MonotonicTime now) const {
       return salience > 0 && now < expires;
     }
   };
+  using Bids = std::map<std::pair<std::int32_t, std::int32_t>, Bid>;  // by mode and source
+  using Best = std::map<std::int32_t, Bid>;                           // by mode
+
+  static void take(const Bidder& who, double salience, hc::MonotonicTime now, Bids& bids,
+                   std::chrono::nanoseconds expiry) {
+    Bid& bid = bids[{who.mode, who.source}];
+    bid = {salience, now + expiry, bid.is_valid(now) ? bid.began : now};
+  }
+
+  /// The greatest valid bid of each mode, of equal ones that which began last.
+  static Best best(const Bids& bids, hc::MonotonicTime now) {
+    Best best;
+    for (const auto& [who, bid] : bids) {
+      if (!bid.is_valid(now)) continue;
+      Bid& most = best[who.first];
+      if (bid.salience > most.salience || (bid.salience == most.salience && bid.began > most.began))
+        most = bid;
+    }
+    return best;
+  }
+
+  /// Nobody bids more; of those who bid as much it has kept the focus, or none had it and none
+  /// began later.
+  void decided_by_persons(const Best& persons, std::int32_t focus) const {
+    ASSERT_TRUE(persons.contains(focus)) << focus;
+    const Bid& granted = persons.at(focus);
+    for (const auto& [mode, bid] : persons) {
+      EXPECT_LE(bid.salience, granted.salience);
+      if (bid.salience < granted.salience || mode == focus || focus == focus_) continue;
+      EXPECT_NE(mode, focus_) << "the focus was taken by a bid that is no greater";
+      EXPECT_LE(bid.began, granted.began);
+    }
+  }
+
+  void decided_by_tasks(Best& tasks, std::int32_t focus, hc::MonotonicTime now) const {
+    // An expired bid never holds focus; and none is in focus only where none bids.
+    EXPECT_TRUE(focus == 0 ? tasks.empty() : tasks.contains(focus)) << focus;
+    if (focus != focus_ && tasks.contains(focus_)) {  // so not by expiry
+      EXPECT_GE(now - changed_, options_.dwell);
+      EXPECT_GT(tasks[focus].salience, tasks[focus_].salience + options_.margin);
+    }
+    // Nobody is kept out behind the dwell time.
+    if (focus != focus_ || now - changed_ < options_.dwell) return;
+    for (const auto& [mode, bid] : tasks)
+      EXPECT_LE(bid.salience, tasks[focus].salience + options_.margin);
+  }
 
   WorkspaceOptions options_;
-  std::map<std::int32_t, Bid> tasks_;  // by mode
-  Bid person_;
-  std::int32_t person_mode_ = 0;
+  Bids tasks_, persons_;
+  Brake brake_;
   std::int32_t focus_ = 0;
   hc::MonotonicTime changed_{};
 };

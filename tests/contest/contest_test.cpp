@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contest for the focus as it is run: the programs workspace and actor at work, each on a
-// thread and over links. The test is what is around them: three tasks and a person, who bid and
-// command at random, and the clock. Nothing waits for time; each step follows from the one before.
+// thread and over links. The test is what is around them: three sources that bid for three modes,
+// as tasks and as persons, contradict each other, stop, guard, command and are silent at random,
+// and the clock. Nothing waits for time; each step follows from the one before.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,9 +26,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr unsigned kSequences = 10'000;
-constexpr int kPeriods = 10;         // of a sequence
-constexpr milliseconds kPeriod{50};  // from one decision to the next
-constexpr std::int32_t kModes = 3;   // a task each, from 1 on
+constexpr int kPeriods = 10;                      // of a sequence
+constexpr milliseconds kPeriod{50};               // from one decision to the next
+constexpr std::int32_t kModes = 3, kSources = 3;  // from 1 on
 
 std::string uri(const std::string& name) {
   return "inproc:contest-" + name;
@@ -119,6 +120,7 @@ class Contest {
     gate_.remove();
     for (auto& link : bids_) link.reset();
     person_.reset();
+    stop_.reset();
     command_.reset();
     EXPECT_EQ(workspace_->join(), 0);
     EXPECT_EQ(actor_->join(), 0);
@@ -128,7 +130,7 @@ class Contest {
 
   void run() {
     for (int period = 0; period < kPeriods; ++period) {
-      for (int bids = pick(0, 3); bids > 0; --bids) bid();
+      for (int bids = pick(0, 4); bids > 0; --bids) bid();
       command_in_each_mode(false);
       decide();
       command_in_each_mode();
@@ -155,7 +157,7 @@ class Contest {
         "--margin=" + std::to_string(options_.margin), "--dwell=" + in_seconds(options_.dwell),
         "--expiry=" + in_seconds(options_.expiry),
         "--person_expiry=" + in_seconds(options_.person_expiry), "--control=" + uri("control"),
-        "--in=person=" + uri("person"),
+        "--in=person=" + uri("person"), "--in=stop=" + uri("stop"),
         // In this order: what the test has learned of has reached the actor.
         "--out=focus=" + uri("focus-actor?keep=latest"), "--out=focus=" + uri("focus-test")};
     for (std::size_t i = 0; i < bids_.size(); ++i) {
@@ -165,28 +167,42 @@ class Contest {
     }
     workspace_.emplace([this](int argc, char** argv) { return run_workspace(argc, argv, clock_); },
                        words);
-    bid(*bids_[0], 1, 0);  // changes nothing; once it is taken, the first decision has its time
+    // Changes nothing; once it is taken, the first decision has its time.
+    say(*bids_[0], {1, 1}, hc::table({0.0}));
   }
 
-  /// Bids, and waits until the workspace has taken it.
-  void bid(hc::Sink& link, std::int32_t mode, double salience) {
+  /// Says something as a source, and waits until the workspace has taken it.
+  void say(hc::Sink& link, const Bidder& who, hc::Message message) {
     auto taken = std::make_shared<std::promise<void>>();
-    hc::Message message = hc::table({salience});
-    message.header.mode = mode;
+    message.header.mode = who.mode;
+    message.header.src = who.source;
     EXPECT_TRUE(link.send(at_last(std::move(message), [taken] { taken->set_value(); })));
     taken->get_future().wait();
   }
 
   void bid() {
-    clock_.advance(milliseconds(pick(0, 16)));
-    auto mode = pick(1, kModes);
-    double salience = pick(0, 5) == 0 ? 0 : 0.01 * pick(1, 100);
-    if (pick(0, 9) == 0) {
-      bid(*person_, mode, salience);
-      rules_.bid_of_person(mode, salience, clock_.monotonic());
+    clock_.advance(milliseconds(pick(0, 12)));  // four of these are less than a period
+    const auto now = clock_.monotonic();
+    const Bidder who{pick(1, kModes), pick(1, kSources)};
+    // Few numbers, so that there are equal ones.
+    const double salience = pick(0, 4) == 0 ? 0 : 0.1 * pick(1, 10);
+    auto& link = *bids_.at(static_cast<std::size_t>(who.source - 1));
+    const int what = pick(0, 9);
+    if (what < 3) {
+      say(*person_, who, hc::table({salience}));
+      rules_.bid_of_person(who, salience, now);
+    } else if (what == 3) {  // of another time: it changes nothing
+      say(link, who,
+          hc::table({salience})
+              .at(clock_.wall() - pick(0, 1) * 7'200'000'000'000 + 3'600'000'000'000));
+    } else if (what == 4) {
+      const auto word = static_cast<std::uint8_t>(
+          std::array{0, 0, 0, 1, 2, 2, 3}.at(static_cast<std::size_t>(pick(0, 6))));
+      say(*stop_, who, hc::table({word}));
+      rules_.stop({who.source, word, 0, now}, now);
     } else {
-      bid(*bids_.at(static_cast<std::size_t>(mode - 1)), mode, salience);
-      rules_.bid(mode, salience, clock_.monotonic());
+      say(link, who, hc::table({salience}));
+      rules_.bid(who, salience, now);
     }
   }
 
@@ -241,9 +257,9 @@ class Contest {
   std::size_t checked_ = 0;            // of these
   Gate gate_;
 
-  std::array<std::unique_ptr<hc::Sink>, kModes> bids_;
-  std::unique_ptr<hc::Sink> person_ = sink_of("person"), command_ = sink_of("command"),
-                            control_ = sink_of("control");
+  std::array<std::unique_ptr<hc::Sink>, kSources> bids_;
+  std::unique_ptr<hc::Sink> person_ = sink_of("person"), stop_ = sink_of("stop"),
+                            command_ = sink_of("command"), control_ = sink_of("control");
   std::unique_ptr<hc::Source> reported_ = source_of("focus-test"), done_ = source_of("done");
   std::optional<Running> workspace_, actor_;
 };

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "brake.h"
+
+#include <algorithm>
+
+/// A source, which is new if need be; null: there are too many that matter.
+Brake::Source* Brake::find(std::int32_t number) {
+  if (const auto known = sources_.find(number); known != sources_.end()) return &known->second;
+  if (sources_.size() >= kMostSources)
+    std::erase_if(sources_, [](const auto& each) { return !each.second.matters(); });
+  return sources_.size() < kMostSources ? &sources_[number] : nullptr;
+}
+
+hc::Status Brake::take(const Message& message, hc::MonotonicTime now) {
+  if (message.word > Leave)
+    return hc::Error{hc::Code::Malformed, "a stop is 0, 1, 2 or 3, not " +
+                                              std::to_string(static_cast<int>(message.word))};
+  const bool is_stop = message.word == Stop;
+  const bool is_timely = message.said > now - kOld && message.said <= now + kAhead;
+  if (!is_stop && !is_timely) return hc::Error{hc::Code::Malformed, "its time is not of now"};
+  const auto said = is_stop ? now : std::min(message.said, now);
+  if (message.word == ClearAll) clear_all(said);
+  if (Source* source = find(message.source); source != nullptr) {
+    hear(*source, message, said);
+  } else {
+    others_stop_ = others_stop_ || is_stop;
+    if (!is_stop)
+      return hc::Error{hc::Code::TooLarge,
+                       std::to_string(kMostSources) + " others stop or guard the robot already"};
+  }
+  return {};
+}
+
+void Brake::hear(Source& source, const Message& message, hc::MonotonicTime said) {
+  const bool was_silent = source.is_silent(said);
+  source.is_forgetful = source.is_forgetful || message.word == Leave || message.seq < source.seq ||
+                        (source.repeats && was_silent);
+  source.repeats = message.word == source.word && !was_silent;
+  source.word = message.word;
+  source.seq = message.seq;
+  source.heard = std::max(source.heard, said);
+  if (message.word == Leave) source.guards = false;
+  if (message.word == Free && source.repeats) source.guards = true;
+  if (message.word == Free && !source.is_forgetful) source.stops = false;
+  if (message.word == Stop) {
+    source.stops = true;
+    source.is_forgetful = false;
+  }
+  if (!source.stops) source.is_forgetful = false;
+}
+
+void Brake::clear_all(hc::MonotonicTime now) {
+  others_stop_ = false;
+  for (auto& [number, source] : sources_) {
+    source.stops = source.is_forgetful = false;
+    source.guards = source.guards && !source.is_silent(now);
+  }
+}
+
+void Brake::restore(const hc::Stops& stops) {
+  for (const auto& [number, is_stop] : stops) {
+    Source& source = sources_[number];
+    source.stops = source.is_forgetful = is_stop;
+    source.guards = !is_stop;
+  }
+}
+
+hc::Stops Brake::stops() const {
+  hc::Stops stops;
+  for (const auto& [number, source] : sources_)
+    if (source.matters()) stops[number] = source.stops;
+  return stops;
+}
+
+std::string Brake::reason(hc::MonotonicTime now) const {
+  for (const auto& [number, source] : sources_)
+    if (source.stops) return "stopped by " + name(number);
+  if (others_stop_) return "stopped by one of too many sources";
+  for (const auto& [number, source] : sources_)
+    if (source.guards && source.is_silent(now)) return "the stop of " + name(number) + " is silent";
+  return "";
+}

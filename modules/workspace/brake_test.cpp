@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "brake.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::int32_t kPage = 12, kButton = 7;
+
+/// A brake and its clock.
+struct Robot {
+  Brake brake;
+  hc::MonotonicTime now{milliseconds(5000)};
+  std::map<std::int32_t, std::int64_t> seq;
+
+  bool say(std::int32_t source, int word) {
+    return brake.take({source, static_cast<std::uint8_t>(word), seq[source]++, now}, now)
+        .has_value();
+  }
+  /// Says a word again and again for so long.
+  void repeat(std::int32_t source, int word, milliseconds duration) {
+    for (const auto end = now + duration; now < end; now += milliseconds(50))
+      ASSERT_TRUE(say(source, word));
+  }
+  [[nodiscard]] std::string reason() const { return brake.reason(now); }
+};
+
+TEST(Brake, a_stop_holds_until_its_own_source_clears_it) {
+  Robot robot;
+  EXPECT_EQ(robot.reason(), "");
+  ASSERT_TRUE(robot.say(kButton, 1));
+  EXPECT_EQ(robot.reason(), "stopped by source 7");
+  robot.repeat(kPage, 0, milliseconds(500));
+  EXPECT_EQ(robot.reason(), "stopped by source 7");
+  ASSERT_TRUE(robot.say(kPage, 3));
+  robot.now += std::chrono::hours(1);
+  EXPECT_TRUE(robot.brake.is_stopped());
+  ASSERT_TRUE(robot.say(kButton, 0));
+  EXPECT_EQ(robot.reason(), "");
+}
+
+TEST(Brake, of_two_stops_each_holds) {
+  Robot robot;
+  for (auto source : {kButton, kPage}) ASSERT_TRUE(robot.say(source, 1));
+  ASSERT_TRUE(robot.say(kButton, 0));
+  EXPECT_EQ(robot.reason(), "stopped by source 12");
+  ASSERT_TRUE(robot.say(kPage, 0));
+  EXPECT_FALSE(robot.brake.is_stopped());
+}
+
+TEST(Brake, a_person_clears_all_stops) {
+  Robot robot;
+  for (auto source : {kButton, kPage, 99}) ASSERT_TRUE(robot.say(source, 1));
+  ASSERT_TRUE(robot.say(kPage, 2));
+  EXPECT_EQ(robot.reason(), "");
+}
+
+TEST(Brake, a_guard_that_is_silent_halts_the_robot_and_its_word_frees_it) {
+  Robot robot;
+  robot.repeat(kPage, 0, milliseconds(200));
+  robot.now += Brake::kSilence - milliseconds(50);
+  EXPECT_EQ(robot.reason(), "");
+  robot.now += milliseconds(1);
+  EXPECT_EQ(robot.reason(), "the stop of source 12 is silent");
+  EXPECT_FALSE(robot.brake.is_stopped());
+  robot.seq.clear();  // its process has been restarted
+  ASSERT_TRUE(robot.say(kPage, 0));
+  EXPECT_EQ(robot.reason(), "");
+  robot.now += std::chrono::hours(1);
+  EXPECT_EQ(robot.reason(), "the stop of source 12 is silent");
+}
+
+TEST(Brake, a_guard_may_leave_or_be_dismissed_while_it_is_silent) {
+  for (int word : {3, 2}) {
+    Robot robot;
+    robot.repeat(kPage, 0, milliseconds(200));
+    if (word == 3) {
+      EXPECT_TRUE(robot.say(kPage, word));
+    }
+    robot.now += std::chrono::seconds(1);
+    EXPECT_EQ(robot.reason().empty(), word == 3);
+    if (word == 2) {
+      EXPECT_TRUE(robot.say(kButton, word));
+    }
+    EXPECT_EQ(robot.reason(), "") << word;
+  }
+  Robot robot;  // one that speaks is not dismissed
+  robot.repeat(kPage, 0, milliseconds(200));
+  ASSERT_TRUE(robot.say(kButton, 2));
+  robot.now += std::chrono::seconds(1);
+  EXPECT_EQ(robot.reason(), "the stop of source 12 is silent");
+}
+
+TEST(Brake, who_says_a_word_now_and_then_guards_nothing) {
+  for (int word : {0, 1}) {
+    Robot robot;
+    ASSERT_TRUE(robot.say(kButton, word));
+    robot.now += Brake::kSilence + milliseconds(1);
+    ASSERT_TRUE(robot.say(kButton, 0));
+    robot.now += std::chrono::hours(1);
+    EXPECT_EQ(robot.reason(), "") << word;
+  }
+}
+
+TEST(Brake, who_may_have_forgotten_that_it_stopped_does_not_clear_by_guarding) {
+  // Silent for a while; restarted at once, and so counting anew; left by its last page.
+  for (int how : {0, 1, 2}) {
+    Robot robot;
+    robot.repeat(kPage, 1, milliseconds(200));
+    if (how == 0) robot.now += Brake::kSilence;
+    if (how == 1) robot.seq.clear();
+    if (how == 2) {
+      EXPECT_TRUE(robot.say(kPage, 3));
+    }
+    robot.repeat(kPage, 0, milliseconds(500));
+    EXPECT_EQ(robot.reason(), "stopped by source 12") << how;
+    if (how == 0) {
+      EXPECT_TRUE(robot.say(kPage, 2));
+    }
+    if (how != 0) {
+      EXPECT_TRUE(robot.say(kPage, 1));
+    }
+    if (how != 0) {
+      EXPECT_TRUE(robot.say(kPage, 0));
+    }
+    EXPECT_EQ(robot.reason(), "") << how;
+  }
+}
+
+TEST(Brake, stops_and_guards_outlive_the_process) {
+  Robot before;
+  ASSERT_TRUE(before.say(kButton, 1));
+  before.repeat(kPage, 0, milliseconds(200));
+  Robot robot;
+  robot.brake.restore(before.brake.stops());
+  EXPECT_EQ(robot.brake.stops(), before.brake.stops());
+  EXPECT_EQ(robot.reason(), "stopped by source 7");
+  robot.repeat(kButton, 0, milliseconds(200));
+  EXPECT_EQ(robot.reason(), "stopped by source 7");
+  ASSERT_TRUE(robot.say(kButton, 2));
+  ASSERT_TRUE(robot.say(kPage, 0));
+  EXPECT_EQ(robot.reason(), "");
+  Robot guarded;
+  guarded.brake.restore({{kPage, false}});
+  EXPECT_EQ(guarded.reason(), "the stop of source 12 is silent");
+  ASSERT_TRUE(guarded.say(kPage, 0));
+  EXPECT_EQ(guarded.reason(), "");
+}
+
+TEST(Brake, only_a_stop_counts_whenever_it_was_said) {
+  Robot robot;
+  const auto at = [&](int word, hc::MonotonicTime said) {
+    return robot.brake.take({kButton, static_cast<std::uint8_t>(word), 0, said}, robot.now);
+  };
+  ASSERT_TRUE(at(1, robot.now - std::chrono::hours(500'000)));
+  EXPECT_TRUE(robot.brake.is_stopped());
+  for (int word : {0, 2, 3})
+    for (auto off : {milliseconds(-1000), milliseconds(201), milliseconds(3'600'000)})
+      EXPECT_FALSE(at(word, robot.now + off)) << word;
+  EXPECT_TRUE(robot.brake.is_stopped());
+  EXPECT_FALSE(at(4, robot.now));
+  ASSERT_TRUE(at(0, robot.now - milliseconds(999)));
+  EXPECT_FALSE(robot.brake.is_stopped());
+}
+
+TEST(Brake, sources_are_called_by_their_names) {
+  Robot robot;
+  robot.brake.set_names({{kPage, "web.stop"}});
+  ASSERT_TRUE(robot.say(kPage, 1));
+  EXPECT_EQ(robot.reason(), "stopped by web.stop");
+  EXPECT_EQ(robot.brake.name(3), "source 3");
+}
+
+TEST(Brake, any_number_of_sources_is_borne_and_none_is_unheard) {
+  Robot robot;
+  for (std::int32_t source = 0; source < 1'000'000; ++source)
+    ASSERT_TRUE(robot.say(source, source % 2 == 0 ? 0 : 3));
+  EXPECT_TRUE(robot.brake.stops().empty());
+  for (std::int32_t source = 0; source < 100; ++source) ASSERT_TRUE(robot.say(source, 1));
+  EXPECT_EQ(robot.brake.stops().size(), Brake::kMostSources);
+  EXPECT_FALSE(robot.say(99, 0));
+  for (std::int32_t source = 0; source < 64; ++source) ASSERT_TRUE(robot.say(source, 0));
+  EXPECT_EQ(robot.reason(), "stopped by one of too many sources");
+  ASSERT_TRUE(robot.say(99, 2));
+  EXPECT_EQ(robot.reason(), "");
+}
+
+}  // namespace
