@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The blob of a colour.
+#include <optional>
+
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <vision/messages.h>
 
@@ -10,9 +13,10 @@ int main(int argc, char** argv) {
       "blob",
       "Finds the blob of a colour in images, and follows it: round, large, near the last one."};
   auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "images");
-  auto point = module.input("point", hc::position<double>().of(1, 1),
-                            "x, y in the next image [px]: its colour is searched from then on, "
-                            "until the parameter hue changes");
+  auto point = module.input(
+      "point", hc::position<double>().of(1, 1),
+      "x, y in the next image of its coordinate system [px]: its colour is searched from then on, "
+      "until the parameter hue changes");
   auto target = module.output("target", hc::position<double>(),
                               "x, y of the blob's middle, its radius [px], in the coordinate "
                               "system of the image; nothing while there is none");
@@ -27,11 +31,18 @@ int main(int argc, char** argv) {
       module.parameter("min_area", 60.0, "px²", "minimum area of a blob", {.min = 0, .max = 1e9});
 
   Search search{[&](std::string_view line) { module.log(line); }};
-  module.on(point, [&](const auto& message) {
-    const auto at = message.numbers();
-    search.point(at[0], at[1]);
-  });
+  std::optional<hc::MessageOf<hc::PositionKind<double>>> pointed;
+  module.on(point, [&](const auto& message) { pointed = message; });
   module.on(image, [&](const auto& message) {
+    const auto coord = message.header.coord;
+    if (pointed && (coord == 0 || pointed->header.coord == 0 || pointed->header.coord == coord)) {
+      search.point(pointed->numbers()[0], pointed->numbers()[1]);
+      pointed.reset();
+    } else if (pointed) {
+      module.log_once("point in another image",
+                      hc::format("point: it is in coordinate system {}, and this image in {}",
+                                 pointed->header.coord, coord));
+    }
     const auto blob =
         search.look(hc::as_mat(message), {*hue, *hue_width, *saturation, *value}, *min_area);
     if (!blob) return;

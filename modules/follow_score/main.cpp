@@ -7,10 +7,12 @@
 #include <hc/module/module.h>
 
 int main(int argc, char** argv) {
-  constexpr std::int32_t kGaze = 13;
+  constexpr std::int32_t kGaze = hc::Coord::kGaze, kSupervisor = hc::Coord::kSupervisor;
   hc::Module module{"follow_score", "Compares the orientation of a head with its setpoints."};
-  auto setpoint =
-      module.input("setpoint", hc::rotation<double>(), "truth: setpoint roll, tilt, pan [rad]");
+  auto setpoint = module.input(
+      "setpoint",
+      hc::any_of(hc::rotation<double>().in(kGaze), hc::rotation<double>().in(kSupervisor)),
+      "truth: setpoint roll, tilt, pan [rad]");
   auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
   auto result = module.output("score", hc::table<double>().of(4, 1),

@@ -2,10 +2,13 @@
 // Turns the head to where a task wants it to look, and bids for the head while it wants that.
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <gaze/stick.h>
+#include <hc/base/format.h>
+#include <hc/base/turn.h>
 #include <hc/module/module.h>
 #include <vision/marker.h>
 
@@ -17,8 +20,19 @@ namespace {
 /// How often a push is repeated: the first time may come before the head is granted.
 constexpr std::chrono::milliseconds kSteer{5};
 
-/// Targets further in the future, by another clock, are dropped [ns].
-constexpr std::int64_t kAhead = 200'000'000;
+/// What is further in the future, by another clock, is dropped [s].
+constexpr double kAhead = 0.2;
+
+/// Who pushes a stick repeats it; who is silent for longer has let it go.
+constexpr std::chrono::milliseconds kLetGo{250};
+
+/// In which frame an orientation of the head is given: the robot's, for angles of the neck (13) and
+/// of a person's head (14), and where nothing is said.
+std::int32_t frame_of_setpoint(std::int32_t coord) {
+  const bool is_of_neck =
+      coord == 0 || coord == hc::Coord::kGaze || coord == hc::Coord::kSupervisor;
+  return is_of_neck ? kRobot : coord;
+}
 
 }  // namespace
 
@@ -31,10 +45,13 @@ int main(int argc, char** argv) {
                               hc::table<double>().of(hc::vision::kMarkerColumns, 0)),
                    "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
                    "pose of marker, or its table");
-  auto setpoint =
-      module.input("setpoint", hc::rotation<double>(), "setpoint: roll, tilt, pan [rad]");
+  auto setpoint = module.input(
+      "setpoint", hc::rotation<double>(),
+      "orientation to take, roll, tilt, pan [rad]: of the neck (13) or a person's head "
+      "(14), or in a frame; of one source at a time");
   auto stick = module.input("stick", hc::table<double>().of(2, 1).finite(),
-                            "turn to the left, turn down, -1 … 1 of stick_rate");
+                            "turn to the left, turn down, -1 … 1 of stick_rate; repeated while "
+                            "pushed; of one source at a time");
   auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
   module.keep(target);
   module.keep(setpoint);
@@ -49,9 +66,11 @@ int main(int argc, char** argv) {
 
   std::optional<Controller> controller;
   bool was_wanted = false;  // in the last bid
-  bool was_ahead = false;   // the last target's time was in the future
+  hc::Turn<std::int32_t> pushes{kLetGo};
+  std::optional<hc::Turn<std::int32_t>> sets;  // a setpoint
 
   module.on_start([&] {
+    sets.emplace(hc::duration(*parameters.timeout));
     controller.emplace(parameters, Targets(parameters.eyes(frames.fixed(kHead, kLeftEye),
                                                            frames.fixed(kHead, kRightEye)),
                                            parameters.follower(), *parameters.distance));
@@ -75,17 +94,28 @@ int main(int argc, char** argv) {
     const double salience = was_wanted ? *parameters.salience : *parameters.idle_salience;
     bid.send(hc::table({salience}).at(module.now()));
   };
-  /// The time of what was sensed; nothing of what is to come, since it would hold back all that is
-  /// sensed until then.
-  auto sensed_at = [&](std::int64_t time) -> std::optional<std::int64_t> {
-    if (time <= 0) return module.now();
-    const std::int64_t ahead = time - module.now();
-    const bool is_ahead = ahead > kAhead;
-    if (is_ahead && !was_ahead)
-      module.log("target dropped: its time is " + std::to_string(ahead / 1'000'000) +
-                 " ms in the future (further drops are not logged)");
-    was_ahead = is_ahead;
-    return is_ahead ? std::nullopt : std::optional(time);
+  /// When a message was made. One that is old is not wanted any more; one of the future would hold
+  /// back all that is made until then.
+  auto time_of = [&](const hc::Header& header, double oldest) -> std::int64_t {
+    if (header.time <= 0) return module.now();
+    const double age = module.seconds_since(header.time);
+    if (age <= oldest && age >= -kAhead) return header.time;
+    throw hc::BadMessage(
+        hc::format("it is {:.3f} s {}", std::abs(age), age > 0 ? "old" : "in the future"));
+  };
+  /// Drops a message of a frame that cannot be turned into the robot's.
+  auto check_frame = [&](std::int32_t frame, const std::string& others) {
+    if (const auto chain = frames.tree().chain(kRobot, frame); !chain)
+      throw hc::BadMessage(hc::format("coordinate system {} is none of {}, and {}", frame, others,
+                                      chain.error().detail));
+  };
+  /// Whether a source may decide alone what all may say.
+  auto has_turn = [&](const std::string& what, hc::Turn<std::int32_t>& turn, std::int32_t source) {
+    if (turn.take(source, module.monotonic())) return true;
+    module.log_once(what + " of a second source",
+                    hc::format("{} of source {} dropped: source {} gives one", what, source,
+                               *turn.holder(module.monotonic())));
+    return false;
   };
 
   module.on(calibration, [&](const auto& message) {
@@ -96,29 +126,40 @@ int main(int argc, char** argv) {
   module.on(target, [&](const hc::Message& message) {
     const auto seen = seen_of(message);
     if (!seen) return;
-    const auto time = sensed_at(message.header.time);
-    if (!time) return;
+    const auto time = time_of(message.header, *parameters.timeout);
     const std::int32_t frame = Targets::frame_of(seen->coord);
-    if (auto chain = frames.tree().chain(kRobot, frame); !chain)
-      throw hc::BadMessage("coordinate system " + std::to_string(seen->coord) +
-                           " is no image of an eye (7, 8), and " + chain.error().detail);
-    frames.when_known(kRobot, frame, *time, [&, time, frame, seen](const auto& T_robot_frame) {
-      controller->targets.see(
-          *time, seen->coord, seen->p,
-          T_robot_frame ? *T_robot_frame : frames.nearest(kRobot, frame, *time));
+    check_frame(frame, "an eye and its image (4, 5, 7, 8)");
+    frames.when_known(kRobot, frame, time, [&, time, frame, seen](const auto& T_robot_frame) {
+      controller->targets.see(time, seen->coord, seen->p,
+                              T_robot_frame ? *T_robot_frame : frames.nearest(kRobot, frame, time));
       follow();
     });
   });
   module.on(setpoint, [&](const auto& message) {
-    const auto q = hc::rotation_of(message);
-    if (!q) return module.log("setpoint: " + q.error().detail);
-    const auto time = sensed_at(message.header.time);
-    if (!time) return;
-    controller->targets.set(*time, hc::gaze::angles_of(*q));
-    follow();
+    const auto& header = message.header;
+    const auto q = hc::value_or_drop(hc::rotation_of(message));
+    const auto time = time_of(header, *parameters.timeout);
+    const std::int32_t frame = frame_of_setpoint(header.coord);
+    check_frame(frame, "the neck and a person's head (13, 14)");
+    if (!has_turn("setpoint", *sets, header.src)) return;
+    frames.when_known(kRobot, frame, time, [&, time, frame, q](const auto& T_robot_frame) {
+      const Eigen::Isometry3d T =
+          T_robot_frame ? *T_robot_frame : frames.nearest(kRobot, frame, time);
+      controller->targets.set(time, hc::gaze::angles_of(Eigen::Quaterniond(T.linear()) * q));
+      follow();
+    });
   });
   module.on(stick, [&](const auto& message) {
-    controller->push(module.now(), message.numbers()[0], message.numbers()[1], measured());
+    const auto& header = message.header;
+    const double left = message.numbers()[0], down = message.numbers()[1];
+    time_of(header, hc::seconds(kLetGo));
+    // One in its middle pushes nothing, and ends the push of its own source alone.
+    const bool is_let_go = left == 0 && down == 0;
+    const auto* pushed_by = pushes.holder(module.monotonic());
+    if (is_let_go && (pushed_by == nullptr || *pushed_by != header.src)) return;
+    if (!has_turn("stick", pushes, header.src)) return;
+    if (is_let_go) pushes.release(header.src);
+    controller->push(module.now(), left, down, measured());
     // A person's push does not wait for the next bid.
     if (!was_wanted && controller->wants_head(module.now())) send_bid();
     steer();

@@ -90,6 +90,13 @@ class Driving(Pipes):
         self.assertTrue(1 <= len(self.rows("commands")) <= 40, len(self.rows("commands")))
         self.assertLess(max(row[2] for row in self.rows("commands")), 0.2)
 
+    def test_a_stick_in_its_middle_lets_go_of_no_other_stick(self):
+        row = b"1 %d 0 0 8 0 120190 0 0 2 1\n%d 0\n"
+        self.start_gaze("stick").sendall(row % (1, 1) + row % (2, 0) * 50)
+        self.wait_bid_end()
+        # Pushed for 0.1 s at 1 rad/s.
+        self.assertGreater(max(row[2] for row in self.rows("commands")), 0.09)
+
     def test_a_wish_that_is_not_told_again_does_not_run_away(self):
         link = self.start_gaze("setpoint")
 
@@ -167,12 +174,73 @@ class Gaze(Pipes):
             )
         )
         out = self.shell("(%s) | hc gaze --timeout 60 --in setpoint=- --out command=-" % setpoints)
-        self.assertRegex(self.err, r"^gaze: target dropped: its time is \d+ ms in the future")
-        self.assertEqual(self.err.count("\n"), 1)
+        self.assertRegex(
+            self.err, r"^gaze: setpoint dropped: (59|60)\.\d+ s in the future .*\n"
+            r"gaze: total: 1 setpoint of another time\n$"
+        )
         angles = [line.split() for line in out.splitlines()[1::2]]
         self.assertGreaterEqual(len(angles), 2)
         for roll, tilt, pan in angles:
             self.assertEqual((float(roll), float(tilt), float(pan)), (0, 0.1, 0.2))
+
+    def commands(self, *inputs, options=""):
+        """Rows of what is commanded after some messages, files of MTP by their ports."""
+        links = ""
+        for number, (port, text) in enumerate(inputs):
+            self.write("%d.mtp" % number, text)
+            links += " --in %s=file:%d.mtp" % (port, number)
+        out = self.shell("hc gaze --timeout 60 --acceleration 0%s%s --out command=-" % (links, options))
+        return [[float(word) for word in line.split()] for line in out.splitlines()[1::2]]
+
+    @staticmethod
+    def setpoint(pan, stamp, coord, source=1):
+        return "1 %d 0 0 8 %d 20390 0 %d 1 1\n0 0 %r\n" % (source, stamp, coord, pan)
+
+    def test_an_orientation_in_the_head_s_frame_is_turned_into_the_robot_s(self):
+        now = time.time_ns()
+        c, s = math.cos(0.5), math.sin(0.5)
+        pose = "1 2 0 0 8 %d 70190 0 2003 4 4\n" % now + (
+            "%r %r 0 0\n%r %r 0 0\n0 0 1 0\n0 0 0 1\n" % (c, -s, s, c)
+        )
+        for coord, pan in ((3, 0.75), (2, 0.25), (13, 0.25), (14, 0.25)):
+            rows = self.commands(("frames", pose), ("setpoint", self.setpoint(0.25, now, coord)))
+            self.assertTrue(rows, self.err)
+            self.assertAlmostEqual(rows[-1][2], pan, 3, (coord, self.err))
+
+    def test_an_orientation_in_no_known_frame_is_refused_by_its_name(self):
+        now = time.time_ns()
+        for coord in (205, 7, 20):
+            both = self.setpoint(1, now, coord) + self.setpoint(0.25, now + 1000, 13)
+            rows = self.commands(("setpoint", both))
+            self.assertEqual({row[2] for row in rows}, {0.25}, self.err)
+            self.assertIn("setpoint dropped: coordinate system %d is none of" % coord, self.err)
+
+    def test_two_that_set_the_head_do_not_alternate(self):
+        now = time.time_ns()
+        both = ""
+        for i in range(50):
+            both += self.setpoint(0.25, now + i, 14) + self.setpoint(-0.25, now + i, 14, 2)
+        rows = self.commands(("setpoint", both))
+        self.assertEqual({round(row[2], 3) for row in rows}, {0.25})
+        self.assertIn("setpoint of source 2 dropped: source 1 gives one", self.err)
+
+    def test_what_is_of_another_time_moves_nothing(self):
+        now = time.time_ns()
+        for stamp in (1, now - 3600 * 10**9, now + 3600 * 10**9):
+            push = "1 1 0 0 8 %d 120190 0 0 2 1\n1 0\n" % stamp
+            target = "1 1 0 0 8 %d 10390 0 2 1 1\n2 1 0\n" % stamp
+            setpoint = self.setpoint(1, stamp, 13)
+            rows = self.commands(("stick", push), ("target", target), ("setpoint", setpoint))
+            self.assertEqual(rows, [])
+            for what in ("stick", "target", "setpoint"):
+                self.assertRegex(self.err, "gaze: %s dropped: .* s (old|in the future)" % what)
+                self.assertIn("1 %s of another time" % what, self.err)
+
+    def test_of_two_sticks_that_are_pushed_one_is_obeyed(self):
+        row = "1 %d 0 0 8 0 120190 0 0 2 1\n%d 0\n"
+        rows = self.commands(("stick", (row % (1, 1) + row % (2, -1)) * 50))
+        self.assertGreater(min(row[2] for row in rows), 0)
+        self.assertIn("stick of source 2 dropped: source 1 gives one", self.err)
 
 
 if __name__ == "__main__":
