@@ -183,13 +183,13 @@ class Gaze(Pipes):
         for roll, tilt, pan in angles:
             self.assertEqual((float(roll), float(tilt), float(pan)), (0, 0.1, 0.2))
 
-    def commands(self, *inputs, options=""):
+    def commands(self, *inputs):
         """Rows of what is commanded after some messages, files of MTP by their ports."""
         links = ""
         for number, (port, text) in enumerate(inputs):
             self.write("%d.mtp" % number, text)
             links += " --in %s=file:%d.mtp" % (port, number)
-        out = self.shell("hc gaze --timeout 60 --acceleration 0%s%s --out command=-" % (links, options))
+        out = self.shell("hc gaze --timeout 60 --acceleration 0%s --out command=-" % links)
         return [[float(word) for word in line.split()] for line in out.splitlines()[1::2]]
 
     @staticmethod
