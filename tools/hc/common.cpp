@@ -10,6 +10,7 @@
 #include <set>
 
 #include <hc/base/format.h>
+#include <hc/base/visible.h>
 #include <hc/os/program.h>
 #include <mcap/link.h>
 
@@ -117,8 +118,14 @@ void allow_descriptors() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-void say(std::string_view line) {
-  write_error(std::string(line) + "\n");
+void say(std::string_view lines) {
+  std::string text;
+  while (!lines.empty()) {
+    const auto line = lines.substr(0, lines.find('\n'));
+    text += hc::visible(line) + "\n";
+    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+  }
+  write_error(text);
 }
 
 std::string find_graph(const std::string& name) {

@@ -14,6 +14,7 @@
 #include <graph/run.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
+#include <hc/os/standard_descriptors.h>
 
 #include "common.h"
 #include "observer.h"
@@ -112,6 +113,7 @@ void become_module(const std::string& name, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::open_standard_descriptors();
   CLI::App app{"Runs and inspects graphs of modules that send each other matrices.", "hc"};
   app.set_version_flag("--version", "hc " HC_VERSION);
   app.require_subcommand(1);

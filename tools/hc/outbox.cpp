@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <hc/base/format.h>
+#include <hc/base/visible.h>
 #include <hc/os/program.h>
 
 namespace tool {
@@ -92,7 +93,7 @@ void Outbox::say(std::string_view line) {
   if (shared_->dropped > 0 || shared_->waiting.size() + line.size() >= kMostWaiting)
     ++shared_->dropped;
   else
-    shared_->waiting.append(line).append("\n");
+    shared_->waiting.append(hc::visible(line)).append("\n");
   shared_->changed.notify_all();
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include <hc/base/format.h>
+#include <hc/base/visible.h>
 
 #include "common.h"
 
@@ -31,13 +32,14 @@ std::size_t length(std::string_view text) {
 
 /// Text in so many characters, with a mark where some are missing, and without what a terminal
 /// would obey.
-std::string fitted(const std::string& text, std::size_t width) {
+std::string fitted(const std::string& given, std::size_t width) {
+  const auto text = hc::visible(given);
   const auto count = length(text);
   std::string cut;
   std::size_t taken = 0;
   for (char c : text) {
     if (count > width && begins_character(c) && ++taken >= width) break;
-    cut += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    cut += c == '\t' ? ' ' : c;
   }
   return count > width ? cut + "…" : cut + std::string(width - count, ' ');
 }

@@ -2,11 +2,14 @@
 #pragma once
 // What a process says, line by line, and the last of it. Pure. Internal to graph.
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include <hc/base/visible.h>
 
 namespace hc::internal {
 
@@ -21,18 +24,23 @@ class Lines {
 
   using Take = std::function<void(const std::string& line)>;
 
-  /// Takes what was read; `take` gets each line that is whole now, and none that is empty.
+  /// Takes what was read; `take` gets each line that is whole now, and none that is empty, as it is
+  /// visible at a terminal.
   void add(std::string_view piece, const Take& take) {
-    for (char c : piece) {
-      if (c != '\n') begun_ += c;
-      if (c == '\n' || begun_.size() >= kMaxLine) finish(take);
+    while (!piece.empty()) {
+      const auto end = piece.find('\n');
+      const auto size = std::min({end, piece.size(), kMaxLine - begun_.size()});
+      begun_ += piece.substr(0, size);
+      if (size == end || begun_.size() >= kMaxLine) finish(take);
+      piece.remove_prefix(size == end ? size + 1 : size);
     }
   }
 
   /// Takes what was begun as a line: there comes no more of it.
   void finish(const Take& take) {
+    if (begun_.ends_with('\r')) begun_.pop_back();
     if (begun_.empty()) return;
-    const std::string line = std::exchange(begun_, {});
+    const std::string line = visible(std::exchange(begun_, {}));
     if (line.find(kNotice) == std::string::npos) {
       if (last_.size() == kLast) last_.pop_front();
       last_.push_back(line);

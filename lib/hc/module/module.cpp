@@ -6,18 +6,35 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
+#include <hc/base/visible.h>
 #include <hc/compress/compress.h>
 #include <hc/compress/scale.h>
 #include <hc/module/loop.h>
 #include <hc/os/program.h>
+#include <hc/os/standard_descriptors.h>
 
 namespace hc {
 namespace {
 
 constexpr int kDone = 0, kFailure = 1, kUsage = 2;
 constexpr int kBackgroundNice = 10;
+
+/// What a library threw, without where it is in its sources: "OpenCV(4.6.0) ./x.cpp:73: error:
+/// (-4:Insufficient memory) … in function 'y'".
+std::string in_words(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "System: not enough memory";
+  std::string text = error.what();
+  if (text.starts_with("OpenCV(")) {
+    const auto begin = text.find("error: ");
+    if (begin != std::string::npos) text.erase(0, begin + 7);
+    text = "System: OpenCV: " + text.substr(0, text.find(" in function "));
+  }
+  while (text.ends_with('\n')) text.pop_back();
+  return text;
+}
 
 const SystemClock kSystemClock;
 
@@ -27,7 +44,9 @@ Module::Module(std::string name, std::string summary)
     : Module(std::move(name), std::move(summary), kSystemClock) {}
 
 Module::Module(std::string name, std::string summary, const Clock& clock)
-    : name_(std::move(name)), summary_(std::move(summary)), instance_(name_), clock_(clock) {}
+    : name_(std::move(name)), summary_(std::move(summary)), instance_(name_), clock_(clock) {
+  open_standard_descriptors();
+}
 
 Module::~Module() = default;
 
@@ -125,7 +144,7 @@ void Module::log_unmatched(const internal::TogetherState& together) {
 
 void Module::log(std::string_view line) const {
   // There is no one to tell that it failed.
-  static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + std::string(line) + "\n"));
+  static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + visible(line) + "\n"));
 }
 
 void Module::log_once(const std::string& kind, std::string_view line, std::int64_t count) {
@@ -334,7 +353,7 @@ int Module::run_loop(const internal::Arguments& arguments) {
     log(error.what());
     return error.is_usage ? kUsage : kFailure;
   } catch (const std::exception& error) {
-    log(error.what());
+    log(in_words(error));
     return kFailure;
   }
   return kDone;

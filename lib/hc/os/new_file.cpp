@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/os/new_file.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include <hc/os/program.h>
+
+namespace hc {
+namespace {
+
+namespace fs = std::filesystem;
+using internal::Descriptor;
+using internal::system_error;
+
+constexpr mode_t kMode = 0666;
+
+Result<Descriptor> open_file(const std::string& path, int flags) {
+  auto opened = internal::system_call("open", path, [&] {
+    return ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC | O_NOCTTY, kMode);
+  });
+  if (!opened) return opened.error();
+  return Descriptor(*opened);
+}
+
+/// Whether nobody else writes it; from then on nobody else does. Where a file system has no locks,
+/// nobody can know.
+bool lock(const Descriptor& file) {
+  return ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+bool has_contents(const std::string& path) {
+  struct stat about {};
+  return ::stat(path.c_str(), &about) == 0 && about.st_size > 0;
+}
+
+}  // namespace
+
+bool is_written_in_place(const std::string& path) {
+  struct stat about {};
+  if (::stat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode)) return true;
+  std::error_code none;
+  auto is_of_a_process = [](const fs::path& each) { return each.string().starts_with("/proc/"); };
+  return is_of_a_process(fs::weakly_canonical(fs::absolute(path, none).parent_path(), none)) ||
+         is_of_a_process(fs::read_symlink(path, none));
+}
+
+std::string free_name(const std::string& path, std::string_view ending,
+                      const std::function<bool(const std::string& path)>& is_free) {
+  if (!path.ends_with(ending)) ending = "";
+  std::string stem = path.substr(0, path.size() - ending.size());
+  auto strip = [&stem] {  // "kept/"
+    while (stem.size() > 1 && stem.ends_with('/')) stem.pop_back();
+  };
+  strip();
+  if (const auto last = fs::path(stem).filename(); last == "." || last == "..")
+    stem = fs::weakly_canonical(fs::absolute(stem)).string();
+  strip();
+  std::string name = path;
+  for (int i = 2; !is_free(name); ++i) name = stem + "_" + std::to_string(i) + std::string(ending);
+  return name;
+}
+
+Result<NewFile> begin_file(const std::string& path) {
+  if (is_written_in_place(path)) {
+    auto opened = open_file(path, O_WRONLY | O_APPEND);
+    if (!opened) return opened.error();
+    return NewFile{std::move(*opened), path};
+  }
+  // The lock tells of two that find the same empty file.
+  Result<Descriptor> file = Descriptor();
+  auto name = free_name(path, fs::path(path).extension().string(), [&](const std::string& each) {
+    if (has_contents(each)) return false;
+    file = open_file(each, O_WRONLY);
+    return !file || (lock(*file) && !has_contents(each));
+  });
+  if (!file) return file.error();
+  return NewFile{std::move(*file), std::move(name)};
+}
+
+Result<NewFile> continue_file(const std::string& path) {
+  auto file = open_file(path, O_RDWR);
+  if (!file) return file.error();
+  if (!lock(*file)) return Error{Code::System, path + ": another process is writing it"};
+  return NewFile{std::move(*file), path};
+}
+
+Status replace_file(const std::string& path, std::string_view contents) {
+  const bool is_direct = is_written_in_place(path);
+  const std::string unfinished = is_direct ? path : path + ".unfinished";
+  auto file = open_file(unfinished, O_WRONLY | (is_direct ? 0 : O_TRUNC));
+  if (!file) return file.error();
+  Status done = write_all(file->get(), contents);
+  if (done && !is_direct && std::rename(unfinished.c_str(), path.c_str()) != 0)
+    done = system_error("rename", path);
+  if (done) return {};
+  if (!is_direct) ::unlink(unfinished.c_str());
+  return Error{done.error().code, path + ": " + done.error().detail};
+}
+
+}  // namespace hc

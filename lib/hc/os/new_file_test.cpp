@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/os/new_file.h>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <hc/os/program.h>
+
+namespace hc {
+namespace {
+
+namespace fs = std::filesystem;
+
+class NewFiles : public ::testing::Test {
+ protected:
+  NewFiles() {
+    std::string name = (fs::temp_directory_path() / "hc-test-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~NewFiles() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
+  /// Begins a file and writes to it; its name in the folder.
+  [[nodiscard]] std::string begin(const std::string& name, std::string_view contents) const {
+    auto file = begin_file(at(name));
+    EXPECT_TRUE(file) << file.error().text();
+    EXPECT_TRUE(write_all(file->descriptor.get(), contents));
+    return fs::path(file->path).filename();
+  }
+  [[nodiscard]] std::string contents(const std::string& name) const {
+    std::ifstream file(at(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(NewFiles, WhatHasContentsStays) {
+  EXPECT_EQ(begin("x.mtp", "first"), "x.mtp");
+  EXPECT_EQ(begin("x.mtp", "second"), "x_2.mtp");
+  EXPECT_EQ(begin("x.mtp", "third"), "x_3.mtp");
+  EXPECT_EQ(contents("x.mtp") + contents("x_2.mtp"), "firstsecond");
+  EXPECT_EQ(begin("plain", "1"), "plain");
+  EXPECT_EQ(begin("plain", "2"), "plain_2");
+}
+
+TEST_F(NewFiles, AnEmptyFileIsFree) {
+  std::ofstream(at("x.mtp")) << "";
+  EXPECT_EQ(begin("x.mtp", "first"), "x.mtp");
+}
+
+TEST_F(NewFiles, TwoThatBeginAtTheSameTimeHaveTwoFiles) {
+  auto first = begin_file(at("x.mtp")), second = begin_file(at("x.mtp"));
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->path, at("x.mtp"));
+  EXPECT_EQ(second->path, at("x_2.mtp"));
+  EXPECT_FALSE(continue_file(at("x.mtp")));
+}
+
+TEST_F(NewFiles, AnEmptyFileThatMayNotBeWrittenIsAnError) {
+  EXPECT_EQ(begin_file(at("none/x.mtp")).error().code, Code::NotFound);
+}
+
+TEST_F(NewFiles, DevicesAndPipesAreOpenedAsTheyAre) {
+  auto null = begin_file("/dev/null");
+  ASSERT_TRUE(null);
+  EXPECT_EQ(null->path, "/dev/null");
+  ASSERT_TRUE(replace_file("/dev/null", "x"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(NewFiles, ADescriptorByNameIsAppendedTo) {
+  std::ofstream(at("x")) << "shell ";
+  const internal::Descriptor own(::open(at("x").c_str(), O_WRONLY | O_APPEND));
+  auto file = begin_file("/proc/self/fd/" + std::to_string(own.get()));
+  ASSERT_TRUE(file);
+  ASSERT_TRUE(write_all(file->descriptor.get(), "ours"));
+  EXPECT_EQ(contents("x"), "shell ours");
+}
+
+TEST(FreeName, HasANumberWhereTheNameIsTaken) {
+  const std::set<std::string> taken = {"kept.mcap", "kept_2.mcap", "kept/", "runs/2026.11.24"};
+  auto name = [&](const std::string& path, std::string_view ending) {
+    return free_name(path, ending, [&](const auto& each) { return !taken.contains(each); });
+  };
+  EXPECT_EQ(name("new.mcap", ".mcap"), "new.mcap");
+  EXPECT_EQ(name("new/", ""), "new/");
+  EXPECT_EQ(name("kept.mcap", ".mcap"), "kept_3.mcap");
+  EXPECT_EQ(name("kept/", ""), "kept_2");
+  EXPECT_EQ(name("runs/2026.11.24", ""), "runs/2026.11.24_2");
+}
+
+TEST(FreeName, OfTheWorkingFolderIsBesideIt) {
+  const auto here = fs::current_path();
+  auto sibling = [](const std::string& path) {
+    return free_name(path, "", [&](const std::string& each) { return each != path; });
+  };
+  EXPECT_EQ(sibling("."), here.string() + "_2");
+  EXPECT_EQ(sibling("./"), here.string() + "_2");
+  EXPECT_EQ(sibling("x/.."), here.string() + "_2");
+  EXPECT_EQ(sibling(".."), here.parent_path().string() + "_2");
+}
+
+TEST_F(NewFiles, AFileIsReplacedWholeOrNotAtAll) {
+  ASSERT_TRUE(replace_file(at("x"), "first"));
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit small{4, limit.rlim_max};
+  auto* before = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const auto replaced = replace_file(at("x"), "second");
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, before);
+  ASSERT_FALSE(replaced);
+  EXPECT_NE(replaced.error().detail.find("File too large"), std::string::npos);
+  EXPECT_EQ(contents("x"), "first");
+  EXPECT_FALSE(fs::exists(at("x.unfinished")));
+}
+
+}  // namespace
+}  // namespace hc
