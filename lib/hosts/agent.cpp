@@ -17,6 +17,7 @@
 #include <graph/run/announcer.h>
 #include <graph/run/aside.h>
 #include <graph/run/intake.h>
+#include <graph/run/log_limit.h>
 #include <graph/run/process.h>
 #include <hc/base/suggestion.h>
 #include <hc/os/procfs.h>
@@ -48,6 +49,7 @@ struct Child {
   std::unique_ptr<Announcer> commands;
   Process process;
   std::uint64_t unsaid = 0;  // bytes of its log that were dropped
+  internal::LogLimit log_limit;
   std::vector<pid_t> processes;
   std::uint64_t memory = 0;
   Loop::Handle said, ended;
@@ -253,10 +255,18 @@ class Agent {
   void pass_on_log(std::int64_t number) {
     static std::array<char, kPiece> piece;
     auto& child = *children_.at(number);
+    static_cast<void>(child.said.want(EPOLLIN));
     const ssize_t size = ::read(child.process.output(), piece.data(), piece.size());
     if (size == 0) child.said.reset();
     if (size <= 0) return;
-    if (conversation_->backlog() > kCrowded) {
+    const auto now = SystemClock().monotonic();
+    static_cast<void>(child.log_limit.take_remark(now));
+    const bool passes = child.log_limit.passes(static_cast<std::uint64_t>(size), now);
+    if (!passes) {  // who floods its log waits for us
+      static_cast<void>(child.said.want(0));
+      child.said.call_at(Clock::now() + internal::LogLimit::kPause);
+    }
+    if (!passes || conversation_->backlog() > kCrowded) {
       child.unsaid += static_cast<std::uint64_t>(size);
       return;
     }

@@ -7,25 +7,29 @@
 namespace hc::internal {
 
 Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri, Take take,
-                                             const LinkOptions& options) {
+                                             const LinkOptions& options, bool is_limited) {
   auto parsed = parse_uri(uri);
   if (!parsed) return parsed.error();
   auto source = open_source(*parsed, options);
   if (!source) return source.error();
-  std::unique_ptr<Intake> intake(new Intake(loop, std::move(*source), std::move(take)));
+  std::unique_ptr<Intake> intake(new Intake(loop, std::move(*source), std::move(take), is_limited));
   auto watched = loop.watch(intake->source_->descriptor(), EPOLLIN,
-                            [self = intake.get()](auto) { self->take(); });
+                            [self = intake.get()](auto) { self->take_unless_paused(); });
   if (!watched) return watched.error();
   intake->watch_ = std::move(*watched);
   if (const int wakes = intake->source_->wake_descriptor(); wakes >= 0) {
-    auto woken =
-        loop.watch(wakes, EPOLLIN | EPOLLET, [self = intake.get()](auto) { self->take(); });
+    auto woken = loop.watch(wakes, EPOLLIN | EPOLLET,
+                            [self = intake.get()](auto) { self->take_unless_paused(); });
     if (!woken) return woken.error();
     intake->woken_ = std::move(*woken);
   }
   // A source may have something before its descriptor has ever been asked to tell.
   intake->again_ = loop.call_at({}, [self = intake.get()] { self->take(); });
   return intake;
+}
+
+void Intake::take_unless_paused() {
+  if (!is_paused_) take();
 }
 
 void Intake::take() {
@@ -43,7 +47,13 @@ void Intake::take() {
     else if (source_->prepare_wait())
       return;
   }
-  again_ = loop_.call_at(std::chrono::steady_clock::now(), [this] { take(); });
+  is_paused_ = true;
+  static_cast<void>(watch_.want(0));
+  again_ = loop_.call_at(std::chrono::steady_clock::now() + pause_, [this] {
+    is_paused_ = false;
+    static_cast<void>(watch_.want(EPOLLIN));
+    take();
+  });
 }
 
 Result<std::unique_ptr<Intake>> make_drain(Loop& loop, const std::string& reader_uri) {
@@ -55,7 +65,8 @@ Result<std::unique_ptr<Intake>> make_drain(Loop& loop, const std::string& reader
   });
   uri->options.emplace_back("reconnect", "86400");
   if (uri->scheme == "shm" || uri->scheme == "dds") uri->options.emplace_back("keep", "latest");
-  return Intake::make(loop, uri->text(), [](const Message&) {});
+  return Intake::make(
+      loop, uri->text(), [](const Message&) {}, {}, false);
 }
 
 }  // namespace hc::internal

@@ -16,22 +16,31 @@ class Intake {
  public:
   using Take = std::function<void(const Message& message)>;
 
+  /// @param is_limited  whoever sends more than kMostInATurn messages in kPause waits.
   /// Errors: as open_source(), System.
   static Result<std::unique_ptr<Intake>> make(Loop& loop, const std::string& uri, Take take,
-                                              const LinkOptions& options = {});
+                                              const LinkOptions& options = {},
+                                              bool is_limited = true);
 
   /// Takes what is there now.
   void take();
 
  private:
-  static constexpr int kMostInATurn = 256;
+  static constexpr int kMostInATurn = 32;
+  static constexpr std::chrono::milliseconds kPause{10};
 
-  Intake(Loop& loop, std::unique_ptr<Source> source, Take take)
-      : loop_(loop), source_(std::move(source)), take_(std::move(take)) {}
+  Intake(Loop& loop, std::unique_ptr<Source> source, Take take, bool is_limited)
+      : loop_(loop),
+        source_(std::move(source)),
+        take_(std::move(take)),
+        pause_(is_limited ? kPause : std::chrono::milliseconds(0)) {}
+  void take_unless_paused();
 
   Loop& loop_;
   std::unique_ptr<Source> source_;
   Take take_;
+  const std::chrono::milliseconds pause_;
+  bool is_paused_ = false;
   Loop::Handle watch_, woken_, again_;
 };
 

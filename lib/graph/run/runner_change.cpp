@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kIsStopping = "the graph is stopping";
 
+constexpr std::size_t kMostChanges = 100;  // that wait, as some may need a slow program
+
 using Commands = std::vector<Command>;
 
 bool has_edits(const Commands& commands) {
@@ -63,6 +65,8 @@ void Runner::obey(const std::vector<std::string>& lines, Observation::Answer ans
       commands.push_back(std::move(*command));
   }
   if (is_stopping_) wrong.emplace_back(kIsStopping);
+  if (changes_.size() >= kMostChanges)
+    wrong.emplace_back("too many changes are waiting; try again");
   if (!wrong.empty()) return answer(wrong);
   if (!has_edits(commands)) {
     carry_out(commands);

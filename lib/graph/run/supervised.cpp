@@ -275,7 +275,8 @@ void Supervised::note_end() {
   manage_->take();  // and reads what came on it
   // Its last lines are in the pipe; who else still holds that open may do so for ever.
   for (int piece = 0; piece < kLastPieces && said_; ++piece) read_lines();
-  lines_.finish(callbacks_.said);
+  lines_.finish([this](const std::string& line) { take_line(line); });
+  note_dropped_lines(now() + LogLimit::kPeriod);
   forget_process();
   go_on(*status);
 }

@@ -17,6 +17,7 @@
 #include <graph/run/change.h>
 #include <graph/run/intake.h>
 #include <graph/run/lines.h>
+#include <graph/run/log_limit.h>
 #include <graph/run/module_process.h>
 #include <graph/run/reports.h>
 #include <graph/run/restarts.h>
@@ -135,6 +136,8 @@ class Supervised {
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
   void read_lines();
+  void take_line(const std::string& line);
+  void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);
   void look_at_silent();
   bool look_whether_hung(MonotonicTime time, bool is_blocked);
@@ -162,6 +165,7 @@ class Supervised {
   int starts_ = 0;
   Restarts restarts_;
   Lines lines_;
+  LogLimit log_limit_;
   MonotonicTime said_at_{0};  // the last of them
   Reports reports_;
   MonotonicTime heard_{0};                // when this process reported last; 0: it has not

@@ -67,11 +67,26 @@ void Supervised::end_observations(MonotonicTime time) {
 /// stop must not keep us from all else.
 void Supervised::read_lines() {
   static thread_local std::array<char, kPiece> piece;
+  static_cast<void>(said_.want(EPOLLIN));
   const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
   if (size == 0) said_.reset();
   if (size <= 0) return;
-  lines_.add({piece.data(), static_cast<std::size_t>(size)}, callbacks_.said);
+  lines_.add({piece.data(), static_cast<std::size_t>(size)},
+             [this](const std::string& line) { take_line(line); });
   said_at_ = now();
+  if (!log_limit_.is_over()) return;
+  // Who floods its log waits for us.
+  static_cast<void>(said_.want(0));
+  said_.call_at(std::chrono::steady_clock::now() + LogLimit::kPause);
+}
+
+void Supervised::take_line(const std::string& line) {
+  const bool is_result = line.find(": result: ") != std::string::npos;
+  if (log_limit_.passes(line.size(), now()) || is_result) callbacks_.said(line);
+}
+
+void Supervised::note_dropped_lines(MonotonicTime time) {
+  if (const auto remark = log_limit_.take_remark(time); !remark.empty()) callbacks_.event(remark);
 }
 
 void Supervised::take_report(const Message& message) {
@@ -83,7 +98,7 @@ void Supervised::take_report(const Message& message) {
   if (is_blocked && blocked_ == MonotonicTime(0)) blocked_ = heard_;
   if (message.header.src == static_cast<int>(Report::Refusal) &&
       message.header.info.type == MatrixType::String)
-    for (const auto& line : rows_of(message)) callbacks_.event(line);
+    for (const auto& line : rows_of(message)) take_line(visible(line));
   if (status_ == ModuleStatus::Stalled) callbacks_.event("resumed");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
       status_ == ModuleStatus::Running)
@@ -94,6 +109,7 @@ void Supervised::take_report(const Message& message) {
 void Supervised::look(MonotonicTime time) {
   end_observations(time);
   send_wall_offset();
+  note_dropped_lines(time);
   if (process_ && heard_ == MonotonicTime(0)) return look_at_silent();
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const bool is_blocked = reports_.state().blocked_row != 0;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// How much of what a process says is taken in a second. Pure: time is passed in. Internal to graph.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <hc/base/clock.h>
+
+namespace hc::internal {
+
+/// Counts by seconds, each of which begins with the first line in it.
+class LogLimit {
+ public:
+  static constexpr std::uint64_t kMostLines = 10'000, kMostBytes = std::uint64_t{256} << 10;
+  static constexpr std::chrono::seconds kPeriod{1};
+  /// Between pieces that are read of one who says more: 64 KiB in this time are the most.
+  static constexpr std::chrono::milliseconds kPause{10};
+
+  /// Whether a line may be taken; counts it as dropped otherwise.
+  bool passes(std::uint64_t bytes, MonotonicTime now) {
+    if (now - begun_ >= kPeriod && dropped_ == 0) {
+      begun_ = now;
+      lines_ = bytes_ = 0;
+    }
+    ++lines_;
+    bytes_ += bytes;
+    if (lines_ <= kMostLines && bytes_ <= kMostBytes) return true;
+    ++dropped_;
+    return false;
+  }
+
+  /// Whether lines are being dropped.
+  [[nodiscard]] bool is_over() const { return dropped_ > 0; }
+
+  /// What is to be said of lines that were dropped, once their second is over; empty: nothing.
+  std::string take_remark(MonotonicTime now) {
+    if (dropped_ == 0 || now - begun_ < kPeriod) return "";
+    const auto time = std::chrono::duration<double>(now - begun_).count();
+    begun_ = now;
+    lines_ = bytes_ = 0;
+    return std::to_string(std::exchange(dropped_, 0)) + " lines dropped in " +
+           std::to_string(static_cast<int>(time + 0.5)) + " s: more than " +
+           std::to_string(kMostBytes >> 10) + " kB or " + std::to_string(kMostLines) +
+           " lines in a second";
+  }
+
+ private:
+  MonotonicTime begun_{-kPeriod};
+  std::uint64_t lines_ = 0, bytes_ = 0, dropped_ = 0;
+};
+
+}  // namespace hc::internal
