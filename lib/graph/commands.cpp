@@ -71,6 +71,8 @@ void add_module(Graph& graph, const Command& command, Problems& problems) {
     return problems.add({}, "module name \"" + module.name + "\" is not snake_case");
   if (graph.find(module.name) != nullptr)
     return problems.add({}, "module \"" + module.name + "\" already exists");
+  if (graph.modules.size() >= kMaxModules)
+    return problems.add({}, "a graph has at most " + std::to_string(kMaxModules) + " modules");
   for (std::size_t i = 2; i < command.words.size(); ++i)
     if (auto pair = pair_of(command.words[i], problems))
       module.parameters[pair->first] = {pair->second, {}};

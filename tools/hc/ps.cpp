@@ -34,12 +34,19 @@ std::string row(const std::string& name, const hc::GraphState& state, bool is_pl
                     focus.empty() ? "-" : focus, status, is_painted ? "\x1b[0m" : "");
 }
 
+/// Whether a graph still runs.
+bool is_running(const RunningGraph& graph) {
+  const auto graphs = find_running();
+  return std::ranges::any_of(graphs, [&](const auto& each) { return each.text() == graph.text(); });
+}
+
 void ps(bool as_json) {
   const bool is_plain = ::isatty(STDOUT_FILENO) == 0;
   std::string text;
   if (!as_json)
     text = hc::format("{:<16} {:>7} {:>9} {:>4}/{:<4} {:<10} {}\n", "GRAPH", "PROCESS", "RUNS FOR",
                       "UP", "ALL", "FOCUS", "STATUS");
+  bool is_silent = false;
   const auto graphs = find_running();
   for (const auto& graph : graphs) {
     const bool is_only = std::count_if(graphs.begin(), graphs.end(), [&](const auto& each) {
@@ -47,14 +54,17 @@ void ps(bool as_json) {
                          }) == 1;
     const std::string name = is_only ? graph.name : graph.text();
     try {
-      if (auto state = Observer(graph).next())
-        text += as_json ? to_json(*state) + "\n" : row(name, *state, is_plain);
+      auto state = Observer(graph).next();
+      if (state) text += as_json ? to_json(*state) + "\n" : row(name, *state, is_plain);
+      if (state || !is_running(graph)) continue;
     } catch (const Failure& failure) {
-      // It has just ended, or is another user's; the others are of interest even so.
-      if (!as_json) text += hc::format("{:<16} {:>7} {}\n", name, graph.process, failure.what());
+      if (!is_running(graph)) continue;  // it has just ended
+      say(hc::format("hc ps: {}: {}", name, failure.what()));
     }
+    is_silent = true;  // the others are of interest even so
   }
   print(text);
+  if (is_silent) throw Failure(1);
 }
 
 }  // namespace

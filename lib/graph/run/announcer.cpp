@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/run/announcer.h>
 
+#include <sys/ioctl.h>
 #include <sys/socket.h>
+
+#include <algorithm>
 
 #include <hc/base/uri.h>
 #include <hc/link/link.h>
@@ -24,9 +27,20 @@ Result<std::unique_ptr<Announcer>> Announcer::make(Loop& loop, const std::string
   return announcer;
 }
 
+/// Ends the connection that has most unread, of several the oldest.
+void Announcer::leave_idlest() {
+  auto unread = [](const auto& peer) {
+    int in_socket = 0;
+    ::ioctl(peer->socket.get(), TIOCOUTQ, &in_socket);
+    return peer->waiting.size() + static_cast<std::size_t>(in_socket);
+  };
+  peers_.erase(std::ranges::max_element(peers_, {}, unread));
+}
+
 void Announcer::let_in() {
-  auto has_room = [this] { return peers_.size() < kMostPeers; };
+  auto has_room = [] { return true; };
   socket_.accept_all(watch_, {}, has_room, [this](Descriptor accepted) -> Status {
+    if (peers_.size() >= kMostPeers) leave_idlest();
     auto peer = std::make_unique<Peer>();
     peer->socket = std::move(accepted);
     auto watched = loop_.watch(peer->socket.get(), EPOLLIN,

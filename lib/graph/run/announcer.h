@@ -15,7 +15,8 @@ namespace hc::internal {
 
 /// The listening end of a Unix socket where messages go in. Unlike a listening sink it is used on
 /// the thread of a loop, does not mind if nobody has come, and has something to say to who comes.
-/// Who is more than kMostWaiting behind misses messages, whole ones.
+/// Who is more than kMostWaiting behind misses messages, whole ones. When more than kMostPeers have
+/// come, the one that has read least has to leave: those who come are served.
 class Announcer {
  public:
   static constexpr std::size_t kMostWaiting = std::size_t{4} << 20;  ///< [byte]
@@ -46,6 +47,7 @@ class Announcer {
       : loop_(loop), socket_(std::move(socket)), welcome_(std::move(welcome)) {}
 
   void let_in();
+  void leave_idlest();
   bool put(Peer& peer, const std::string& bytes);
   void write(Peer& peer);
   void serve(Peer& peer, std::uint32_t events);

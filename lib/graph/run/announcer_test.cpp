@@ -80,6 +80,19 @@ TEST_F(AnnouncerTest, WhoDoesNotListenMissesWholeMessages) {
   }
 }
 
+TEST_F(AnnouncerTest, WhoReadsNothingMakesPlaceForWhoComes) {
+  make([&] { return std::vector{line("welcome")}; });
+  auto reader = listen();
+  EXPECT_EQ(hear(*reader), "welcome");
+  std::vector<std::unique_ptr<Source>> idle;
+  for (std::size_t i = 1; i < Announcer::kMostPeers; ++i) idle.push_back(listen());
+  auto late = listen();
+  EXPECT_EQ(hear(*late), "welcome");
+  announcer_->say(line("to all"));
+  EXPECT_EQ(hear(*reader), "to all");
+  EXPECT_EQ(hear(*late), "to all");
+}
+
 TEST_F(AnnouncerTest, ANameInUseIsAnError) {
   make();
   EXPECT_FALSE(Announcer::make(*loop_, "unix-listen:" + name()));

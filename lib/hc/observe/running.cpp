@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/observe/running.h>
 
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <charconv>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -14,6 +17,8 @@
 
 #include <hc/base/format.h>
 #include <hc/mtp/rows.h>
+#include <hc/os/descriptor.h>
+#include <hc/os/peer_user.h>
 
 namespace hc {
 namespace {
@@ -37,6 +42,21 @@ Result<std::unique_ptr<Sink>> open_sink_at(const std::string& uri, int stop = -1
   LinkOptions options;
   options.stop = stop;
   return open_sink(*parsed, options);
+}
+
+/// Whether who listens under a graph's name is a process of this user: anybody may take a name.
+bool is_own(const RunningGraph& graph) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = hc::format("{}{}", kPrefix, graph.text());
+  name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
+  const internal::Descriptor socket(
+      ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0)
+    return errno == EAGAIN;  // it has not accepted for long; who it is, is found when it answers
+  const auto user = internal::unix_peer_user(socket.get());
+  return user && *user == ::geteuid();
 }
 
 /// Whether a graph says anything: it sends its state to whoever connects.
@@ -98,7 +118,9 @@ std::vector<RunningGraph> find_running() {
   std::ifstream table("/proc/net/unix");
   std::stringstream text;
   text << table.rdbuf();
-  return find_running(text.str());
+  auto graphs = find_running(text.str());
+  std::erase_if(graphs, [](const auto& graph) { return !is_own(graph); });
+  return graphs;
 }
 
 Result<Answer> ask(const RunningGraph& graph, const std::vector<std::string>& commands, int stop) {

@@ -43,7 +43,8 @@ std::optional<RunningGraph> parse_running(std::string_view text);
 /// a graph.
 std::optional<RunningGraph> own_graph();
 
-/// Those of all users, by name and process number, from a table as /proc/net/unix is.
+/// Those of all users, by name and process number, from a table as /proc/net/unix is; and those of
+/// this user, as which who listens there is known by the kernel.
 std::vector<RunningGraph> find_running(std::string_view sockets);
 std::vector<RunningGraph> find_running();
 
