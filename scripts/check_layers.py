@@ -21,7 +21,7 @@ ALLOWED = {
     "module": {"base", "os", "mtp", "contract", "compress", "link"},
     "graph": {"base", "os", "mtp", "contract", "link"},
     "frames": {"base"},
-    "vision": {"base"},
+    "vision": {"base", "os"},
     "gaze": {"base"},
     "graphics": {"base"},
     "room": {"base", "graphics"},

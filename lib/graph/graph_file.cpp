@@ -253,7 +253,8 @@ void record_outputs(Graph& graph, const std::vector<std::string>& traced,
   for (const auto& [output, place] : recorded_outputs(graph, traced)) {
     GraphLink link;
     link.from = {output.first, output.second, ""};
-    link.to.uri = "file:" + recording_file(folder, link.from.text());
+    // A module that is restarted continues its file.
+    link.to.uri = "file:" + recording_file(folder, link.from.text()) + "?append=1";
     link.place = place;
     graph.links.push_back(std::move(link));
   }

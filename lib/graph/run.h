@@ -22,6 +22,7 @@ struct RunReport {
   GraphState state;                  ///< at its end
   std::vector<std::string> results;  ///< "MODULE: …", of lines `result: …`, by module
   bool stopped = false;              ///< ended because it was asked to
+  bool has_errors = false;           ///< one of the lines was `result: error: …`
 };
 
 struct RunOptions {

@@ -2,10 +2,12 @@
 #include <mcap/file.h>
 
 #include <fcntl.h>
-#include <sys/stat.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+
+#include <hc/os/new_file.h>
 
 namespace hc::mcap {
 namespace {
@@ -54,12 +56,10 @@ void write_chunk_index(RecordWriter& out, const ChunkInfo& chunk) {
 
 }  // namespace
 
-Result<File> File::create(const std::string& path, bool replaces) {
-  constexpr mode_t kMode = 0666;
-  internal::Descriptor descriptor(
-      ::open(path.c_str(), O_WRONLY | O_CREAT | (replaces ? O_TRUNC : O_EXCL) | O_CLOEXEC, kMode));
-  if (!descriptor) return internal::system_error("open", path);
-  File file(path, std::move(descriptor));
+Result<File> File::create(const std::string& path) {
+  auto begun = begin_file(path);
+  if (!begun) return begun.error();
+  File file(std::move(begun->path), std::move(begun->descriptor));
   constexpr std::size_t kHeader = 64;
   RecordWriter out;
   out.bytes.reserve(kHeader);
@@ -68,7 +68,7 @@ Result<File> File::create(const std::string& path, bool replaces) {
   out.string("ros2");
   out.string("hypercolumn 0.1");
   out.end();
-  if (auto written = file.write(out.bytes); !written) return written.error();
+  if (auto written = file.append(out.bytes); !written) return written.error();
   return file;
 }
 
@@ -90,13 +90,37 @@ Status File::write(std::span<const std::byte> bytes) {
   return {};
 }
 
+/// Reserves so many bytes behind what is there, where the file system can do that.
+Status File::reserve(std::uint64_t bytes) const {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && size_ + bytes > limit.rlim_cur)
+    return internal::system_error("write", path_, EFBIG);
+  const int reserved = ::fallocate(descriptor_.get(), FALLOC_FL_KEEP_SIZE,
+                                   static_cast<off_t>(size_), static_cast<off_t>(bytes));
+  if (reserved == 0 || (errno != ENOSPC && errno != EDQUOT)) return {};
+  return internal::system_error("write", path_);
+}
+
+Status File::append(std::span<const std::byte> bytes) {
+  // What else the summary says: of each channel, of the next chunk, and its own parts.
+  constexpr std::uint64_t kOfChannel = 64, kOther = 1024;
+  const std::uint64_t summary =
+      repeated_ + chunk_index_.bytes.size() + kOfChannel * channels_.size() + kOther;
+  if (auto reserved = reserve(bytes.size() + summary); !reserved) return reserved;
+  return write(bytes);
+}
+
 template <typename T>
 Status File::add_record(const T& record, std::vector<Placed<T>>& placed) {
   RecordWriter out;
   write_record(out, record);
   const std::uint64_t offset = size_;
-  auto written = write(out.bytes);
-  if (written) placed.push_back({record, offset});
+  repeated_ += out.bytes.size();
+  auto written = append(out.bytes);
+  if (written)
+    placed.push_back({record, offset});
+  else
+    repeated_ -= out.bytes.size();
   return written;
 }
 
@@ -115,20 +139,24 @@ Status File::add(const MetadataRecord& metadata) {
   out.words(metadata.words);
   out.end();
   const Placed<MetadataPlace> place{{metadata.name, out.bytes.size()}, size_};
-  auto written = write(out.bytes);
-  if (written) metadata_.push_back(place);
-  return written;
+  constexpr std::uint64_t kOfIndex = 32;
+  auto written = append(out.bytes);
+  if (!written) return written;
+  metadata_.push_back(place);
+  repeated_ += kOfIndex + metadata.name.size();
+  return {};
 }
 
 Status File::add(const PackedChunk& chunk) {
   ChunkInfo info = chunk.info;
   info.offset = size_;
   for (auto& [channel, offset] : info.index_offsets) offset += size_;
-  if (auto written = write(chunk.bytes); !written) return written;
-  chunks_.push_back({info.offset, info.begin, info.end, chunk.messages, chunk_index_.bytes.size(),
-                     counts_.size()});
+  if (auto written = append(chunk.bytes); !written) return written;
+  first_ = chunks_ == 0 ? info.begin : std::min(first_, info.begin);
+  last_ = std::max(last_, info.end);
+  ++chunks_;
   write_chunk_index(chunk_index_, info);
-  counts_.insert(counts_.end(), info.counts.begin(), info.counts.end());
+  for (const auto& [channel, count] : info.counts) counts_[channel] += count;
   return {};
 }
 
@@ -154,26 +182,18 @@ std::vector<std::byte> File::summary() const {
   for (const auto& channel : channels_) write_record(out, channel.record);
   end_group(Opcode::Channel);
 
-  std::map<std::uint16_t, std::uint64_t> counts;
-  std::uint64_t messages = 0, first = 0, last = 0;
-  for (const auto& chunk : chunks_) {
-    first = &chunk == chunks_.data() ? chunk.begin : std::min(first, chunk.begin);
-    last = std::max(last, chunk.end);
-  }
-  for (const auto& [channel, count] : counts_) {
-    counts[channel] += count;
-    messages += count;
-  }
+  std::uint64_t messages = 0;
+  for (const auto& [channel, count] : counts_) messages += count;
   out.begin(Opcode::Statistics);
   out.number(messages);
   out.number(static_cast<std::uint16_t>(schemas_.size()));
   out.number(static_cast<std::uint32_t>(channels_.size()));
   out.number(std::uint32_t{0});
   out.number(static_cast<std::uint32_t>(metadata_.size()));
-  out.number(static_cast<std::uint32_t>(chunks_.size()));
-  out.number(first);
-  out.number(last);
-  write_map(out, counts);
+  out.number(chunks_);
+  out.number(first_);
+  out.number(last_);
+  write_map(out, counts_);
   out.end();
   end_group(Opcode::Statistics);
   out.append(chunk_index_.bytes);
@@ -208,25 +228,9 @@ std::vector<std::byte> File::summary() const {
 }
 
 Status File::close() {
-  Status first = write(summary());
-  Status written = first;
-  while (!written && !chunks_.empty()) {
-    const ChunkPlace last = chunks_.back();
-    chunks_.pop_back();
-    chunk_index_.bytes.resize(last.index);
-    counts_.resize(last.counts);
-    lost_ += last.messages;
-    size_ = last.offset;
-    // What was written behind it goes too.
-    auto is_gone = [&](const auto& placed) { return placed.offset >= size_; };
-    std::erase_if(schemas_, is_gone);
-    std::erase_if(channels_, is_gone);
-    std::erase_if(metadata_, is_gone);
-    static_cast<void>(::ftruncate(descriptor_.get(), static_cast<off_t>(size_)));
-    written = write(summary());
-  }
+  auto written = write(summary());
   descriptor_ = {};
-  return first;
+  return written;
 }
 
 }  // namespace hc::mcap

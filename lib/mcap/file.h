@@ -4,6 +4,7 @@
 // file when its writer is killed can be read, up to the last whole chunk.
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,9 +33,8 @@ struct MetadataRecord {
 
 class File {
  public:
-  /// Creates a file. Errors: System.
-  /// @param replaces  an existing file is replaced; without, it is an error.
-  static Result<File> create(const std::string& path, bool replaces);
+  /// Begins a file, as begin_file() does: beside one that has contents. Errors: as that.
+  static Result<File> create(const std::string& path);
 
   // Errors of all: System. The file is what it was before then, and can be closed.
 
@@ -43,13 +43,11 @@ class File {
   Status add(const MetadataRecord& metadata);
   Status add(const PackedChunk& chunk);
 
-  /// Writes the summary. Where the disk has no room for it, the last chunks make room.
+  /// Writes the summary, for which there is room: each record is refused that would take it.
   Status close();
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Messages (PackedChunk::messages) that close() has taken out again.
-  [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:
   /// What the summary repeats, and where it is.
@@ -62,15 +60,12 @@ class File {
     std::string name;
     std::uint64_t length = 0;
   };
-  /// A chunk of the file, and where what the summary says of it begins.
-  struct ChunkPlace {
-    std::uint64_t offset = 0, begin = 0, end = 0, messages = 0;
-    std::size_t index = 0, counts = 0;
-  };
-
   File(std::string path, internal::Descriptor descriptor)
       : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
   Status write(std::span<const std::byte> bytes);
+  [[nodiscard]] Status reserve(std::uint64_t bytes) const;
+  /// Writes behind what is there, and leaves room for the summary.
+  Status append(std::span<const std::byte> bytes);
   /// Writes a record that the summary repeats, and notes it.
   template <typename T>
   Status add_record(const T& record, std::vector<Placed<T>>& placed);
@@ -78,13 +73,14 @@ class File {
 
   std::string path_;
   internal::Descriptor descriptor_;
-  std::uint64_t size_ = 0, lost_ = 0;
+  std::uint64_t size_ = 0, repeated_ = 0;  // the latter of records that the summary repeats [byte]
   std::vector<Placed<SchemaRecord>> schemas_;
   std::vector<Placed<ChannelRecord>> channels_;
   std::vector<Placed<MetadataPlace>> metadata_;
-  std::vector<ChunkPlace> chunks_;
-  RecordWriter chunk_index_;  // of all chunks, as the summary has it
-  std::vector<std::pair<std::uint16_t, std::uint64_t>> counts_;  // by channel, chunk after chunk
+  std::uint32_t chunks_ = 0;
+  std::uint64_t first_ = 0, last_ = 0;             // log times in them [ns]
+  RecordWriter chunk_index_;                       // of all chunks, as the summary has it
+  std::map<std::uint16_t, std::uint64_t> counts_;  // of messages, by channel
 };
 
 }  // namespace hc::mcap

@@ -233,12 +233,15 @@ std::string_view stream_of(const Source& source) {
   return recording != nullptr ? recording->stream() : std::string_view();
 }
 
-Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions&) {
+Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions& link) {
   if (auto checked = check_options(uri, ""); !checked) return checked.error();
   RecorderOptions options;
   options.file = uri.rest;
   auto recorder = Recorder::make(options);
   if (!recorder) return recorder.error();
+  if ((*recorder)->file() != uri.rest && link.log)
+    link.log(Severity::Warning,
+             uri.text() + ": stays as it is; continuing in " + (*recorder)->file());
   return std::unique_ptr<Sink>(new RecordingSink(std::move(*recorder)));
 }
 

@@ -52,8 +52,10 @@ Recorder::Recorder(RecorderOptions options, Storage storage)
     : options_(std::move(options)),
       topics_{std::string(kFrames), std::string(kStaticFrames), std::string(kLog)},
       schemas_(ros::schemas().size()),
-      storage_(std::move(storage)),
-      thread_([this] { work(); }) {}
+      storage_(std::move(storage)) {
+  options_.file = storage_.file();
+  thread_ = std::thread([this] { work(); });
+}
 
 Recorder::~Recorder() {
   static_cast<void>(close());

@@ -29,7 +29,7 @@ namespace hc::mcap {
 struct RecorderOptions : StorageOptions {
   /// Bytes of messages that make a chunk, and how long one is gathered at most.
   std::size_t chunk_bytes = std::size_t{4} << 20;
-  std::chrono::milliseconds chunk_time{1000};
+  std::chrono::milliseconds chunk_time{500};
   std::size_t backlog = std::size_t{256} << 20;  ///< of chunks that wait to be written [byte]
   int level = 1;                                 ///< of zstd
 };
@@ -75,6 +75,8 @@ class Recorder {
   /// Writes all, and ends the file. Errors: System; also what went wrong before.
   Status close();
 
+  /// Where it records; of several files the name they are numbered after.
+  [[nodiscard]] const std::string& file() const { return options_.file; }
   /// Messages that record() was given.
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   /// Bytes of the messages as they came. [byte]

@@ -69,8 +69,7 @@ Result<Storage> Storage::make(const StorageOptions& options) {
 /// One file has the name that was given; of several each has a number.
 Status Storage::begin_file() {
   if (is_numbered()) number_ = std::max(number_, highest_number(options_.file));
-  auto file = is_numbered() ? File::create(numbered(options_.file, number_ + 1), false)
-                            : File::create(options_.file, true);
+  auto file = File::create(is_numbered() ? numbered(options_.file, number_ + 1) : options_.file);
   if (!file) return file.error();
   ++number_;
   file_ = std::move(*file);
@@ -89,7 +88,6 @@ Status Storage::begin_file() {
 Status Storage::end_file() {
   if (!file_) return {};
   auto closed = file_->close();
-  lost_ += file_->lost();
   done_.push_back({file_->path(), file_->size()});
   file_.reset();
   return closed;

@@ -17,7 +17,8 @@
 namespace hc::mcap {
 
 struct StorageOptions {
-  /// "kept.mcap"; of several, "kept_0001.mcap" and so on, behind those that are there.
+  /// "kept.mcap", or beside it if that has contents (os/new_file.h); of several, "kept_0001.mcap"
+  /// and so on, behind those that are there.
   std::string file;
   std::uint64_t split = 0;  ///< a new file begins when one has so many bytes; 0: one file
   std::uint64_t keep = 0;   ///< of all files together, the oldest are removed; 0: all [byte]
@@ -48,8 +49,12 @@ class Storage {
   Result<std::string> save();
   Status close();
 
-  /// Messages of MTP that could not be written, or were taken out again while a file was closed.
+  /// Messages of MTP that could not be written.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  /// The file that is being written; of several the name they are numbered after.
+  [[nodiscard]] const std::string& file() const {
+    return file_ && !is_numbered() ? file_->path() : options_.file;
+  }
 
  private:
   explicit Storage(StorageOptions options) : options_(std::move(options)) {}

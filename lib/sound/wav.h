@@ -9,9 +9,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/base/result.h>
+#include <hc/os/new_file.h>
 #include <sound/format.h>
 
 namespace hc::audio {
@@ -53,32 +55,23 @@ class WavReader {
 /// program dies.
 class WavWriter {
  public:
-  /// Errors: System (cannot be written).
+  /// Begins a file, as begin_file() does: beside one that has contents. Errors: as that.
   static Result<WavWriter> create(const std::string& path, const Format& format);
-  /// Continues behind what is in a file that another WavWriter of this format wrote, or who writes
-  /// the same plain header; wrong sizes in it, as after a crash of its writer, are repaired. Any
-  /// other file is overwritten, as by create().
-  /// Errors: as of create().
-  static Result<WavWriter> append(const std::string& path, const Format& format);
-  WavWriter(WavWriter&& other) noexcept;
-  WavWriter& operator=(WavWriter&&) = delete;
-  ~WavWriter();
 
   /// Errors: TooLarge (4 GiB are full), System.
   Status write(std::span<const std::int16_t> samples);
 
+  [[nodiscard]] const std::string& path() const { return file_.path; }
   [[nodiscard]] const Format& format() const { return format_; }
   /// Sample frames in the file.
   [[nodiscard]] std::int64_t frames() const { return data_bytes_ / 2 / format_.channels; }
 
  private:
-  WavWriter(int file, std::string path, const Format& format)
-      : file_(file), path_(std::move(path)), format_(format) {}
+  WavWriter(NewFile file, const Format& format) : file_(std::move(file)), format_(format) {}
   Status put(std::span<const std::byte> bytes, std::int64_t at);
   Status put_header();
 
-  int file_ = -1;
-  std::string path_;
+  NewFile file_;
   Format format_;
   std::int64_t data_bytes_ = 0;
 };

@@ -91,61 +91,16 @@ TEST_F(Wav, the_header_is_as_specified) {
   EXPECT_EQ(bytes, riff(format(1, 1, 8000, 16) + chunk("data", "\x02\x01")));
 }
 
-TEST_F(Wav, a_file_of_the_same_format_is_appended_to) {
-  const std::vector<std::int16_t> some = {1, 2, 3, 4};
-  auto write = [&](const Format& format) {
-    auto writer = WavWriter::append(path, format);
-    ASSERT_TRUE(writer) << writer.error().text();
-    ASSERT_TRUE(writer->write(some));
-  };
-  write({8000, 2});
+TEST_F(Wav, a_file_that_has_contents_stays) {
+  const std::vector<std::int16_t> some = {1, 2, 3, 4}, other = {5, 6};
+  ASSERT_TRUE(WavWriter::create(path, {8000, 1})->write(some));
+  auto beside = WavWriter::create(path, {8000, 1});
+  ASSERT_TRUE(beside && beside->write(other));
+  EXPECT_TRUE(beside->path().ends_with("_2.wav")) << beside->path();
   EXPECT_EQ(samples(), some);
-  write({8000, 2});
-  EXPECT_EQ(samples(), (std::vector<std::int16_t>{1, 2, 3, 4, 1, 2, 3, 4}));
-  write({8000, 1});  // another format overwrites
-  EXPECT_EQ(samples(), some);
-  write({16000, 1});
-  EXPECT_EQ(samples(), some);
-  EXPECT_EQ(WavReader::open(path)->format(), (Format{16000, 1}));
-}
-
-TEST_F(Wav, a_file_whose_writer_was_killed_is_repaired_and_appended_to) {
-  const std::vector<std::int16_t> some = {1, 2, 3, 4};
-  const std::string begin = format(1, 2, 8000, 16) + "data";
-  const auto riff_size = [&](std::uint32_t bytes) { return "RIFF" + le(36 + bytes, 4) + "WAVE"; };
-  const std::string four("\x01\0\x02\0", 4);
-  for (const std::string& bytes : {
-           riff_size(0) + begin + le(0, 4) + four,          // samples, and no word of them
-           riff_size(4) + begin + le(4, 4) + four + "abc",  // and part of a frame
-           riff_size(400) + begin + le(400, 4) + four,      // claimed, but not there
-       }) {
-    save(bytes);
-    auto writer = WavWriter::append(path, {8000, 2});
-    ASSERT_TRUE(writer) << writer.error().text();
-    EXPECT_EQ(writer->frames(), 1);
-    EXPECT_EQ(samples(), (std::vector<std::int16_t>{1, 2}));
-    ASSERT_TRUE(writer->write(some));
-    EXPECT_EQ(samples(), (std::vector<std::int16_t>{1, 2, 1, 2, 3, 4}));
-    EXPECT_EQ(std::filesystem::file_size(path), 44 + 12);
-  }
-}
-
-TEST_F(Wav, what_is_no_such_file_is_begun_again) {
-  const std::vector<std::int16_t> some = {1, 2, 3, 4};
-  for (const std::string& bytes : {
-           std::string(),
-           std::string("RIFF"),
-           std::string(100, 'x'),
-           riff(format(1, 1, 8000, 16) + chunk("data", "abcd") + chunk("tail", "more")),
-           riff(chunk("LIST", "abcd") + format(1, 1, 8000, 16) + chunk("data", "abcd")),
-       }) {
-    save(bytes);
-    auto writer = WavWriter::append(path, {8000, 1});
-    ASSERT_TRUE(writer && writer->write(some));
-    EXPECT_EQ(samples(), some);
-  }
-  EXPECT_FALSE(WavWriter::append("/dev/full", {8000, 1}));
-  EXPECT_FALSE(WavWriter::append("/no/such.wav", {8000, 1}));
+  std::filesystem::remove(beside->path());
+  EXPECT_FALSE(WavWriter::create("/dev/full", {8000, 1}));
+  EXPECT_FALSE(WavWriter::create("/no/such.wav", {8000, 1}));
 }
 
 TEST_F(Wav, all_kinds_of_samples) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
-#include <utility>
 
 #include <sound/wav.h>
 
@@ -49,58 +46,22 @@ Header header_of(const Format& format, std::int64_t data_bytes) {
   return header;
 }
 
-/// What a header says of its samples [byte].
-std::int64_t said_in(const Header& header) {
-  std::uint32_t bytes = 0;
-  std::memcpy(&bytes, header.data() + kHeaderBytes - sizeof bytes, sizeof bytes);
-  return bytes;
-}
-
 }  // namespace
 
 Result<WavWriter> WavWriter::create(const std::string& path, const Format& format) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) return Error{Code::System, path + ": " + std::generic_category().message(errno)};
-  WavWriter writer(file, path, format);
+  auto file = begin_file(path);
+  if (!file) return file.error();
+  WavWriter writer(std::move(*file), format);
   if (auto put = writer.put_header(); !put) return put.error();
   return writer;
-}
-
-Result<WavWriter> WavWriter::append(const std::string& path, const Format& format) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (file < 0) return create(path, format);
-  WavWriter writer(file, path, format);
-  struct stat about {};
-  Header found{};
-  const bool is_ours = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode) &&
-                       ::pread(file, found.data(), found.size(), 0) == kHeaderBytes &&
-                       found == header_of(format, said_in(found));
-  if (!is_ours) return create(path, format);
-  // The bytes that are there count: a killed writer may have declared less, a full disk taken less.
-  const std::int64_t frame = 2 * format.channels;
-  writer.data_bytes_ =
-      std::min<std::int64_t>(about.st_size - kHeaderBytes, kMostBytes) / frame * frame;
-  if (::ftruncate(file, kHeaderBytes + writer.data_bytes_) != 0)
-    return Error{Code::System, path + ": " + std::generic_category().message(errno)};
-  if (auto put = writer.put_header(); !put) return put.error();
-  return writer;
-}
-
-WavWriter::WavWriter(WavWriter&& other) noexcept
-    : file_(std::exchange(other.file_, -1)),
-      path_(std::move(other.path_)),
-      format_(other.format_),
-      data_bytes_(other.data_bytes_) {}
-
-WavWriter::~WavWriter() {
-  if (file_ >= 0) ::close(file_);
 }
 
 Status WavWriter::put(std::span<const std::byte> bytes, std::int64_t at) {
   while (!bytes.empty()) {
-    const ssize_t size = ::pwrite(file_, bytes.data(), bytes.size(), at);
+    const ssize_t size = ::pwrite(file_.descriptor.get(), bytes.data(), bytes.size(), at);
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0) return Error{Code::System, path_ + ": " + std::generic_category().message(errno)};
+    if (size < 0)
+      return Error{Code::System, path() + ": " + std::generic_category().message(errno)};
     bytes = bytes.subspan(static_cast<std::size_t>(size));
     at += size;
   }
@@ -115,7 +76,7 @@ Status WavWriter::write(std::span<const std::int16_t> samples) {
   const auto bytes = std::as_bytes(samples);
   const auto size = static_cast<std::int64_t>(bytes.size());
   if (size > kMostBytes - data_bytes_)
-    return Error{Code::TooLarge, path_ + ": a WAV file has room for 4 GiB"};
+    return Error{Code::TooLarge, path() + ": a WAV file has room for 4 GiB"};
   // The samples first: a header that counts them is valid at every moment.
   if (auto written = put(bytes, kHeaderBytes + data_bytes_); !written) return written;
   data_bytes_ += size;

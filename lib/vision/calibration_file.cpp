@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 
+#include <hc/os/new_file.h>
 #include <opencv2/core/persistence.hpp>
 
 namespace hc::vision {
@@ -203,20 +204,7 @@ Result<StereoCalibration> read_calibration(const std::string& path) {
 }
 
 Status write_calibration(const std::string& path, const StereoCalibration& calibration) {
-  const std::string unfinished = path + ".unfinished";
-  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-  if (file) file << text_of(calibration) << std::flush;
-  const bool is_written = file.good();
-  const int number = errno;
-  file.close();
-  std::error_code failed;
-  if (is_written) std::filesystem::rename(unfinished, path, failed);
-  if (!is_written || failed) {
-    const std::string why = failed ? failed.message() : std::strerror(number);
-    std::filesystem::remove(unfinished, failed);
-    return Error{Code::System, "write " + path + ": " + why};
-  }
-  return {};
+  return replace_file(path, text_of(calibration));
 }
 
 }  // namespace hc::vision

@@ -261,7 +261,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   std::filesystem::remove(path);
   EXPECT_EQ(read_calibration(path).error().code, Code::System);
   EXPECT_EQ(read_calibration("/").error().code, Code::System);
-  EXPECT_EQ(write_calibration("/no/such/folder/c.yml", truth).error().code, Code::System);
+  EXPECT_EQ(write_calibration("/no/such/folder/c.yml", truth).error().code, Code::NotFound);
 }
 
 // As OpenCV's sample writes them: two files, without a size and an rms, T in squares.

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <vector>
 
 #include <SDL2/SDL.h>
 #include <hc/base/format.h>
+#include <hc/os/new_file.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -120,13 +122,11 @@ bool Display::any_open() {
 Status save_image(const std::filesystem::path& path, const cv::Mat& bgr) {
   std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
-  std::filesystem::path unfinished = path;
-  unfinished.replace_extension(".part.png");
-  if (!error && !cv::imwrite(unfinished.string(), bgr))
-    return Error{Code::System, path.string() + ": cannot be written"};
-  if (!error) std::filesystem::rename(unfinished, path, error);
   if (error) return Error{Code::System, path.string() + ": " + error.message()};
-  return {};
+  std::vector<unsigned char> png;
+  if (!cv::imencode(".png", bgr, png))
+    return Error{Code::Unsupported, path.string() + ": OpenCV cannot make a PNG of it"};
+  return replace_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
 }  // namespace hc::vision

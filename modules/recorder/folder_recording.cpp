@@ -8,6 +8,7 @@
 
 #include <hc/contract/recording.h>
 #include <hc/module/port.h>
+#include <hc/os/new_file.h>
 
 namespace {
 
@@ -81,12 +82,7 @@ hc::Result<std::unique_ptr<Recording>> open_folder(const std::string& folder,
         hc::Code::Invalid,
         "streams: \"" + name + "\" " + (is_file_name ? "is there twice" : "cannot be a file name")};
   }
-  const auto place = free_name(folder, [&](const std::string& path) {
-    std::error_code missing;
-    return std::ranges::none_of(streams, [&](const auto& stream) {
-      return fs::exists(hc::recording_file(path, stream), missing);
-    });
-  });
+  const auto place = hc::free_name(folder, "", hc::is_free_for_recording);
   std::error_code failed;
   const bool is_new = fs::create_directories(place, failed);
   if (failed) return hc::Error{hc::Code::System, place + ": " + failed.message()};

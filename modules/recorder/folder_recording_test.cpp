@@ -109,7 +109,7 @@ TEST_F(Folder, OfAnEarlierProcessIsLeftAlone) {
   EXPECT_EQ(record_one(kept), kept);
   EXPECT_EQ(record_one(kept), kept + "_2");
   EXPECT_EQ(record_one(kept + "/"), kept + "_3");
-  EXPECT_EQ(recording(kept, {"b.out"})->place(), kept);
+  EXPECT_EQ(recording(kept, {"b.out"})->place(), kept + "_4");
   for (const char* file : {"kept/a.out.mtp", "kept_2/a.out.mtp", "kept_3/a.out.mtp"})
     EXPECT_EQ(count(root / file), 1U) << file;
 }

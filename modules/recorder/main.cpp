@@ -8,6 +8,7 @@
 
 #include <hc/base/format.h>
 #include <hc/module/module.h>
+#include <hc/observe/running.h>
 #include <hc/os/descriptor.h>
 
 #include "folder_recording.h"
@@ -60,16 +61,14 @@ std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A signal saves; it is read from a descriptor. Files that become too large are an error.
-  ::signal(SIGXFSZ, SIG_IGN);
-  sigset_t saves;
+  hc::Module module{"recorder",
+                    "Records streams into a file of MCAP, which viewers read, or into a folder."};
+  sigset_t saves;  // a signal that is read from a descriptor
   ::sigemptyset(&saves);
   ::sigaddset(&saves, SIGUSR1);
   ::pthread_sigmask(SIG_BLOCK, &saves, nullptr);
   const hc::internal::Descriptor signals(::signalfd(-1, &saves, SFD_NONBLOCK | SFD_CLOEXEC));
 
-  hc::Module module{"recorder",
-                    "Records streams into a file of MCAP, which viewers read, or into a folder."};
   const auto names = stream_names(argc, argv);
   std::vector<hc::Input<hc::AnyKind>> inputs;
   std::vector<std::string> recorded;  // their names
@@ -105,8 +104,8 @@ int main(int argc, char** argv) {
     if (status || has_failed) return;
     has_failed = true;
     static_cast<void>(recording->close());
-    module.log("error: recording ended: " + status.error().detail + "; " + recording->place() +
-               " holds what came before");
+    module.log("result: error: recording ended: " + status.error().detail + "; " +
+               recording->place() + " holds what came before");
   };
 
   module.on_start([&] {
@@ -155,5 +154,7 @@ int main(int argc, char** argv) {
     if (has_failed) text += hc::format(", {} not recorded", unrecorded + lost);
     module.log(text);
   });
-  return module.run(argc, argv);
+  const int status = module.run(argc, argv);
+  // In a graph it lasts as long as that, which says at its end what is missing.
+  return status == 0 && has_failed && !hc::own_graph() ? 1 : status;
 }

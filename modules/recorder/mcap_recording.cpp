@@ -2,7 +2,6 @@
 #include "mcap_recording.h"
 
 #include <cstdlib>
-#include <filesystem>
 #include <utility>
 
 #include "graph_metadata.h"
@@ -46,7 +45,7 @@ class McapRecording : public Recording {
 
   hc::Status close() override { return recorder_->close(); }
 
-  [[nodiscard]] const std::string& place() const override { return options_.file; }
+  [[nodiscard]] const std::string& place() const override { return recorder_->file(); }
   [[nodiscard]] std::uint64_t messages() const override { return recorder_->messages(); }
   [[nodiscard]] std::uint64_t lost() const override { return recorder_->lost(); }
 
@@ -72,11 +71,6 @@ class McapRecording : public Recording {
 
 hc::Result<std::unique_ptr<Recording>> open_mcap(hc::Module& module, McapOptions options,
                                                  const std::vector<std::string>& streams) {
-  if (options.split == 0 && options.last.count() == 0)
-    options.file = free_name(options.file, [](const std::string& path) {
-      std::error_code missing;
-      return !std::filesystem::exists(path, missing);
-    });
   auto recorder = hc::mcap::Recorder::make(options);
   if (!recorder) return recorder.error();
   if (auto named = (*recorder)->set_frames(options.frames, module.now()); !named)

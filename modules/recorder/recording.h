@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include <hc/base/result.h>
@@ -34,8 +33,3 @@ class Recording {
   /// Those of them that are in no file; after close().
   [[nodiscard]] virtual std::uint64_t lost() const = 0;
 };
-
-/// A path, or else the first that is free of PATH_2, PATH_3, …, with the number before ".mcap":
-/// what an earlier process of the module has written stays.
-std::string free_name(const std::string& path,
-                      const std::function<bool(const std::string& path)>& is_free);

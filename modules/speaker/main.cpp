@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mouth: plays sound and writes it to a file.
 #include <hc/module/module.h>
+#include <hc/observe/running.h>
 #include <hc/os/program.h>
 #include <sound/messages.h>
 
@@ -15,7 +16,7 @@ int main(int argc, char** argv) {
                                  {.fixed = true});
   auto save = module.parameter(
       "save", "", "",
-      "WAV file to write, always a valid file; one of the same format is appended to",
+      "WAV file to write, always a valid file; one that is there stays, and x_2.wav is written",
       {.fixed = true});
   auto rate =
       module.parameter("rate", 0, "Hz", "of the device and the file, 0: that of the first sound",
@@ -43,5 +44,6 @@ int main(int argc, char** argv) {
   const int status = module.run(argc, argv);
   if (player && player->dropped() > 0)
     module.log(std::to_string(player->dropped()) + " messages were dropped without a loudspeaker");
-  return status;
+  const bool has_failed = player && player->has_file_error() && !hc::own_graph();
+  return status == 0 && has_failed ? 1 : status;
 }

@@ -37,7 +37,7 @@ Status Player::play(const hc::Message& message, const Format& format) {
   return samples ? play(samples->numbers(), format) : samples.error();
 }
 
-/// Has the converter for a sound, and the file; what was converted otherwise is given out before.
+/// Has the converter for a sound; what was converted otherwise is given out before.
 Status Player::prepare(Converter::Scalar scalar, const Format& format) {
   if (!format_)
     format_ = Format{options_.rate > 0 ? options_.rate : format.rate,
@@ -51,19 +51,30 @@ Status Player::prepare(Converter::Scalar scalar, const Format& format) {
     }
     converter_.emplace(std::move(*made));
   }
-  if (!options_.file.empty() && !writer_) {
-    auto opened = hc::audio::WavWriter::append(options_.file, *format_);
-    if (!opened) return opened.error();
-    writer_.emplace(std::move(*opened));
-  }
   return {};
+}
+
+/// Writes to the file; once it cannot be written, sound is played all the same.
+void Player::save(std::span<const std::int16_t> samples) {
+  if (options_.file.empty() || file_error_) return;
+  Status written;
+  if (writer_) written = writer_->write(samples);
+  const bool is_full = !written && written.error().code == hc::Code::TooLarge;
+  if (!writer_ || is_full) {
+    auto begun = hc::audio::WavWriter::create(options_.file, *format_);
+    if (begun && begun->path() != options_.file) log_("continuing in " + begun->path());
+    written = begun ? begun->write(samples) : begun.error();
+    if (begun) writer_.emplace(std::move(*begun));
+  }
+  if (written) return;
+  file_error_ = true;
+  log_("result: error: recording of sound ended: " + written.error().detail);
 }
 
 Status Player::give_out() {
   const auto samples = converter_->take();
   if (samples.empty()) return {};
-  if (writer_)
-    if (auto written = writer_->write(samples); !written) return written;
+  save(samples);
   if (!options_.plays) return {};
   look();
   wait_until_at_most(options_.buffer);

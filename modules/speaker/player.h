@@ -42,7 +42,7 @@ class Player {
   /// has played nothing for kTimeout, the sound is dropped and counted; the file gets it all the
   /// same.
   ///
-  /// Errors: Unsupported (such a format), System, TooLarge (the file).
+  /// Errors: Unsupported (such a format), System.
   template <typename T>
   hc::Status play(std::span<const T> samples, const hc::audio::Format& format);
   /// The same of a message of that format, i16 or f32.
@@ -55,10 +55,13 @@ class Player {
 
   /// Messages dropped without a device.
   [[nodiscard]] std::int64_t dropped() const { return dropped_; }
+  /// Whether the file could not be written, which has been logged.
+  [[nodiscard]] bool has_file_error() const { return file_error_; }
 
  private:
   hc::Status prepare(hc::audio::Converter::Scalar scalar, const hc::audio::Format& format);
   hc::Status give_out();
+  void save(std::span<const std::int16_t> samples);
   void wait_until_at_most(double seconds);
   void look_whether_stuck();
 
@@ -68,6 +71,7 @@ class Player {
   std::optional<hc::audio::Format> format_;  // of device and file, once it is known
   std::optional<hc::audio::Converter> converter_;
   std::optional<hc::audio::WavWriter> writer_;
+  bool file_error_ = false;
   std::unique_ptr<hc::audio::Playback> playback_;
   hc::Backoff backoff_;
   bool is_missing_ = false;               // and it is logged

@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include <hc/module/module.h>
+#include <hc/observe/running.h>
+#include <hc/os/new_file.h>
 #include <hc/os/program.h>
 #include <vision/image.h>
 #include <vision/messages.h>
@@ -78,8 +81,9 @@ int main(int argc, char** argv) {
   std::unique_ptr<hc::vision::Display> display;
   int seen = 0;
   Eyes eyes;
-  fs::path last;          // that was saved
-  Picture unsaved;        // the latest, where the file has an older one
+  fs::path last;    // that was saved
+  Picture unsaved;  // the latest, where the file has an older one
+  bool has_failed = false;
   bool is_fresh = false;  // the file was replaced less than a pause ago
   module.on_start([&] {
     if (*min > *max) throw hc::ModuleError("min is above max");
@@ -109,9 +113,12 @@ int main(int argc, char** argv) {
     if (!*legend) return bgr;
     return hc::vision::with_legend(bgr, span.least, span.most, unit_of(header));
   };
+  auto is_free = [](const std::string& path) { return !fs::exists(path); };
   auto write = [&](const Picture& picture) {
-    hc::succeed_or_end(hc::vision::save_image(picture.path, picture.bgr));
-    last = picture.path;
+    auto saved = hc::vision::save_image(picture.path, picture.bgr);
+    if (saved) last = picture.path;
+    if (!saved && !std::exchange(has_failed, true))  // a later one may be, and windows go on
+      module.log("result: error: not all images saved: " + saved.error().detail);
   };
   // To compress an image takes longer than to compute most.
   auto write_latest = [&] {
@@ -127,7 +134,7 @@ int main(int argc, char** argv) {
     if (save->ends_with('/')) {
       const std::string file =
           std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";
-      write({fs::path(*save) / file, bgr});
+      write({hc::free_name(fs::path(*save) / file, ".png", is_free), bgr});
     } else if (!save->empty()) {
       unsaved = {*save, bgr.clone()};
       if (!is_fresh) pause.restart(std::chrono::nanoseconds(0));
@@ -164,5 +171,5 @@ int main(int argc, char** argv) {
   });
   const int status = module.run(argc, argv);
   if (!last.empty()) module.log("result: image saved to " + fs::absolute(last).string());
-  return status;
+  return status == 0 && has_failed && !hc::own_graph() ? 1 : status;
 }

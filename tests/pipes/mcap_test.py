@@ -121,14 +121,100 @@ class Recordings(Pipes):
             self.assertIn("hc run: error: %s\n" % line, self.err)
         self.assertEqual(self.err.count("\n"), 2, self.err)
 
-    def test_a_module_that_writes_its_file_itself_fails_on_a_full_disk(self):
-        text = GRAPH.replace("ends_graph = true", 'restart = "never"')
-        self.write("g.toml", text % (self.environment["HC_DATA"], 100))
+    def test_a_module_that_writes_its_file_itself_outlives_a_full_disk(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 100))
         run = "hc run g.toml --record disk/kept --set camera.width=640 --set camera.height=480"
         self.assertEqual(self.on_a_small_disk(run), 1, self.err)
-        self.assertIn("camera: System: left: write(): No space left on device\n", self.err)
+        error = "camera: error: left: recording into disk/kept/camera.left.mtp ended: "
+        self.assertEqual(self.err.count(error + "write(): No space left on device"), 1, self.err)
+        self.assertEqual(self.err.count("camera: started"), 1, self.err)
+        self.assertIn(error, self.out)
+        self.assertIn("recorded in part into disk/kept\n", self.out)
         seqs = self.seqs("kept/kept/camera.left.mtp")  # status 0: its messages are whole
         self.assertGreater(len(seqs), 1)
+        self.assertEqual(seqs, list(range(len(seqs))))
+        # The robot went on.
+        self.assertIn("100 messages", self.shell("hc info mean.mtp"))
+
+    def test_a_module_that_is_killed_continues_its_files(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 0))
+        runner = self.start("exec hc run g.toml --as kept --record kept 2>log")
+        path = pathlib.Path(self.path("kept/camera.left.mtp"))
+        size = lambda: path.stat().st_size if path.exists() else 0
+        begin = b""
+        for kill in range(1, 6):
+            wait_until(lambda: size() > len(begin) + 100000)
+            os.kill(self.process_of("kept", "camera"), signal.SIGKILL)
+            wait_until(lambda: self.read("log").count("camera: started") == kill + 1)
+            # Of what was there nothing is lost but the message that was being written.
+            before, begin = begin, path.read_bytes()
+            self.assertEqual(begin[: len(before)], before)
+            begin = begin[: begin.rfind(b"\n1 ") + 1]
+        wait_until(lambda: size() > len(begin) + 100000)
+        runner.send_signal(signal.SIGTERM)
+        runner.communicate(timeout=WATCHDOG)
+        self.assertEqual(path.read_bytes()[: len(begin)], begin)
+        self.seqs("kept/camera.left.mtp")  # status 0: all its messages are whole
+        self.assertEqual(sorted(os.listdir(self.path("."))).count("kept_2"), 0)
+
+    def test_a_second_run_leaves_what_the_first_has_recorded(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        for place, second in (("kept", "kept_2"), ("x.mcap", "x_2.mcap")):
+            self.assertIn("recorded into %s\n" % place, self.shell("hc run g.toml --record " + place))
+            before = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
+            out = self.shell("hc run g.toml --record %s --quiet" % place)
+            self.assertIn("recorded into %s\n" % second, out)
+            self.assertIn("%s stays; recording into %s\n" % (place, second), self.err)
+            after = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
+            self.assertEqual(before, after)
+        # So do links to files, and what verbs write.
+        self.assertIn("3 messages", self.shell("hc info mean_4.mtp"))
+        for name in ("y.mtp", "y.mcap"):
+            self.shell("hc send 1 | hc record %s" % name)
+            before = self.read_bytes(name)
+            self.shell("hc send 2 | hc record %s" % name)
+            self.assertIn("stays as it is; continuing in y_2", self.err)
+            self.assertEqual(self.read_bytes(name), before)
+            self.shell("hc info y_2" + name[1:])
+
+    def test_a_place_that_cannot_be_written_is_said(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        self.shell("hc run g.toml --record no/such/x.mcap", 1)
+        self.assertEqual(self.err, "hc run: System: no/such: No such file or directory\n")
+        # One that the file names does not keep the robot from its work.
+        text = self.read("g.toml").replace("file:mean.mtp", "file:no/such/mean.mtp")
+        self.write("h.toml", text.replace('"last.png"', '"file/last.png"'))
+        self.write("file", "")
+        out = self.shell("hc run h.toml --quiet", 1)
+        for error in (
+            "brightness: error: mean: recording into no/such/mean.mtp ended: open(no/such/mean.mtp): ",
+            "view: error: not all images saved: file/last.png: ",
+        ):
+            self.assertEqual(self.err.count(error), 1, self.err)
+            self.assertEqual(out.count(error), 1, out)
+        self.assertIn(": 3 modules, 9 messages", out)
+
+    def test_files_that_become_too_large_end_the_recording_only(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 0))
+        runner = self.start("exec hc run g.toml --as large --record kept 2>log")
+        sent = lambda: self.sent("large", "camera.left", "brightness.image")
+        wait_until(lambda: "camera: started" in self.read("log") and sent() > 10)
+        pid = self.process_of("large", "camera")
+        resource.prlimit(pid, resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+        wait_until(lambda: "camera: error: left: recording" in self.read("log"))
+        before = sent()
+        wait_until(lambda: sent() > before + 10)  # the robot continues
+        self.assertEqual(self.process_of("large", "camera"), pid)
+        runner.send_signal(signal.SIGTERM)
+        out = runner.communicate(timeout=WATCHDOG)[0].decode()
+        self.assertEqual(runner.returncode, 1, self.read("log"))
+        self.assertIn("camera.left.mtp ended: write(): File too large\n", out)
+        seqs = self.seqs("kept/camera.left.mtp")  # status 0: they are whole
+        self.assertEqual(seqs, list(range(len(seqs))))
+
+    def process_of(self, graph, module):
+        state = json.loads(self.shell("hc top --json --once " + graph).split("\n")[0])
+        return next(each["pid"] for each in state["modules"] if each["name"] == module)
 
     def test_a_graph_is_recorded_into_one_file(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 30))
@@ -196,7 +282,7 @@ class Recordings(Pipes):
         wait_until(lambda: sent() > before + 10)  # the robot continues
         runner.send_signal(signal.SIGTERM)
         out = runner.communicate(timeout=WATCHDOG)[0].decode()
-        self.assertEqual(runner.returncode, 0, self.read("log"))
+        self.assertEqual(runner.returncode, 1, self.read("log"))
         self.assertEqual(self.read("log").count("error: recording ended"), 1, self.read("log"))
         self.assertIn("File too large", self.read("log"))
         said = re.search(r"recorder: (\d+) messages in x\.mcap, (\d+) not recorded", out)
@@ -237,7 +323,7 @@ class Recordings(Pipes):
     def test_a_graph_on_a_disk_of_2_mb(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 100))
         run = "hc run g.toml --record disk/x.mcap --set camera.width=640 --set camera.height=480"
-        self.assertEqual(self.on_a_small_disk(run), 0, self.err)
+        self.assertEqual(self.on_a_small_disk(run), 1, self.err)
         self.assertEqual(self.err.count("error: recording ended"), 1, self.err)
         self.assertIn("No space left on device", self.err)
         said = re.search(r"recorder: (\d+) messages in disk/x\.mcap, (\d+) not recorded", self.out)
@@ -298,7 +384,8 @@ class Recordings(Pipes):
         self.shell("hc run g.toml --quiet --record x.mcap --split 1G")
         self.assertEqual(self.read("x.mcap"), "kept")
         self.shell("hc run g.toml --quiet --record x.mcap")
-        self.assertEqual(self.seqs("x.mcap?stream=camera.left"), list(range(3)))
+        self.assertEqual(self.read("x.mcap"), "kept")
+        self.assertEqual(self.seqs("x_2.mcap?stream=camera.left"), list(range(3)))
 
     def test_the_recorder_alone_is_told_to_save(self):
         self.write("recorder", '#!/bin/sh\nexec hc brightness "$@"\n', 0o755)

@@ -113,8 +113,10 @@ class Recording : public Output {
     recorder.keep = value_or_fail(hc::mcap::parse_bytes(options.keep), "--keep");
     recorder.last = std::chrono::duration_cast<std::chrono::nanoseconds>(
         std::chrono::duration<double>(options.last));
-    std::signal(SIGXFSZ, SIG_IGN);
     recorder_ = value_or_fail(hc::mcap::Recorder::make(recorder), options.file);
+    if (recorder_->file() != options.file)
+      say(hc::format("hc record: {} stays as it is; continuing in {}", options.file,
+                     recorder_->file()));
     for (const auto& link : options.links) {
       // What was recorded before keeps its time.
       const auto uri = hc::parse_uri(link);
@@ -257,7 +259,8 @@ void add_record(CLI::App& app) {
   verb->add_option("source", words->front(),
                    "what is recorded, as --in has it; where no word follows, the output file")
       ->required();
-  verb->add_option("file", words->back(), "output file (overwritten)");
+  verb->add_option("file", words->back(),
+                   "output file; one that has contents stays, and FILE_2 is written");
   verb->add_option("--in", options->links,
                    "URIs, files or MODULE.PORT of a running graph; may be repeated")
       ->allow_extra_args(false);

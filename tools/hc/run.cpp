@@ -13,6 +13,7 @@
 #include <graph/run.h>
 #include <hc/base/format.h>
 #include <hc/contract/recording.h>
+#include <hc/os/new_file.h>
 #include <hc/os/program.h>
 
 #include "common.h"
@@ -61,7 +62,9 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
                              {ignored, "ignored out of focus"}})
     if (count > 0) lost += hc::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
   if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");
-  if (!options.record.empty()) text += "  recorded into " + options.record + "\n";
+  if (!options.record.empty())
+    text +=
+        hc::format("  recorded{} into {}\n", report.has_errors ? " in part" : "", options.record);
   print(text);
 }
 
@@ -107,44 +110,44 @@ void check_name(const RunOptions& options) {
   }
 }
 
-/// Where outputs are recorded: a folder, or a file that a module writes.
-void take_record(const RunOptions& options, hc::LoadOptions& load) {
-  const auto& place = options.record;
-  std::error_code failed;
+/// Fails where a recording could not be begun: before anything of the robot starts.
+void check_writable(const std::filesystem::path& folder, std::error_code failed) {
+  const auto path = folder.empty() ? "." : folder.string();
+  if (!failed && ::access(path.c_str(), W_OK | X_OK) != 0)
+    failed.assign(errno, std::generic_category());
+  if (failed) throw Failure({hc::Code::System, path + ": " + failed.message()});
+}
+
+/// Where outputs are recorded: a folder, or a file that a module writes. What an earlier run has
+/// recorded there stays.
+void take_record(RunOptions& options, hc::LoadOptions& load) {
+  auto& place = options.record;
   for (const auto& [name, value] : options.recorder)
     if (!value.empty())
       load.recorder[name] =
           name == "last" && value.ends_with('s') ? value.substr(0, value.size() - 1) : value;
+  const bool is_numbered = load.recorder.contains("split") || load.recorder.contains("last");
+  const auto given = place;
+  std::error_code failed;
   if (place.ends_with(".mcap")) {
+    check_writable(std::filesystem::path(place).parent_path(), {});
+    if (!is_numbered)
+      place = hc::free_name(place, ".mcap", [](const std::string& path) {
+        std::error_code missing;
+        return std::filesystem::file_size(path, missing) == 0 || missing;
+      });
     load.recorder["file"] = place;
     std::signal(SIGUSR1, [](int) { save_requested = 1; });
   } else if (!load.recorder.empty()) {
     throw Failure({hc::Code::Invalid, "--" + load.recorder.begin()->first +
                                           " is for recordings in MCAP: --record FILE.mcap"});
   } else if (!place.empty()) {
+    place = hc::free_name(place, "", hc::is_free_for_recording);
     load.record = load.recorder["folder"] = place;
     std::filesystem::create_directories(place, failed);
-    if (!failed && ::access(place.c_str(), W_OK | X_OK) != 0)
-      failed.assign(errno, std::generic_category());
-    if (failed) throw Failure({hc::Code::System, place + ": " + failed.message()});
+    check_writable(place, failed);
   }
-}
-
-/// A single file is overwritten; numbered ones stay. So are those of a folder: the module that
-/// records leaves what it finds, since it may have been restarted.
-void remove_previous_files(const RunOptions& options, const hc::LoadOptions& load,
-                           const hc::LoadedGraph& graph) {
-  namespace fs = std::filesystem;
-  std::error_code failed;
-  const bool is_numbered = load.recorder.contains("split") || load.recorder.contains("last");
-  if (options.record.ends_with(".mcap") && !is_numbered) fs::remove(options.record, failed);
-  if (load.record.empty() || graph.recorder.empty()) return;
-  for (const auto& link : graph.plan->links) {
-    if (!link.to.starts_with(graph.recorder + ".")) continue;
-    const auto file = hc::recording_file(load.record, link.from);
-    fs::remove(file, failed);
-    if (failed) throw Failure({hc::Code::System, file + ": " + failed.message()});
-  }
+  if (place != given) say(hc::format("hc run: {} stays; recording into {}", given, place));
 }
 
 /// Logs the reason as everything else was logged: its reader may have ended.
@@ -153,7 +156,7 @@ void remove_previous_files(const RunOptions& options, const hc::LoadOptions& loa
   throw Failure(Failure(error).status);
 }
 
-void run(const RunOptions& options) {
+void run(RunOptions options) {
   allow_descriptors();
   check_name(options);
   hc::LoadOptions load_options = options.graph;
@@ -163,7 +166,6 @@ void run(const RunOptions& options) {
   load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
-  remove_previous_files(options, load_options, graph);
   StatusLine status(!options.quiet);
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
     std::string list;
@@ -199,6 +201,7 @@ void run(const RunOptions& options) {
     if (module.status == hc::ModuleStatus::GivenUp)
       given_up += (given_up.empty() ? "" : ", ") + module.name;
   if (!given_up.empty()) fail(status, {hc::Code::Closed, "given up: " + given_up});
+  if (report->has_errors) throw Failure(1);  // they are in the summary
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <set>
 
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/link/wait_set.h>
+#include <hc/os/new_file.h>
 #include <hc/os/program.h>
 
 #include <nlohmann/json.hpp>
@@ -244,17 +244,14 @@ std::string json_of(const std::string& port, const std::vector<PathSummary>& sum
          "\n";
 }
 
-void write_file(const std::string& name, const std::string& text) {
-  std::ofstream file(name, std::ios::binary);
-  file << text;
-  if (!file.flush()) throw Failure({hc::Code::System, name + ": cannot be written"});
-}
-
 void trace(const TraceOptions& options) {
   if (options.port.empty() && options.perfetto.empty())
     throw Failure({hc::Code::Invalid, "give MODULE.PORT, or --perfetto FILE for all modules"});
   const auto collected = options.recording.empty() ? collect(options) : read_recording(options);
-  if (!options.perfetto.empty()) write_file(options.perfetto, to_chrome_trace(collected.traced));
+  if (!options.perfetto.empty())
+    if (auto written = hc::replace_file(options.perfetto, to_chrome_trace(collected.traced));
+        !written)
+      throw Failure(written.error());
   if (collected.lost > 0)
     say(hc::format("hc trace: {} events were lost, as there were too many", collected.lost));
   if (options.port.empty()) return;

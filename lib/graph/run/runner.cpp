@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/run/runner.h>
 
+#include <poll.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -35,7 +37,7 @@ Result<RunReport> Runner::run() {
     return std::ranges::find(end.modules, line.substr(0, line.find(':')), &ModuleState::name) -
            end.modules.begin();
   });
-  return RunReport{std::move(end), std::move(results_), is_stopped_};
+  return RunReport{std::move(end), std::move(results_), is_stopped_, has_errors_};
 }
 
 Status Runner::begin() {
@@ -85,8 +87,11 @@ Status Runner::begin() {
     if (!module) return module.error();
     modules_[planned.name] = std::move(*module);
   }
-  for (const auto& planned : plan_.modules)
+  pollfd stop{options_.stop, POLLIN, 0};
+  for (const auto& planned : plan_.modules) {
+    if (::poll(&stop, 1, 0) > 0) break;  // the loop ends those that have been started
     if (auto started = find(planned.name)->start(); !started) return started;
+  }
   tick();
   return {};
 }
@@ -174,18 +179,21 @@ void Runner::log(const std::string& line) {
 }
 
 void Runner::take_line(std::string line) {
-  constexpr std::string_view kResult = ": result: ";
+  constexpr std::string_view kResult = ": result: ", kError = ": error: ";
   // Its peers are stopping too.
   if (is_stopping_ && (line.ends_with("reconnecting") || line.ends_with("connecting again")))
     return;
   line = with_link_names(std::move(line));
   if (const auto found = line.find(Lines::kNotice); found != std::string::npos)
     return print(line.erase(found + 2, Lines::kNotice.size() - 2));
+  bool is_error = false;
   if (auto found = line.find(kResult); found != std::string::npos) {
     line.erase(found, kResult.size() - 2);
+    is_error = line.compare(found, kError.size(), kError) == 0;
+    has_errors_ = has_errors_ || is_error;
     if (results_.size() < kMaxResults) results_.push_back(line);
   }
-  if (options_.with_module_lines) print(line);
+  if (options_.with_module_lines || is_error) print(line);
   if (observation_) observation_->log(line);
 }
 

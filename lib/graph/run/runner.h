@@ -100,6 +100,7 @@ class Runner {
   bool is_unsettled_ = false;  // a module has started or ended, or links have changed
   std::vector<Failure> failures_;
   std::vector<std::string> results_;  // lines
+  bool has_errors_ = false;           // among them
   Status outcome_;
   std::deque<Change> changes_;           // the first of them may be being planned
   std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers

@@ -67,7 +67,7 @@ OpenedSink listening_sink(const Uri& uri, const LinkOptions& options) {
 /// refused and not ignored.
 constexpr std::array<Transport, 11> kTransports = {{
     {"-", "", "keep rate burst memory timeout", internal::open_stdin, internal::open_stdout},
-    {"file", "", "keep rate burst memory timeout", internal::open_file_source,
+    {"file", "", "append optional keep rate burst memory timeout", internal::open_file_source,
      internal::open_file_sink},
     {"tcp", "wait reconnect same_user", "wait reconnect same_user keep rate burst memory timeout",
      connect_source<internal::tcp_peer>, connect_sink<internal::tcp_peer>},
@@ -142,7 +142,8 @@ Status check_end(const Uri& uri, std::string_view allowed) {
   } else if (uri.scheme != "-" && (uri.rest.empty() || uri.rest == "@")) {
     return Error{Code::Invalid, "there is no name"};
   }
-  for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user", "domain"})
+  for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user", "domain",
+                          "append", "optional"})
     if (auto number = number_option(uri, key, 0); !number) return number.error();
   auto policy = internal::parse_policy(uri);
   return policy ? Status() : policy.error();

@@ -5,8 +5,12 @@
 #include <memory>
 
 #include <hc/link/link.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
+
+/// Opens a file without waiting for the other end of a FIFO, which a signal to stop could not end.
+Result<Descriptor> open_path(const Uri& uri, int flags, int stop);
 
 Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions&);
 Result<std::unique_ptr<Sink>> open_stdout(const Uri&, const LinkOptions&);

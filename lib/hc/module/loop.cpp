@@ -86,7 +86,10 @@ std::string Module::Loop::name_of(const std::string& uri, const std::string& por
 /// Options of a link. What those of a graph log waits in lines_.
 LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
   LinkOptions options = options_;
-  options.log = [this, uri = uri.text(), port](Severity, std::string_view line) {
+  options.log = [this, uri = uri.text(), port](Severity severity, std::string_view line) {
+    // The work goes on; `hc run` repeats this at its end.
+    if (severity == Severity::Error && line.starts_with(uri))
+      return module_.log("result: error: " + port + std::string(line.substr(uri.size())));
     const std::string name = name_of(uri, port);
     if (name == uri || !line.starts_with(uri)) return module_.log(line);
     lines_.push_back({uri, name + std::string(line.substr(uri.size())),
@@ -113,20 +116,24 @@ void Module::Loop::open_focus(const Uri& uri) {
 }
 
 std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port) {
-  auto options = options_for(uri, port);
+  Uri opened = uri;
+  auto conversion = take_conversion(opened);
+  if (!conversion) fail(name_of(uri.text(), port), conversion.error());
+  const bool is_of_graph = management_.commands() != nullptr;
+  auto add = [&](const char* option, const char* value) {
+    if (opened.option(option, "").empty()) opened.options.emplace_back(option, value);
+  };
+  // In a graph a full disk ends a recording, and not the module.
+  if (is_of_graph && opened.scheme == "file") add("optional", "1");
+  // By the clock of messages nothing is ever lost.
+  if (is_of_graph && !module_.message_time_) add("timeout", kTimeoutInGraphs);
+  auto options = options_for(opened, port);
   auto link = std::make_shared<LinkedSink>();
   options.awaits_reader = [this, sender = link.get()](bool awaits) {
     report_state(awaits ? sender : nullptr);
   };
   if (const auto* commands = management_.commands(); commands != nullptr)
     options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
-  Uri opened = uri;
-  // By the clock of messages nothing is ever lost.
-  const bool is_live = management_.commands() != nullptr && !module_.message_time_;
-  if (is_live && opened.option("timeout", "").empty())
-    opened.options.emplace_back("timeout", kTimeoutInGraphs);
-  auto conversion = take_conversion(opened);
-  if (!conversion) fail(name_of(uri.text(), port), conversion.error());
   auto sink = open_sink(opened, options);
   if (!sink) fail(name_of(uri.text(), port), sink.error());
   link->uri = uri.text();

@@ -11,7 +11,7 @@ namespace hc {
 
 /// A descriptor that is readable once SIGINT, SIGTERM or, unless it is ignored as under nohup,
 /// SIGHUP has come, caught from the first call on; a second signal of the kind kills, as usual.
-/// SIGPIPE is ignored from then on. Every call gives the same descriptor. For the main thread.
+/// SIGPIPE and SIGXFSZ are ignored from then on. Always the same descriptor. For the main thread.
 int stop_descriptor();
 
 /// Whether such a signal has come since. For loops that may never wait.

@@ -76,6 +76,75 @@ TEST(File, R40_IsReadOnBehindDamage) {
   EXPECT_FALSE(*receive(*source, message));
 }
 
+/// What a file contains.
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void send_to(const std::string& uri, const Message& message, LogSink log = {}) {
+  LinkOptions options;
+  options.log = std::move(log);
+  auto sink = sink_of(uri, options);
+  ASSERT_TRUE(sink->send(message));
+  ASSERT_TRUE(sink->close());
+}
+
+TEST(File, ThatHasContentsStays) {
+  Folder folder;
+  std::string said;
+  auto log = [&](Severity, std::string_view line) { said += line; };
+  const std::string path = folder / "eyes.mtp";
+  for (int i = 0; i < 3; ++i) send_to("file:" + path, numbered(i, 3), log);
+  EXPECT_EQ(bytes_of(path), encode(numbered(0, 3)));
+  EXPECT_EQ(bytes_of(folder / "eyes_2.mtp"), encode(numbered(1, 3)));
+  EXPECT_EQ(bytes_of(folder / "eyes_3.mtp"), encode(numbered(2, 3)));
+  EXPECT_EQ(said, "file:" + path + ": stays as it is; continuing in " + (folder / "eyes_2.mtp") +
+                      "file:" + path + ": stays as it is; continuing in " +
+                      (folder / "eyes_3.mtp"));
+}
+
+TEST(File, IsContinuedBehindItsLastWholeMessage) {
+  Folder folder;
+  const std::string path = folder / "eyes.mtp", whole = encode(numbered(1, 200'000));
+  std::string kept;
+  // What a killed writer leaves: nothing, or a message cut in its head, its elements, its end.
+  for (const std::size_t cut :
+       {std::size_t{0}, std::size_t{1}, std::size_t{20}, std::size_t{60'000}, std::size_t{150'000},
+        whole.size() - 1, whole.size()}) {
+    std::ofstream(path, std::ios::app) << whole.substr(0, cut);
+    send_to("file:" + path + "?append=1", numbered(2, 100));
+    kept += (cut == whole.size() ? whole : "") + encode(numbered(2, 100));
+    ASSERT_EQ(bytes_of(path).size(), kept.size()) << cut;
+    ASSERT_TRUE(bytes_of(path) == kept) << cut;
+  }
+}
+
+TEST(File, ThatHasOtherContentsIsNotContinued) {
+  Folder folder;
+  std::ofstream(folder / "x") << "no messages\n";
+  send_to("file:" + (folder / "x") + "?append=1", numbered(1, 3));
+  EXPECT_EQ(bytes_of(folder / "x"), "no messages\n");
+  EXPECT_EQ(bytes_of(folder / "x_2"), encode(numbered(1, 3)));
+}
+
+TEST(File, ThatIsOptionalLosesWhatItCannotTake) {
+  for (const char* path : {"/dev/full", "/nowhere/eyes.mtp"}) {
+    int errors = 0;
+    LinkOptions options;
+    options.log = [&](Severity severity, std::string_view line) {
+      EXPECT_EQ(severity, Severity::Error);
+      EXPECT_NE(line.find(std::string("recording into ") + path + " ended: "), line.npos) << line;
+      ++errors;
+    };
+    auto sink = sink_of(std::string("file:") + path + "?optional=1", options);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(sink->send(numbered(i, 100'000)));
+    EXPECT_TRUE(sink->close());
+    EXPECT_EQ(errors, 1);
+    EXPECT_EQ(sink->traffic().cut, 3U);
+  }
+}
+
 TEST(File, AFullDiskIsReported) {
   auto sink = sink_of("file:/dev/full");
   auto sent = sink->send(numbered(0, 10));
