@@ -32,7 +32,7 @@ ALLOWED = {
     "tls": {"base", "os", "link"},
     "dds": {"base", "os", "mtp", "link"},
     "hosts": {"base", "os", "mtp", "contract", "link", "graph", "tls"},
-    "drivers": {"base"},
+    "drivers": {"base", "os"},
     "modules": {
         "base",
         "os",

@@ -43,7 +43,7 @@ int port_of(int socket) {
 
 }  // namespace
 
-Result<HeadTracker> HeadTracker::open(const std::string& host, int port) {
+Result<HeadTracker> HeadTracker::open(const std::string& host, int port, Senders senders) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_DGRAM;
@@ -56,7 +56,7 @@ Result<HeadTracker> HeadTracker::open(const std::string& host, int port) {
   const std::string where = "UDP port " + std::to_string(port) + " of " + host;
   const int socket = ::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (socket < 0) return failed(where);
-  HeadTracker tracker(socket, port);
+  HeadTracker tracker(socket, port, std::move(senders));
   // Without SO_REUSEADDR, which would let a second program take the packets of the first.
   if (::bind(socket, found->ai_addr, found->ai_addrlen) != 0) return failed(where);
   const int on = 1;
@@ -68,20 +68,24 @@ Result<HeadTracker> HeadTracker::open(const std::string& host, int port) {
 HeadTracker::HeadTracker(HeadTracker&& other) noexcept
     : socket_(std::exchange(other.socket_, -1)),
       port_(other.port_),
-      ignored_(other.ignored_),
-      why_ignored_(std::move(other.why_ignored_)) {}
+      senders_(std::move(other.senders_)) {}
 
 HeadTracker::~HeadTracker() {
   if (socket_ >= 0) ::close(socket_);
 }
 
-Result<std::optional<TimedHeadPose>> HeadTracker::receive() {
+Result<std::optional<TimedHeadPose>> HeadTracker::receive(MonotonicTime now,
+                                                          const Problem& problem) {
+  senders_.begin();
   std::optional<TimedHeadPose> newest;
   for (int i = 0; i < kMostAtOnce; ++i) {
     std::array<std::byte, kHeadPacketBytes + 1> bytes{};
     alignas(cmsghdr) std::array<char, 256> control{};
     iovec part{bytes.data(), bytes.size()};
+    sockaddr_storage from{};
     msghdr message{};
+    message.msg_name = &from;
+    message.msg_namelen = sizeof from;
     message.msg_iov = &part;
     message.msg_iovlen = 1;
     message.msg_control = control.data();
@@ -97,12 +101,12 @@ Result<std::optional<TimedHeadPose>> HeadTracker::receive() {
                     ? Result<HeadPose>(
                           Error{Code::Malformed, "a packet of " + std::to_string(whole) + " bytes"})
                     : read_head_packet(std::span(bytes).first(whole));
-    if (pose) {
+    if (!pose)
+      problem("invalid packet", "ignored " + pose.error().detail);
+    else if (auto status = senders_.admit(from, now); !status)
+      problem("packet of another", "ignored a packet of " + status.error().detail);
+    else
       newest = TimedHeadPose{*pose, arrival(message)};
-    } else {
-      ++ignored_;
-      why_ignored_ = pose.error().detail;
-    }
   }
   return newest;
 }

@@ -3,11 +3,16 @@
 // A head tracker that sends opentrack's UDP packets to a port.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <drivers/head_tracker/pose.h>
+#include <drivers/head_tracker/senders.h>
+#include <hc/base/clock.h>
 #include <hc/base/result.h>
 
 namespace hc {
@@ -18,6 +23,9 @@ struct TimedHeadPose {
   std::int64_t time = 0;  ///< of the packet's arrival [ns since the Unix epoch]
 };
 
+/// Gets what may happen often, to log the first of a kind and count the others.
+using Problem = std::function<void(const std::string& kind, std::string_view line)>;
+
 /// Receives packets. For one thread.
 class HeadTracker {
  public:
@@ -25,7 +33,7 @@ class HeadTracker {
   /// @param port  0 takes a free one.
   ///
   /// Errors: Invalid (no address), System (the port is in use, …).
-  static Result<HeadTracker> open(const std::string& host, int port);
+  static Result<HeadTracker> open(const std::string& host, int port, Senders senders);
   HeadTracker(HeadTracker&& other) noexcept;
   HeadTracker& operator=(HeadTracker&&) = delete;
   ~HeadTracker();
@@ -33,23 +41,22 @@ class HeadTracker {
   /// The newest pose that has come; older ones are of no use for following a head. Nothing when no
   /// valid packet has come. Never waits.
   ///
+  /// @param problem  gets a line for each packet that is ignored.
+  ///
   /// Errors: System.
-  Result<std::optional<TimedHeadPose>> receive();
+  Result<std::optional<TimedHeadPose>> receive(MonotonicTime now, const Problem& problem);
 
   /// For poll().
   [[nodiscard]] int descriptor() const { return socket_; }
   [[nodiscard]] int port() const { return port_; }
-  /// Invalid packets so far, and why the last one was.
-  [[nodiscard]] std::uint64_t ignored() const { return ignored_; }
-  [[nodiscard]] const std::string& why_ignored() const { return why_ignored_; }
 
  private:
-  HeadTracker(int socket, int port) : socket_(socket), port_(port) {}
+  HeadTracker(int socket, int port, Senders senders)
+      : socket_(socket), port_(port), senders_(std::move(senders)) {}
 
   int socket_ = -1;
   int port_ = 0;
-  std::uint64_t ignored_ = 0;
-  std::string why_ignored_;
+  Senders senders_;
 };
 
 }  // namespace hc

@@ -9,10 +9,16 @@
 #include <numbers>
 #include <string>
 
+#include <hc/base/format.h>
+
 namespace hc {
 namespace {
 
-constexpr double kMostCentimetres = 1e5, kMostDegrees = 3600;
+// A room, and a turn each way; one of opentrack's axes that is upside down has 360°.
+constexpr double kMostCentimetres = 2000, kMostDegrees = 360;
+// Smaller than any rounding error of a measured number, but what doubles in the other order of
+// bytes look like: 10 is 4.6e-320 then.
+constexpr double kLeast = 1e-30;
 constexpr const char* kNames[] = {"x", "y", "z", "yaw", "pitch", "roll"};
 
 double little_endian(std::span<const std::byte> bytes) {
@@ -46,10 +52,11 @@ Result<HeadPose> read_head_packet(std::span<const std::byte> packet) {
   std::array<double, 6> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     numbers[i] = little_endian(packet.subspan(8 * i, 8));
+    const double size = std::abs(numbers[i]);
     // Written so that not-a-number fails too.
-    if (!(std::abs(numbers[i]) <= (i < 3 ? kMostCentimetres : kMostDegrees)))
-      return Error{Code::Malformed, std::string("a packet whose ") + kNames[i] + " is " +
-                                        std::to_string(numbers[i])};
+    if (!(size <= (i < 3 ? kMostCentimetres : kMostDegrees)) || (size > 0 && size < kLeast))
+      return Error{Code::Malformed, format("a packet whose {} is {}{}", kNames[i], numbers[i],
+                                           size < kLeast ? ", as by big-endian numbers" : "")};
   }
   const auto [x, y, z, yaw, pitch, roll] = numbers;
   constexpr double kRadians = std::numbers::pi / 180, kMetres = 0.01;

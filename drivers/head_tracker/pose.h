@@ -36,8 +36,8 @@ struct HeadPose {
 
 /// Reads a packet of opentrack.
 ///
-/// Errors: Malformed (another size, a number that is not finite, or that no head has: above 1 km or
-/// ten turns).
+/// Errors: Malformed (another size, a number that is not finite, or that no head has: above 20 m or
+/// 360°, or not 0 but below 1e-30, as big-endian numbers are).
 Result<HeadPose> read_head_packet(std::span<const std::byte> packet);
 
 /// The packet that opentrack sends of a pose: what read_head_packet() reads as the same.

@@ -65,7 +65,9 @@ TEST(HeadPacket, angles_come_back_as_they_were) {
 TEST(HeadPacket, refuses_what_is_no_pose) {
   const double wrong[] = {std::numeric_limits<double>::quiet_NaN(),
                           std::numeric_limits<double>::infinity(),
-                          -std::numeric_limits<double>::infinity(), 1e300, -1e6};
+                          -std::numeric_limits<double>::infinity(), 1e300, -1e6,
+                          // In the other order of bytes: 10, 0.5 and 0.1f.
+                          4.6e-320, 1.12e-319, 2.5e-305, -1e-31, 2001};
   for (double number : wrong)
     for (std::size_t at = 0; at < 6; ++at) {
       std::array<double, 6> numbers = {1, 2, 3, 4, 5, 6};
@@ -73,6 +75,10 @@ TEST(HeadPacket, refuses_what_is_no_pose) {
       numbers[at] = number;
       EXPECT_FALSE(read_head_packet(packet(numbers))) << number << " at " << at;
     }
+  for (double degrees : {360.1, -361.0})
+    EXPECT_FALSE(read_head_packet(packet({0, 0, 0, 0, degrees, 0})));
+  for (double degrees : {360.0, -180.0, 0.0, -0.0, 1e-17})
+    EXPECT_TRUE(read_head_packet(packet({0, 0, 0, degrees, 0, 0})));
   const auto whole = packet({1, 2, 3, 4, 5, 6});
   for (std::size_t size = 0; size < 48; ++size)
     EXPECT_FALSE(read_head_packet(std::span(whole).first(size)));

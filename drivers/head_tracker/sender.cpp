@@ -12,6 +12,8 @@
 #include <system_error>
 #include <utility>
 
+#include <hc/base/uri.h>
+
 namespace hc {
 namespace {
 
@@ -21,16 +23,19 @@ Error failed(const std::string& what) {
 
 }  // namespace
 
-Result<HeadPoseSender> HeadPoseSender::open(int port) {
+Result<HeadPoseSender> HeadPoseSender::open(const std::string& address) {
+  const auto place = parse_host_port(address);
+  if (!place) return place.error();
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (socket < 0) return failed("socket");
   HeadPoseSender sender(socket);
   sockaddr_in to{};
   to.sin_family = AF_INET;
-  to.sin_port = htons(static_cast<std::uint16_t>(port));
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  to.sin_port = htons(place->port);
+  if (place->port == 0 || ::inet_pton(AF_INET, place->host.c_str(), &to.sin_addr) != 1)
+    return Error{Code::Invalid, "\"" + address + "\" is no address and port of IPv4"};
   if (::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
-    return failed("UDP port " + std::to_string(port));
+    return failed("UDP " + address);
   return sender;
 }
 

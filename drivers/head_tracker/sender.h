@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Sends poses of a head as opentrack does, to whoever hears a port of this machine.
+// Sends poses of a head as opentrack does, to whoever listens at an address.
+
+#include <string>
 
 #include <drivers/head_tracker/pose.h>
 #include <hc/base/result.h>
@@ -10,10 +12,10 @@ namespace hc {
 /// For one thread.
 class HeadPoseSender {
  public:
-  /// @param port  UDP, of 127.0.0.1; 1 … 65535.
+  /// @param address  "127.0.0.1:4242", of IPv4.
   ///
-  /// Errors: System.
-  static Result<HeadPoseSender> open(int port);
+  /// Errors: Invalid (no address, or no port), System.
+  static Result<HeadPoseSender> open(const std::string& address);
   HeadPoseSender(HeadPoseSender&& other) noexcept;
   HeadPoseSender& operator=(HeadPoseSender&&) = delete;
   ~HeadPoseSender();

@@ -7,36 +7,36 @@
 
 namespace hc {
 
-Status TrackedHead::pass(MonotonicTime now, std::chrono::nanoseconds silence) {
+Status TrackedHead::pass(MonotonicTime now) {
+  if (options_.host.empty()) return {};
   if (!tracker_) return backoff_.is_due(now) ? listen(now) : Status();
-  if (!active_ || now - *active_ < silence) return {};
+  if (!active_ || now - *active_ < options_.silence) return {};
   active_.reset();
   receives_ = false;
-  log_("no packets received on UDP " + where_);
+  log_("no packets received on UDP " + address_);
   return {};
 }
 
 Status TrackedHead::listen(MonotonicTime now) {
-  auto opened = HeadTracker::open(options_.host, options_.port);
+  auto opened =
+      HeadTracker::open(options_.host, options_.port, {options_.senders, options_.silence});
   if (!opened && opened.error().code == Code::Invalid) return opened.error();
   if (!opened) {
     backoff_.fail(now);
-    problem_("port in use", opened.error().detail + "; retrying", 1);
+    problem_("port in use", opened.error().detail + "; retrying");
     return {};
   }
   tracker_.emplace(std::move(*opened));
   active_ = now;
-  where_ = options_.host + ":" + std::to_string(tracker_->port());
-  log_("listening on UDP " + where_);
+  const bool is_six = options_.host.find(':') != std::string::npos;
+  address_ = format(is_six ? "[{}]:{}" : "{}:{}", options_.host, tracker_->port());
+  log_("listening on UDP " + address_);
   return {};
 }
 
 Result<std::optional<TimedHeadPose>> TrackedHead::receive(MonotonicTime now) {
   if (!tracker_) return std::optional<TimedHeadPose>();
-  const auto ignored = tracker_->ignored();
-  auto pose = tracker_->receive();
-  if (const auto more = static_cast<std::int64_t>(tracker_->ignored() - ignored); more > 0)
-    problem_("invalid packet", "ignored " + tracker_->why_ignored(), more);
+  auto pose = tracker_->receive(now, problem_);
   if (!pose || !*pose) return pose;
   active_ = now;
   if (!std::exchange(receives_, true)) log_("receiving from the tracker");

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <drivers/head_tracker/head_tracker.h>
 #include <hc/base/backoff.h>
@@ -18,8 +19,11 @@
 namespace hc {
 
 struct TrackedHeadOptions {
-  std::string host;  ///< and port: as of HeadTracker::open()
+  std::string host;  ///< and port: as of HeadTracker::open(); no host: it does not listen
   int port = 0;
+  std::vector<std::string> senders;  ///< other hosts that are heard, as of Senders
+  /// Without a pose for so long it is logged, and another sender may be heard.
+  std::chrono::nanoseconds silence = std::chrono::seconds(1);
   bool centre_first = true;  ///< the first pose is the zero; else the tracker's
 };
 
@@ -28,19 +32,18 @@ class TrackedHead {
  public:
   static constexpr std::chrono::milliseconds kLook{20};  ///< how often pass() is to be called
   using Log = std::function<void(std::string_view line)>;
-  using Problem =
-      std::function<void(const std::string& kind, std::string_view line, std::int64_t count)>;
 
-  /// @param problem  gets what may happen often, to log the first of a kind and count the others.
   TrackedHead(TrackedHeadOptions options, Log log, Problem problem)
       : options_(std::move(options)), log_(std::move(log)), problem_(std::move(problem)) {}
 
-  /// Opens the port, retrying while it is in use, and logs when no pose has come for `silence`.
+  /// Opens the port, retrying while it is in use, and logs when no pose has come for a while.
   ///
   /// Errors: Invalid (the host is no address).
-  Status pass(MonotonicTime now, std::chrono::nanoseconds silence);
+  Status pass(MonotonicTime now);
   /// For poll(); -1 while it does not listen.
   [[nodiscard]] int descriptor() const { return tracker_ ? tracker_->descriptor() : -1; }
+  /// Where it listens, "127.0.0.1:4242"; empty while it does not.
+  [[nodiscard]] const std::string& address() const { return address_; }
   /// The newest pose that has come, since the zero; nothing where none has.
   ///
   /// Errors: System.
@@ -56,7 +59,7 @@ class TrackedHead {
   Problem problem_;
   std::optional<HeadTracker> tracker_;
   Backoff backoff_;
-  std::string where_;
+  std::string address_;
   // When the last pose came, or listening began; nothing: silence was logged.
   std::optional<MonotonicTime> active_;
   bool receives_ = false, is_first_ = true, centres_next_ = false;

@@ -2,6 +2,8 @@
 // A person who turns the head and wears a tracker, simulated: opentrack's packets, and the truth.
 #include <optional>
 #include <random>
+#include <string>
+#include <utility>
 
 #include <drivers/head_tracker/sender.h>
 #include <frames/messages.h>
@@ -11,11 +13,11 @@
 
 int main(int argc, char** argv) {
   hc::Module module{"fake_head_tracker", "Simulated head tracker (opentrack protocol)."};
+  auto address = module.input("address", hc::string(),
+                              "where the head_tracker of its graph listens; nowhere when empty");
   auto rotation =
       module.output("rotation", hc::rotation<double>().of(1, 1).in(hc::Coord::kSupervisor),
                     "truth: roll 0, pitch, yaw of the head [rad]");
-  auto port = module.parameter("port", 4242, "", "UDP port of this machine to send packets to",
-                               {.min = 1, .max = 65535, .fixed = true});
   auto rate = module.parameter("rate", 100.0, "Hz", "packets a second", {.min = 0, .max = 1000});
   auto amplitude = module.parameter("amplitude", 0.7, "rad", "how far the head turns to each side",
                                     {.min = 0.01, .max = 1.5, .fixed = true});
@@ -26,6 +28,7 @@ int main(int argc, char** argv) {
   auto seed = module.parameter("seed", 1, "", "of the noise, and of the first side",
                                {.min = 0, .max = 1e9, .fixed = true});
 
+  std::string sends_to;
   std::optional<hc::HeadPoseSender> sender;
   std::optional<hc::MonotonicTime> start;
   std::mt19937_64 random;
@@ -33,9 +36,19 @@ int main(int argc, char** argv) {
   double side = 1;
 
   module.on_start([&] {
-    sender.emplace(hc::value_or_end(hc::HeadPoseSender::open(static_cast<int>(*port))));
     random.seed(static_cast<std::uint64_t>(*seed));
     side = random() % 2 == 0 ? 1 : -1;
+  });
+  module.keep_running();
+  module.on(address, [&](const auto& message) {
+    if (std::exchange(sends_to, message.characters()) == sends_to) return;
+    sender.reset();
+    if (sends_to.empty()) return;
+    auto opened = hc::HeadPoseSender::open(sends_to);
+    if (opened)
+      sender.emplace(std::move(*opened));
+    else
+      module.log_once("no address", opened.error().detail);
   });
   module.every(rate, [&] {
     const auto now = module.monotonic();
@@ -47,7 +60,7 @@ int main(int argc, char** argv) {
     const double noisy_pitch = pitch + *noise * error(random);
     hc::HeadPose pose;
     pose.R = hc::frames::rotation(0, noisy_pitch, noisy_yaw).toRotationMatrix();
-    if (auto packet = sender->send(pose); !packet)
+    if (auto packet = sender ? sender->send(pose) : hc::Status(); !packet)
       module.log_once("packet not sent", "packet not sent: " + packet.error().detail);
     rotation.send(hc::rotation(0.0, pitch, yaw).at(time));
   });

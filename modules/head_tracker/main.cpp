@@ -1,9 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's head, by any tracker that opentrack supports.
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include <drivers/head_tracker/tracked_head.h>
 
 #include <frames/messages.h>
+#include <hc/base/uri.h>
 #include <hc/module/module.h>
+
+namespace {
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   hc::Module module{"head_tracker", "Follows a person's head by an opentrack tracker."};
@@ -13,27 +28,45 @@ int main(int argc, char** argv) {
                                 "> 0 looks down");
   auto position = module.output("position", hc::position<double>().in(hc::Coord::kSupervisor),
                                 "x forward, y left, z up since the zero [m]");
-  auto host =
-      module.parameter("host", "127.0.0.1", "",
-                       "address of this machine to listen on, 0.0.0.0: all", {.fixed = true});
-  auto port =
-      module.parameter("port", 4242, "", "UDP port", {.min = 0, .max = 65535, .fixed = true});
+  auto address = module.output("address", hc::string(),
+                               "where it listens, 127.0.0.1:4242; each second and on change");
+  auto listen = module.parameter("listen", "", "",
+                                 "[ADDRESS:]PORT of this machine to listen on by UDP, opentrack's "
+                                 "is 4242, 0: a free one; empty: none",
+                                 {.positional = true, .fixed = true});
+  auto sender = module.parameter("sender", "", "",
+                                 "addresses of other machines that may send, separated by spaces",
+                                 {.fixed = true});
   auto centre_first = module.parameter(
       "centre_first", true, "", "the first pose is the zero; else the tracker's", {.fixed = true});
-  auto silence = module.parameter("silence", 1.0, "s", "time without packets until it is logged",
-                                  {.min = 0.01, .max = 3600});
+  auto silence = module.parameter(
+      "silence", 1.0, "s", "time without packets until it is logged, and another sender heard",
+      {.min = 0.01, .max = 3600, .fixed = true});
 
   const hc::SystemClock clock;
   std::optional<hc::TrackedHead> head;
-  auto pass = [&] { hc::succeed_or_end(head->pass(clock.monotonic(), hc::duration(*silence))); };
+  auto send_address = [&] { address.send(hc::string(head->address()).at(module.now())); };
+  auto pass = [&] {
+    const bool listened = !head->address().empty();
+    hc::succeed_or_end(head->pass(clock.monotonic()));
+    if (!listened && !head->address().empty()) send_address();
+  };
 
   module.on_start([&] {
+    hc::HostPort place;
+    if (listen->empty())
+      module.log("idle: `listen` gives no port; opentrack's is 4242");
+    else
+      place = hc::value_or_end(hc::parse_host_port(*listen));
+    if (!listen->empty() && place.host.empty()) place.host = "127.0.0.1";
     head.emplace(
-        hc::TrackedHeadOptions{*host, static_cast<int>(*port), *centre_first},
+        hc::TrackedHeadOptions{place.host, place.port, words(*sender), hc::duration(*silence),
+                               *centre_first},
         [&](std::string_view line) { module.log(line); },
         [&](const auto&... problem) { module.log_once(problem...); });
     pass();
   });
+  module.every(std::chrono::seconds(1), send_address);
   module.every(hc::TrackedHead::kLook, pass);
   module.keep_running();
   module.on(centre, [&](const hc::Message&) { head->centre(); });

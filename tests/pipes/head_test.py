@@ -51,7 +51,7 @@ class Whole(Head):
                 for port in ("left_pose", "ball", "ball_seen")
             ),
         )
-        options = {"robot_head_tracker.port": 0, "track_score.duration": 20}
+        options = {"track_score.duration": 20}
         options |= {"robot_view_%s.window" % side: "no" for side in ("left", "depth")}
         options |= {"robot_head_eyes.%s" % name: value for name, value in self.CROOKED.items()}
 

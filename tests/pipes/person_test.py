@@ -3,14 +3,16 @@
 """What a person steers the robot head with: head tracker and joystick."""
 
 import math
+import os
 import pathlib
 import re
 import socket
 import struct
+import subprocess
 import unittest
 
 from bodies import Bodies
-from harness import free_port, listens, wait_until
+from harness import PYTHON, free_port, listens, wait_until
 
 
 class HeadTracker(Bodies):
@@ -19,10 +21,10 @@ class HeadTracker(Bodies):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.addCleanup(self.socket.close)
 
-    def start_tracker(self, options=""):
+    def start_tracker(self, options="", listen="0"):
         process = self.run_module(
-            "hc head_tracker --port 0 --out rotation=file:rotation --out position=file:position "
-            + options
+            "hc head_tracker %s --out rotation=file:rotation --out position=file:position %s"
+            % (listen, options)
         )
         self.wait_for("listening on UDP")
         self.port = int(re.search(r"listening on UDP \S+:(\d+)", self.said())[1])
@@ -80,7 +82,7 @@ class HeadTracker(Bodies):
         self.socket.bind(("127.0.0.1", 0))
         self.port = self.socket.getsockname()[1]
         process = self.run_module(
-            "hc head_tracker --port %d --out rotation=file:rotation --out position=file:position"
+            "hc head_tracker %d --out rotation=file:rotation --out position=file:position"
             % self.port
         )
         self.wait_for("UDP port %d of 127.0.0.1: Address already in use; retrying" % self.port)
@@ -143,8 +145,67 @@ class HeadTracker(Bodies):
         for before, after in zip(lines, lines[1:]):
             self.assertNotEqual(before, after)
 
+    def test_it_listens_only_where_it_is_asked_to(self):
+        process = self.run_module("hc head_tracker --out rotation=file:rotation")
+        self.wait_for("idle: `listen` gives no port; opentrack's is 4242")
+        with open("/proc/net/udp") as table:  # the inode of a socket is its tenth word
+            sockets = {"socket:[%s]" % line.split()[9] for line in table.readlines()[1:]}
+        folder = "/proc/%d/fd" % process.pid
+        links = {os.readlink(os.path.join(folder, name)) for name in os.listdir(folder)}
+        self.assertFalse(links & sockets)
+        self.stop(process)
+
+    def test_a_second_sender_waits_for_the_silence_of_the_first(self):
+        process = self.start_tracker("--centre_first=false")
+        self.feed(0, 0, 0, 10, 0, 0)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            for _ in range(3):
+                packet = struct.pack("<6d", 0, 0, 0, 90, 0, 0)
+                other.sendto(packet, ("127.0.0.1", self.port))
+            self.feed(0, 0, 0, 20, 0, 0)
+            self.assertEqual(len(self.rows("rotation")), 2)
+            turned = lambda: abs(self.rows("rotation")[-1][2] + math.pi / 2) < 1e-9
+            wait_until(lambda: other.sendto(packet, ("127.0.0.1", self.port)) and turned())
+        self.stop(process)
+        self.assertEqual(self.said().count("ignored a packet of another sender"), 1, self.said())
+
+    @unittest.skipUnless(os.geteuid() == 0, "only root can be another user")
+    def test_another_user_of_the_machine_is_not_heard(self):
+        process = self.start_tracker("--centre_first=false")
+        send = (
+            "import socket, struct; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM);"
+            "[s.sendto(struct.pack('<6d', 0, 0, 0, 90, 0, 0), ('127.0.0.1', %d)) for _ in range(9)];"
+            "s.recv(1)" % self.port
+        )
+        nobody = subprocess.Popen([PYTHON, "-c", send], user=65534, group=65534)
+        self.addCleanup(nobody.wait)
+        self.addCleanup(nobody.kill)
+        self.wait_for("another user (uid 65534)")
+        self.feed(0, 0, 0, 20, 0, 0)
+        self.assertEqual(len(self.rows("rotation")), 1)
+        self.stop(process)
+        self.assertIn("head_tracker: total: 9 packet of another", self.said())
+
+    def test_another_machine_is_heard_if_it_is_named(self):
+        """From an address of this machine it is this user who counts, named or not."""
+        process = self.start_tracker("--sender '192.0.2.7 192.0.2.8'", "0.0.0.0:0")
+        self.feed(0, 0, 0, 0, 0, 0)
+        self.stop(process)
+
+    def test_numbers_in_the_other_order_of_bytes_are_no_angles(self):
+        process = self.start_tracker()
+        for numbers in ((0, 0, 0, 10, 0, 0), (1, 2, 3, 0, 0, 0), (0, 0, 0, 0.1, 0.2, 0.3)):
+            packet = struct.pack(">6d", *numbers)
+            self.socket.sendto(packet, ("127.0.0.1", self.port))
+        self.send(0, 0, 0, 400, 0, 0)
+        self.send(3000, 0, 0, 0, 0, 0)
+        self.feed(0, 0, 0, 0, 0, 0)
+        self.assertEqual(len(self.rows("rotation")), 1)
+        self.stop(process)
+        self.assertIn("head_tracker: total: 5 invalid packet", self.said())
+
     def test_a_host_that_is_none_is_a_clear_error(self):
-        self.shell("hc head_tracker --host nowhere.invalid --port 0", status=2)
+        self.shell("hc head_tracker nowhere.invalid:0", status=2)
         self.assertIn('head_tracker: Invalid: host "nowhere.invalid": ', self.err)
 
 

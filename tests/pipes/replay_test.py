@@ -3,7 +3,6 @@
 """hc replay: the modules of a recorded graph run again, and what they send is compared."""
 
 import re
-import socket
 import unittest
 
 from harness import Pipes, ROOT
@@ -168,13 +167,9 @@ class Replay(Pipes):
 
     @record_again
     def test_telepresence(self):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        ports = ["%s.port=%d" % (name, port) for name in ("fake_head_tracker", "head_tracker")]
         self.replay_task(
             "telepresence",
-            ["follow_score.settle=0.5", "follow_score.duration=1"] + ports,
+            ["follow_score.settle=0.5", "follow_score.duration=1"],
             ["workspace.focus", "telepresence.bid", "telepresence.command"],
             "telepresence",
         )
