@@ -2,7 +2,6 @@
 #include <drivers/joystick/joystick.h>
 
 #include <SDL2/SDL.h>
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,12 +10,15 @@
 #include <string_view>
 #include <utility>
 
+#include <drivers/joystick/device_file.h>
+
 namespace hc {
 namespace {
 
 using std::chrono::milliseconds;
 
 constexpr int kMostAxes = 32, kMostButtons = 64;
+constexpr Uint32 kTakenTime = 1000;  // [ms]
 constexpr milliseconds kWatched{20}, kUnwatched{1}, kNoJoystick{100};
 
 double as_number(Sint16 value) {
@@ -36,10 +38,9 @@ struct Joystick::Device {
   SDL_GameController* controller = nullptr;  // null for a joystick without a mapping
   SDL_Joystick* joystick = nullptr;
   SDL_JoystickID id = -1;
-  int file = -1;
+  DeviceFile file;
 
   ~Device() {
-    close_file();
     if (controller != nullptr)
       SDL_GameControllerClose(controller);
     else if (joystick != nullptr)
@@ -49,16 +50,13 @@ struct Joystick::Device {
   void open_file() {
     const char* path = SDL_JoystickPath(joystick);
     if (path != nullptr && std::string_view(path).starts_with("/dev/"))
-      file = ::open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+      file = DeviceFile::open(path);
   }
   void drain_file() {
     std::array<char, 4096> bytes;
     ssize_t size = 0;
-    while (file >= 0 && (size = ::read(file, bytes.data(), bytes.size())) > 0) continue;
-    if (size == 0 || (errno != EAGAIN && errno != EINTR)) close_file();  // unplugged
-  }
-  void close_file() {
-    if (file >= 0) ::close(std::exchange(file, -1));
+    while (file.file && (size = ::read(file.file.get(), bytes.data(), bytes.size())) > 0) continue;
+    if (size == 0 || (errno != EAGAIN && errno != EINTR)) file.file.reset();  // unplugged
   }
 };
 
@@ -81,14 +79,18 @@ Joystick::~Joystick() {
 
 milliseconds Joystick::pace() const {
   if (device_ == nullptr) return kNoJoystick;
-  return device_->file >= 0 ? kWatched : kUnwatched;
+  return device_->file.file ? kWatched : kUnwatched;
 }
 
 int Joystick::descriptor() const {
-  return device_ == nullptr ? -1 : device_->file;
+  return device_ == nullptr ? -1 : device_->file.file.get();
 }
 
 bool Joystick::update() {
+  // No event says that another process has let go of one.
+  if (device_ == nullptr && !taken_.empty() && SDL_TICKS_PASSED(SDL_GetTicks(), look_again_) &&
+      attach_any())
+    return true;
   if (device_ != nullptr) device_->drain_file();
   bool changed = false;
   SDL_Event event;
@@ -133,8 +135,11 @@ bool Joystick::update() {
   return changed;
 }
 
-/// Takes the first joystick that can be opened, game controllers before others.
+/// Takes the first joystick that can be opened and that no other process has, game controllers
+/// before others.
 bool Joystick::attach_any() {
+  taken_.clear();
+  look_again_ = SDL_GetTicks() + kTakenTime;
   for (bool wants_controller : {true, false})
     for (int i = 0; i < SDL_NumJoysticks(); ++i) {
       if ((SDL_IsGameController(i) == SDL_TRUE) != wants_controller) continue;
@@ -148,8 +153,13 @@ bool Joystick::attach_any() {
       if (device->joystick == nullptr) continue;
       device->id = SDL_JoystickInstanceID(device->joystick);
       device->open_file();
-      const char* name = SDL_JoystickName(device->joystick);
-      state_.name = name == nullptr || *name == '\0' ? "joystick" : name;
+      const char* known = SDL_JoystickName(device->joystick);
+      const std::string name = known == nullptr || *known == '\0' ? "joystick" : known;
+      if (device->file.is_taken) {
+        taken_ = name;
+        continue;
+      }
+      state_.name = name;
       auto* controller = device->controller;
       const int axes = controller != nullptr
                            ? SDL_CONTROLLER_AXIS_MAX

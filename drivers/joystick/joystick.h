@@ -42,6 +42,10 @@ class Joystick {
   /// 1 ms without one, 100 ms to find a new joystick.
   [[nodiscard]] std::chrono::milliseconds pace() const;
 
+  /// The name of a joystick that another process of this library has, so that it is not used here;
+  /// looked for again each second. Empty: there is none, or this process has one.
+  [[nodiscard]] const std::string& taken() const { return taken_; }
+
   /// All axes and buttons are 0 once it is unplugged.
   [[nodiscard]] const JoystickState& state() const { return state_; }
 
@@ -53,6 +57,8 @@ class Joystick {
 
   std::unique_ptr<Device> device_;  ///< null: none
   JoystickState state_;
+  std::string taken_;
+  std::uint32_t look_again_ = 0;  ///< by SDL's clock [ms]
 };
 
 }  // namespace hc

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person's commands to turn the head, by a game controller.
+#include <string>
+#include <utility>
+
 #include <drivers/joystick/changes.h>
 #include <drivers/joystick/joystick.h>
 
@@ -38,8 +41,11 @@ int main(int argc, char** argv) {
     if (changes.axes) axes.send(hc::table<double>(state.axes).at(time));
     if (changes.buttons) buttons.send(hc::table<std::uint8_t>(state.buttons).at(time));
   };
+  std::string taken;
   auto update = [&] {
     while (joystick->update()) send_changes();
+    if (std::exchange(taken, joystick->taken()) != taken && !taken.empty())
+      module.log(taken + " is used by another graph; waiting for it");
   };
   hc::Timeout look = module.after(std::chrono::nanoseconds(0), [&] {
     update();
@@ -48,7 +54,8 @@ int main(int argc, char** argv) {
 
   module.on_start([&] {
     joystick = hc::value_or_end(hc::Joystick::open());
-    if (joystick->state().name.empty()) return module.log("no joystick found; waiting");
+    update();
+    if (joystick->state().name.empty() && taken.empty()) module.log("no joystick found; waiting");
     send_changes();
   });
   module.on_readable([&] { return joystick->descriptor(); }, update);
