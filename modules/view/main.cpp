@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
       else if (*window == "yes")
         throw hc::ModuleError("window: " + opened.error().detail);
     }
-    if (!display && save->empty())
+    if (!display && save->empty() && *window != "no")
       throw hc::ModuleError("no display for a window and no file to save to: give --save");
   });
 
