@@ -222,7 +222,7 @@ class Agent {
       commands = std::move(*made);
     }
     auto process = Process::start(order.at("command").get<std::vector<std::string>>(),
-                                  Process::Capture::Errors, key_.get());
+                                  Process::Capture::Errors, {key_.get(), {}});
     if (!process) return process.error();
     auto& child = *(children_[number] = std::make_unique<Child>(std::move(*process)));
     child.reports = std::move(*reports);

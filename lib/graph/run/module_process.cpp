@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/run/module_process.h>
 
-#include <graph/run/process.h>
-
 namespace hc::internal {
 namespace {
 
@@ -31,8 +29,8 @@ class ProcessHere final : public ModuleProcess {
 }  // namespace
 
 Result<std::unique_ptr<ModuleProcess>> start_here(const std::vector<std::string>& command,
-                                                  int key) {
-  auto process = Process::start(command, Process::Capture::Errors, key);
+                                                  const Given& given) {
+  auto process = Process::start(command, Process::Capture::Errors, given);
   if (!process) return process.error();
   return std::unique_ptr<ModuleProcess>(std::make_unique<ProcessHere>(std::move(*process)));
 }

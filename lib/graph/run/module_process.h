@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <graph/run/process.h>
 #include <hc/base/result.h>
 #include <hc/os/procfs.h>
 
@@ -35,8 +36,8 @@ class ModuleProcess {
   virtual Usage usage(bool with_memory) = 0;
 };
 
-/// Starts a module on this host. @param key  for kKeyDescriptor; -1: none.
-/// Errors: NotFound, System.
-Result<std::unique_ptr<ModuleProcess>> start_here(const std::vector<std::string>& command, int key);
+/// Starts a module on this host. Errors: NotFound, System.
+Result<std::unique_ptr<ModuleProcess>> start_here(const std::vector<std::string>& command,
+                                                  const Given& given);
 
 }  // namespace hc::internal

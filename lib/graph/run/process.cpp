@@ -9,8 +9,10 @@
 
 #include <array>
 #include <csignal>
+#include <string_view>
 
 #include <graph/plan.h>
+#include <hc/link/stream/ends.h>
 
 namespace hc::internal {
 namespace {
@@ -22,7 +24,8 @@ struct Start {
   int input, output, errors;  // of the program; -1: none
   int failure;                // for the errno of what fails
   int life;                   // at its end when we have ended
-  int key;                    // that the program gets; -1: none
+  const Given* given;         // to the program
+  char* const* environment;
 };
 
 [[noreturn]] void fail(const Start& start) {
@@ -39,19 +42,20 @@ struct Start {
   ::dup2(start.input >= 0 ? start.input : null, STDIN_FILENO);
   ::dup2(start.output >= 0 ? start.output : null, STDOUT_FILENO);
   ::dup2(start.errors >= 0 ? start.errors : null, STDERR_FILENO);
-  if (start.key >= 0) {
+  for (const int listener : start.given->listeners) ::fcntl(listener, F_SETFD, 0);
+  if (const int key = start.given->key; key >= 0) {
     // The descriptor it becomes may be the one for failures.
     start.failure = ::fcntl(start.failure, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
-    if (start.key == kKeyDescriptor)
-      ::fcntl(start.key, F_SETFD, 0);
+    if (key == kKeyDescriptor)
+      ::fcntl(key, F_SETFD, 0);
     else
-      ::dup2(start.key, kKeyDescriptor);
+      ::dup2(key, kKeyDescriptor);
   }
   std::signal(SIGPIPE, SIG_DFL);
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
   ::sigprocmask(SIG_SETMASK, &signals, nullptr);
-  ::execvp(start.arguments[0], start.arguments);
+  ::execvpe(start.arguments[0], start.arguments, start.environment);
   fail(start);
 }
 
@@ -115,6 +119,29 @@ bool kill_children() {
   ::_exit(status);
 }
 
+/// Pointers to words, as exec takes them.
+std::vector<char*> pointers(const std::vector<std::string>& words) {
+  std::vector<char*> made;
+  made.reserve(words.size() + 1);
+  for (const auto& word : words) made.push_back(const_cast<char*>(word.c_str()));
+  made.push_back(nullptr);
+  return made;
+}
+
+/// Our environment, with the listeners in place of those that we were given ourselves.
+std::vector<std::string> environment_with(const std::vector<int>& listeners) {
+  const std::string prefix = std::string(kListeners) + "=";
+  std::vector<std::string> words;
+  for (char** word = environ; *word != nullptr; ++word)
+    if (!std::string_view(*word).starts_with(prefix)) words.emplace_back(*word);
+  if (listeners.empty()) return words;
+  std::string numbers;
+  for (const int listener : listeners)
+    numbers += (numbers.empty() ? "" : " ") + std::to_string(listener);
+  words.push_back(prefix + numbers);
+  return words;
+}
+
 Result<std::array<Descriptor, 2>> make_pipe() {
   int ends[2];
   auto made = system_call("pipe2", "", [&] { return ::pipe2(ends, O_CLOEXEC); });
@@ -124,11 +151,10 @@ Result<std::array<Descriptor, 2>> make_pipe() {
 
 }  // namespace
 
-Result<Process> Process::start(const std::vector<std::string>& command, Capture capture, int key) {
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+Result<Process> Process::start(const std::vector<std::string>& command, Capture capture,
+                               const Given& given) {
+  const auto words = environment_with(given.listeners);
+  const auto arguments = pointers(command), environment = pointers(words);
   auto output = make_pipe();
   if (!output) return output.error();
   auto failure = make_pipe();
@@ -153,7 +179,8 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
                                                  : -1,
                     (*failure)[1].get(),
                     (*life)[0].get(),
-                    key};
+                    &given,
+                    environment.data()};
   pid_t child = ::fork();
   if (child < 0) return system_error("fork", command[0]);
   if (child == 0) guard(start);

@@ -25,6 +25,12 @@ namespace hc::internal {
 /// Status of a program that could not be executed, as shells have it.
 inline constexpr int kCannotExecute = 127;
 
+/// Descriptors that a program gets.
+struct Given {
+  int key = -1;                     ///< it gets this as kKeyDescriptor; -1: none
+  std::vector<int> listeners = {};  ///< it gets these, and their numbers in kListeners
+};
+
 /// A child process. It is killed, with all that it has started, when the object goes.
 class Process {
  public:
@@ -34,11 +40,11 @@ class Process {
   /// one of its standard output and standard error comes to us, the other is dropped. With Both we
   /// have all three.
   ///
-  /// @param key  a descriptor that it gets as kKeyDescriptor; -1: none.
+  /// @param given  what it gets of ours.
   ///
   /// Errors: NotFound, System.
   static Result<Process> start(const std::vector<std::string>& command, Capture capture,
-                               int key = -1);
+                               const Given& given = {});
 
   Process(Process&&) = default;
   Process& operator=(Process&&) = default;

@@ -114,6 +114,7 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
   if (status_ == status && detail_ == detail) return;
   status_ = status;
   detail_ = detail;
+  if (is_over()) names_.let_go();
   callbacks_.changed();
 }
 
@@ -165,7 +166,10 @@ Status Supervised::start() {
     process_ = there->start(plan);
     if (!process_) return Error{Code::System, plan_.name + ": it cannot be listened to"};
   } else {
-    auto process = start_here(plan.command(), hosts_ == nullptr ? -1 : hosts_->key());
+    const auto command = plan.command();
+    if (auto held = names_.hold(command); !held) return held;
+    auto process =
+        start_here(command, {hosts_ == nullptr ? -1 : hosts_->key(), names_.descriptors()});
     if (!process) return Error{process.error().code, plan_.name + ": " + process.error().detail};
     process_ = std::move(*process);
   }

@@ -15,6 +15,7 @@
 #include <graph/limits.h>
 #include <graph/run/announcer.h>
 #include <graph/run/change.h>
+#include <graph/run/held_names.h>
 #include <graph/run/intake.h>
 #include <graph/run/lines.h>
 #include <graph/run/log_limit.h>
@@ -179,6 +180,7 @@ class Supervised {
   std::map<std::string, Observed> observed_;  // by output
   std::unique_ptr<Intake> manage_;
   std::unique_ptr<Announcer> control_;
+  HeldNames names_;
   std::unique_ptr<ModuleProcess> process_;
   Loop::Handle said_, ended_, timer_;
 };

@@ -66,7 +66,8 @@ Result<ListeningSocket> listen_unix(const Uri& uri) {
   auto address = address_of(uri);
   if (!address) return address.error();
   if (!is_abstract(uri) && is_left_behind(uri, *address)) ::unlink(uri.rest.c_str());
-  auto descriptor = listen_on(*address, uri.rest);
+  Descriptor held = held_for_us(*address);
+  auto descriptor = held ? Result<Descriptor>(std::move(held)) : listen_on(*address, uri.rest);
   if (!descriptor) return descriptor.error();
   ListeningSocket socket;
   socket.descriptor = std::move(*descriptor);
