@@ -1,0 +1,446 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The whole simulated head while it runs: its modules, the seat of its page, its neck, and the rows
+of the table that are tried on it.
+
+    hung_test.py BUILD_FOLDER [TEST …], and so the others; HC_FULL=1: as long as the table says
+"""
+
+import contextlib
+import json
+import os
+import pathlib
+import queue
+import re
+import signal
+import sys
+import threading
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "tests/pipes"))
+
+from graphs import Messages  # noqa: E402
+from harness import BUILD, wait_until  # noqa: E402
+from page_test import Page, message as message_of, number  # noqa: E402
+from rows import Row, rows  # noqa: E402
+from streams import Feeder, Line, Motion, Source, run_delay, rotation, stick  # noqa: E402
+from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
+
+IS_FULL = os.environ.get("HC_FULL") == "1"
+HEAD = ROOT / "graphs/head.toml"
+SETTINGS = {"head_tracker.port": 0, "web.port": 0, "head_eyes.ball": "roll"}
+PATIENCE = 40  # with which a test waits for what must come [s]
+MOST_PAN = 0.5  # how far a person turns the head here [rad]
+
+
+def new_name():
+    """For a socket of the test: of the abstract namespace, of nobody else."""
+    new_name.count = getattr(new_name, "count", 0) + 1
+    return "safety.%d.%d" % (os.getpid(), new_name.count)
+
+
+class PageSocket:
+    """The page's /graph: keeps the session, and hands out answers."""
+
+    def __init__(self, port, cookie):
+        self.socket = WebSocket(port, "/graph", cookie)
+        self.session, self.answers = {}, queue.Queue()
+        threading.Thread(target=self.read, daemon=True).start()
+
+    def read(self):
+        with contextlib.suppress(OSError, ValueError):
+            while (frame := self.socket.next())[0] != CLOSE:
+                if frame[0] == BINARY:
+                    header, elements = message_of(frame[1])
+                    if header[1] == 3:
+                        self.session = json.loads(elements)
+                    elif header[1] == 4:
+                        self.answers.put(elements.decode())
+
+    def ask(self, text):
+        self.socket.send(text)
+        return self.answers.get(timeout=20)
+
+
+class Seat:
+    """Who drives in the page: says each 20 ms what `says` gives, messages by the time [s]."""
+
+    def __init__(self, port, cookie, says):
+        self.socket = WebSocket(port, "/drive?take=1", cookie)
+        self.socket.connection.settimeout(1)
+        self.says = says
+        self.feeder = Feeder(self.say)
+
+    def say(self, now):
+        for data in self.says(now):
+            self.socket.send_frame(BINARY, data)
+
+    def send(self, data):
+        self.socket.send_frame(BINARY, data)
+
+    def leave(self):
+        self.feeder.end()
+        with contextlib.suppress(OSError):
+            self.socket.close()
+
+
+class Head(Page):
+    """One run of graphs/head.toml, and what is connected to it."""
+
+    def begin(self, prefix="", options="", **settings):
+        """Runs the head until it is calibrated, and observes its neck. `prefix`: what starts it."""
+        self.setUp()
+        self.sources, self.added, self.seat, self.page = {}, [], None, None
+        self.cookie = ""
+        sets = {**SETTINGS, "calibrate.calibration_file": self.path("calibration.yml"), **settings}
+        words = " ".join("--set %s=%s" % each for each in sets.items())
+        command = "exec %s hc run %s %s %s >out 2>said" % (prefix, HEAD, words, options)
+        self.process = self.start(command, stdout=-3, stderr=-3)
+        wait_until(lambda: self.process.poll() is not None or self.is_whole() and self.has_page())
+        assert self.process.poll() is None, self.said()
+        self.motion = self.stream(Motion, "head_unit.motion", "1024")
+        self.line = self.stream(Line, "head_unit.received", "4096")
+        wait_until(lambda: "calibrate: cameras" in self.said() and self.motion.messages)
+
+    def said(self):
+        return self.read("said")
+
+    def wait(self, condition, what):
+        """Waits for an event; where it does not come, says how the head is instead."""
+        end = time.monotonic() + PATIENCE
+        while not (result := condition()):
+            if time.monotonic() > end:
+                state = self.state_now()
+                idle = ["%(name)s %(status)s %(detail)s" % m for m in state["modules"]]
+                idle = [each for each in idle if not each.endswith(" running ")]
+                self.fail(
+                    "not within %d s: %s; focus %s; pan %.3f; %s; it said %s"
+                    % (PATIENCE, what, state["focus"], self.motion.pan(), idle, self.said()[-1500:])
+                )
+            time.sleep(0.01)
+        return result
+
+    # What runs.
+
+    def state_now(self):
+        messages = self.observe(self.process, "head")
+        with contextlib.closing(messages):
+            return self.state(messages)
+
+    def is_whole(self):
+        try:
+            state = self.state_now()
+        except OSError:  # it is starting
+            return False
+        return all(each["status"] == "running" for each in state["modules"])
+
+    def names(self):
+        return [each["name"] for each in self.state_now()["modules"]]
+
+    def pid(self, name):
+        return wait_until(lambda: self.module(self.state_now(), name)["pid"])
+
+    def restarts(self, but=()):
+        """How often modules have been restarted, by name."""
+        modules = self.state_now()["modules"]
+        return {each["name"]: each["restarts"] for each in modules if each["name"] not in but}
+
+    def tell(self, *commands):
+        """Commands of the graph, which are done."""
+        answer = self.ask(self.process, *commands, name="head")
+        assert answer == ["ok"], (commands, answer)
+
+    def send_signal(self, name, number):
+        pid = self.pid(name)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, number)
+        return pid
+
+    @contextlib.contextmanager
+    def hung(self, name):
+        """A module that hangs, also when it is started anew; gives when it began [ns]."""
+        pids = []
+
+        def hang(_):
+            pid = self.module(self.state_now(), name)["pid"]
+            if pid and pid not in pids:
+                pids.append(self.send_signal(name, signal.SIGSTOP))
+
+        hang(0)
+        moment, feeder = time.time_ns(), Feeder(hang, 0.2)
+        try:
+            yield moment
+        finally:
+            feeder.end()
+            for pid in pids:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGCONT)
+
+    def sent(self):
+        """How many messages each output has sent, over its links."""
+        counts = {}
+        for link in self.state_now()["links"]:
+            counts[link["from"]] = max(counts.get(link["from"], 0), link["messages"])
+        return counts
+
+    def needs(self):
+        """By module: all that it cannot work without, and itself. Where several write to an input,
+        any one is enough."""
+        writers = {}
+        for link in self.state_now()["links"]:
+            writers.setdefault(link["to"], set()).add(link["from"].split(".")[0])
+        only = {}
+        for end, names in writers.items():
+            if len(names) == 1:
+                only.setdefault(end.split(".")[0], set()).update(names)
+
+        def all_before(name):
+            found, left = set(), [name]
+            while left:
+                each = left.pop()
+                if each not in found:
+                    found.add(each)
+                    left += only.get(each, ())
+            return found
+
+        return {name: all_before(name) for name in self.names()}
+
+    # What it is connected to.
+
+    def stream(self, kind, output, keep):
+        name = new_name()
+        self.tell("link %s unix-listen:@%s keep=%s" % (output, name, keep))
+        stream = kind("\0" + name)
+        self.addCleanup(stream.end)
+        return stream
+
+    def source(self, port, number=0):
+        """A source of an input, over a link of its own."""
+        key = port, number
+        if key not in self.sources:
+            name = new_name()
+            self.tell("link unix-listen:@%s %s" % (name, port))
+            self.sources[key] = Source("\0" + name)
+            self.added.append("unlink unix-listen:@%s %s" % (name, port))
+        return self.sources[key]
+
+    def unlink_sources(self):
+        for source in self.sources.values():
+            source.end()
+        while self.added:
+            self.tell(self.added.pop())
+        self.sources = {}
+
+    # A person.
+
+    def has_page(self):
+        return "web: page: " in self.said()
+
+    def log_in(self):
+        """The cookie of the session: the one that it has, or a new one by the token printed last."""
+
+        def tries():
+            found = re.findall(r"http\S*:(\d+)/\?token=(\w+)", self.said())
+            try:
+                self.port, self.token = int(found[-1][0]), found[-1][1]
+                if self.cookie and get(self.port, "/", Cookie=self.cookie)[0] == 200:
+                    return self.cookie
+                return self.session()
+            except (OSError, AssertionError, IndexError):  # it is being started anew
+                return None
+
+        return wait_until(tries)
+
+    def open_page(self):
+        self.close_page()
+        self.cookie = self.log_in()
+        self.page = PageSocket(self.port, self.cookie)
+        wait_until(lambda: self.page.session)
+
+    def close_page(self):
+        self.leave()
+        if self.page:
+            with contextlib.suppress(OSError):
+                self.page.socket.close()
+        self.page = None
+
+    def sit(self, says):
+        """Takes the seat, and says what is to be said from now on."""
+        self.leave()
+        self.seat = Seat(self.port, self.cookie, says)
+
+    def leave(self):
+        if self.seat:
+            self.seat.leave()
+        self.seat = None
+
+    def mode(self, name):
+        return self.state_now()["modes"][name]
+
+    def focus(self):
+        found = self.state_now()["focus"]["workspace"]
+        return found and found["mode"]
+
+    def pushing(self):
+        """What one says who pushes the stick to and fro, and so moves the head all the time."""
+        mode, way = self.mode("point"), 1
+
+        def says(_):
+            nonlocal way
+            if abs(self.motion.pan()) > MOST_PAN:
+                way = -1 if self.motion.pan() > 0 else 1
+            return seat_bid(1, mode), seat_stick(way)
+
+        return says
+
+    def turning(self):
+        """The same with the own head."""
+        mode = self.mode("telepresence")
+
+        def says(now):
+            pan = MOST_PAN * (2 * abs(now % 2 - 1) - 1)
+            return seat_bid(1, mode), rotation(pan, src=2)
+
+        return says
+
+    def press_stop(self):
+        """Presses stop in the page; when that was [ns]."""
+        moment = time.time_ns()
+        self.page.socket.send("estop")
+        return moment
+
+    def clear_stop(self):
+        if self.page is None:
+            self.open_page()
+        self.wait(lambda: self.page.ask("estop clear") == "ok", "the stop is cleared")
+        self.wait(lambda: self.page.session.get("stopped") is False, "the page says so")
+
+    # How it moves.
+
+    def chain(self):
+        """The processes that a command passes through."""
+        modules = {each["name"]: each["pid"] for each in self.state_now()["modules"]}
+        return [modules[name] for name in ("web", "workspace", "point", "head_neck", "head_unit")]
+
+    def wait_moving(self, seconds=0.3):
+        """Waits until it has been moving for a while."""
+
+        def moves():
+            now = time.time_ns()
+            times = self.motion.moves(self.motion.since(now - int(seconds * 1e9)))
+            return times and times[-1] - times[0] > 0.8 * seconds * 1e9
+
+        self.wait(moves, "the head moves")
+
+    @contextlib.contextmanager
+    def waits(self):
+        waits = Waits(self.chain())
+        try:
+            yield waits
+        finally:
+            waits.feeder.end()
+
+    def quiet(self):
+        """Has no task bid of its own, until settle()."""
+        self.tell(
+            *("set %s.%s=0" % each for each in (("track", "salience"), ("read_gaze", "salience"))),
+            "set read_gaze.idle_salience=0",
+        )
+        self.wait(lambda: self.focus() is None, "no task has the focus")
+        self.motion.rests_at(time.time_ns())
+
+    def settle(self):
+        """As it was at first: all run, nobody drives, nothing is stopped."""
+        self.close_page()
+        self.wait(self.is_whole, "all run")
+        self.unlink_sources()
+        self.tell(
+            "set track.salience=0.6", "set read_gaze.salience=0.4", "set read_gaze.idle_salience=0.1"
+        )
+        self.open_page()
+        if self.page.session["stopped"]:
+            self.clear_stop()
+
+
+class Waits:
+    """For how long the processes that a command passes through wait for a processor, all together: so
+    much of what is measured says how busy the machine is, and is not the head's."""
+
+    def __init__(self, processes):
+        self.processes, self.samples = processes, []
+        self.sample()
+        self.feeder = Feeder(self.sample)
+
+    def sample(self, _=0):
+        total = sum(map(run_delay, self.processes))
+        self.samples.append((time.time_ns(), total))
+
+    def until(self, moment):
+        """From the begin until a moment [ns]. [s]"""
+        later = [total for at, total in self.samples if at >= moment] + [self.samples[-1][1]]
+        return max(0, later[0] - self.samples[0][1]) / 1e9
+
+
+def seat_bid(salience, mode):
+    return number(5, salience, mode)
+
+
+def seat_stick(left, down=0.0):
+    return stick(left, down, src=1, stamp=0)
+
+
+class Safety(unittest.TestCase):
+    """Rows of the table, on one head."""
+
+    begin = {}  # arguments of Head.begin()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.head = Head()
+        cls.addClassCleanup(cls.head.doCleanups)
+        cls.head.begin(**cls.begin)
+
+    def setUp(self):
+        name = self._testMethodName.removeprefix("test_")
+        self.row, self.broken = Row(name, BUILD), []
+        if self.head.process.poll() is not None:
+            self.fail("the head has ended: " + self.head.said()[-2000:])
+        self.head.settle()
+        self.begun = time.monotonic()
+
+    def tearDown(self):
+        self.row.keep()
+
+    def note(self, limit, value, where=""):
+        """Takes a measurement; the row fails at its end where it is beyond its limit."""
+        broken = self.row.note(limit, value, where)
+        if broken:
+            self.broken.append("%s, %.1f s after begin" % (broken, time.monotonic() - self.begun))
+
+    def hold(self):
+        """Fails where something was beyond its limit."""
+        print(self.row.row["name"], json.dumps(self.row.worst), flush=True)
+        self.assertEqual(self.broken, [])
+
+    def note_ended(self, before, but=(), where=""):
+        """How many modules have ended since restarts() gave `before`."""
+        after = self.head.restarts(but)
+        ended = {n: after[n] - k for n, k in before.items() if n in after and after[n] != k}
+        self.note("ended", sum(ended.values()), "%s %s" % (where, ended or ""))
+
+    def note_halt(self, moment, waits, where=""):
+        """When the head has come to rest, after a moment [ns]. What processes waited for does not
+        count, as long as it is less than the limit."""
+        last, most = self.head.motion.rests_at(moment), self.row.limits["halts"]["most"]
+        took, waited = (last - moment) / 1e9, waits.until(last)
+        where = "%s: %.3f s later, of which it waited %.3f s for a processor" % (where, took, waited)
+        print(where, flush=True)
+        self.note("halts", max(0.0, took - min(waited, most)), where)
+
+
+def each_row_has_its_test(cls, test):
+    """Whether the tests of classes are the rows of the table, of one file."""
+    return {row["name"] for row in rows() if row["test"] == test} == {
+        name.removeprefix("test_") for name in dir(cls) if name.startswith("test_")
+    }

@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Modules of the head that hang."""
+
+import contextlib
+import os
+import signal
+import time
+import unittest
+
+from head import IS_FULL, Safety, seat_bid, seat_stick
+from harness import wait_until
+from page_test import number
+from streams import message, rotation
+from web_socket import BINARY
+
+FILLED = 2.5  # [s] in which the focus, at 1000 Hz, fills a queue of 2,048
+HUNG = 60 if IS_FULL else FILLED + 1  # before the stop [s]
+MORE = 2100  # messages than a queue holds
+WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
+DRIVES = (("point", "pushing"), ("telepresence", "turning"))  # tasks, and how a person drives by them
+
+
+class Hung(Safety):
+    def flows(self, seconds):
+        """How many messages each output sends in such a time."""
+        before = self.head.sent()
+        time.sleep(seconds)  # how many in this time is the question
+        after = self.head.sent()
+        return {output: after.get(output, 0) - count for output, count in before.items()}
+
+    def steady(self):
+        """Bids and the focus, where they are always sent."""
+        state = self.head.state_now()
+        ends = {link["from"] for link in state["links"] if link["to"].split(".")[0] in state["focus"]}
+        rates = [self.flows(1) for _ in range(3)]
+        return {
+            output
+            for output in ends | {"workspace.focus"}
+            if min(each.get(output, 0) for each in rates) > 3
+        }
+
+    def drive(self, without=""):
+        """Somebody drives by a task that does not need a module; whether there is one."""
+        for task, way in DRIVES:
+            if without not in self.needs[task] and without not in WAY:
+                self.head.sit(getattr(self.head, way)())
+                self.head.wait_moving()
+                return True
+        return False
+
+    def fill_queues(self):
+        """Sends more of all that a page can send than queues hold."""
+        burst = (
+            seat_stick(0),
+            rotation(0, src=2, stamp=0),
+            message(10390, "400 300 0", coord=7, src=3, stamp=0),
+            message(60100, "a", coord=30, src=4, stamp=0),
+            seat_bid(1, self.head.mode("point")),
+        )
+        for _ in range(MORE):
+            for each in burst:
+                self.head.seat.socket.send_frame(BINARY, each)
+
+    def note_lost(self, name):
+        """Which modules wait for one that hangs, or have stopped sending, and do not need it."""
+        time.sleep(FILLED)
+        flows = self.flows(HUNG - FILLED)
+        lost = {output.split(".")[0] for output in self.outputs if not flows.get(output)}
+        lost |= {
+            each["name"]
+            for each in self.head.state_now()["modules"]
+            if each["detail"].startswith("blocked")
+        }
+        lost = {each for each in lost if name not in self.needs[each]}
+        self.note("lost", len(lost), "%s %s" % (name, sorted(lost)))
+
+    def stop_beside(self, name):
+        head, is_driven = self.head, self.drive(name)
+        with head.hung(name):
+            if is_driven:
+                self.fill_queues()
+                head.sit(head.seat.says)
+            self.note_lost(name)
+            with head.waits() as waits:
+                stopped = head.press_stop()
+                if name == "head_unit":  # it says nothing, and moves on when it returns
+                    head.send_signal(name, signal.SIGCONT)
+                    stopped = time.time_ns()
+                self.note_halt(stopped, waits, name)
+        wait_until(head.is_whole)
+        head.motion.rests_at(time.time_ns())  # with what the module has sent since
+        late = stopped + int((0.2 + waits.until(stopped + 10**9)) * 1e9)
+        self.note("commanded", len(head.line.positions(late)), name)
+
+    def test_stop_beside_a_hung_module(self):
+        head = self.head
+        head.tell("set workspace.rate=1000")
+        self.needs = head.needs()
+        self.drive()
+        self.outputs = self.steady()
+        for name in self.chosen():
+            head.settle()
+            before = head.restarts(but=[name])
+            self.stop_beside(name)
+            self.note_ended(before, but=[name], where=name)
+        head.tell("set workspace.rate=200")
+        self.hold()
+
+    def chosen(self):
+        """All modules, or those of HC_MODULES."""
+        return os.environ.get("HC_MODULES", "").split() or self.head.names()
+
+    def test_driving_through_a_hung_module(self):
+        for name in ("web", "point", "workspace", "head_neck"):
+            self.head.settle()
+            self.head.sit(self.head.pushing())
+            self.head.wait_moving()
+            with self.head.waits() as waits, self.head.hung(name) as moment:
+                self.note_halt(moment, waits, name)
+        self.hold()
+
+    def test_a_module_hangs_for_good(self):
+        modules = {each["name"]: each["pid"] for each in self.head.state_now()["modules"]}
+        begun = time.monotonic()
+        for pid in modules.values():
+            os.kill(pid, signal.SIGSTOP)
+
+        def are_anew():
+            now = self.head.state_now()["modules"]
+            return all(
+                each["status"] == "running" and each["pid"] != modules[each["name"]] for each in now
+            )
+
+        try:
+            wait_until(are_anew)
+            self.note("back", time.monotonic() - begun)
+            self.hold()
+        finally:
+            for pid in modules.values():
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGCONT)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Modules of the head that are killed."""
+
+import signal
+import time
+import unittest
+
+from head import Safety
+
+
+class Killed(Safety):
+    def missing(self, name, pid, before):
+        """What of a module and of outputs is not there yet, since so many messages."""
+        module = self.head.module(self.head.state_now(), name)
+        if module["status"] != "running" or module["pid"] in (0, pid):
+            return [name]
+        sent = self.head.sent()
+        return [output for output, count in before.items() if sent.get(output, 0) <= count]
+
+    def is_back(self, name, pid, before):
+        """Waits until a module runs anew, and outputs have sent more than so many messages."""
+        self.left = [name]
+
+        def is_there():
+            self.left = self.missing(name, pid, before)
+            return not self.left
+
+        self.head.wait(is_there, "%s is back, of %s" % (name, sorted(before)))
+
+    def test_a_module_is_killed(self):
+        head = self.head
+        # Outputs that send whatever is seen.
+        steady = (".bid", ".left", ".focus", ".motion", ".pose")
+        outputs = [end for end in head.sent() if end.endswith(steady) and end != "web.bid"]
+        for name in head.names():
+            before, begun = head.restarts(but=[name]), time.monotonic()
+            pid = head.send_signal(name, signal.SIGKILL)
+            # What a new process has sent is counted from 0 on.
+            self.is_back(name, pid, {each: 0 for each in outputs if each.startswith(name + ".")})
+            self.is_back(name, pid, {each: head.sent()[each] for each in outputs})
+            self.note("back", time.monotonic() - begun, name)
+            self.note_ended(before, but=[name], where=name)
+        self.hold()
+
+    def test_the_neck_is_killed_while_it_moves(self):
+        head = self.head
+        head.sit(head.pushing())
+        head.wait_moving()
+        with head.waits() as waits:
+            head.leave()
+            moment = time.time_ns()
+            head.send_signal("head_neck", signal.SIGKILL)
+            self.note_halt(moment, waits)
+        head.wait(head.is_whole, "all run")
+        head.sit(head.pushing())
+        head.wait_moving()
+        self.hold()
+
+    def test_a_stop_outlives_those_who_keep_it(self):
+        head = self.head
+        head.sit(head.pushing())
+        head.wait_moving()
+        assert head.page.ask("estop") == "ok"
+        head.motion.rests_at(time.time_ns())
+        stopped = time.time_ns()
+        for together in (["web", "workspace"], ["workspace"], ["web"], ["workspace", "web"]):
+            for name in together:
+                head.send_signal(name, signal.SIGKILL)
+            head.wait(head.is_whole, "all run")
+            head.open_page()
+            head.wait(lambda: head.page.session["stopped"], "the page says that it is stopped")
+            head.sit(head.pushing())
+            head.motion.rests_at(time.time_ns(), 1)  # while one pushes, and tasks bid
+            self.note("travelled", head.motion.travelled(stopped), " and ".join(together))
+        self.hold()
+
+
+if __name__ == "__main__":
+    unittest.main()
