@@ -24,7 +24,7 @@ from graphs import Messages  # noqa: E402
 from harness import BUILD, wait_until  # noqa: E402
 from page_test import Page, message as message_of, number  # noqa: E402
 from rows import Row, rows  # noqa: E402
-from streams import Feeder, Line, Motion, Source, run_delay, rotation, stick  # noqa: E402
+from streams import Feeder, Focus, Line, Motion, Source, run_delay, rotation, stick  # noqa: E402
 from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
 
 IS_FULL = os.environ.get("HC_FULL") == "1"
@@ -101,6 +101,7 @@ class Head(Page):
         assert self.process.poll() is None, self.said()
         self.motion = self.stream(Motion, "head_unit.motion", "1024")
         self.line = self.stream(Line, "head_unit.received", "4096")
+        self.focused = self.stream(Focus, "workspace.focus", "4096")
         wait_until(lambda: "calibrate: cameras" in self.said() and self.motion.messages)
 
     def said(self):
@@ -322,6 +323,10 @@ class Head(Page):
         """The processes that a command passes through."""
         modules = {each["name"]: each["pid"] for each in self.state_now()["modules"]}
         return [modules[name] for name in ("web", "workspace", "point", "head_neck", "head_unit")]
+
+    def wait_focus(self, name):
+        mode = self.mode(name)
+        self.wait(lambda: self.focused.modes(0)[-1][1] == mode, name + " has the focus")
 
     def wait_moving(self, seconds=0.3):
         """Waits until it has been moving for a while."""

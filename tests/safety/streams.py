@@ -8,6 +8,7 @@ import threading
 import time
 
 from harness import wait_until
+from necks import STEP
 
 MOVED = 1e-6  # less is the same angle [rad]
 
@@ -40,6 +41,15 @@ class Stream:
             if not all(row.endswith(b"\n") for row in rest):
                 return
             self.messages.append((header[5], elements or b"".join(rest)))
+
+    def wait_more(self, count):
+        """Waits for so many more messages."""
+        wanted = len(self.messages) + count
+        wait_until(lambda: len(self.messages) >= wanted)
+
+    def wait_until(self, moment):
+        """Waits for a message of a time or later [ns]."""
+        wait_until(lambda: self.messages and self.messages[-1][0] >= moment)
 
     def end(self):
         self.is_over.set()
@@ -102,6 +112,18 @@ class Motion(Stream):
         return wait_until(rests)
 
 
+class Focus(Stream):
+    """The mode in focus, as the workspace says it."""
+
+    def modes(self, begin):
+        """(time [ns], number of the mode) from a time on [ns]."""
+        return [(at, int(row)) for at, row in list(self.messages) if at >= begin]
+
+    def changes(self, begin):
+        modes = self.modes(begin)
+        return sum(a[1] != b[1] for a, b in zip(modes, modes[1:]))
+
+
 class Line(Stream):
     """The words on the unit's line: what the driver has commanded."""
 
@@ -117,6 +139,11 @@ class Line(Stream):
     def positions(self, begin):
         """When it was commanded to go somewhere, from a time on [ns]."""
         return [at for at, word in self.words(begin) if re.fullmatch(r"[pt]p-?\d+", word)]
+
+    def tilts(self, begin, tilt):
+        """When it was commanded to this tilt [rad]."""
+        words = [(at, re.fullmatch(r"tp(-?\d+)", word)) for at, word in self.words(begin)]
+        return [at for at, found in words if found and abs(int(found[1]) * STEP + tilt) < 0.01]
 
 
 class Source:

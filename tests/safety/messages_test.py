@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Messages into inputs of the head that are bad, old, of the future, or not of the mode in focus."""
+
+import json
+import random
+import time
+import unittest
+
+from bad_messages import CLOSES, bad_messages
+from head import Safety
+from streams import bid, message, rotation, stick
+
+EACH = 50  # of each of 20 kinds
+TILT = 0.3  # of these commands, and nobody else's [rad]
+HOUR = 3600 * 10**9  # [ns]
+
+
+class BadMessages(Safety):
+    def inputs(self):
+        """All inputs that have links, and their types."""
+        head, types = self.head, {}
+        ends = sorted({link["to"] for link in head.state_now()["links"]})
+        for name in head.names():
+            answer = head.ask(head.process, "describe " + name, name="head")
+            for port in json.loads(answer[1])["inputs"]:
+                types["%s.%s" % (name, port["name"])] = port["types"]
+        return [(end, types.get(end, [])) for end in ends]
+
+    def flood(self, end, types):
+        """Sends 1,000 bad messages into an input, and waits until all have come."""
+        source = self.head.source(end)
+        for _ in range(EACH):
+            for kind, data in bad_messages(types, self.head.mode("point")).items():
+                self.head.wait(lambda: source.send(data), "%s listens, beside %s" % (end, kind))
+                if kind in CLOSES:
+                    source.end()
+        source.end()
+
+    def memory(self):
+        return {each["name"]: each["memory"] for each in self.head.state_now()["modules"]}
+
+    def test_bad_messages(self):
+        head = self.head
+        head.quiet()
+        for end, types in self.inputs():
+            name = end.split(".")[0]
+            ended, memory, begun = head.restarts(), self.memory(), time.time_ns()
+            self.flood(end, types)
+            head.wait(head.is_whole, "all run after bad messages into " + end)
+            self.note_ended(ended, where=end)
+            self.note("memory", round((self.memory()[name] - memory[name]) / 1e6, 1), end)
+            self.note("commanded", len(head.line.positions(begun)), end)
+        self.hold()
+
+
+class Times(Safety):
+    def moving(self, stamp):
+        """What would move the head, of a time [ns]: into which input, and what."""
+        mode = self.head.mode("point")
+        command = rotation(0.4, coord=13, mode=mode, stamp=stamp)
+        return (
+            ("point.stick", [stick(1, stamp=stamp)]),
+            ("point.target", [message(10390, "100 100 0", coord=7, stamp=stamp)]),
+            ("telepresence.setpoint", [rotation(0.4, stamp=stamp)]),
+            ("workspace.person", [bid(1, mode, stamp=stamp)]),
+            ("head_neck.command", [command]),
+        )
+
+    def test_old_and_future_messages(self):
+        head = self.head
+        head.quiet()
+        now = time.time_ns()
+        for what, stamp in (("1 h ago", now - HOUR), ("in 1 h", now + HOUR), ("1970", 10**9)):
+            for port, sent in self.moving(stamp):
+                begun = time.time_ns()
+                for number in range(50):
+                    for data in sent:
+                        head.source(port).insist(data)
+                    time.sleep(0.01)  # as often as they are sent
+                head.motion.rests_at(time.time_ns(), 0.2)
+                self.note("travelled", head.motion.travelled(begun), "%s %s" % (port, what))
+        self.hold()
+
+    def test_commands_without_the_focus(self):
+        head, chosen = self.head, random.Random(1)
+        modes = list(head.state_now()["modes"].values())
+        for focus in (None, "point", "telepresence"):
+            if focus:
+                head.sit({"point": head.pushing, "telepresence": head.turning}[focus]())
+                head.wait_moving()
+            else:
+                head.quiet()
+            others = [m for m in modes + [0, 99] if not focus or m != head.mode(focus)]
+            begun = time.time_ns()
+            for number in range(2000):
+                sent = rotation(0.2, TILT, 13, chosen.choice(others), chosen.choice((1, 90, 91)))
+                head.source("head_neck.command", number % 3).insist(sent)
+            head.motion.wait_more(40)
+            self.note("commanded", len(head.line.tilts(begun, TILT)), focus or "nobody")
+        self.hold()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The driver's seat of the page: chosen and not touched, left, silent, cut off."""
+
+import signal
+import time
+import unittest
+
+from head import IS_FULL, Safety, seat_bid, seat_stick
+from page_test import ALIVE
+
+UNTOUCHED, AFTER = (20, 30) if IS_FULL else (5, 5)  # [s]
+ALIVE = ALIVE + b"0\n"
+
+
+class Seat(Safety):
+    def choose(self, task):
+        """Takes the seat and chooses a task, once; when that was [ns]."""
+        bids, moment = [seat_bid(1, self.head.mode(task))], time.time_ns()
+        self.head.sit(lambda _: [bids.pop() if bids else ALIVE])
+        return moment
+
+    def test_nothing_touched(self):
+        head = self.head
+        for task in ("point", "telepresence"):
+            chosen = self.choose(task)
+            head.wait_focus(task)
+            head.motion.wait_until(chosen + int(UNTOUCHED * 1e9))
+            self.note("changes", head.focused.changes(chosen - 10**7), task)
+            # It may have been moving when that was chosen.
+            self.note("travelled", head.motion.travelled(chosen + 10**9), task)
+            head.leave()
+        self.hold()
+
+    def test_after_a_drag(self):
+        head = self.head
+        head.sit(head.pushing())
+        head.wait_moving()
+        with head.waits() as waits:
+            head.seat.says = lambda _: [seat_stick(0), ALIVE]
+            self.note_halt(time.time_ns(), waits)
+        halted = time.time_ns()
+        head.motion.wait_until(halted + int(AFTER * 1e9))
+        self.note("travelled", head.motion.travelled(halted))
+        self.hold()
+
+    def note_end_of_push(self, does):
+        """What is done while the stick is pushed, and when the head halts."""
+        head = self.head
+        head.quiet()
+        head.sit(head.pushing())
+        head.wait_moving()
+        with head.waits() as waits:
+            moment = time.time_ns()
+            does()
+            self.note_halt(moment, waits)
+        self.hold()
+
+    def test_the_page_is_silent(self):
+        seat_says_nothing = lambda: setattr(self.head.seat, "says", lambda _: ())
+        self.note_end_of_push(seat_says_nothing)
+
+    def test_the_page_is_cut_off(self):
+        self.note_end_of_push(self.head.close_page)
+
+    def test_the_server_of_the_page_is_killed(self):
+        self.note_end_of_push(lambda: self.head.send_signal("web", signal.SIGKILL))
+
+
+if __name__ == "__main__":
+    unittest.main()
