@@ -17,7 +17,8 @@ class Ears {
   Ears(const Eigen::Vector3d& left, const Eigen::Vector3d& right, Output sound, std::int64_t start)
       : places_{left, right}, sound_(std::move(sound)), start_(start) {}
 
-  /// Gives all that came since the last time, the head being there. @param until  [ns]
+  /// Gives all that came since the last time, the head being there; what it would have to give for
+  /// a clock that was set is left out. @param until  [ns]
   void hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head);
 
  private:

@@ -10,6 +10,10 @@
 /// @param rate  [Hz]
 std::int64_t period_end(std::int64_t number, double rate);
 
+/// Whether a clock was set, or so much time was missed that nobody wants what it would have brought:
+/// it is far from what was expected [ns].
+bool was_set(std::int64_t now, std::int64_t expected);
+
 class Schedule {
  public:
   /// @param start  time of pair 0 [ns]. @param rate  pairs a second, over 0 [Hz].
@@ -26,7 +30,8 @@ class Schedule {
   /// The next pair has been taken.
   void next() { last_ = number_++; }
   /// Skips pairs that could not be taken in time, but for the latest that is due, and for the
-  /// first of all: it shows a recording when the world began.
+  /// first of all: it shows a recording when the world began. After a clock was set, they go on as
+  /// they were.
   void catch_up(std::int64_t now);
   /// Whether the next pair is to be taken.
   /// @param gaze_is_awaited  where the head is then becomes known yet.

@@ -49,6 +49,20 @@ TEST(Schedule, leaves_out_what_could_not_be_taken_in_time) {
   EXPECT_EQ(schedule.number(), 4);
 }
 
+TEST(Schedule, goes_on_as_it_was_when_the_clock_is_set) {
+  constexpr std::int64_t kHour = 3'600'000 * kMillisecond;
+  Schedule schedule(kStart, 10);
+  for (const std::int64_t by : {kHour, std::int64_t{0}, -kHour, -kStart}) {
+    schedule.next();
+    const auto number = schedule.number();
+    const double seconds = schedule.seconds();
+    schedule.catch_up(kStart + by);
+    EXPECT_EQ(schedule.number(), number);
+    EXPECT_EQ(schedule.time(), kStart + by);
+    EXPECT_NEAR(schedule.seconds(), seconds, 1e-6);
+  }
+}
+
 TEST(Schedule, waits_for_its_time_and_for_the_gaze) {
   Schedule schedule(kStart, 10);
   EXPECT_FALSE(schedule.is_due(kStart - 1, false));

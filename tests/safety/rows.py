@@ -27,11 +27,12 @@ class Row:
         self.limits = {limit["name"]: limit for limit in self.row["limits"]}
         self.worst, self.file = {}, seen_file(build, name)
 
-    def note(self, limit, value, where=""):
-        """Takes a measurement. "" where it is within its limit, else what happened, in one line."""
+    def note(self, limit, value, where="", excused=0):
+        """Takes a measurement. "" where it is within its limit, else what happened, in one line. So
+        much of it as is `excused` does not count."""
         self.worst[limit] = max(value, self.worst.get(limit, value))
         most, unit = self.limits[limit]["most"], self.limits[limit].get("unit", "")
-        if value <= most:
+        if value - excused <= most:
             return ""
         text = "%s%s: %s: %s %s, at most %s"
         return text % (

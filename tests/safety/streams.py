@@ -14,10 +14,12 @@ MOVED = 1e-6  # less is the same angle [rad]
 
 
 class Stream:
-    """The messages of an output, also after its module was restarted: (time [ns], elements)."""
+    """The messages of an output, also after its module was restarted: (time [ns], elements). The time
+    is the sender's, or that of arrival here, where clocks are set."""
 
-    def __init__(self, address):
+    def __init__(self, address, by_arrival):
         self.address, self.messages, self.is_over = address, [], threading.Event()
+        self.by_arrival = by_arrival
         self.thread = threading.Thread(target=self.run, daemon=True)
         self.thread.start()
 
@@ -40,7 +42,8 @@ class Stream:
             rest = [file.readline() for _ in range(1 if is_string else header[10])]
             if not all(row.endswith(b"\n") for row in rest):
                 return
-            self.messages.append((header[5], elements or b"".join(rest)))
+            stamp = time.time_ns() if self.by_arrival else header[5]
+            self.messages.append((stamp, elements or b"".join(rest)))
 
     def wait_more(self, count):
         """Waits for so many more messages."""
