@@ -9,12 +9,12 @@ import subprocess
 import time
 import unittest
 
-from head import SMALL, Head, Safety
-from harness import wait_until
+from head import SMALL, Head, Rows
 
-DISK = 24  # [MB] of a disk of its own
+DISKS = {"folder": 8, "file.mcap": 2}  # of their own, each full within some seconds [MB]
 ALONE = ["unshare", "--map-root-user", "--mount"]
-MOUNT = """%s sh -c 'mkdir FOLDER/disk && mount -t tmpfs -o size=%dm none FOLDER/disk && exec "$@"' -"""
+MOUNT = "%s sh -c 'mount -t tmpfs -o size=%dm none disk && exec \"$@\"' -"
+AFTER = 3  # for which a head runs on a full disk [s]
 WRITES = 0.3  # how often it is looked how far files are [s]
 
 
@@ -43,6 +43,9 @@ class Recording:
         return hashlib.sha256(data).digest() if len(data) == size else None
 
     def look(self):
+        """At most so often as WRITES says, since it reads all."""
+        if self.seen and time.monotonic() < self.seen[-1][0] + WRITES:
+            return
         sizes = self.files()
         digests = {name: (size, self.digest(name, size)) for name, size in sizes.items()}
         self.seen.append((time.monotonic(), digests))
@@ -53,26 +56,55 @@ class Recording:
         last = before[-1] if before else {}
         return {name for name, (size, was) in last.items() if self.digest(name, size) != was}
 
-    def is_full(self):
-        return os.fstatvfs(self.folder).f_bavail == 0
 
-
-class Disk(Safety):
+class Disk(Rows):
     def setUp(self):
         if subprocess.run([*ALONE, "true"], stderr=-3, check=False).returncode != 0:
             self.skipTest("no mount namespaces for this user")
         super().setUp()
 
-    @classmethod
-    def setUpClass(cls):
-        pass  # each row has heads of its own
+    def record(self, prefix, what):
+        """A head of its own that is recorded into a file or folder below `disk`."""
+        self.head = Head()
+        self.addCleanup(self.head.doCleanups)
+        self.head.begin(prefix, "--record disk/" + what, is_calibrated=False, **SMALL)
+        root = "/proc/%d/root" % self.head.process.pid
+        return Recording(root + self.head.path("disk"))
 
-    def start(self, *args, **options):
-        """A head of its own for a part of a row."""
-        head = Head()
-        self.addCleanup(head.doCleanups)
-        head.begin(*args, is_calibrated=False, **SMALL, **options)
-        return head
+    def watch(self, recording, seconds):
+        """Looks how far the files are, for so long."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            recording.look()
+            time.sleep(WRITES / 3)
+
+    def test_the_disk_is_full(self):
+        for what in ("folder", "file.mcap"):
+            recording = self.record(MOUNT % (" ".join(ALONE), DISKS[what]), what)
+            before = self.head.restarts(but=["recorder"])
+            self.head.wait(lambda: recording.look() or "No space" in self.head.said(), "it is full")
+            full = time.monotonic()
+            self.watch(recording, AFTER)  # with what is restarted, and what it does to the files
+            self.head.wait(self.head.is_going_on, "the robot goes on")
+            self.note("lost", len(recording.lost(full)), "%s %s" % (what, recording.lost(full)))
+            self.note_ended(before, but=["recorder"], where=what)
+        self.hold()
+
+    def test_a_recording_is_killed(self):
+        """What writes is a module that is recorded, or `recorder`."""
+        for what in ("folder", "file.mcap"):
+            recording = self.record("", what)
+            self.watch(recording, 2)
+            for name in ("head_eyes", "depth", "workspace", "head_unit", "recorder"):
+                if name not in self.head.names():
+                    continue
+                self.head.send_signal(name, signal.SIGKILL)
+                killed = time.monotonic()
+                self.head.wait(self.head.is_whole, "all run after %s was killed" % name)
+                self.watch(recording, 2 * WRITES)
+                self.note("lost", len(recording.lost(killed + 1)), "%s %s" % (name, recording.lost(killed)))
+                self.watch(recording, 1)
+        self.hold()
 
 
 if __name__ == "__main__":

@@ -99,6 +99,7 @@ class Head(Page):
         words = " ".join("--set %s=%s" % each for each in sets.items())
         self.by_arrival = by_arrival
         prefix = prefix.replace("FOLDER", self.folder.name)
+        os.mkdir(self.path("disk"))
         command = "exec %s hc run %s %s %s >out 2>said" % (prefix, HEAD, words, options)
         self.process = self.start(command, stdout=-3, stderr=-3)
         wait_until(lambda: self.process.poll() is not None or self.is_whole() and self.has_page())
@@ -141,6 +142,12 @@ class Head(Page):
         except OSError:  # it is starting
             return False
         return all(each["status"] == "running" for each in state["modules"])
+
+    def is_going_on(self):
+        """Whether the workspace decides, and the unit says where it is."""
+        counts = len(self.focused.messages), len(self.motion.messages)
+        self.motion.wait_more(20)
+        return len(self.focused.messages) > counts[0]
 
     def names(self):
         return [each["name"] for each in self.state_now()["modules"]]
@@ -401,23 +408,11 @@ def seat_stick(left, down=0.0):
     return stick(left, down, src=1, stamp=0)
 
 
-class Safety(unittest.TestCase):
-    """Rows of the table, on one head."""
-
-    begin = {}  # arguments of Head.begin()
-
-    @classmethod
-    def setUpClass(cls):
-        cls.head = Head()
-        cls.addClassCleanup(cls.head.doCleanups)
-        cls.head.begin(**cls.begin)
+class Rows(unittest.TestCase):
+    """Rows of the table, a test each, on what is `head` meanwhile."""
 
     def setUp(self):
-        name = self._testMethodName.removeprefix("test_")
-        self.row, self.broken = Row(name, BUILD), []
-        if self.head.process.poll() is not None:
-            self.fail("the head has ended: " + self.head.said()[-2000:])
-        self.head.settle()
+        self.row, self.broken = Row(self._testMethodName.removeprefix("test_"), BUILD), []
         self.begun = time.monotonic()
 
     def tearDown(self):
@@ -449,8 +444,19 @@ class Safety(unittest.TestCase):
         self.note("halts", took, where.strip(), excused=min(waited, most))
 
 
-def each_row_has_its_test(cls, test):
-    """Whether the tests of classes are the rows of the table, of one file."""
-    return {row["name"] for row in rows() if row["test"] == test} == {
-        name.removeprefix("test_") for name in dir(cls) if name.startswith("test_")
-    }
+class Safety(Rows):
+    """Rows that are tried on one head, one after the other."""
+
+    begin = {}  # arguments of Head.begin()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.head = Head()
+        cls.addClassCleanup(cls.head.doCleanups)
+        cls.head.begin(**cls.begin)
+
+    def setUp(self):
+        if self.head.process.poll() is not None:
+            self.fail("the head has ended: " + self.head.said()[-2000:])
+        self.head.settle()
+        super().setUp()
