@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include <hc/compress/compress.h>
+#include <hc/module/focus.h>
 #include <hc/module/running_module_test.h>
 
 namespace hc {
@@ -157,7 +158,7 @@ TEST_F(RunningModule, AFocusThatIsNotRepeatedExpires) {
   };
   ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
   await_focus(1);
-  clock.advance(std::chrono::milliseconds(200));
+  clock.advance(internal::kFocusExpiry);
   ASSERT_TRUE(commands->send(in_mode(table({1.0}), 1)));
   EXPECT_EQ(next_done(), 1);
   clock.advance(std::chrono::milliseconds(1));
