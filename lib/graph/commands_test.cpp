@@ -31,6 +31,12 @@ class CommandsTest : public ::testing::Test {
   Graph graph_;
 };
 
+TEST_F(CommandsTest, AGraphHasAtMost1000Modules) {
+  for (std::size_t i = graph_.modules.size(); i < kMaxModules; ++i)
+    ASSERT_EQ(apply("add m" + std::to_string(i) + " blob"), "");
+  EXPECT_EQ(apply("add one_more blob"), "a graph has at most 1000 modules");
+}
+
 TEST_F(CommandsTest, ModulesComeAndGoWithTheirLinks) {
   EXPECT_EQ(apply("add blob blob_finder hue=0.3 name=a=b"), "");
   ASSERT_NE(graph_.find("blob"), nullptr);

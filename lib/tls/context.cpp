@@ -127,7 +127,10 @@ Status Context::use_key(const std::string& path) {
   if (SSL_CTX_use_certificate_file(get(), path.c_str(), SSL_FILETYPE_PEM) != 1 ||
       SSL_CTX_use_PrivateKey_file(get(), path.c_str(), SSL_FILETYPE_PEM) != 1 ||
       SSL_CTX_check_private_key(get()) != 1)
-    return openssl_error(Code::Invalid, "key " + path + ": no key with its certificate in PEM");
+    return openssl_error(Code::Invalid, "key " + path +
+                                            ": no key with its certificate in PEM (remove it, and "
+                                            "hc key " +
+                                            path + " makes another)");
   return {};
 }
 

@@ -92,11 +92,23 @@ Result<Identity> make_identity() {
 Result<Identity> load_identity(const std::string& folder) {
   const std::string certificate = folder + "/page_certificate.pem", key = folder + "/page_key.pem";
   Identity identity{read_file(certificate), read_file(key)};
-  if (!identity.certificate.empty() && !identity.key.empty()) {
-    if (!read_certificate(identity.certificate))
+  if (identity.certificate.empty() != identity.key.empty()) {
+    const bool has_key = identity.certificate.empty();
+    return Error{Code::Malformed, (has_key ? key : certificate) + " is there without " +
+                                      (has_key ? certificate : key) +
+                                      "; delete it to have new ones made"};
+  }
+  if (!identity.certificate.empty()) {
+    const auto read = read_certificate(identity.certificate);
+    if (!read)
       return Error{Code::Malformed, certificate +
                                         " is no certificate; delete it to have "
                                         "a new one made"};
+    const Bio text(BIO_new_mem_buf(identity.key.data(), static_cast<int>(identity.key.size())));
+    const Key own(PEM_read_bio_PrivateKey(text.get(), nullptr, nullptr, nullptr));
+    if (!own || X509_check_private_key(read.get(), own.get()) != 1)
+      return Error{Code::Malformed, key + " is not the key of " + certificate +
+                                        "; delete both to have new ones made"};
     return identity;
   }
   auto made = make_identity();

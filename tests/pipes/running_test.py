@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Graphs while they run: what hc run says of them, takes, and does when they change."""
 
+import json
 import os
 import pathlib
 import re
 import signal
+import socket
 import unittest
 
 from graphs import GRAPH, Graphs
@@ -315,6 +317,101 @@ exec sleep 1000
         self.assertRegex(self.read("shown"), r"\x1b\[Kg\.toml ran for ")
         plain = self.shell("hc run g.toml --set camera.count=4 2>&1")
         self.assertNotIn("\x1b", plain)
+
+    def write_module(self, name, script):
+        """A module without ports, and its table in a graph file."""
+        describe = '[ "$1" = --describe ] && exec echo \'{"inputs":[],"outputs":[],"parameters":[]}\'\n'
+        self.write(name, "#!/bin/bash\n" + describe + script, 0o755)
+        return "[modules.%s]\nprogram = './%s'\n" % (name, name)
+
+    def test_a_module_that_floods_its_log_is_counted(self):
+        count = 200000
+        script = "seq 1 %d >&2; echo 'result: done' >&2\n" % count
+        self.write_graph("restart = 'never'\n" + self.write_module("noisy", script))
+        out = self.shell("hc run g.toml")
+        self.assertIn("  noisy: done\n", out)
+        dropped = sum(map(int, re.findall(r"noisy: (\d+) lines dropped in \d+ s: ", self.err)))
+        said = re.findall(r"(?m)^noisy: \d+$", self.err)
+        self.assertEqual(len(said) + dropped, count)
+        self.assertGreater(dropped, 0)
+        self.assertEqual(said[:1000], ["noisy: %d" % i for i in range(1, 1001)])
+
+    def test_who_floods_a_graph_with_commands_keeps_nobody_from_it(self):
+        self.write_graph(GRAPH)
+        process = self.run_graph()
+        flood = socket.socket(socket.AF_UNIX)
+        self.addCleanup(flood.close)
+        flood.connect("\0hypercolumn.g.%d.ask" % process.pid)
+        flood.settimeout(1)
+        command = b"1 0 0 0 8 0 60101 0 0 18 1\nrestart brightness\n" * 1000
+        with self.assertRaises(TimeoutError):  # it waits
+            while True:
+                flood.send(command)
+        self.assertEqual(self.ask(process, "describe brightness")[0], "ok")
+        self.stop(process)
+
+    def test_what_a_module_logs_steers_no_terminal(self):
+        script = r"""printf 'clear \e[2J\e]0;title\a over\rwritten nul \0 bad \xff\x9b csi \xc2\x9b31m\n' >&2
+printf 'windows\r\nresult: \e[31mred\n' >&2; [ -e again ] || exec sleep 1000
+"""
+        self.write_graph("restart = 'never'\n" + self.write_module("painter", script))
+        process = self.run_graph(last="painter: .*red$")
+        line = r"clear \x1b[2J\x1b]0;title\x07 over\x0dwritten nul \x00 bad \xff\x9b csi \xc2\x9b31m"
+        state = self.state(self.observe(process), lambda state: self.module(state, "painter"))
+        self.assertIn(r"\x1b[31mred", self.module(state, "painter")["last_line"])
+        out, err = self.stop(process)
+        self.write("again", "")
+        out = self.shell("script -qefc 'hc run g.toml --quiet' /dev/null | tail -2; hc run g.toml")
+        self.assertIn(r"painter: \x1b[31mred", out)
+        self.assertIn("painter: " + line + "\npainter: windows\n", self.err)
+        self.assertNotIn("\x1b[2J", out + self.err)
+
+    def test_a_signal_ends_it_while_it_starts_modules(self):
+        names = ["m%d" % i for i in range(200)]
+        self.write_module("m", "exec sleep 1000\n")
+        self.write_graph("".join("[modules.%s]\nprogram = './m'\n" % name for name in names))
+        process = self.run_graph(last="m0: started")
+        _, err = self.stop(process)
+        self.assertLess(err.count(": started"), 199)
+
+    def test_idle_observers_keep_nobody_out(self):
+        self.write_graph(GRAPH)
+        process = self.run_graph()
+        idle = [self.observe(process) for _ in range(200)]
+        states = self.shell("hc ps --json").splitlines()
+        self.assertIn(process.pid, [json.loads(state)["pid"] for state in states])
+        self.shell("hc graph set camera.rate=20 --of g.%d" % process.pid)
+        os.kill(process.pid, signal.SIGSTOP)
+        self.shell("hc ps --json", 1)
+        self.assertIn("has not answered for 5 s; it may be stopped", self.err)
+        os.kill(process.pid, signal.SIGCONT)
+        del idle
+        self.stop(process)
+
+    def test_graphs_of_other_users_do_not_count(self):
+        if os.geteuid() != 0:
+            self.skipTest("only root can be two users")
+        other = dict(user=65534, group=65534)
+        os.chmod(self.path("."), 0o777)
+        try:
+            self.start("exec hc --version", **other).wait(timeout=WATCHDOG)
+        except PermissionError:
+            self.skipTest("another user cannot run programs from here")
+        self.write_graph(GRAPH)
+        mine = self.run_graph("--as mine")
+        theirs = self.start("exec hc run g.toml --as theirs", **other)
+        self.await_lines(theirs, "brightness: started")
+        listed = self.shell("hc ps").splitlines()
+        self.assertTrue([line for line in listed if line.startswith("mine ")], listed)
+        self.assertFalse([line for line in listed if line.startswith("theirs")], listed)
+        self.shell("hc top --once --of theirs", 1)
+        process = self.start("hc ps; hc graph set camera.rate=20", **other)
+        out, err = process.communicate(timeout=WATCHDOG)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertRegex(out.decode(), r"^GRAPH .*\ntheirs .*\n$")
+        os.killpg(theirs.pid, signal.SIGINT)
+        theirs.communicate(timeout=WATCHDOG)
+        self.stop(mine)
 
 
 if __name__ == "__main__":

@@ -287,6 +287,17 @@ class Tool(Pipes):
                 process.communicate(timeout=WATCHDOG)
                 self.assertIn(process.returncode, (0, 1))
 
+    def test_closed_descriptors_take_nothing(self):
+        self.record()
+        self.shell("hc info <&-; hc cat --json r.mtp >&-")
+        for closed in ("<&-", "<&- 2>&-", "<&- >&- 2>&-"):
+            with self.subTest(closed):
+                # A warning goes to no file that is opened in the place of a descriptor.
+                self.shell("rm -f out.mtp; hc record r.mtp out.mtp --count 3 %s" % closed)
+                self.assertEqual(self.shell("hc cat --json out.mtp").count("\n"), 3)
+                self.shell("rm -f out.mtp; hc camera nothing.png --out left=file:out.mtp " + closed, 1)
+                self.assertFalse(os.path.exists(self.path("out.mtp")) and self.read("out.mtp"))
+
     def test_a_loop_over_nothing_ends(self):
         self.shell(": >empty.mtp; hc play empty.mtp --loop")
         self.record()

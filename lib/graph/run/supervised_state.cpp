@@ -12,6 +12,7 @@
 namespace hc::internal {
 namespace {
 
+constexpr int kMostResults = 100;  // that are never dropped; as many are printed at the end
 constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 // Observers never make a module wait: with or without one, it keeps a few messages for them.
 constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
@@ -81,8 +82,9 @@ void Supervised::read_lines() {
 }
 
 void Supervised::take_line(const std::string& line) {
-  const bool is_result = line.find(": result: ") != std::string::npos;
-  if (log_limit_.passes(line.size(), now()) || is_result) callbacks_.said(line);
+  const bool is_result = results_ < kMostResults && line.find("result: ") != std::string::npos;
+  if (is_result) ++results_;
+  if (is_result || log_limit_.passes(line.size(), now())) callbacks_.said(line);
 }
 
 void Supervised::note_dropped_lines(MonotonicTime time) {
