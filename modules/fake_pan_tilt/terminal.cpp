@@ -2,6 +2,7 @@
 #include "terminal.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -23,6 +24,9 @@ hc::Result<Terminal> Terminal::open() {
     return failure("unlockpt");
   terminal.path_ = path.data();
   terminal.other_ = ::open(path.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  // Else whoever is in the group tty may write to it.
+  if (terminal.other_ >= 0 && ::fchmod(terminal.other_, S_IRUSR | S_IWUSR) != 0)
+    return failure("fchmod");
   termios settings = {};
   if (terminal.other_ < 0 || tcgetattr(terminal.other_, &settings) != 0) return failure("open");
   cfmakeraw(&settings);
