@@ -40,7 +40,7 @@ async function measureDrawn(page, graph) {
 
 /** Waits until a task has the focus. */
 const inFocus = (page, task) =>
-  page.locator(".seat-who", { hasText: `Task in focus: ${task}` }).waitFor({ timeout: watchdog });
+  page.locator(".bar .focus", { hasText: task }).waitFor({ timeout: watchdog });
 
 const graph = new Graph("head.toml", "--set", "head_eyes.ball=absent", "--quiet");
 const browser = await openBrowser({ webgl: false });

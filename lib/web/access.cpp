@@ -15,6 +15,7 @@ namespace hc::web {
 
 namespace {
 
+constexpr std::array<std::string_view, 3> kRights = {"view", "drive", "operate"};
 constexpr std::size_t kMaxTokens = 64, kMaxSessions = 1024;
 
 /// "host" and "port" of "host:port"; brackets around an IPv6 address stay.
@@ -55,6 +56,16 @@ std::string add(Secrets& secrets, Right right, std::size_t limit) {
 }
 
 }  // namespace
+
+std::string_view name_of(Right right) {
+  return kRights.at(static_cast<std::size_t>(right));
+}
+
+std::optional<Right> right_named(std::string_view name) {
+  const auto found = std::ranges::find(kRights, name);
+  if (found == kRights.end()) return std::nullopt;
+  return static_cast<Right>(found - kRights.begin());
+}
 
 std::string own_address() {
   std::string found = "127.0.0.1";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Who may see the page and who may drive (spec/page.md, W1 … W3): hosts, origins, tokens and
+// Who may see the page, drive and operate (spec/page.md, W1 … W3): hosts, origins, tokens and
 // sessions. For one thread.
 
 #include <cstdint>
@@ -14,7 +14,17 @@
 
 namespace hc::web {
 
-enum class Right { View, Drive };
+/// What a session may; each includes those before it.
+enum class Right {
+  View,     ///< see everything, and stop the robot
+  Drive,    ///< take the seat, and clear a stop
+  Operate,  ///< change the graph, and so run any program as this user
+};
+
+/// "view", "drive" or "operate".
+std::string_view name_of(Right right);
+/// Nothing: there is no such right.
+std::optional<Right> right_named(std::string_view name);
 
 /// Where the server is reached.
 struct Place {

@@ -65,8 +65,18 @@ TEST(Access, a_token_counts_once_and_gives_its_right) {
   EXPECT_EQ(access.right_of("a=b; " + cookie + "; c"), Right::View);
   for (const auto& wrong : {std::string(), cookie + "0", "x" + cookie, access.cookie_name() + "="})
     EXPECT_FALSE(access.right_of(wrong)) << wrong;
-  const auto driver = access.redeem(access.make_token(Right::Drive));
-  EXPECT_EQ(access.right_of(access.cookie_name() + "=" + *driver), Right::Drive);
+  for (const auto right : {Right::Drive, Right::Operate}) {
+    const auto other = access.redeem(access.make_token(right));
+    EXPECT_EQ(access.right_of(access.cookie_name() + "=" + *other), right);
+  }
+}
+
+TEST(Access, rights_have_names_and_include_those_before) {
+  for (const auto right : {Right::View, Right::Drive, Right::Operate})
+    EXPECT_EQ(right_named(name_of(right)), right);
+  for (const char* wrong : {"", "View", "admin", "operate "}) EXPECT_FALSE(right_named(wrong));
+  EXPECT_LT(Right::View, Right::Drive);
+  EXPECT_LT(Right::Drive, Right::Operate);
 }
 
 TEST(Access, a_socket_is_opened_by_the_name_of_a_session) {

@@ -36,6 +36,7 @@ using Secure = beast::ssl_stream<beast::tcp_stream>;
 
 constexpr std::size_t kMaxHead = 8192, kMaxMessage = 65536, kMaxConnections = 1024;  // [byte], 1
 constexpr std::chrono::seconds kHeadTime{5}, kIdleTime{30};
+constexpr std::chrono::seconds kPongTime{10};   // of a WebSocket from which nothing comes
 constexpr std::chrono::seconds kWriteTime{60};  // of a file
 
 /// What has been escaped by %; nothing where that is wrong or hides a zero byte.
@@ -115,7 +116,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
 
   void accept(http::request<http::empty_body> head, Request request, const Reply& reply) {
     beast::get_lowest_layer(stream_).expires_never();
-    stream_.set_option(websocket::stream_base::timeout{kHeadTime, kIdleTime, true});
+    stream_.set_option(websocket::stream_base::timeout{kHeadTime, kPongTime, true});
     stream_.read_message_max(kMaxMessage);
     stream_.auto_fragment(false);
     websocket::permessage_deflate off;

@@ -214,8 +214,10 @@ void Bridge::get_parameters(Viewer& viewer, const Json& request) {
 }
 
 void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request) {
-  if (viewer->right() != web::Right::Drive)
-    return viewer->say_status(kFailed, "this URL may view, and not change anything");
+  if (viewer->right() < web::Right::Operate)
+    return viewer->say_status(kFailed,
+                              "this URL may view, and not change anything: that needs the right "
+                              "to operate");
   std::map<std::string, std::string> values;
   for (const Json& each : list_of(request, "parameters")) {
     const std::string name = each.is_object() ? string_of(each, "name") : std::string();

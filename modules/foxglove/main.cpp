@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
         hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, inbox,
                                             [&](std::string_view line) { module.log(line); }));
     auto& access = service->access();
-    module.log("notice: foxglove: " + access.invite_socket(web::Right::Drive));
+    module.log("notice: foxglove: " + access.invite_socket(web::Right::Operate));
     module.log("notice: foxglove, to view alone: " + access.invite_socket(web::Right::View));
     if (!service->fingerprint().empty())
       module.log("notice: foxglove: certificate " + service->fingerprint());

@@ -31,7 +31,11 @@ std::span<const double> numbers_of(const hc::Message& message) {
 constexpr std::size_t kMaxText = 4096;  // [byte]
 
 /// What is wrong with a message; empty: nothing.
-std::string problem(Control control, const hc::Message& message) {
+std::string problem(Control control, const hc::Message& message,
+                    const std::set<std::int32_t>& modes) {
+  auto is_none = [&](std::int32_t mode) {
+    return "mode " + std::to_string(mode) + " is none of the graph's";
+  };
   const auto& header = message.header;
   switch (control) {
     case Control::Alive:
@@ -54,11 +58,13 @@ std::string problem(Control control, const hc::Message& message) {
       if (header.info.type != hc::MatrixType::String || !message.plain() ||
           message.elements.size() > kMaxText)
         return "a text is a string of at most 4096 bytes";
+      if (header.mode != 0 && !modes.contains(header.mode)) return is_none(header.mode);
       return {};
     case Control::Bid:
       if (!is(message, hc::MatrixType::Table, 1) || header.mode <= 0)
         return "a bid is a table 1 x 1 of 1 x f64 with the mode it is for";
       if (numbers_of(message)[0] < 0 || numbers_of(message)[0] > 1) return "a bid is from 0 to 1";
+      if (!modes.contains(header.mode)) return is_none(header.mode);
       return {};
   }
   return "no control has this src";
@@ -72,25 +78,43 @@ hc::Message withdrawn(const hc::Message& bid) {
 
 }  // namespace
 
-hc::Result<std::vector<Order>> Driver::take(hc::Message message, std::int64_t wall,
+hc::Result<std::vector<Order>> Driver::take(hc::Message message,
+                                            const std::set<std::int32_t>& modes, std::int64_t wall,
                                             hc::MonotonicTime now) {
   const auto src = message.header.src;
   const auto control = static_cast<Control>(src);
-  const std::string wrong = src < kControls ? problem(control, message) : "no control has this src";
+  const std::string wrong =
+      src < kControls ? problem(control, message, modes) : "no control has this src";
   if (!wrong.empty())
     return hc::Error{hc::Code::Malformed, "src " + std::to_string(src) + ": " + wrong};
   heard_ = now;
   if (control == Control::Alive) return std::vector<Order>{};
   std::vector<Order> orders;
-  if (message.header.time == 0) message.header.time = wall;
+  auto& header = message.header;
+  if (control == Control::Target && header.time != 0) {
+    const auto limit = kOldest.count();
+    if (header.time < wall - limit || header.time > wall + limit)
+      return hc::Error{hc::Code::Invalid,
+                       "the image that was pointed at is not of now: its time differs by more than "
+                       "1 s"};
+  } else {
+    header.time = wall;
+  }
+  header.dst = 0;
+  if (control != Control::Bid && control != Control::Text) header.mode = 0;
   if (control == Control::Stick)
     is_pushed_ = std::ranges::any_of(numbers_of(message), [](double x) { return x != 0; });
   if (control == Control::Bid) {
-    // A bid for another task takes the place of the one before.
-    if (bid_ && bid_->header.mode != message.header.mode)
-      orders.push_back({Control::Bid, withdrawn(*bid_)});
-    bid_ = numbers_of(message)[0] > 0 ? std::optional(message.keep()) : std::nullopt;
+    // A bid for another task takes the place of the one before, with no gap between them.
+    const auto before = std::exchange(
+        bid_, numbers_of(message)[0] > 0 ? std::optional(message.keep()) : std::nullopt);
     bid_sent_ = now;
+    orders.push_back({control, message.keep()});
+    if (before && before->header.mode != header.mode) {
+      orders.push_back({Control::Bid, withdrawn(*before)});
+      orders.back().message.header.time = wall;
+    }
+    return orders;
   }
   orders.push_back({control, message.keep()});
   return orders;

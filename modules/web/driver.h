@@ -4,6 +4,7 @@
 // nothing is commanded when they stop. Pure: time is handed in.
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <hc/base/clock.h>
@@ -25,11 +26,16 @@ class Driver {
   static constexpr std::chrono::milliseconds kSilence{200};
   /// How often a bid is repeated.
   static constexpr std::chrono::milliseconds kBid{100};
+  /// The image in which a target is may be so old, or ahead of the clock.
+  static constexpr std::chrono::nanoseconds kOldest{1'000'000'000};
 
-  /// Takes a message of the page. @param wall  now, for messages without a time [ns].
-  /// @returns  what is to be sent. Errors: Malformed (not as the table says).
-  hc::Result<std::vector<Order>> take(hc::Message message, std::int64_t wall,
-                                      hc::MonotonicTime now);
+  /// Takes a message of the page, which gets the time of its arrival, but for a target: that has
+  /// the time of its image.
+  /// @param modes  the numbers of those that the graph has; @param wall  now [ns].
+  /// @returns  what is to be sent. Errors: Malformed (not as the table says), Invalid (a target in
+  ///     an image that is too old; nothing comes of it).
+  hc::Result<std::vector<Order>> take(hc::Message message, const std::set<std::int32_t>& modes,
+                                      std::int64_t wall, hc::MonotonicTime now);
 
   /// To be called every few milliseconds: repeats the bid, or ends what is commanded after silence.
   std::vector<Order> tick(std::int64_t wall, hc::MonotonicTime now);

@@ -10,7 +10,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::int64_t kWall = 1'000'000'000;
+constexpr std::int64_t kWall = 1'700'000'000'000'000'000;
+const std::set<std::int32_t> kModes = {1, 4, 5};
 
 hc::Message from(Control control, hc::Message message, std::int32_t coord = 0,
                  std::int32_t mode = 0) {
@@ -33,7 +34,7 @@ double number(const Order& order, std::size_t i = 0) {
 
 TEST(Driver, what_is_commanded_is_passed_on_with_a_time) {
   Driver driver;
-  const auto orders = driver.take(stick(0.5, -1), kWall, {});
+  const auto orders = driver.take(stick(0.5, -1), kModes, kWall, {});
   ASSERT_TRUE(orders);
   ASSERT_EQ(orders->size(), 1U);
   EXPECT_EQ(orders->front().control, Control::Stick);
@@ -41,10 +42,38 @@ TEST(Driver, what_is_commanded_is_passed_on_with_a_time) {
   EXPECT_EQ(number(orders->front(), 1), -1);
   using hc::Coord;
   EXPECT_TRUE(driver.take(from(Control::Rotation, hc::rotation(0.1, 0.2, 0.3), Coord::kSupervisor),
-                          kWall, {}));
+                          kModes, kWall, {}));
   EXPECT_TRUE(driver.take(from(Control::Target, hc::position(400., 300., 0.), Coord::kRightImage),
-                          kWall, {}));
-  EXPECT_TRUE(driver.take(from(Control::Text, hc::string("hello")), kWall, {}));
+                          kModes, kWall, {}));
+  EXPECT_TRUE(driver.take(from(Control::Text, hc::string("hello")), kModes, kWall, {}));
+}
+
+TEST(Driver, what_comes_is_of_now_and_addressed_to_nobody) {
+  constexpr std::int64_t kHour = 3'600'000'000'000, kSecond = 1'000'000'000;
+  Driver driver;
+  for (const std::int64_t time : {std::int64_t{1}, kWall - kHour, kWall + kHour}) {
+    hc::Message messages[] = {stick(1, 0), bid(1, 5), from(Control::Text, hc::string("hello")),
+                              from(Control::Rotation, hc::rotation(0., 0., 0.), 14)};
+    for (auto& message : messages) {
+      message.header.time = time;
+      message.header.dst = 7;
+      const auto orders = driver.take(message, kModes, kWall, {});
+      ASSERT_TRUE(orders);
+      EXPECT_EQ(orders->front().message.header.time, kWall);
+      EXPECT_EQ(orders->front().message.header.dst, 0);
+    }
+    // A target keeps the time of its image, which is to be a recent one.
+    auto target = from(Control::Target, hc::position(1., 1., 0.), 7, 5);
+    target.header.time = time;
+    const auto refused = driver.take(target, kModes, kWall, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, hc::Code::Invalid);
+    target.header.time = kWall - kSecond / 2;
+    const auto orders = driver.take(target, kModes, kWall, {});
+    ASSERT_TRUE(orders);
+    EXPECT_EQ(orders->front().message.header.time, kWall - kSecond / 2);
+    EXPECT_EQ(orders->front().message.header.mode, 0);
+  }
 }
 
 TEST(Driver, anything_else_is_refused) {
@@ -62,10 +91,12 @@ TEST(Driver, anything_else_is_refused) {
       from(Control::Text, hc::string(std::string(4097, 'a'))),
       bid(2, 1),
       bid(0.5, 0),
+      bid(0.5, 2),  // a mode that the graph has not
+      from(Control::Text, hc::string("hello"), 0, 2),
       from(static_cast<Control>(6), hc::table({0.0})),
       from(static_cast<Control>(2147483647), hc::table({0.0}))};
   for (const auto& message : wrong) {
-    const auto orders = driver.take(message, kWall, {});
+    const auto orders = driver.take(message, kModes, kWall, {});
     ASSERT_FALSE(orders) << hc::text(message.header);
     EXPECT_EQ(orders.error().code, hc::Code::Malformed);
   }
@@ -74,8 +105,8 @@ TEST(Driver, anything_else_is_refused) {
 TEST(Driver, who_is_silent_for_200_ms_commands_nothing) {
   Driver driver;
   const hc::MonotonicTime begin{};
-  ASSERT_TRUE(driver.take(stick(1, 0), kWall, begin));
-  ASSERT_TRUE(driver.take(bid(1, 5), kWall, begin));
+  ASSERT_TRUE(driver.take(stick(1, 0), kModes, kWall, begin));
+  ASSERT_TRUE(driver.take(bid(1, 5), kModes, kWall, begin));
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(99)).empty());
   const auto again = driver.tick(kWall + 1, begin + milliseconds(100));
   ASSERT_EQ(again.size(), 1U);  // the bid is repeated
@@ -92,28 +123,32 @@ TEST(Driver, who_is_silent_for_200_ms_commands_nothing) {
   EXPECT_EQ(number(ended[1]), 0);
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
   // And is obeyed again.
-  EXPECT_EQ(driver.take(stick(1, 0), kWall, begin + milliseconds(400))->size(), 1U);
+  EXPECT_EQ(driver.take(stick(1, 0), kModes, kWall, begin + milliseconds(400))->size(), 1U);
 }
 
 TEST(Driver, a_sign_of_life_keeps_what_is_commanded) {
   Driver driver;
   const hc::MonotonicTime begin{};
-  ASSERT_TRUE(driver.take(stick(1, 0), kWall, begin));
-  EXPECT_TRUE(driver.take(from(Control::Alive, hc::table({0.0})), kWall, begin + milliseconds(150))
-                  ->empty());
+  ASSERT_TRUE(driver.take(stick(1, 0), kModes, kWall, begin));
+  EXPECT_TRUE(
+      driver.take(from(Control::Alive, hc::table({0.0})), kModes, kWall, begin + milliseconds(150))
+          ->empty());
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
   EXPECT_EQ(driver.tick(kWall, begin + milliseconds(351)).size(), 1U);
 }
 
 TEST(Driver, another_task_takes_the_place_of_the_one_before) {
   Driver driver;
-  ASSERT_TRUE(driver.take(bid(1, 4), kWall, {}));
-  const auto orders = driver.take(bid(1, 5), kWall, {});
+  ASSERT_TRUE(driver.take(bid(1, 4), kModes, kWall, {}));
+  const auto orders = driver.take(bid(1, 5), kModes, kWall, {});
   ASSERT_EQ(orders->size(), 2U);
-  EXPECT_EQ((*orders)[0].message.header.mode, 4);
-  EXPECT_EQ(number((*orders)[0]), 0);
-  EXPECT_EQ((*orders)[1].message.header.mode, 5);
-  EXPECT_EQ(driver.take(bid(0, 5), kWall, {})->size(), 1U);
+  // First the new one, so that no other task has the focus between them.
+  EXPECT_EQ((*orders)[0].message.header.mode, 5);
+  EXPECT_EQ(number((*orders)[0]), 1);
+  EXPECT_EQ((*orders)[1].message.header.mode, 4);
+  EXPECT_EQ(number((*orders)[1]), 0);
+  EXPECT_EQ((*orders)[1].message.header.time, kWall);
+  EXPECT_EQ(driver.take(bid(0, 5), kModes, kWall, {})->size(), 1U);
   EXPECT_TRUE(driver.leave(kWall).empty());
 }
 

@@ -12,8 +12,12 @@
 #include <web/qr.h>
 #include <web/service.h>
 #include "page.h"
+#include "stop.h"
 
 namespace {
+
+constexpr std::uint32_t kTexts = 8;  // to be spoken, that wait at most
+constexpr std::uint32_t kBids = 4;   // the newest and those that it takes the place of
 
 /// Opens a URL in the browser of a desktop, if there is one.
 void open_in_browser(const std::string& url) {
@@ -40,7 +44,15 @@ int main(int argc, char** argv) {
   auto text = module.output("text", hc::string(), "to be spoken");
   auto bid = module.output("bid", hc::table<double>(), "for the task they have chosen");
   auto stop = module.output("stop", hc::table<std::uint8_t>().of(1, 1),
-                            "1, repeated: the robot is to stop; 0: not any more");
+                            "1, repeated: the robot is to stop; 0, repeated: not, but a page is "
+                            "open; 2: a person clears all stops; 3: no page is open any more");
+  // The stop is never held up by who does not take what a driver sends.
+  module.never_waits(stick);
+  module.never_waits(rotation);
+  module.never_waits(target);
+  module.never_waits(text, kTexts);
+  module.never_waits(bid, kBids);
+  module.never_waits(stop);
   auto listen = module.parameter(
       "listen", "127.0.0.1", "",
       "IP address; other machines can reach any but 127.0.0.1, with TLS alone", {.fixed = true});
@@ -59,13 +71,13 @@ int main(int argc, char** argv) {
       module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
                        {.min = 0, .max = 1e6});
 
-  web::Inbox inbox;
+  web::Inbox stops, inbox;  // the stop comes first
   Robot robot;
-  std::optional<bool> wants_stop;  // what was last asked for; nothing: no page has
-  hc::MonotonicTime seen{};        // when a page was open
+  std::optional<Stop> wanted;
+  hc::MonotonicTime seen{};  // when a page was open
 
-  auto send_stop = [&] {
-    if (wants_stop) stop.send(hc::table({static_cast<std::uint8_t>(*wants_stop ? 1 : 0)}));
+  auto send_stop = [&](Stop::Word word) {
+    stop.send(hc::table({static_cast<std::uint8_t>(word)}).at(module.now()));
   };
   auto obey = [&](const Order& order) {
     const auto& message = order.message;
@@ -95,23 +107,23 @@ int main(int argc, char** argv) {
     service =
         hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, inbox,
                                             [&](std::string_view line) { module.log(line); }));
+    wanted.emplace(module.instance());
     auto& access = service->access();
-    const std::string url = access.invite(web::Right::Drive);
+    const std::string url = access.invite(web::Right::Operate);
     module.log("notice: page: " + url);
     if (!service->fingerprint().empty())
       module.log("notice: page: certificate " + service->fingerprint());
     if (!web::is_local(*listen))
-      for (const auto& line : web::qr_lines(access.invite(web::Right::Drive)))
+      for (const auto& line : web::qr_lines(access.invite(web::Right::Operate)))
         module.log("notice: " + line);
     service->serve(std::make_unique<Page>(
         Page::Options{*graph, module.instance(), *frames, *recordings}, access, service->server(),
         robot,
         Page::Callbacks{
             [&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
-            [&](bool is_wanted) {
-              inbox.put([&, is_wanted] {
-                wants_stop = is_wanted;
-                send_stop();
+            [&](bool stops_robot, Stop::Answer answer) {
+              stops.put([&, stops_robot, answer = std::move(answer)] {
+                send_stop(wanted->order(stops_robot, stop.linked(), module.monotonic(), answer));
               });
             },
             [&](const std::string& line) { inbox.put([&, line] { module.log(line); }); }}));
@@ -119,15 +131,17 @@ int main(int argc, char** argv) {
     seen = module.monotonic();
   });
   module.keep_running();
+  module.on_readable([&] { return stops.descriptor(); }, [&] { stops.work_off(); });
   module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });
   module.on(stopped, [&](const auto& message) {
-    const bool is_stopped = message.numbers()[0] != 0;
-    robot.stopped = is_stopped ? 1 : 0;
-    // After a restart of this module, what was asked for before still counts.
-    if (is_stopped && !wants_stop) wants_stop = true;
+    wanted->hear(message.numbers()[0] != 0, module.monotonic());
+    robot.stopped = wanted->is_stopped(module.monotonic());
+  });
+  module.every(Stop::kPeriod, [&] {
+    if (const auto word = wanted->tick(robot.sessions > 0, module.monotonic())) send_stop(*word);
+    robot.stopped = wanted->is_stopped(module.monotonic());
   });
   module.every(std::chrono::milliseconds(100), [&] {
-    if (wants_stop == true) send_stop();
     const bool linked[] = {false,           stick.linked(), rotation.linked(),
                            target.linked(), text.linked(),  bid.linked()};
     unsigned bits = 0;

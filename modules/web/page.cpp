@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include <hc/base/format.h>
 #include <hc/base/json_string.h>
 #include <hc/mtp/codec.h>
@@ -38,6 +40,12 @@ web::Reply refusal(int status, std::string words) {
   reply.status = status;
   reply.body = text(std::move(words) + "\n");
   return reply;
+}
+
+/// Why a session with a right may not do what needs another.
+std::string lacks(web::Right has, web::Right needed) {
+  return "this session may " + std::string(name_of(has)) + "; that needs the right to " +
+         std::string(name_of(needed));
 }
 
 web::Bytes rows_message(const Rows& rows, std::int32_t src, std::int64_t seq, std::int64_t time) {
@@ -130,8 +138,8 @@ web::Reply Page::reply(const web::Request& request) {
   if (request.is_socket) {
     if (!access_.is_origin(request.origin, request.host))
       return refusal(403, "a page from elsewhere may not use this server");
-    if (request.path == "/drive" && *right != web::Right::Drive)
-      return refusal(403, "this session may view, and not drive");
+    if (request.path == "/drive" && *right < web::Right::Drive)
+      return refusal(403, lacks(*right, web::Right::Drive));
     const bool is_known =
         request.path == "/graph" || request.path == "/drive" ||
         (request.path.starts_with("/streams/") && is_port_name(request.path.substr(9)));
@@ -150,7 +158,8 @@ web::Reply Page::reply_to_token(const web::Request& request) {
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
     return {303, "text/plain", {}, {}, {}, {{"Location", "/"}}};
   }
-  callbacks_.log("notice: page opened; for another browser: " + access_.invite(web::Right::Drive));
+  callbacks_.log("notice: page opened; for another browser: " +
+                 access_.invite(web::Right::Operate));
   return {303,
           "text/plain",
           {},
@@ -290,8 +299,10 @@ void Page::open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::
   socket->on_binary = [this, leave, raw = socket.get()](std::string_view bytes) {
     auto message = read_frame(bytes);
     if (message) {
-      auto orders = driver_.take(std::move(*message), clock_.wall(), clock_.monotonic());
+      auto orders = driver_.take(std::move(*message), modes_, clock_.wall(), clock_.monotonic());
       if (orders) return give(*orders);
+      if (orders.error().code == hc::Code::Invalid)
+        return driver_socket_->send_text(orders.error().detail);
       message = orders.error();
     }
     const auto kept = driver_socket_;
@@ -307,6 +318,7 @@ void Page::take_state(const hc::Message& message) {
   const web::Bytes bytes = text(hc::encode(message));
   if (is_state) {
     state_ = bytes;
+    take_modes(message);
   } else {
     log_.push_back(bytes);
     if (log_.size() > kMaxLog) log_.pop_front();
@@ -317,45 +329,57 @@ void Page::take_state(const hc::Message& message) {
       session.socket->send(bytes);
 }
 
-void Page::answer(std::uint64_t session, const Rows& rows) {
-  const auto found = sessions_.find(session);
+/// Keeps the numbers of the graph's modes.
+void Page::take_modes(const hc::Message& message) {
+  const auto state = nlohmann::json::parse(message.characters(), nullptr, false);
+  const auto modes = state.is_object() ? state.find("modes") : state.end();
+  if (modes == state.end()) return;
+  modes_.clear();
+  for (const auto& mode : *modes)
+    if (mode.is_number_integer()) modes_.insert(mode.get<std::int32_t>());
+}
+
+void Page::answer(const Asked& asked, const Rows& rows) {
+  const auto found = sessions_.find(asked.session);
   if (found == sessions_.end() || found->second.socket->waiting() >= kMaxWaiting) return;
-  found->second.socket->send(rows_message(rows, kAnswer, answers_++, clock_.wall()));
+  found->second.socket->send(rows_message(rows, kAnswer, asked.number, clock_.wall()));
 }
 
 void Page::take_command(std::uint64_t number, const std::string& command) {
-  const Session& session = sessions_.at(number);
+  Session& session = sessions_.at(number);
+  const Asked asked{number, session.commands++};
   const auto words = words_of(command);
-  if (words.empty()) return answer(number, {"there is no command"});
-  if (auto done = command_here(session, words)) return answer(number, *done);
+  if (words.empty()) return answer(asked, {"there is no command"});
+  if (words[0] == "estop") {
+    if (const auto problem = stop(asked, words)) answer(asked, *problem);
+    return;
+  }
+  if (auto done = command_here(session, words)) return answer(asked, *done);
   if (words[0] == "observe" || words[0] == "reply")
-    return answer(number, {"no command \"" + words[0] + "\"; streams are at /streams"});
-  if (session.right != web::Right::Drive && words[0] != "describe")
-    return answer(number, {"this session may view, and not change anything"});
-  graph_->command(command, [this, number](const Rows& rows) { answer(number, rows); });
+    return answer(asked, {"no command \"" + words[0] + "\"; streams are at /streams"});
+  if (session.right < web::Right::Operate && words[0] != "describe")
+    return answer(asked, {lacks(session.right, web::Right::Operate)});
+  graph_->command(command, [this, asked](const Rows& rows) { answer(asked, rows); });
+}
+
+std::optional<Rows> Page::stop(const Asked& asked, const Rows& words) {
+  const bool clears = words.size() == 2 && words[1] == "clear";
+  if (words.size() > 1 && !clears) return Rows{"estop is followed by nothing or by clear"};
+  const auto right = sessions_.at(asked.session).right;
+  if (clears && right < web::Right::Drive) return Rows{lacks(right, web::Right::Drive)};
+  callbacks_.stop(!clears, [this, asked](const std::string& problem) {
+    server_.post([this, asked, problem] { answer(asked, {problem.empty() ? "ok" : problem}); });
+  });
+  return std::nullopt;
 }
 
 std::optional<Rows> Page::command_here(const Session& session, const Rows& words) {
-  const bool may_drive = session.right == web::Right::Drive;
-  const Rows no_right = {"this session may view, and not change anything"};
-  if (words[0] == "estop") {
-    const bool clears = words.size() == 2 && words[1] == "clear";
-    if (words.size() > 1 && !clears) return Rows{"estop is followed by nothing or by clear"};
-    if (clears && !may_drive) return no_right;
-    if (robot_.stopped < 0)
-      return Rows{"this graph has no workspace that " + options_.module +
-                  ".stop is linked to; end the graph with stop"};
-    callbacks_.stop(!clears);
-    return Rows{"ok"};
-  }
-  if (words[0] == "record") return may_drive ? record(words) : no_right;
-  if (words[0] == "invite") {
-    if (words.size() != 2 || (words[1] != "view" && words[1] != "drive"))
-      return Rows{"invite is followed by view or drive"};
-    if (!may_drive) return no_right;
-    return Rows{"ok", access_.invite(words[1] == "drive" ? web::Right::Drive : web::Right::View)};
-  }
-  return std::nullopt;
+  if (words[0] != "record" && words[0] != "invite") return std::nullopt;
+  if (session.right < web::Right::Operate) return Rows{lacks(session.right, web::Right::Operate)};
+  if (words[0] == "record") return record(words);
+  const auto right = words.size() == 2 ? web::right_named(words[1]) : std::nullopt;
+  if (!right) return Rows{"invite is followed by view, drive or operate"};
+  return Rows{"ok", access_.invite(*right)};
 }
 
 Rows Page::record(const Rows& words) {
@@ -397,13 +421,13 @@ std::string Page::session_text(const Session& session) const {
                            json_string(recorder_->name()), recorder_->bytes(),
                            static_cast<int>(recorder_->seconds()), json_list(recorder_->ports()));
   const char* driver = driver_socket_ ? "\"other\"" : "null";
-  const int stopped = robot_.stopped;
+  const std::optional<bool> stopped = robot_.stopped;
   return hc::format(
       R"({{"right":"{}","driver":{},"stopped":{},"recording":{},"drives":{},"frames":{},"web":{}}})",
-      session.right == web::Right::Drive ? "drive" : "view", driver,
-      stopped < 0   ? "null"
-      : stopped > 0 ? "true"
-                    : "false",
+      name_of(session.right), driver,
+      !stopped   ? "null"
+      : *stopped ? "true"
+                 : "false",
       recording, json_list(drives), json_string(options_.frames), json_string(options_.module));
 }
 

@@ -18,14 +18,16 @@
 #include <web/server.h>
 #include "driver.h"
 #include "recorder.h"
+#include "stop.h"
 #include "stream.h"
 
 namespace web = hc::web;
 
 /// What the module and its page share. From any thread.
 struct Robot {
-  std::atomic<unsigned> linked{0};    ///< a bit for each Control whose output is linked
-  std::atomic<int> stopped{-1};       ///< 1, 0; -1: the graph has nothing that stops it
+  std::atomic<unsigned> linked{0};  ///< a bit for each Control whose output is linked
+  /// What the workspace says; nothing: the graph has none, or it is silent.
+  std::atomic<std::optional<bool>> stopped{};
   std::atomic<unsigned> sessions{0};  ///< pages that are open
 };
 
@@ -40,7 +42,8 @@ class Page final : public web::Site {
   /// Called on the server's thread.
   struct Callbacks {
     std::function<void(Order)> order;  ///< something is commanded
-    std::function<void(bool)> stop;    ///< the robot is to be stopped, or not any more
+    /// The robot is to be stopped, or the stop is cleared; answered on the module's thread.
+    std::function<void(bool stops, Stop::Answer answer)> stop;
     std::function<void(const std::string& line)> log;
   };
 
@@ -57,12 +60,18 @@ class Page final : public web::Site {
   struct Session {
     std::shared_ptr<web::WebSocket> socket;
     web::Right right = web::Right::View;
-    std::string sent;  // of what it is, the last
+    std::string sent;           // of what it is, the last
+    std::int64_t commands = 0;  // that came
   };
   struct Watched {
     std::shared_ptr<web::WebSocket> socket;
     std::string port;
     std::unique_ptr<Stream::Viewer> viewer;
+  };
+  /// A command: of which session, and the how manieth of it.
+  struct Asked {
+    std::uint64_t session = 0;
+    std::int64_t number = 0;
   };
   using Sessions = std::map<std::uint64_t, Session>;
 
@@ -74,12 +83,16 @@ class Page final : public web::Site {
   void open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
 
   void take_state(const hc::Message& message);
+  void take_modes(const hc::Message& message);
   void take_command(std::uint64_t session, const std::string& command);
   /// Does a command that is none of the graph; gives its answer, nothing where it is one of it.
   std::optional<std::vector<std::string>> command_here(const Session& session,
                                                        const std::vector<std::string>& words);
+  /// Stops the robot, or clears that. @returns  what is wrong; nothing: it is answered later.
+  std::optional<std::vector<std::string>> stop(const Asked& asked,
+                                               const std::vector<std::string>& words);
   std::vector<std::string> record(const std::vector<std::string>& words);
-  void answer(std::uint64_t session, const std::vector<std::string>& rows);
+  void answer(const Asked& asked, const std::vector<std::string>& rows);
   void tick();
   void give(const std::vector<Order>& orders) const;
   [[nodiscard]] std::string session_text(const Session& session) const;
@@ -98,8 +111,8 @@ class Page final : public web::Site {
   std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
   std::unique_ptr<Recorder> recorder_;
-  web::Bytes state_;            // the last
-  std::deque<web::Bytes> log_;  // the last lines
-  std::int64_t answers_ = 0;
+  web::Bytes state_;                         // the last
+  std::set<std::int32_t> modes_;             // numbers of those that the graph has
+  std::deque<web::Bytes> log_;               // the last lines
   std::unique_ptr<web::GraphClient> graph_;  // last: its threads call the above
 };

@@ -33,7 +33,7 @@ async function turned(axis, sign, from, timeout = watchdog) {
 }
 
 async function inFocus(task, timeout = watchdog) {
-  await page.locator(".seat-who", { hasText: `Task in focus: ${task}` }).waitFor({ timeout });
+  await page.locator(".bar .focus", { hasText: task }).waitFor({ timeout });
 }
 
 /** Does again what counts once and not for long, as on a busy machine it may have come too late. */
@@ -51,7 +51,7 @@ function untilDone(what, act, ...results) {
 async function takeSeat(panels = "seat") {
   await show(panels);
   await page.getByRole("button", { name: "Take the seat" }).click();
-  await page.locator(".seat-who", { hasText: "You drive." }).waitFor();
+  await page.locator(".seat-who", { hasText: "You hold the head (point)." }).waitFor();
   await watchGaze(page);
 }
 
@@ -360,7 +360,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
 });
 
 async function noFocus() {
-  await page.locator(".seat-who", { hasText: "No task has the focus" }).waitFor();
+  await page.locator(".bar .focus", { hasText: "no task" }).waitFor();
 }
 
 const axe = readFileSync(axeFile, "utf8");

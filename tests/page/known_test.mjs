@@ -200,7 +200,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
   test("words that are typed are said", async () => {
     await show("seat|stream,port=known.heard");
     await page.getByRole("button", { name: "Take the seat" }).click();
-    await page.locator(".seat-who", { hasText: "You drive." }).waitFor();
+    await page.locator(".seat-who", { hasText: "You hold the head (look)." }).waitFor();
     await page.getByLabel("Say", { exact: true }).fill("good morning");
     await page.getByRole("button", { name: "Say it" }).click();
     await page.locator(".console div", { hasText: "good morning" }).waitFor();
@@ -231,15 +231,33 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
   test("a second page takes the seat from the first", async () => {
     await show("seat");
     await page.getByRole("button", { name: "Take the seat" }).click();
-    await page.locator(".seat-who", { hasText: "You drive." }).waitFor();
+    await page.locator(".seat-who", { hasText: "You hold the head (look)." }).waitFor();
     const second = await context.newPage();
     await show("seat", second);
     await second.getByRole("button", { name: "Take the seat from them" }).click();
-    await second.locator(".seat-who", { hasText: "You drive." }).waitFor();
+    await second.locator(".seat-who", { hasText: "You hold the head (look)." }).waitFor();
     await page.locator(".seat-who", { hasText: "Somebody else drives." }).waitFor();
     await second.getByRole("button", { name: "Leave the seat" }).click();
     await page.getByRole("button", { name: "Take the seat", exact: true }).waitFor();
     await second.close();
+  });
+
+  test("who has the seat holds the head until the robot is to decide, or they leave", async () => {
+    await show("seat");
+    await page.getByRole("button", { name: "Take the seat" }).click();
+    const who = (words) => page.locator(".seat-who", { hasText: words }).waitFor();
+    await who("You hold the head (look).");
+    await page.getByRole("button", { name: "Let the robot decide" }).click();
+    await who("The robot decides: no task.");
+    await page.locator('[data-task="look"]').click();
+    await who("You hold the head (look).");
+    await page.getByRole("button", { name: "Let the robot decide" }).click();
+    await who("The robot decides: no task.");
+    await page.locator(".seat").focus();
+    await page.keyboard.press("ArrowLeft", { delay: 200 }); // who steers holds it again
+    await who("You hold the head (look).");
+    await page.getByRole("button", { name: "Leave the seat" }).click();
+    await who("The robot decides: no task.");
   });
 
   test("who may view may stop, and not clear", async () => {
@@ -271,6 +289,83 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await bar.getByRole("button", { name: "Let it move" }).click();
     await viewer.locator(".stopped-bar").waitFor({ state: "hidden" });
     await other.close();
+  });
+
+  test("a stop that is not confirmed is told in large letters, and nothing moves", async () => {
+    await show("seat");
+    await page.locator(".seat-who", { hasText: "The robot decides: no task." }).waitFor();
+    await page.locator(".seat-latency", { hasText: "Motion" }).waitFor();
+    const boxes = () =>
+      page.evaluate(() =>
+        [...document.querySelectorAll(".bar > *, .board, .seat *, .status-line")].map((element) => {
+          const { x, y, width, height } = element.getBoundingClientRect();
+          return `${element.className} ${[x, y, width, height].map(Math.round).join(" ")}`;
+        }),
+      );
+    const before = await boxes();
+    const alarm = page.locator(".not-stopped");
+    for (const [name, words] of [
+      ["workspace", "the workspace does not answer"],
+      ["web", "The server of the page does not answer."],
+    ]) {
+      const { pid } = graph.module(name);
+      process.kill(pid, "SIGSTOP");
+      try {
+        await until("the stop is pressed", async () => {
+          await page.keyboard.press("Escape");
+          return alarm.isVisible();
+        });
+        await alarm.getByText(words).waitFor();
+        await alarm.getByText("NOT STOPPED").waitFor();
+        const { width, height } = await alarm.boundingBox();
+        assert.ok(width >= 1000 && height > 150, `${width} x ${height}`);
+        assert.ok(await page.locator(".stopped-bar").isHidden());
+        assert.deepEqual(await boxes(), before);
+      } finally {
+        process.kill(pid, "SIGCONT");
+      }
+      // It was repeated.
+      await alarm.waitFor({ state: "hidden" });
+      const bar = page.locator(".stopped-bar");
+      await bar.waitFor();
+      await page.locator(".seat-who", { hasText: "Stopped." }).waitFor();
+      assert.deepEqual(await boxes(), before);
+      await bar.getByLabel("nobody is in its way").check();
+      await bar.getByRole("button", { name: "Let it move" }).click();
+      await bar.waitFor({ state: "hidden" });
+    }
+  });
+
+  test("a stop without a connection is told at once", async () => {
+    const alone = await context.newPage();
+    await alone.addInitScript(() => {
+      const Real = window.WebSocket;
+      window.WebSocket = class extends Real {
+        constructor(url) {
+          super(url);
+          if (window.unplugged) this.close();
+          (window.sockets ??= []).push(this);
+        }
+      };
+      window.unplug = () => {
+        window.unplugged = true;
+        for (const socket of window.sockets) socket.close();
+      };
+    });
+    await show("seat", alone);
+    await alone.locator(".seat-who", { hasText: "The robot decides" }).waitFor();
+    await alone.evaluate(() => window.unplug());
+    await alone.locator(".trouble", { hasText: "No connection" }).waitFor();
+    await alone.getByRole("button", { name: "Stop" }).click();
+    await alone.locator(".not-stopped", { hasText: "no connection to its server" }).waitFor();
+    await alone.evaluate(() => (window.unplugged = false));
+    await alone.locator(".not-stopped").waitFor({ state: "hidden" });
+    const bar = alone.locator(".stopped-bar");
+    await bar.waitFor();
+    await bar.getByLabel("nobody is in its way").check();
+    await bar.getByRole("button", { name: "Let it move" }).click();
+    await bar.waitFor({ state: "hidden" });
+    await alone.close();
   });
 
   test("a stop outlives its server", async () => {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The server of the page, as any client sees it: who may do what, streams, the seat, recordings."""
 
+import contextlib
 import io
 import json
 import os
@@ -38,6 +39,7 @@ parent = "world"
 translation = [0.0, 0.0, 1.2]
 """
 )
+STICK = b"1 1 0 0 8 0 120190 0 0 2 1\n"
 ALIVE = b"1 0 0 0 8 0 120190 0 0 1 1\n"
 
 
@@ -149,29 +151,49 @@ class Access(Page):
                 )
             self.assertEqual(refused.exception.status, status, (path, fields))
 
-    def test_who_views_does_not_drive(self):
-        self.serve()
-        driver = self.socket("/graph", self.session())
-        answer = self.command(driver, "invite view")
+    def invited(self, graph, right):
+        """The cookie of a session that was invited."""
+        answer = self.command(graph, "invite " + right)
         self.assertEqual(answer[0], "ok")
-        viewer = self.session(answer[1].split("token=")[1])
+        return self.session(answer[1].split("token=")[1])
+
+    def test_each_right_does_what_it_may(self):
+        self.serve()
+        operator = self.socket("/graph", self.session())
+        self.assertEqual(json.loads(self.hear(operator, 3))["right"], "operate")
+        driver, viewer = self.invited(operator, "drive"), self.invited(operator, "view")
         with self.assertRaises(Refused) as refused:
             self.socket("/drive", viewer)
         self.assertEqual(refused.exception.status, 403)
-        graph = self.socket("/graph", viewer)
-        self.assertEqual(json.loads(self.hear(graph, 3))["right"], "view")
-        for text in (
+        self.assertIn("invite is followed", self.command(operator, "invite admin")[0])
+        for_operators = (
             "set camera.rate=20",
             "restart camera",
             "stop",
-            "invite drive",
-            "estop clear",
+            "add x /bin/true",
+            "link camera.left file:x",
+            "invite view",
+            "invite operate",
             "record one camera.left",
+            "record end",
+            "nonsense",
+        )
+        for right, cookie, refused in (
+            ("view", viewer, ("estop clear", *for_operators)),
+            ("drive", driver, for_operators),
         ):
-            self.assertIn("may view", self.command(graph, text)[0], text)
-        self.assertIn("streams are at", self.command(graph, "observe camera.left")[0])
-        self.hear(graph, 3, lambda text: '"stopped":false' in text)
-        self.assertEqual(self.command(graph, "estop"), ["ok"])
+            graph = self.socket("/graph", cookie)
+            self.assertEqual(json.loads(self.hear(graph, 3))["right"], right)
+            for text in refused:
+                needed = "drive" if text == "estop clear" else "operate"
+                self.assertEqual(
+                    self.command(graph, text),
+                    ["this session may %s; that needs the right to %s" % (right, needed)],
+                )
+            self.assertIn("streams are at", self.command(graph, "observe camera.left")[0])
+            self.assertEqual(self.command(graph, "estop"), ["ok"])
+        self.assertEqual(self.command(graph, "estop clear"), ["ok"])
+        self.socket("/drive", driver)
         # A secret is in no line that observers get.
         log = self.socket("/graph", viewer)
         self.command(log, "describe camera")
@@ -294,6 +316,110 @@ class Graph(Page):
         self.stop(process)
 
 
+class Stop(Page):
+    def pid(self, graph, name):
+        """The process of a module, by the next state."""
+        modules = json.loads(self.hear(graph, 1))["modules"]
+        return next(module["pid"] for module in modules if module["name"] == name)
+
+    def freeze(self, graph, name):
+        """Stops a process for a while; gives its number."""
+        pid = self.pid(graph, name)
+        os.kill(pid, signal.SIGSTOP)
+
+        def thaw():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGCONT)
+
+        self.addCleanup(thaw)
+        return pid
+
+    def words(self, cookie):
+        """A generator of what `web` sends at its output stop."""
+        stream = self.socket("/streams/web.stop?as=raw", cookie)
+        while True:
+            kind, data = stream.next()
+            if kind == BINARY:
+                header, elements = message(data)
+                yield int(elements) if header[6] % 10 == 0 else elements[0]
+                stream.send("ok")
+
+    def test_who_takes_nothing_holds_no_stop_up(self):
+        process = self.serve()
+        cookie = self.session()
+        graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
+        self.hear(graph, 3, lambda text: '"stopped":false' in text)
+        self.freeze(graph, "look")
+        for _ in range(5000):  # more than any link has room for
+            drive.send_frame(BINARY, STICK + b"0.1 0.1\n")
+            drive.send_frame(BINARY, number(5, 1, 1))
+        self.assertEqual(self.command(graph, "estop"), ["ok"])
+        self.hear(graph, 3, lambda text: '"stopped":true' in text)
+        self.stop(process)
+
+    def test_a_stop_that_is_not_confirmed_is_no_ok(self):
+        process = self.serve()
+        graph = self.socket("/graph", self.session())
+        self.hear(graph, 3, lambda text: '"stopped":false' in text)
+        pid = self.freeze(graph, "workspace")
+        self.assertEqual(
+            self.command(graph, "estop"), ["stop NOT confirmed: the workspace does not answer"]
+        )
+        self.hear(graph, 3, lambda text: '"stopped":null' in text)
+        # Answers of other commands do not wait for it, and say whose they are.
+        graph.send("estop"), graph.send("describe camera")
+        answers = []
+        while len(answers) < 2:
+            header, _ = message(graph.next()[1])
+            if header[1] == 4:
+                answers.append(header[3])
+        self.assertEqual(sorted(answers), [1, 2])
+        os.kill(pid, signal.SIGCONT)  # the order was repeated meanwhile
+        self.hear(graph, 3, lambda text: '"stopped":true' in text)
+        os.kill(pid, signal.SIGSTOP)
+        # What it said before it was frozen may still be on its way.
+        self.assertIn("NOT cleared: the workspace", self.command(graph, "estop clear")[0])
+        os.kill(pid, signal.SIGCONT)
+        self.stop(process)
+
+    def test_nothing_is_linked(self):
+        stopped = 'inputs.stopped = { from = "workspace.stopped", rate = 20 }\n'
+        for missing, words in (
+            ('inputs.stop = "web.stop"\n', "nothing is linked to web.stop"),
+            (stopped, "nothing comes to web.stopped"),
+        ):
+            self.assertIn(missing, TASKS)
+            process = self.serve(TASKS.replace(missing, ""))
+            graph = self.socket("/graph", self.session())
+            for order in ("estop", "estop clear"):
+                answer = self.command(graph, order)
+                self.assertRegex(answer[0], "NOT (confirmed|cleared): " + words)
+            self.stop(process)
+
+    def test_a_page_guards_while_it_is_open(self):
+        process = self.serve()
+        cookie = self.session()
+        graph = self.socket("/graph", cookie)
+        words = self.words(cookie)
+        self.assertEqual([next(words) for _ in range(20)], [0] * 20)
+        self.assertEqual(self.command(graph, "estop"), ["ok"])
+        while next(words) != 1:
+            pass
+        self.assertEqual([next(words) for _ in range(5)], [1] * 5)
+        self.assertEqual(self.command(graph, "estop clear"), ["ok"])
+        while (word := next(words)) != 2:
+            self.assertEqual(word, 1)
+        self.assertEqual([next(words) for _ in range(5)], [0] * 5)
+        graph.close()
+        while (word := next(words)) != 3:
+            self.assertEqual(word, 0)
+        self.assertEqual([next(words), next(words)], [3, 3])
+        again = self.socket("/graph", cookie)
+        self.assertEqual(next(words), 0)
+        again.close()
+        self.stop(process)
+
+
 class Streams(Page):
     def test_an_image_comes_as_it_is_wanted(self):
         process = self.serve()
@@ -376,14 +502,54 @@ class Seat(Page):
         for wrong in (
             b"no message",
             number(5, 2, 1),
+            number(5, 1, 99),  # no mode of the graph
             number(9, 0),
             ALIVE + b"0\n" + ALIVE + b"0\n",
         ):
             second.send_frame(BINARY, wrong)
             self.assertEqual(second.code()[0], 1007, wrong)
             second = self.socket("/drive", cookie)
+        # What points into an image that is long gone is refused with words, and not obeyed.
+        second.send_frame(BINARY, b"1 3 0 0 8 1 10390 0 7 1 1\n1 1 0\n")
+        kind, words = second.next()
+        self.assertEqual(kind, TEXT)
+        self.assertIn(b"is not of now", words)
         second.close()
         self.hear(graph, 3, lambda text: '"driver":null' in text)
+        self.stop(process)
+
+    def test_who_sits_holds_the_focus_though_nothing_is_touched(self):
+        process = self.serve(
+            TASKS.replace("look = 1", "look = 1\nother = 2").replace(
+                '"look.bid"', '["look.bid", "other.bid"]'
+            )
+            + '[modules.other]\nprogram = "gaze"\nmode = "other"\ninputs.target = "web.target"\n'
+        )
+        cookie = self.session()
+        graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
+        self.hear(graph, 1, lambda text: json.loads(text)["focus"]["workspace"] is None)
+        drive.send_frame(BINARY, number(5, 1, 1))
+        focus = lambda text: (json.loads(text)["focus"]["workspace"] or {}).get("number")
+
+        def changes(until):
+            """The modes in focus one after the other, the driver alive, until a condition."""
+            seen = []
+            while not until(seen):
+                drive.send_frame(BINARY, ALIVE + b"0\n")
+                src, rows = self.next(graph)
+                if src == 1:
+                    seen.append(focus("\n".join(rows)))
+            return [mode for i, mode in enumerate(seen) if i == 0 or mode != seen[i - 1]]
+
+        # Two states a second come, and one more at each change.
+        self.assertIn(changes(lambda seen: len(seen) > 8), ([1], [None, 1]))
+        drive.send_frame(BINARY, number(5, 1, 2))
+        self.assertIn(changes(lambda seen: seen[-2:] == [2, 2]), ([1, 2], [2]))
+        for mode in (3, 0, -1):
+            drive.send_frame(BINARY, number(5, 1, mode))
+            code, why = drive.code()
+            self.assertEqual(code, 1007)
+            drive = self.socket("/drive", cookie)
         self.stop(process)
 
 

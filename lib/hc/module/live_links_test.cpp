@@ -243,6 +243,37 @@ TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
             "relay: out: " + std::to_string(row[6]) + " waiting, lost with the link\n");
 }
 
+TEST_F(RunningModule, AnOutputThatNeverWaitsIsHeldUpByNoReader) {
+  Module module{"relay", "Sends on."};
+  auto in = module.input("in", table<double>(), "");
+  auto hung = module.output("hung", table<double>(), "");
+  auto out = module.output("out", table<double>(), "");
+  module.never_waits(hung);
+  module.on(in, [&](const Doubles& m) {
+    hung.send(table({m.matrix().at(0, 0)}));
+    out.send(table({m.matrix().at(0, 0)}));
+  });
+  const std::string name = "hung-" + std::to_string(::getpid()), graph = "?readers=1&stay=1";
+  auto sink = sink_of(uri("in"));
+  auto from = source_of(uri("out"));
+  // Of one reader nothing is ever seen, the others take nothing.
+  start(module, {"--in=" + uri("in"), "--out=hung=shm:" + name + "-none" + graph,
+                 "--out=hung=shm:" + name + graph + "&keep=all",
+                 "--out=hung=unix-listen:@" + name + graph, "--out=out=" + uri("out")});
+  auto shared = source_of("shm:" + name + "?wait=60");
+  auto socket = source_of("unix:" + ("@" + name) + "?wait=60");
+  constexpr int kMany = 20'000;  // of which no link has room for
+  std::thread sender([&] {
+    for (int i = 0; i < kMany; ++i) EXPECT_TRUE(sink->send(table({static_cast<double>(i)})));
+  });
+  Message message;
+  for (int i = 0; i < kMany; ++i) ASSERT_TRUE(*receive(*from, message));
+  sender.join();
+  shared.reset(), socket.reset();  // its end waits for what has begun to go
+  EXPECT_TRUE(sink->close());
+  EXPECT_EQ(join(), 0);
+}
+
 TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   Module module{"pair", "Adds."};
   auto left = module.input("left", table<double>(), "");

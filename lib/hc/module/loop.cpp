@@ -41,6 +41,19 @@ bool keeps_latest(Uri& uri) {
   return false;
 }
 
+/// An output's end that waits neither for the first reader nor for a slow one
+/// (Module::never_waits()).
+Uri without_waiting(Uri uri, std::uint32_t keep) {
+  auto set = [](Uri& changed, const std::string& key, const std::string& value) {
+    std::erase_if(changed.options, [&](const auto& option) { return option.first == key; });
+    changed.options.emplace_back(key, value);
+  };
+  if (uri.option("keep", "all") == "all") set(uri, "keep", std::to_string(keep));
+  Uri unread = uri;
+  set(unread, "readers", "0");
+  return check_sink(unread) ? unread : uri;  // it may be of a kind that nobody comes to
+}
+
 }  // namespace
 
 Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
@@ -115,7 +128,9 @@ void Module::Loop::open_focus(const Uri& uri) {
   module_.focus_.is_linked = true;
 }
 
-std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port) {
+/// @param keep  of an output that never waits.
+std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port,
+                                                      std::uint32_t keep) {
   Uri opened = uri;
   auto conversion = take_conversion(opened);
   if (!conversion) fail(name_of(uri.text(), port), conversion.error());
@@ -127,6 +142,7 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   if (is_of_graph && opened.scheme == "file") add("optional", "1");
   // By the clock of messages nothing is ever lost.
   if (is_of_graph && !module_.message_time_) add("timeout", kTimeoutInGraphs);
+  if (keep > 0) opened = without_waiting(std::move(opened), keep);
   auto options = options_for(opened, port);
   auto link = std::make_shared<LinkedSink>();
   options.awaits_reader = [this, sender = link.get()](bool awaits) {
@@ -151,8 +167,10 @@ void Module::Loop::open_trace(const Uri& uri) {
 
 void Module::Loop::open_outputs(const internal::Arguments& arguments) {
   for (const auto& uri : arguments.trace_links) open_trace(uri);
-  for (const auto& [port, uri] : arguments.outputs)
-    module_.outputs_[port]->links.push_back(open_output(uri, module_.outputs_[port]->name));
+  for (const auto& [port, uri] : arguments.outputs) {
+    auto& output = *module_.outputs_[port];
+    output.links.push_back(open_output(uri, output.name, output.keep));
+  }
   if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
   auto standard_output = open_output({"-", "", {}}, "-");
   for (auto& output : module_.outputs_)

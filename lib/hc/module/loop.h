@@ -90,7 +90,8 @@ struct Module::Loop {
   LinkOptions options_for(const Uri& uri, const std::string& port);
   void log_lines(MonotonicTime now);
   std::unique_ptr<Source> open(const Uri& uri, const std::string& port);
-  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri, const std::string& port);
+  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri, const std::string& port,
+                                                    std::uint32_t keep = 0);
   void open_outputs(const internal::Arguments& arguments);
   void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);

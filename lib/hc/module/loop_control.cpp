@@ -171,8 +171,8 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
     } else if (is_input) {
       open_input(link->uri, {module_.inputs_[link->port].get()});
     } else {
-      module_.outputs_[link->port]->links.push_back(
-          open_output(link->uri, module_.outputs_[link->port]->name));
+      auto& output = *module_.outputs_[link->port];
+      output.links.push_back(open_output(link->uri, output.name, output.keep));
     }
   } catch (const ModuleError& error) {
     return Error{Code::System, error.what()};

@@ -138,6 +138,15 @@ class Module {
     output.state_->doc += "; only by a link of its own";
   }
 
+  /// Declares that sending to an output waits for nobody, whatever its links say: without a reader
+  /// a message is lost, and for a reader that is slow or hangs the newest ones wait. For what must
+  /// not hold up what else the module does.
+  /// @param keep  how many of the newest wait where the link does not say; 1 or more.
+  template <typename K>
+  void never_waits(const Output<K>& output, std::uint32_t keep = 1) {
+    output.state_->keep = keep;
+  }
+
   /// Declares that an input moves something: a graph with several writers to it needs an arbiter
   /// (`exclusive`, a router).
   template <typename K>

@@ -93,6 +93,7 @@ struct OutputState {
   std::int32_t to = 0;               ///< dst of those that have none
   std::optional<Encoding> encoding;  ///< asked for on the command line
   bool is_on_demand = false;         ///< see Module::on_demand()
+  std::uint32_t keep = 0;            ///< see Module::never_waits(); 0: it waits as its links say
   std::int64_t seq = 0;
   std::vector<std::shared_ptr<LinkedSink>> links;
   Module* module = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { GraphLink, GraphModule, GraphState } from "../server";
+import { mayOperate, type GraphLink, type GraphModule, type GraphState } from "../server";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { describe, typeText, type Description, type PortDescription } from "./describe";
 import { Failures } from "./failures";
@@ -64,7 +64,7 @@ class ModuleView {
       server.onLog((line) => this.addLine(line)),
       server.onState((state) => this.update(state)),
       server.onSession((session) => {
-        this.restart.disabled = session.right !== "drive";
+        this.restart.disabled = !mayOperate(session);
       }),
     );
     for (const line of server.log) this.addLine(line);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A parameter of a module that can be changed while it runs.
-import type { Server } from "../server";
+import { mayOperate, type Server } from "../server";
 import { h } from "../shell";
 import type { ParameterDescription } from "./describe";
 
@@ -25,14 +25,15 @@ export class ParameterView {
   ) {
     const id = `parameter-${module}-${is.name}`;
     const note = `${id}-note`;
-    const common = { id, "aria-describedby": note, disabled: is.fixed ?? false };
+    const isLocked = is.fixed === true || !mayOperate(server.session);
+    const common = { id, "aria-describedby": note, disabled: isLocked };
     this.control = this.makeControl(common);
     this.control.addEventListener("change", () => void this.send(this.text()));
     const { min, max } = is;
     const number = is.type === "number" || is.type === "integer";
     if (
       number &&
-      !is.fixed &&
+      !isLocked &&
       min !== undefined &&
       max !== undefined &&
       max - min <= widestSlider

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Records streams, lists recordings, opens them: {kind: "recordings"}.
-import { CommandError, type GraphState, type Recording, type Session } from "../server";
+import { CommandError, mayOperate, type GraphState, type Recording, type Session } from "../server";
 import { outputsOf, type Output } from "../outputs";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { giveFiles } from "./local";
@@ -167,18 +167,19 @@ class RecordingsPanel {
     }
   }
 
-  private showSession({ recording, right }: Session): void {
+  private showSession(session: Session): void {
+    const { recording } = session;
+    const may = mayOperate(session);
     this.begin.hidden = recording !== null;
     this.running.hidden = recording === null;
-    const mayDrive = right === "drive";
-    this.start.disabled = !mayDrive;
-    this.start.title = mayDrive ? "" : "This page may only view. Ask for a link that may drive.";
+    this.start.disabled = !may;
+    this.start.title = may ? "" : "This page may not record. Ask for a link that may operate.";
     if (this.wasRecording !== undefined && recording === null) void this.refresh();
     if (recording && this.wasRecording !== recording.name) {
       fill(
         this.running,
         h("span", { class: "running-words" }),
-        mayDrive &&
+        may &&
           h(
             "button",
             { class: "primary", onclick: () => void this.command("record end") },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who drives: holds the driver's socket, and repeats what a person commands as long as they do.
 import { Coord, headerOf, numbersMessage, textMessage, type Kind, type Message } from "../mtp";
-import { Signal, type Drive, type Server } from "../server";
+import { Signal, type Drive, type DriveOutput, type Server } from "../server";
 import type { Angles } from "./orientation";
 import { Stick } from "./steering";
 import { WallClock } from "./wall_clock";
@@ -23,10 +23,15 @@ const slowFor = 3000;
 
 /** A head that is turned by less than this is at rest [rad]. */
 const still = 0.01;
+/** One that turns by more takes the robot's head back from a hand or a chosen task [rad]. */
+const turns = 0.1;
+/** So long a new bid may be on its way [ms]. */
+const onItsWay = 1500;
 
 /**
- * The supervisor's seat. It is left when the page is hidden: a person who does not see the robot
- * does not drive it.
+ * The supervisor's seat. Who takes it holds the head: the page bids for the task that steers, until
+ * another is chosen or the robot is to decide. It is left when the page is hidden: a person who does
+ * not see the robot does not drive it.
  */
 export class Seat {
   readonly stick = new Stick();
@@ -40,14 +45,23 @@ export class Seat {
   private lastLate = -Infinity;
   /** Where the person's head was when it last was seen to move. */
   private turned: Angles = { roll: 0, pitch: 0, yaw: 0 };
+  /** Where it was when something else than the person's head took the robot's. */
+  private aside?: Angles;
+  private chosenAt = -Infinity; // [ms]
   private readonly timers: number[];
   private readonly hidden = (): void => {
     if (document.hidden && this.drive) this.leave("You left the page, and with it the seat.");
   };
 
-  /** @param commanded  called with the time of each message that moves the head [ms since the Unix epoch]. */
+  /**
+   * @param taskOf  number of the task that reads an output; 0: none does.
+   * @param say  tells the person why something was not done.
+   * @param commanded  called with the time of each message that moves the head [ms since the Unix epoch].
+   */
   constructor(
     private readonly server: Server,
+    private readonly taskOf: (output: DriveOutput) => number,
+    private readonly say: (sentence: string) => void,
     private readonly commanded: (at: number) => void,
   ) {
     this.timers = [
@@ -76,6 +90,11 @@ export class Seat {
     return this.isHeld && performance.now() - this.lastLate < slowFor;
   }
 
+  /** Whether the bid is so new that the workspace may not have taken it. */
+  get isFresh(): boolean {
+    return performance.now() - this.chosenAt < onItsWay;
+  }
+
   onState(listener: (state: SeatState) => void): () => void {
     return this.states.on(listener);
   }
@@ -95,9 +114,16 @@ export class Seat {
     const drive = this.server.drive({ take: fromOther });
     this.drive = drive;
     this.states.set({ is: "waiting" });
+    drive.onRefusal((why) => this.say(`Not done: ${why}.`));
+    let isNew = true;
     drive.onStatus((status) => {
       if (this.drive !== drive) return;
-      if (status.status === "driving") return this.states.set({ is: "held" });
+      if (status.status === "driving") {
+        this.states.set({ is: "held" });
+        if (isNew) this.choose(this.taskOf("stick"));
+        isNew = false;
+        return;
+      }
       if (status.status === "connecting") return this.states.set({ is: "waiting" });
       this.forget({ is: "lost", why: status.why, taken: status.taken });
     });
@@ -115,18 +141,27 @@ export class Seat {
 
   /** Bids for a task in the person's name, until it is released. */
   choose(task: number): void {
-    if (this.task && this.task !== task) this.sendBid(this.task, 0);
+    if (task !== this.task) this.chosenAt = performance.now();
+    this.aside = undefined;
     this.tasks.set(task);
     this.bid();
   }
 
+  /** Lets the robot decide. */
   release(): void {
     if (this.task) this.sendBid(this.task, 0);
-    this.tasks.set(0);
+    this.choose(0);
+  }
+
+  /** The person's head turns the robot's, from now on. */
+  orient(): void {
+    if (this.isHeld) this.choose(this.taskOf("rotation"));
   }
 
   /** The person's head is turned so, since it was zeroed. */
-  turn({ roll, pitch, yaw }: Angles): void {
+  turn(angles: Angles): void {
+    if (!this.isHeld || this.steering || !this.mayTurn(angles)) return;
+    const { roll, pitch, yaw } = angles;
     const time = this.clock.now();
     const message = numbersMessage("rotation", [roll, pitch, yaw], {
       coord: Coord.supervisor,
@@ -146,6 +181,7 @@ export class Seat {
    * @param time  of that image [ns].
    */
   lookAt(x: number, y: number, coord: number, time: bigint): void {
+    this.claim("target");
     const message = numbersMessage("position", [x, y, 0], { coord, time });
     if (this.drive?.send("target", message)) this.commanded(this.clock.now());
   }
@@ -168,7 +204,7 @@ export class Seat {
     if (isLate) this.lastLate = now;
     const { left, down } = this.stick.push;
     const pushed = left !== 0 || down !== 0;
-    if (pushed && !this.steering && this.task) this.sendBid(this.task, 0); // the hand goes first
+    if (pushed) this.claim("stick"); // the hand goes first
     if (pushed || this.steering) this.sendStick();
     this.steering = pushed;
   }
@@ -181,7 +217,23 @@ export class Seat {
   }
 
   private bid(): void {
-    if (this.task && !this.steering) this.sendBid(this.task, 1);
+    if (this.task) this.sendBid(this.task, 1);
+  }
+
+  /** Bids for the task that reads an output, in place of another. */
+  private claim(output: DriveOutput): void {
+    const task = this.taskOf(output);
+    if (task && task !== this.task) this.choose(task);
+  }
+
+  /** Whether the person's head is obeyed: after a hand or another task, once it has turned. */
+  private mayTurn({ roll, pitch, yaw }: Angles): boolean {
+    const task = this.taskOf("rotation");
+    if (!task || task === this.task) return true;
+    this.aside ??= { roll, pitch, yaw };
+    if (Math.hypot(pitch - this.aside.pitch, yaw - this.aside.yaw) < turns) return false;
+    this.choose(task);
+    return true;
   }
 
   private sendBid(mode: number, salience: number): void {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's seat: what the robot sees, and all by which a person moves it.
-import { modesInFocus, type DriveOutput, type GraphState, type Session } from "../server";
+import { mayDrive, modesInFocus, type DriveOutput, type GraphState, type Session } from "../server";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
 import { earsOf } from "./eyes";
@@ -9,7 +9,9 @@ import { dragSteers, gamepadsSteer, keysSteer } from "./hands";
 import { Seat, type SeatState } from "./holder";
 import { Latency } from "./latency";
 import { PhoneTracker } from "./telepresence";
+import { modeName } from "../graph/workspace";
 import { SeatView } from "./view";
+import { taskOf, whoText } from "./who";
 import type { XrView } from "./xr";
 
 declare global {
@@ -70,6 +72,7 @@ class SeatPanel {
       onclick: () => {
         this.phone.zero();
         this.xr?.zero();
+        if (this.phone.isOn || this.xr) this.seat.orient();
       },
     },
     "This is straight ahead",
@@ -86,7 +89,15 @@ class SeatPanel {
 
   constructor(private readonly host: PanelHost) {
     const { server } = host;
-    this.seat = new Seat(server, (at) => this.latency.command(at));
+    this.seat = new Seat(
+      server,
+      (output) => {
+        const { state, session } = server;
+        return state && session ? taskOf(state, session.web, output) : 0;
+      },
+      (sentence) => host.say(sentence),
+      (at) => this.latency.command(at),
+    );
     this.view = new SeatView(server, this.latency);
     this.phone = new PhoneTracker((angles) => this.seat.turn(angles));
     window.hypercolumn = { latency: this.latency };
@@ -206,6 +217,7 @@ class SeatPanel {
     } else {
       try {
         await this.phone.start();
+        this.seat.orient();
       } catch (error) {
         this.host.say(error instanceof Error ? error.message : String(error));
       }
@@ -230,6 +242,7 @@ class SeatPanel {
           this.xrButton.textContent = "Enter the headset";
         },
       });
+      this.seat.orient();
       this.view.showIn(this.xr);
       this.xrButton.textContent = "Leave the headset";
     } catch (error) {
@@ -271,19 +284,25 @@ class SeatPanel {
     this.showWho();
   }
 
-  /** Says who drives and which task has the focus, and offers what can be done about it. */
+  /** Says who has the head, and offers what can be done about it. */
   private showWho(): void {
     const { session, state } = this.host.server;
     const { seat } = this;
-    const driver = this.driverText(session);
-    const modes = modesInFocus(state).map((focus) => focus.mode);
-    const focus =
-      modes.length > 0 ? `Task in focus: ${modes.join(", ")}.` : "No task has the focus.";
-    const decides = Object.keys(state?.focus ?? {}).length > 0;
-    const text = `${driver} ${decides ? focus : ""}`.trim();
-    if (this.who.textContent !== text) this.who.textContent = text;
-    const mayDrive = session?.right === "drive";
-    this.takeButton.hidden = !mayDrive || seat.isHeld || seat.state.is === "waiting";
+    const text = whoText({
+      session,
+      seat: seat.state.is,
+      lost: seat.state.is === "lost" ? seat.state.why : "",
+      slow: seat.isSlow,
+      decides: Object.keys(state?.focus ?? {}).length > 0,
+      focus: modesInFocus(state).map((focus) => focus.mode),
+      bid: seat.task && state ? modeName(state, seat.task) : "",
+      fresh: seat.isFresh,
+    });
+    if (this.who.textContent !== text) {
+      this.who.textContent = text;
+      this.who.title = text; // where there is no room for all of it
+    }
+    this.takeButton.hidden = !mayDrive(session) || seat.isHeld || seat.state.is === "waiting";
     const take = session?.driver === "other" ? "Take the seat from them" : "Take the seat";
     if (this.takeButton.textContent !== take) this.takeButton.textContent = take;
     this.leaveButton.hidden = !seat.isHeld;
@@ -293,21 +312,6 @@ class SeatPanel {
     this.zeroButton.disabled = free;
     this.speakButton.disabled = free || !this.has("text");
     this.pad.classList.toggle("disabled", free || !this.has("stick"));
-  }
-
-  private driverText(session: Session | undefined): string {
-    if (!session) return "";
-    const { state } = this.seat;
-    if (state.is === "held") {
-      if (session.stopped) return "You drive, but the robot is stopped.";
-      if (this.seat.isSlow)
-        return "You drive, but this page is too slow: commands are dropped at times. Close some panels.";
-      return "You drive. Drag the disc or the image, or click where to look.";
-    }
-    if (state.is === "waiting") return "Waiting for the seat…";
-    const other = session.driver === "other" ? "Somebody else drives." : "Nobody drives.";
-    if (session.right === "view") return `${other} You may look; ask for a URL that may drive.`;
-    return state.is === "lost" ? state.why : other;
   }
 
   private showTasks(state: GraphState): void {
@@ -322,6 +326,19 @@ class SeatPanel {
       : undefined;
     fill(
       this.tasks,
+      names.length > 0 &&
+        h(
+          "button",
+          {
+            "data-task": "",
+            class: "task-button",
+            "aria-pressed": String(can && this.seat.task === 0),
+            disabled: !can,
+            title: "Gives the head back, and keeps the seat",
+            onclick: () => this.seat.release(),
+          },
+          "Let the robot decide",
+        ),
       names.map(([name, number]) => {
         const chosen = this.seat.task === number;
         return h(

@@ -1,58 +1,114 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stop: always visible, one press, for viewers too. It is cleared by two other controls.
-import type { Session } from "../server";
+import { CommandError, mayDrive, type Session } from "../server";
 import { h, type Shell } from "../shell";
+import { Stopping } from "./stopping";
 
 /** Two presses of Escape within this time stop the robot [ms]. */
 const twice = 600;
+/** How often it is looked whether a stop has arrived, and one that has not is sent again [ms]. */
+const period = 200;
 
-/** Puts the stop button into the header, and a red bar above all while the robot is stopped. */
+/**
+ * Puts the stop button into the header, a red bar above all while the robot is stopped, and large
+ * letters over everything while a stop that was pressed is not confirmed. Nothing moves for them.
+ */
 export function addStop(shell: Shell): void {
   const { server } = shell;
-  const say = (error: unknown): void =>
-    shell.say(error instanceof Error ? error.message : String(error));
-  let pending = false; // pressed, and not answered
-  const stop = async (): Promise<void> => {
-    pending = true;
+  const stopping = new Stopping();
+  let isAsked = false; // a stop was sent, and not answered
+
+  const order = async (stops: boolean): Promise<void> => {
+    if (stops) isAsked = true;
     try {
-      await server.command("estop");
-      pending = false;
+      await server.command(stops ? "estop" : "estop clear");
+      stopping.answered(stops, "");
     } catch (error) {
-      pending = server.connection.status !== "open";
-      say(
-        pending
-          ? "There is no connection to the server: the stop is sent when there is one."
-          : error,
-      );
+      // Where the connection is lost nothing is known; the page's own words say so.
+      const isAnswer = error instanceof CommandError && server.connection.status === "open";
+      if (!stops) shell.say(error instanceof Error ? error.message : String(error));
+      else if (isAnswer) stopping.answered(true, error.message);
     }
+    if (stops) isAsked = false;
+    else stopping.forgetClear();
+    show();
   };
-  server.onConnection(({ status }) => {
-    if (status === "open" && pending) void stop();
-  });
+  const stop = (): void => {
+    stopping.press(true, performance.now());
+    void order(true);
+    show();
+  };
+  const look = (): void => {
+    const isOpen = server.connection.status === "open";
+    if (stopping.isUnconfirmed && isOpen && !isAsked) void order(true);
+    show();
+  };
+  setInterval(look, period);
+
   const button = h(
     "button",
-    { class: "stop", title: "Stop the robot (Escape twice)", onclick: () => void stop() },
+    { class: "stop", title: "Stop the robot (Escape twice)", onclick: stop },
     "Stop",
   );
+  const { bar, showBar } = stoppedBar(() => {
+    stopping.press(false, performance.now());
+    void order(false);
+  });
+  const why = h("p", { class: "not-stopped-why" });
+  const alarm = h(
+    "div",
+    { class: "not-stopped", role: "alert", hidden: true },
+    h("strong", {}, "NOT STOPPED"),
+    why,
+    h("p", {}, "The stop is being repeated. If the robot moves, switch it off at the robot."),
+  );
+  shell.headerSlot.append(button);
+  shell.element.append(bar, alarm);
 
+  const show = (): void => {
+    const text = stopping.alarm(performance.now());
+    alarm.hidden = text === "";
+    if (text !== "" && why.textContent !== text) why.textContent = text;
+  };
+  let last = -Infinity;
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || event.repeat) return;
+    if (event.timeStamp - last < twice) stop();
+    last = event.timeStamp;
+  });
+  server.onConnection(({ status }) => {
+    stopping.connected(status === "open");
+    look();
+  });
+  server.onSession((session: Session) => {
+    stopping.heard(session.stopped);
+    const stopped = session.stopped === true;
+    button.textContent = stopped ? "STOPPED" : "Stop";
+    button.setAttribute("aria-pressed", String(stopped));
+    showBar(stopped, mayDrive(session));
+    show();
+  });
+}
+
+/** The bar while the robot is stopped, and how to show it. @param clear  lets the robot move. */
+function stoppedBar(clear: () => void): {
+  bar: HTMLElement;
+  showBar: (stopped: boolean, mayClear: boolean) => void;
+} {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
-  const clear = h(
+  const button = h(
     "button",
-    {
-      class: "stop-clear",
-      disabled: true,
-      onclick: () => void server.command("estop clear").catch(say),
-    },
+    { class: "stop-clear", disabled: true, onclick: clear },
     "Let it move",
   );
   confirm.addEventListener("change", () => {
-    clear.disabled = !confirm.checked;
+    button.disabled = !confirm.checked;
   });
   const controls = h(
     "span",
     { class: "stop-controls" },
     h("label", { for: "stop-confirm" }, confirm, "nobody is in its way"),
-    clear,
+    button,
   );
   const note = h("span", { class: "stop-note" }, "Who may drive it can clear this.");
   const bar = h(
@@ -63,31 +119,14 @@ export function addStop(shell: Shell): void {
     controls,
     note,
   );
-  shell.headerSlot.append(button);
-  shell.element.prepend(bar);
-
-  let last = -Infinity;
-  document.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || event.repeat) return;
-    if (event.timeStamp - last < twice) void stop();
-    last = event.timeStamp;
-  });
-
-  server.onSession((session: Session) => {
-    const stopped = session.stopped === true;
-    button.disabled = session.stopped === null;
-    button.textContent = stopped ? "STOPPED" : "Stop";
-    button.title =
-      session.stopped === null
-        ? "This graph has no workspace that can be stopped."
-        : "Stop the robot (Escape twice)";
-    button.setAttribute("aria-pressed", String(stopped));
+  const showBar = (stopped: boolean, mayClear: boolean): void => {
     if (bar.hidden === stopped) {
       bar.hidden = !stopped;
       confirm.checked = false;
-      clear.disabled = true;
+      button.disabled = true;
     }
-    controls.hidden = session.right !== "drive";
-    note.hidden = session.right === "drive";
-  });
+    controls.hidden = !mayClear;
+    note.hidden = mayClear;
+  };
+  return { bar, showBar };
 }

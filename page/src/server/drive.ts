@@ -30,6 +30,7 @@ const beat = writeMessage({
  */
 export class Drive {
   private readonly statuses = new Signal<DriveStatus>({ status: "connecting" });
+  private readonly refusals = new Signal<string>();
   private readonly socket: Socket;
   private readonly timer: number;
   private seq = 0n;
@@ -38,6 +39,7 @@ export class Drive {
   constructor(take: boolean) {
     this.socket = new Socket(() => (take ? "/drive?take=1" : "/drive"), {
       open: () => this.statuses.set({ status: "driving" }),
+      text: (text) => this.refusals.emit(text),
       lost: (code, reason, retry) => {
         if (retry !== null) return this.statuses.set({ status: "connecting" });
         const taken = code === 4409;
@@ -53,6 +55,11 @@ export class Drive {
 
   onStatus(listener: (status: DriveStatus) => void): Unsubscribe {
     return this.statuses.on(listener);
+  }
+
+  /** Why something that was sent is not done. */
+  onRefusal(listener: (why: string) => void): Unsubscribe {
+    return this.refusals.on(listener);
   }
 
   get status(): DriveStatus {

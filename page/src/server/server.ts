@@ -27,7 +27,8 @@ export class Server {
   private readonly sessions = new Signal<Session>();
   private readonly lines = new Signal<string>();
   private readonly connections = new Signal<Connection>({ status: "connecting" });
-  private readonly waiting: Waiting[] = [];
+  private readonly waiting = new Map<bigint, Waiting>(); // by the number of the command
+  private asked = 0n; // over this connection
   private readonly logged: string[] = [];
   private readonly socket: Socket;
 
@@ -35,16 +36,19 @@ export class Server {
     this.socket = new Socket(() => "/graph", {
       open: () => {
         this.logged.length = 0; // the server sends the last lines again
+        this.asked = 0n;
         this.connections.set({ status: "open" });
       },
       binary: (bytes) => this.receive(bytes),
       lost: (code, reason, retry) => {
-        for (const each of this.waiting.splice(0)) {
+        this.connections.set({ status: "lost", why: whyLost(code, reason), retry });
+        const lost = [...this.waiting.values()];
+        this.waiting.clear();
+        for (const each of lost) {
           each.reject(
             new CommandError(["The connection was lost; it is not known if it was done."]),
           );
         }
-        this.connections.set({ status: "lost", why: whyLost(code, reason), retry });
       },
     });
   }
@@ -97,7 +101,7 @@ export class Server {
    */
   command(text: string): Promise<string[]> {
     return new Promise((resolve, reject) => {
-      if (this.socket.send(text)) this.waiting.push({ resolve, reject });
+      if (this.socket.send(text)) this.waiting.set(this.asked++, { resolve, reject });
       else reject(new CommandError(["There is no connection to the server."]));
     });
   }
@@ -145,7 +149,8 @@ export class Server {
         return this.sessions.set(JSON.parse(rows.join("")) as Session);
       case 4: {
         const [first, ...others] = rows;
-        const answer = this.waiting.shift();
+        const answer = this.waiting.get(message.header.seq);
+        this.waiting.delete(message.header.seq);
         if (first === "ok") answer?.resolve(others);
         else answer?.reject(new CommandError(rows));
       }

@@ -91,9 +91,13 @@ export interface RecordingState {
   readonly streams: readonly string[];
 }
 
+/** What a session may: each right includes those before it. */
+export type Right = "view" | "drive" | "operate";
+
 export interface Session {
-  readonly right: "view" | "drive";
+  readonly right: Right;
   readonly driver: "other" | null;
+  /** null: the graph has no workspace, or it does not say. */
   readonly stopped: boolean | null;
   readonly recording: RecordingState | null;
   readonly drives: readonly DriveOutput[];
@@ -101,6 +105,16 @@ export interface Session {
   readonly frames: string;
   /** Name of the module that serves this page. */
   readonly web: string;
+}
+
+/** Whether a session may take the seat and clear a stop. */
+export function mayDrive(session: Session | undefined): boolean {
+  return session?.right === "drive" || session?.right === "operate";
+}
+
+/** Whether a session may change the graph, record and invite. */
+export function mayOperate(session: Session | undefined): boolean {
+  return session?.right === "operate";
 }
 
 export interface Recording {

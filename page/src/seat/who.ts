@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who has the head, in a sentence, and which tasks read what a driver sends. Pure.
+import { moduleOf } from "../graph/structure";
+import { mayDrive, type DriveOutput, type GraphState, type Session } from "../server";
+
+/**
+ * The task for which a driver's output is meant: that of the module that reads it.
+ *
+ * @param web  name of the module that serves the page.
+ * @returns  its number; 0: nothing reads it, or what does has no mode.
+ */
+export function taskOf(state: GraphState, web: string, output: DriveOutput): number {
+  for (const { to } of state.links.filter(({ from }) => from === `${web}.${output}`)) {
+    const mode = state.modules.find(({ name }) => name === moduleOf(to))?.mode ?? "";
+    const task = state.modes[mode];
+    if (task) return task;
+  }
+  return 0;
+}
+
+export interface Situation {
+  readonly session: Session | undefined;
+  readonly seat: "free" | "waiting" | "held" | "lost";
+  /** Where the seat was lost: why. */
+  readonly lost: string;
+  /** The page is too slow to drive. */
+  readonly slow: boolean;
+  /** The graph has a workspace. */
+  readonly decides: boolean;
+  /** Names of the tasks in focus. */
+  readonly focus: readonly string[];
+  /** Name of the task for which this page bids; empty: none. */
+  readonly bid: string;
+  /** That bid is so new that it may be on its way. */
+  readonly fresh: boolean;
+}
+
+/** Who has the head. */
+export function whoText(now: Situation): string {
+  const { session, seat, focus, bid } = now;
+  if (!session) return "";
+  if (seat === "waiting") return "Waiting for the seat…";
+  const has = focus.join(", ") || "no task";
+  if (seat === "held") {
+    if (session.stopped) return "Stopped. You have the seat.";
+    if (now.slow)
+      return "You have the seat, but this page is too slow: commands are dropped at times. Close some panels.";
+    if (!now.decides) return "You have the seat.";
+    if (!bid) return `The robot decides: ${has}.`;
+    if (focus.includes(bid)) return `You hold the head (${bid}).`;
+    if (session.stopped === null) return "You do not hold the head: the workspace does not answer.";
+    return now.fresh ? `Taking the head (${bid})…` : `You do not hold the head: ${has} has it.`;
+  }
+  const other = session.driver === "other";
+  const who = seat === "lost" ? now.lost : other ? "Somebody else has the seat." : "";
+  const head = session.stopped
+    ? "Stopped."
+    : !now.decides
+      ? ""
+      : other
+        ? `In focus: ${has}.`
+        : `The robot decides: ${has}.`;
+  const right = mayDrive(session) ? "" : "You may look; ask for a URL that may drive.";
+  return [who, head, right].filter((words) => words !== "").join(" ") || "Nobody has the seat.";
+}
