@@ -241,7 +241,7 @@ Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions&
   if (!recorder) return recorder.error();
   if ((*recorder)->file() != uri.rest && link.log)
     link.log(Severity::Warning,
-             uri.text() + ": stays as it is; continuing in " + (*recorder)->file());
+             uri.text() + ": the file stays as it is; continuing in " + (*recorder)->file());
   return std::unique_ptr<Sink>(new RecordingSink(std::move(*recorder)));
 }
 

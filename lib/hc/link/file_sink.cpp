@@ -59,7 +59,7 @@ Result<Descriptor> open_for_writing(const Uri& uri, bool appends, const LinkOpti
   auto file = begin_file(uri.rest);
   if (!file) return file.error();
   if (file->path != uri.rest && options.log)
-    options.log(Severity::Warning, "stays as it is; continuing in " + file->path);
+    options.log(Severity::Warning, "the file stays as it is; continuing in " + file->path);
   return std::move(file->descriptor);
 }
 

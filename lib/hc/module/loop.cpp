@@ -100,9 +100,11 @@ std::string Module::Loop::name_of(const std::string& uri, const std::string& por
 LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
   LinkOptions options = options_;
   options.log = [this, uri = uri.text(), port](Severity severity, std::string_view line) {
-    // The work goes on; `hc run` repeats this at its end.
-    if (severity == Severity::Error && line.starts_with(uri))
-      return module_.log("result: error: " + port + std::string(line.substr(uri.size())));
+    if (uri.starts_with("file:") && line.starts_with(uri)) {
+      // After an error the work goes on; `hc run` repeats it at its end.
+      const std::string kind = severity == Severity::Error ? "result: error: " : "";
+      return module_.log(kind + port + std::string(line.substr(uri.size())));
+    }
     const std::string name = name_of(uri, port);
     if (name == uri || !line.starts_with(uri)) return module_.log(line);
     lines_.push_back({uri, name + std::string(line.substr(uri.size())),
