@@ -9,12 +9,13 @@ link is in use again within 2 s of the network's return. And more clients than a
 import json
 import os
 import pathlib
+import re
 import socket
 import subprocess
 import time
 import unittest
 
-from harness import Pipes, WATCHDOG, free_port, listens, succeeds_once, wait_until
+from harness import PYTHON, Pipes, WATCHDOG, free_port, listens, succeeds_once, wait_until
 
 FULL = bool(os.environ.get("HC_FULL"))
 NOTICED, BACK = (4.0, 2.0) if FULL else (WATCHDOG, WATCHDOG)  # [s]
@@ -141,6 +142,29 @@ class Network(Pipes):
         self.within(self.far, self.recording() + "'tcp-listen:%s:7000?rate=50'" % THERE)
         reader = self.within(self.near, "hc cat --json 'tcp:%s:7000?reconnect=60'" % THERE)
         self.check_return(reader)
+
+    def test_a_head_tracker_hears_the_machine_that_is_named(self):
+        send = (
+            "import socket, struct; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM);"
+            "s.sendto(struct.pack('<6d', 0, 0, 0, -20, 0, 0), ('%s', 4242)); s.recv(1)" % HERE
+        )
+        for sender, said in (
+            (HERE, "ignored a packet of %s port [0-9]+: another host, which `sender`" % THERE),
+            (HERE + " " + THERE, "receiving from the tracker"),
+        ):
+            tracker = self.within(
+                self.near,
+                "hc head_tracker 0.0.0.0:4242 --centre_first=false --sender '%s'"
+                " --out rotation=file:rotation 2>&1" % sender,
+            )
+            while b"listening on UDP" not in tracker.stdout.readline():
+                self.assertIsNone(tracker.poll())
+            other = self.within(self.far, '%s -c "%s"' % (PYTHON, send))
+            lines = iter(tracker.stdout.readline, b"")
+            self.assertTrue(any(re.search(said, line.decode()) for line in lines))
+            for process in (other, tracker):
+                self.end(process)
+        self.assertIn("0.349", self.read("rotation"))
 
 
 class ManyClients(Pipes):
