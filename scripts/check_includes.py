@@ -163,9 +163,7 @@ ALSO = {
     "swap": {"algorithm"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]', re.M)
-NAME = re.compile(
-    r"\bstd::(?:ranges::)?(\w+)|(?<![\w.:>])(%s)\b" % "|".join(headers_of(MACROS))
-)
+NAME = re.compile(r"\bstd::(?:ranges::)?(\w+)|(?<![\w.:>])(%s)\b" % "|".join(headers_of(MACROS)))
 TEXT = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.S)
 
 

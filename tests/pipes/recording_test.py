@@ -204,9 +204,7 @@ class Recording(Pipes):
 
     @record_again
     def test_telepresence(self):
-        line = self.record(
-            "telepresence", "follow_score.settle=0.5", "follow_score.duration=1"
-        )
+        line = self.record("telepresence", "follow_score.settle=0.5", "follow_score.duration=1")
         self.replay_workspace()
         self.replay_gaze("telepresence", 0.01, 0.1)
         self.assertIn(line, self.replay("follow_score"))

@@ -25,7 +25,11 @@ SCORES = {
         ["augment_score.images=10"],
         lambda median, right: median < 40 and right > 60,
     ),
-    "track": (r"track_score: RMS error ([\d.]+)°", ["track_score.duration=8"], lambda rms: rms < 10),
+    "track": (
+        r"track_score: RMS error ([\d.]+)°",
+        ["track_score.duration=8"],
+        lambda rms: rms < 10,
+    ),
     "point": (
         r"first motion (-?[\d.]+) ms median, -?[\d.]+ ms at most, of (\d+) of (\d+) pushes",
         ["point_score.count=4"],
@@ -33,6 +37,7 @@ SCORES = {
     ),
     "read": (r"read_score: character error rate ([\d.]+) %", [], lambda rate: rate == 0),
 }
+
 
 class SideBySide(Graphs):
     def start_score(self, score, *parameters):
