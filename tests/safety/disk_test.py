@@ -102,7 +102,11 @@ class Disk(Rows):
                 killed = time.monotonic()
                 self.head.wait(self.head.is_whole, "all run after %s was killed" % name)
                 self.watch(recording, 2 * WRITES)
-                self.note("lost", len(recording.lost(killed + 1)), "%s %s" % (name, recording.lost(killed)))
+                self.note(
+                    "lost",
+                    len(recording.lost(killed + 1)),
+                    "%s %s" % (name, recording.lost(killed)),
+                )
                 self.watch(recording, 1)
         self.hold()
 

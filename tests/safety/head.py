@@ -9,7 +9,6 @@ import contextlib
 import json
 import os
 import pathlib
-import queue
 import re
 import signal
 import sys
@@ -29,7 +28,7 @@ from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
 
 IS_FULL = os.environ.get("HC_FULL") == "1"
 HEAD = ROOT / "graphs/head.toml"
-SETTINGS = {"head_tracker.port": 0, "web.port": 0, "head_eyes.ball": "roll"}
+SETTINGS = {"head_tracker.listen": "127.0.0.1:0", "web.port": 0, "head_eyes.ball": "roll"}
 SMALL = {"head_eyes.width": 80, "head_eyes.height": 60}  # images, where these are no matter
 PATIENCE = 40  # with which a test waits for what must come [s]
 MOST_PAN = 0.5  # how far a person turns the head here [rad]
@@ -46,7 +45,7 @@ class PageSocket:
 
     def __init__(self, port, cookie):
         self.socket = WebSocket(port, "/graph", cookie)
-        self.session, self.answers = {}, queue.Queue()
+        self.session, self.answers, self.orders = {}, {}, 0
         threading.Thread(target=self.read, daemon=True).start()
 
     def read(self):
@@ -57,11 +56,17 @@ class PageSocket:
                     if header[1] == 3:
                         self.session = json.loads(elements)
                     elif header[1] == 4:
-                        self.answers.put(elements.decode())
+                        self.answers[header[3]] = elements.decode()
+
+    def order(self, text):
+        """Gives a command; its number."""
+        self.socket.send(text)
+        self.orders += 1
+        return self.orders - 1
 
     def ask(self, text):
-        self.socket.send(text)
-        return self.answers.get(timeout=20)
+        number = self.order(text)
+        return wait_until(lambda: self.answers.get(number))
 
 
 class Seat:
@@ -90,8 +95,8 @@ class Head(Page):
     """One run of graphs/head.toml, and what is connected to it."""
 
     def begin(self, prefix="", options="", by_arrival=False, is_calibrated=True, **settings):
-        """Runs the head until it is calibrated, and observes its neck. `prefix`: what starts it, with
-        FOLDER for that of the test; `by_arrival`: as Stream has it."""
+        """Runs the head until it is calibrated, and observes its neck. `prefix`: what starts it,
+        with FOLDER for that of the test; `by_arrival`: as Stream has it."""
         self.setUp()
         self.sources, self.added, self.seat, self.page = {}, [], None, None
         self.cookie = ""
@@ -252,7 +257,7 @@ class Head(Page):
         return "web: page: " in self.said()
 
     def log_in(self):
-        """The cookie of the session: the one that it has, or a new one by the token printed last."""
+        """The cookie of the session: the one that it has, or one by the token printed last."""
 
         def tries():
             found = re.findall(r"http\S*:(\d+)/\?token=(\w+)", self.said())
@@ -321,7 +326,7 @@ class Head(Page):
     def press_stop(self):
         """Presses stop in the page; when that was [ns]."""
         moment = time.time_ns()
-        self.page.socket.send("estop")
+        self.page.order("estop")
         return moment
 
     def clear_stop(self):
@@ -374,16 +379,19 @@ class Head(Page):
         self.wait(self.is_whole, "all run")
         self.unlink_sources()
         self.tell(
-            "set track.salience=0.6", "set read_gaze.salience=0.4", "set read_gaze.idle_salience=0.1"
+            "set track.salience=0.6",
+            "set read_gaze.salience=0.4",
+            "set read_gaze.idle_salience=0.1",
         )
         self.open_page()
+        self.wait(lambda: self.page.session["stopped"] is not None, "the workspace is heard")
         if self.page.session["stopped"]:
             self.clear_stop()
 
 
 class Waits:
-    """For how long the processes that a command passes through wait for a processor, all together: so
-    much of what is measured says how busy the machine is, and is not the head's."""
+    """For how long the processes that a command passes through wait for a processor, all together:
+    so much of what is measured says how busy the machine is, and is not the head's."""
 
     def __init__(self, processes):
         self.processes, self.samples = processes, []

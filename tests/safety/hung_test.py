@@ -6,19 +6,23 @@ import contextlib
 import os
 import signal
 import time
+import tomllib
 import unittest
 
-from head import IS_FULL, Safety, seat_bid, seat_stick
+from head import HEAD, IS_FULL, Safety, seat_bid, seat_stick
 from harness import wait_until
-from page_test import number
 from streams import message, rotation
 from web_socket import BINARY
 
 FILLED = 2.5  # [s] in which the focus, at 1000 Hz, fills a queue of 2,048
 HUNG = 60 if IS_FULL else FILLED + 1  # before the stop [s]
+SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
-DRIVES = (("point", "pushing"), ("telepresence", "turning"))  # tasks, and how a person drives by them
+DRIVES = (
+    ("point", "pushing"),
+    ("telepresence", "turning"),
+)  # tasks, and how a person drives by them
 
 
 class Hung(Safety):
@@ -32,7 +36,9 @@ class Hung(Safety):
     def steady(self):
         """Bids and the focus, where they are always sent."""
         state = self.head.state_now()
-        ends = {link["from"] for link in state["links"] if link["to"].split(".")[0] in state["focus"]}
+        ends = {
+            link["from"] for link in state["links"] if link["to"].split(".")[0] in state["focus"]
+        }
         rates = [self.flows(1) for _ in range(3)]
         return {
             output
@@ -121,23 +127,28 @@ class Hung(Safety):
         self.hold()
 
     def test_a_module_hangs_for_good(self):
-        modules = {each["name"]: each["pid"] for each in self.head.state_now()["modules"]}
-        begun = time.monotonic()
-        for pid in modules.values():
+        """Those whose work takes long are left out where the test is short."""
+        given = tomllib.loads(HEAD.read_text())["modules"]
+        hang = {name: given.get(name, {}).get("hang", SOON) for name in self.head.names()}
+        hang = {name: seconds for name, seconds in hang.items() if IS_FULL or seconds == SOON}
+        before = {name: self.head.pid(name) for name in hang}
+        begun, back = time.monotonic(), {}
+        for pid in before.values():
             os.kill(pid, signal.SIGSTOP)
 
         def are_anew():
-            now = self.head.state_now()["modules"]
-            return all(
-                each["status"] == "running" and each["pid"] != modules[each["name"]] for each in now
-            )
+            for each in self.head.state_now()["modules"]:
+                name = each["name"]
+                if each["status"] == "running" and each["pid"] not in (0, before.get(name)):
+                    back.setdefault(name, time.monotonic() - begun - hang.get(name, 0))
+            return before.keys() <= back.keys()
 
         try:
             wait_until(are_anew)
-            self.note("back", time.monotonic() - begun)
+            self.note("back", max(back.values()))
             self.hold()
         finally:
-            for pid in modules.values():
+            for pid in before.values():
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGCONT)
 

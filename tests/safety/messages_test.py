@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Messages into inputs of the head that are bad, old, of the future, or not of the mode in focus."""
+"""Messages into the head that are bad, old, of the future, or not of the mode in focus."""
 
 import json
 import random

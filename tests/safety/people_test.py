@@ -80,7 +80,9 @@ class People(Safety):
         port = int(re.findall(r"listening on UDP \S+:(\d+)", self.head.said())[-1])
         sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.addCleanup(sender.close)
-        send = lambda now: sender.sendto(struct.pack("<6d", 0, 0, 0, yaw(now), 0, 0), ("127.0.0.1", port))
+        send = lambda now: sender.sendto(
+            struct.pack("<6d", 0, 0, 0, yaw(now), 0, 0), ("127.0.0.1", port)
+        )
         feeder = Feeder(send)
         self.addCleanup(feeder.end)
         return feeder

@@ -14,8 +14,8 @@ MOVED = 1e-6  # less is the same angle [rad]
 
 
 class Stream:
-    """The messages of an output, also after its module was restarted: (time [ns], elements). The time
-    is the sender's, or that of arrival here, where clocks are set."""
+    """The messages of an output, also after its module was restarted: (time [ns], elements). The
+    time is the sender's, or that of arrival here, where clocks are set."""
 
     def __init__(self, address, by_arrival):
         self.address, self.messages, self.is_over = address, [], threading.Event()
@@ -221,8 +221,8 @@ def rotation(pan, tilt=0.0, coord=14, mode=0, src=90, stamp=None):
 
 
 def run_delay(pid):
-    """How long threads of a process waited for a processor so far [ns]; those excepted that yield to
-    all others. 0 where the process is gone."""
+    """How long threads of a process waited for a processor so far [ns]; but for those that yield
+    to all others. 0 where the process is gone."""
     total = 0
     try:
         for thread in os.listdir("/proc/%d/task" % pid):
