@@ -288,6 +288,50 @@ class OneNeck(Graphs):
         counts = self.finish()
         self.assertGreaterEqual(sum(count >= ENOUGH for count in counts), 36, counts)
 
+    def wait_halted(self, halt):
+        """Does something while the stick is pushed, and waits until the unit is halted, and then
+        for some time in which it is asked where it is and told nothing else."""
+        known = len(self.messages("received"))
+        halt()
+
+        def asked_since():
+            words = "".join(row for _, row in self.messages("received")[known:]).split(" ")
+            return words[words.index("h") :] if "h" in words else []
+
+        wait_until(lambda: asked_since().count("pp") > 20)
+        self.assertEqual({word for word in asked_since()[1:-1] if word}, {"pp", "tp"})
+
+    def test_nobody_moves_the_unit_while_it_is_stopped_or_the_workspace_hangs(self):
+        self.start_tasks()
+        self.assertEqual(self.ask(self.process, "link unix-listen:stop workspace.stop"), ["ok"])
+        stop = socket.socket(socket.AF_UNIX)
+        self.addCleanup(stop.close)
+        wait_until(lambda: stop.connect_ex(self.path("stop")) == 0)
+        say = lambda source, word: stop.sendall(
+            b"1 %d 0 0 8 0 120100 0 0 1 1\n%d\n" % (source, word)
+        )
+        for push in (1.0, -1.0, 1.0):
+            self.stick = push
+            self.wait_told(POINT)
+            self.wait_halted(lambda: say(77, 1))
+            say(78, 0)  # which is not its own
+            self.wait_halted_still()
+            say(77, 0)
+            self.wait_told(POINT)
+            self.wait_halted(lambda: self.send_signal("workspace", signal.SIGSTOP))
+            self.send_signal("workspace", signal.SIGCONT)
+            self.wait_told(POINT)
+            self.stick = 0.0
+            self.wait_told(LEFT)
+        self.finish()
+
+    def wait_halted_still(self):
+        """Waits for some time in which the unit is told nothing."""
+        known = len(self.messages("received"))
+        asked = lambda: "".join(row for _, row in self.messages("received")[known:]).split(" ")
+        wait_until(lambda: asked().count("pp") > 20)
+        self.assertFalse([word for word in asked() if re.fullmatch(r"pp-?\d+", word)])
+
     def test_a_neck_that_takes_all_is_reported_by_all(self):
         """What the test above looks for would be found."""
         self.start_tasks(is_exclusive=False)
