@@ -12,14 +12,14 @@ Brake::Source* Brake::find(std::int32_t number) {
 }
 
 hc::Status Brake::take(const Message& message, hc::MonotonicTime now) {
-  if (message.word > Leave)
+  if (message.word > kLeave)
     return hc::Error{hc::Code::Malformed, "a stop is 0, 1, 2 or 3, not " +
                                               std::to_string(static_cast<int>(message.word))};
-  const bool is_stop = message.word == Stop;
+  const bool is_stop = message.word == kStop;
   const bool is_timely = message.said > now - kOld && message.said <= now + kAhead;
   if (!is_stop && !is_timely) return hc::Error{hc::Code::Malformed, "its time is not of now"};
   const auto said = is_stop ? now : std::min(message.said, now);
-  if (message.word == ClearAll) clear_all(said);
+  if (message.word == kClearAll) clear_all(said);
   if (Source* source = find(message.source); source != nullptr) {
     hear(*source, message, said);
   } else {
@@ -33,16 +33,16 @@ hc::Status Brake::take(const Message& message, hc::MonotonicTime now) {
 
 void Brake::hear(Source& source, const Message& message, hc::MonotonicTime said) {
   const bool was_silent = source.is_silent(said);
-  source.is_forgetful = source.is_forgetful || message.word == Leave || message.seq < source.seq ||
+  source.is_forgetful = source.is_forgetful || message.word == kLeave || message.seq < source.seq ||
                         (source.repeats && was_silent);
   source.repeats = message.word == source.word && !was_silent;
   source.word = message.word;
   source.seq = message.seq;
   source.heard = std::max(source.heard, said);
-  if (message.word == Leave) source.guards = false;
-  if (message.word == Free && source.repeats) source.guards = true;
-  if (message.word == Free && !source.is_forgetful) source.stops = false;
-  if (message.word == Stop) {
+  if (message.word == kLeave) source.guards = false;
+  if (message.word == kFree && source.repeats) source.guards = true;
+  if (message.word == kFree && !source.is_forgetful) source.stops = false;
+  if (message.word == kStop) {
     source.stops = true;
     source.is_forgetful = false;
   }

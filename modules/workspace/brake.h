@@ -8,10 +8,9 @@
 //   has left, or began to count its messages anew, may have forgotten what it asked for: its 0
 //   clears nothing until it has stopped the robot again.
 // - A source guards from the second of two 0 on that are no further apart than kSilence: it can
-// stop
-//   the robot at any time, and says so. While it is silent for longer, nobody may move the robot,
-//   since a stop could not arrive. A 3 says that it leaves and guards no more; a 2 of another
-//   source dismisses it while it is silent.
+//   stop the robot at any time, and says so. While it is silent for longer, nobody may move the
+//   robot, since a stop could not arrive. A 3 says that it leaves and guards no more; a 2 of
+//   another source dismisses it while it is silent.
 // - A 1 always counts. Another word counts from when it was said, and not at all when that was kOld
 //   ago or kAhead to come.
 
@@ -27,7 +26,8 @@
 
 class Brake {
  public:
-  enum Word : std::uint8_t { Free = 0, Stop = 1, ClearAll = 2, Leave = 3 };
+  /// What a source may say.
+  static constexpr std::uint8_t kFree = 0, kStop = 1, kClearAll = 2, kLeave = 3;
   static constexpr std::chrono::milliseconds kSilence{300}, kOld{1000}, kAhead{200};
   /// Sources that are known at the same time. A stop of one more holds until all are cleared.
   static constexpr std::size_t kMostSources = 64;
@@ -35,7 +35,7 @@ class Brake {
   /// What a source says.
   struct Message {
     std::int32_t source = 0;
-    std::uint8_t word = Stop;
+    std::uint8_t word = kStop;
     std::int64_t seq = 0;  ///< of the message; falls when another process has begun to count
     hc::MonotonicTime said{};
   };
@@ -70,9 +70,9 @@ class Brake {
  private:
   struct Source {
     bool stops = false, guards = false;
-    bool is_forgetful = false;  // its 0 ends no stop
-    std::uint8_t word = Leave;  // the last
-    bool repeats = false;       // the last word was said twice within kSilence
+    bool is_forgetful = false;   // its 0 ends no stop
+    std::uint8_t word = kLeave;  // the last
+    bool repeats = false;        // the last word was said twice within kSilence
     std::int64_t seq = 0;
     hc::MonotonicTime heard{std::chrono::hours(-1)};
 

@@ -126,7 +126,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     if (!taken) return module.log_once("stop refused", "stop refused: " + taken.error().detail);
     report();
     const auto source = brake.name(header.src);
-    if (word == Brake::Free && brake.stops_robot(header.src))
+    if (word == Brake::kFree && brake.stops_robot(header.src))
       module.log_once("stop kept", "the stop of " + source +
                                        " holds: it was silent or restarted meanwhile, and may not "
                                        "know of it; clear it in the page");

@@ -161,8 +161,9 @@ class Gaze(Pipes):
         )
         out = self.shell("(%s) | hc gaze --timeout 60 --in setpoint=- --out command=-" % setpoints)
         self.assertRegex(
-            self.err, r"^gaze: setpoint dropped: (59|60)\.\d+ s in the future .*\n"
-            r"gaze: total: 1 setpoint of another time\n$"
+            self.err,
+            r"^gaze: setpoint dropped: (59|60)\.\d+ s in the future .*\n"
+            r"gaze: total: 1 setpoint of another time\n$",
         )
         angles = [line.split() for line in out.splitlines()[1::2]]
         self.assertGreaterEqual(len(angles), 2)
