@@ -296,7 +296,8 @@ class Watching(Graphs):
 
     def test_a_reader_that_hangs_holds_nobody_for_long(self):
         readers = ("one", "two", "three")
-        text = GRAPH.partition("[modules.brightness]")[0] + "".join(
+        camera = GRAPH.partition("[modules.brightness]")[0].replace("rate = 50", "rate = 200")
+        text = camera + "".join(
             """[modules.%s]
 program = "brightness"
 inputs.image = { from = "camera.left", keep = "all", timeout = 1 }
@@ -340,11 +341,15 @@ inputs.image = { from = "camera.left", keep = "all", timeout = 1 }
     def test_a_module_that_hangs_is_restarted(self):
         name, process = self.run_named("hangs", "hang = 1\n" + GRAPH)
         messages = self.observe(process, name)
-        running = lambda state: self.module(state, "brightness")["status"] == "running"
+
+        def running(state, restarts=0):
+            module = self.module(state, "brightness")
+            return module["status"] == "running" and module["restarts"] == restarts
+
         pid = self.module(self.state(messages, running), "brightness")["pid"]
         os.kill(pid, signal.SIGSTOP)
         self.await_lines(process, "brightness: hung for 1 s; restarting")
-        again = self.state(messages, lambda state: running(state) and self.module(state, "brightness")["restarts"] == 1)
+        again = self.state(messages, lambda state: running(state, 1))
         self.assertEqual(self.module(again, "camera")["restarts"], 0)
         self.stop_named(name, process)
 

@@ -250,10 +250,10 @@ void add_graph(CLI::App& app) {
              {"SETTING", "a parameter, as PARAMETER=VALUE (default: its own default)"});
   add_changes(*verb, options, "remove", "Stop and remove modules, and their links", module);
   add_changes(*verb, options, "restart", "Restart modules", module);
-  add_change(
-      *verb, options, "link", "Add a link, or change its policy", {from, to},
-      {"POLICY",
-       "a setting of the policy, as KEY=VALUE: keep, rate, burst, memory, timeout, as, quality, scale"});
+  add_change(*verb, options, "link", "Add a link, or change its policy", {from, to},
+             {"POLICY",
+              "a setting of the policy, as KEY=VALUE: keep, rate, burst, memory, timeout, as, "
+              "quality, scale"});
   add_change(*verb, options, "unlink", "Remove a link", {from, to});
   add_changes(*verb, options, "set", "Set parameters, all or none",
               {"SETTING", "a parameter and its new value, as MODULE.PARAMETER=VALUE"});

@@ -117,10 +117,10 @@ class MotionCheck {
         for (const auto* way : {&there, &back})
           for (auto module = way->begin() + 1; module != way->end(); ++module)
             text += " -> " + *module;
-        planning_.problems.warn(
-            place_of(*one), "loop over two " + what + ": " + text +
-                                "; each disturbs the other, and nothing here says which is the "
-                                "faster: cut it, or let one workspace decide");
+        planning_.problems.warn(place_of(*one),
+                                "loop over two " + what + ": " + text +
+                                    "; each disturbs the other, and nothing here says which is the "
+                                    "faster: cut it, or let one workspace decide");
       }
   }
 

@@ -33,7 +33,8 @@ TEST(Motion, ALinkThatMayHoldWhatMovesTheRobotIsWarnedOf) {
   EXPECT_EQ(warnings(kHead), "");
   EXPECT_EQ(warnings(kHead + "inputs.in = \"eye.left\"\n"), "") << "the newest";
   const auto held = warnings(kHead + "inputs.in = { from = \"eye.left\", keep = \"all\" }\n");
-  EXPECT_TRUE(held.starts_with("g.toml:10: watcher.in can hold eye, which moves the robot")) << held;
+  EXPECT_TRUE(held.starts_with("g.toml:10: watcher.in can hold eye, which moves the robot"))
+      << held;
   const auto default_all = warnings(kHead + "[modules.filter]\ninputs.in = \"task.bid\"\n");
   EXPECT_TRUE(default_all.starts_with("g.toml:11: filter.in can hold task")) << default_all;
   EXPECT_EQ(warnings(kHead + "[modules.filter]\ninputs.in = { from = \"task.bid\", keep = 16 }\n"),
@@ -71,8 +72,9 @@ inputs.image = )";
 
 TEST(Motion, TwoHeadsThatSeeForEachOtherAreWarnedOf) {
   const std::map<std::string, std::string> files = {
-      {"head.toml", "[modules.eye]\nprogram = \"source\"\n[modules.neck]\n"
-                               "program = \"actor\"\n"}};
+      {"head.toml",
+       "[modules.eye]\nprogram = \"source\"\n[modules.neck]\n"
+       "program = \"actor\"\n"}};
   auto of = [](const std::string& name, const std::string& sees) {
     return "[graphs." + name + "]\nfile = \"head.toml\"\nmodules.neck.inputs.command = \"to_" +
            name + ".command\"\n[modules.to_" + name + "]\nprogram = \"task\"\ninputs.image = \"" +

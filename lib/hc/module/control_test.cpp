@@ -95,6 +95,24 @@ TEST_F(RunningModule, WhoReportsToNobodyLogsOnStandardErrorWhatIsWrong) {
             "gauge: command \"set colour=1\": no parameter \"colour\"\n");
 }
 
+TEST_F(RunningModule, InAGraphAReaderThatTakesNothingIsGivenUp) {
+  Module module{"source", "Makes numbers."};
+  auto out = module.output("out", table<double>(), "");
+  std::atomic<bool> is_enough{false};
+  module.generate([&] {
+    out.send(table({1.0}));
+    return !is_enough;
+  });
+  const auto reader = source_of(uri("out"));  // and never reads
+  start_managed(module, {"--out=" + uri("out")});
+  while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) != 1) {
+  }
+  while (read_counters(next(*reports_, Report::Counters)).at(0).traffic.timed_out == 0) {
+  }
+  is_enough = true;
+  EXPECT_EQ(join(), 0);
+}
+
 TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   ManualClock clock;  // stands still
   Module module{"actor", "Acts.", clock};

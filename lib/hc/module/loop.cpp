@@ -500,7 +500,8 @@ void Module::Loop::deliver(Inlet& link, Message& message) {
 void Module::Loop::drop(Inlet& link, const std::string& who, std::string_view why) {
   ++link.bad;
   has_failed_input_ = has_failed_input_ || link.is_file();
-  module_.log_once("bad at " + who, who + ": dropped: " + std::string(why));
+  module_.log_once("bad at " + who,
+                   who + ": dropped: " + std::string(why.substr(0, why.find('\n'))));
 }
 
 /// Why a message fits no input of its link.

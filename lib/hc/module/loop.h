@@ -116,14 +116,17 @@ struct Module::Loop {
   void deliver(internal::Inlet& link, Message& message);
   static Error misfit_of(const internal::Inlet& link, const Message& message);
   void drop(internal::Inlet& link, const std::string& who, std::string_view why);
-  /// Handles a message, or a set of them, which may be bad.
+  /// Handles a message, or a set of them, which may be bad: that is what any exception says that is
+  /// no ModuleError, such as those of libraries that do not take every image.
   template <typename Handle>
   void drop_bad(internal::Inlet& link, const std::string& who, const Handle& handle) {
     try {
       handle();
-    } catch (const BadMessage& bad) {
+    } catch (const ModuleError&) {
+      throw;
+    } catch (const std::exception& why) {
       module_.handled_ = {};
-      drop(link, who, bad.what());
+      drop(link, who, why.what());
     }
   }
   void call(const internal::InputState& input, internal::Inlet& link, Message& message);

@@ -271,6 +271,7 @@ Status Connection::drain(std::unique_lock<std::mutex>& lock, Outgoing* message,
       arm(now);
       return waited.error();
     }
+    patience_.end();  // it has its own end now
     give_up = clock_now() + kGrace;
   }
   arm(clock_now());
