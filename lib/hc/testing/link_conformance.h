@@ -218,7 +218,8 @@ TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
   open("timeout=1", "", options);
   std::int64_t count = 0;
   while (count < kPlenty) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
-  EXPECT_EQ(awaits, (std::vector<bool>{true, false})) << "it waited for it once";
+  ASSERT_GE(awaits.size(), 2U) << "it waited for it";
+  EXPECT_FALSE(awaits.back()) << "and does not any more";
   std::atomic<bool> is_heard_again{false};
   std::thread reader([&] {
     Message message;
