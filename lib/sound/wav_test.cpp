@@ -189,7 +189,7 @@ TEST_F(Wav, says_what_cannot_be_opened) {
             "NotFound: /no/such.wav: No such file or directory");
   EXPECT_EQ(WavReader::open("/tmp").error().detail, "/tmp: no regular file");
   EXPECT_EQ(WavWriter::create("/no/such.wav", {8000, 1}).error().text(),
-            "System: /no/such.wav: No such file or directory");
+            "NotFound: open(/no/such.wav): No such file or directory");
   auto full = WavWriter::create("/dev/full", {8000, 1});
   EXPECT_FALSE(full);
 }

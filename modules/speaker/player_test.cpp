@@ -60,11 +60,13 @@ TEST_F(PlayerTest, writes_a_file_that_is_whole_at_once) {
   EXPECT_EQ(to_file.dropped(), 0);
 }
 
-TEST_F(PlayerTest, one_that_is_started_again_continues_with_its_file) {
+TEST_F(PlayerTest, one_that_is_started_again_leaves_the_file) {
   for (std::size_t i = 1; i <= 3; ++i) {
     auto to_file = player({.plays = false, .device = "", .file = wav});
     ASSERT_TRUE(to_file.play<std::int16_t>(kSome, {8000, 2}));
-    EXPECT_EQ(written({8000, 2}).size(), 6 * i);
+    EXPECT_EQ(written({8000, 2}).size(), 6);
+    EXPECT_EQ(log.size(), i - 1);
+    EXPECT_FALSE(to_file.has_file_error());
   }
 }
 
@@ -97,9 +99,12 @@ TEST_F(PlayerTest, takes_messages_of_either_scalar) {
 
 TEST_F(PlayerTest, says_why_a_file_cannot_be_written) {
   auto to_file = player({.plays = false, .device = "", .file = "/no/such.wav"});
-  auto status = to_file.play<std::int16_t>(kSome, {8000, 1});
-  ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().detail, "/no/such.wav: No such file or directory");
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(to_file.play<std::int16_t>(kSome, {8000, 1}));
+  EXPECT_TRUE(to_file.has_file_error());
+  ASSERT_EQ(log.size(), 1);
+  EXPECT_EQ(
+      log.front(),
+      "result: error: recording of sound ended: open(/no/such.wav): No such file or directory");
 }
 
 TEST_F(PlayerTest, what_is_played_plays_and_written) {

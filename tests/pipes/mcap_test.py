@@ -160,7 +160,9 @@ class Recordings(Pipes):
     def test_a_second_run_leaves_what_the_first_has_recorded(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
         for place, second in (("kept", "kept_2"), ("x.mcap", "x_2.mcap")):
-            self.assertIn("recorded into %s\n" % place, self.shell("hc run g.toml --record " + place))
+            self.assertIn(
+                "recorded into %s\n" % place, self.shell("hc run g.toml --record " + place)
+            )
             before = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
             out = self.shell("hc run g.toml --record %s --quiet" % place)
             self.assertIn("recorded into %s\n" % second, out)

@@ -265,14 +265,18 @@ exec sleep 1000
 """,
             0o755,
         )
-        self.write_graph("[modules.talker]\nprogram = './talker'\n")
+        # Of each no more than 256 kB a second are taken, and together more than are kept.
+        names = ["talker"] + ["other%d" % i for i in range(7)]
+        self.write_graph("".join("[modules.%s]\nprogram = './talker'\n" % name for name in names))
 
         def await_state(process, condition):
             def is_so():
                 messages = self.observe(process)  # again, so that no lines come first
-                state = self.module(self.state(messages), "talker")
+                state = self.state(messages)
                 messages.close()
-                return condition(state) and state
+                others = all(is_silent(self.module(state, name)) for name in names[1:])
+                talker = self.module(state, "talker")
+                return others and condition(talker) and talker
 
             return wait_until(is_so)
 
@@ -320,7 +324,9 @@ exec sleep 1000
 
     def write_module(self, name, script):
         """A module without ports, and its table in a graph file."""
-        describe = '[ "$1" = --describe ] && exec echo \'{"inputs":[],"outputs":[],"parameters":[]}\'\n'
+        describe = (
+            '[ "$1" = --describe ] && exec echo \'{"inputs":[],"outputs":[],"parameters":[]}\'\n'
+        )
         self.write(name, "#!/bin/bash\n" + describe + script, 0o755)
         return "[modules.%s]\nprogram = './%s'\n" % (name, name)
 
@@ -356,7 +362,9 @@ printf 'windows\r\nresult: \e[31mred\n' >&2; [ -e again ] || exec sleep 1000
 """
         self.write_graph("restart = 'never'\n" + self.write_module("painter", script))
         process = self.run_graph(last="painter: .*red$")
-        line = r"clear \x1b[2J\x1b]0;title\x07 over\x0dwritten nul \x00 bad \xff\x9b csi \xc2\x9b31m"
+        line = (
+            r"clear \x1b[2J\x1b]0;title\x07 over\x0dwritten nul \x00 bad \xff\x9b csi \xc2\x9b31m"
+        )
         state = self.state(self.observe(process), lambda state: self.module(state, "painter"))
         self.assertIn(r"\x1b[31mred", self.module(state, "painter")["last_line"])
         out, err = self.stop(process)

@@ -295,7 +295,9 @@ class Tool(Pipes):
                 # A warning goes to no file that is opened in the place of a descriptor.
                 self.shell("rm -f out.mtp; hc record r.mtp out.mtp --count 3 %s" % closed)
                 self.assertEqual(self.shell("hc cat --json out.mtp").count("\n"), 3)
-                self.shell("rm -f out.mtp; hc camera nothing.png --out left=file:out.mtp " + closed, 1)
+                self.shell(
+                    "rm -f out.mtp; hc camera nothing.png --out left=file:out.mtp " + closed, 2
+                )
                 self.assertFalse(os.path.exists(self.path("out.mtp")) and self.read("out.mtp"))
 
     def test_a_loop_over_nothing_ends(self):

@@ -167,7 +167,7 @@ class Supervised {
   Restarts restarts_;
   Lines lines_;
   LogLimit log_limit_;
-  int results_ = 0;  // among what it has said
+  int results_ = 0;           // among what it has said
   MonotonicTime said_at_{0};  // the last of them
   Reports reports_;
   MonotonicTime heard_{0};                // when this process reported last; 0: it has not

@@ -100,7 +100,8 @@ void Supervised::take_report(const Message& message) {
   if (is_blocked && blocked_ == MonotonicTime(0)) blocked_ = heard_;
   if (message.header.src == static_cast<int>(Report::Refusal) &&
       message.header.info.type == MatrixType::String)
-    for (const auto& line : rows_of(message)) take_line(visible(line));
+    for (const auto& line : rows_of(message))
+      if (log_limit_.passes(line.size(), heard_)) callbacks_.event(visible(line));
   if (status_ == ModuleStatus::Stalled) callbacks_.event("resumed");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
       status_ == ModuleStatus::Running)

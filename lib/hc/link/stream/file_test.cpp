@@ -99,9 +99,9 @@ TEST(File, ThatHasContentsStays) {
   EXPECT_EQ(bytes_of(path), encode(numbered(0, 3)));
   EXPECT_EQ(bytes_of(folder / "eyes_2.mtp"), encode(numbered(1, 3)));
   EXPECT_EQ(bytes_of(folder / "eyes_3.mtp"), encode(numbered(2, 3)));
-  EXPECT_EQ(said, "file:" + path + ": the file stays as it is; continuing in " + (folder / "eyes_2.mtp") +
-                      "file:" + path + ": the file stays as it is; continuing in " +
-                      (folder / "eyes_3.mtp"));
+  EXPECT_EQ(said, "file:" + path + ": the file stays as it is; continuing in " +
+                      (folder / "eyes_2.mtp") + "file:" + path +
+                      ": the file stays as it is; continuing in " + (folder / "eyes_3.mtp"));
 }
 
 TEST(File, IsContinuedBehindItsLastWholeMessage) {
