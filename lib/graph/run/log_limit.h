@@ -3,6 +3,7 @@
 // How much of what a process says is taken in a second. Pure: time is passed in. Internal to graph.
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -42,9 +43,8 @@ class LogLimit {
     begun_ = now;
     lines_ = bytes_ = 0;
     return std::to_string(std::exchange(dropped_, 0)) + " lines dropped in " +
-           std::to_string(static_cast<int>(time + 0.5)) + " s: more than " +
-           std::to_string(kMostBytes >> 10) + " kB or " + std::to_string(kMostLines) +
-           " lines in a second";
+           std::to_string(std::lround(time)) + " s: more than " + std::to_string(kMostBytes >> 10) +
+           " kB or " + std::to_string(kMostLines) + " lines in a second";
   }
 
  private:

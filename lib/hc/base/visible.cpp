@@ -16,14 +16,16 @@ bool is_control(std::string_view character) {
     return (static_cast<unsigned char>(first) < 0x20 && first != '\t') || first == 0x7f;
   constexpr std::string_view kC1End = "\xc2\xa0";
   if (character.size() == 2) return character < kC1End;
-  constexpr std::array<std::array<std::string_view, 2>, 3> kDirections = {{
-      {"\xe2\x80\x8e", "\xe2\x80\x8f"},  // U+200E, U+200F
-      {"\xe2\x80\xa8", "\xe2\x80\xae"},  // U+2028 … U+202E, line ends too
-      {"\xe2\x81\xa6", "\xe2\x81\xa9"},  // U+2066 … U+2069
-  }};
-  return std::ranges::any_of(kDirections, [&](const auto& range) {
-    return range[0] <= character && character <= range[1];
-  });
+  if (character.size() != 3) return false;
+  auto bits = [&](std::size_t i, unsigned mask) {
+    return static_cast<unsigned char>(character[i]) & mask;
+  };
+  const unsigned point = bits(0, 0x0f) << 12 | bits(1, 0x3f) << 6 | bits(2, 0x3f);
+  // Line ends, and marks of direction.
+  constexpr std::array<std::array<unsigned, 2>, 3> kRanges = {
+      {{0x200e, 0x200f}, {0x2028, 0x202e}, {0x2066, 0x2069}}};
+  return std::ranges::any_of(
+      kRanges, [&](const auto& range) { return range[0] <= point && point <= range[1]; });
 }
 
 }  // namespace
