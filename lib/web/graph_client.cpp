@@ -9,8 +9,8 @@ GraphClient::GraphClient(RunningGraph graph, Post post, Callbacks callbacks)
     : graph_(std::move(graph)),
       post_(std::move(post)),
       callbacks_(std::move(callbacks)),
-      listener_([this] { listen(); }),
-      asker_([this] { work(); }) {}
+      listener_([this] { survive([this] { listen(); }); }),
+      asker_([this] { survive([this] { work(); }); }) {}
 
 GraphClient::~GraphClient() {
   {
@@ -32,6 +32,15 @@ void GraphClient::command(std::string command, Answered answered) {
     });
   commands_.push_back({std::move(command), std::move(answered)});
   asked_.notify_one();
+}
+
+/// What fails, for want of memory, is the end of the graph for the page, and not of the program.
+void GraphClient::survive(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception&) {
+    post_([this] { callbacks_.end(); });
+  }
 }
 
 void GraphClient::listen() {

@@ -40,6 +40,7 @@ class GraphClient {
     std::string command;
     Answered answered;
   };
+  void survive(const std::function<void()>& work);
   void listen();
   void work();
 

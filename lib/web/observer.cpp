@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 namespace hc::web {
@@ -39,6 +40,14 @@ void Observer::wake() {
 
 void Observer::run() {
   yield_to_robot();
+  try {
+    observe();
+  } catch (const std::exception& error) {  // of who looks on: the others are served on
+    if (!is_stopped_) callbacks_.end(error.what(), true);
+  }
+}
+
+void Observer::observe() {
   constexpr std::chrono::seconds kRenewal{1};
   auto end = [&](const std::string& why, bool is_error) {
     if (!is_stopped_) callbacks_.end(why, is_error);

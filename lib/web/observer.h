@@ -43,6 +43,7 @@ class Observer {
 
  private:
   void run();
+  void observe();
 
   const RunningGraph graph_;
   const std::string port_;

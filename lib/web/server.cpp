@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/server.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <deque>
 #include <exception>
+#include <list>
+#include <map>
 #include <optional>
-#include <set>
+#include <sstream>
 #include <type_traits>
+
+#include <hc/os/descriptor.h>
+#include <hc/os/peer_user.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -15,7 +23,6 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/ssl.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/ssl.hpp>
@@ -34,10 +41,11 @@ using tcp = asio::ip::tcp;
 using Plain = beast::tcp_stream;
 using Secure = beast::ssl_stream<beast::tcp_stream>;
 
-constexpr std::size_t kMaxHead = 8192, kMaxMessage = 65536, kMaxConnections = 1024;  // [byte], 1
+constexpr std::size_t kMaxHead = 8192, kMaxMessage = 65536;  // [byte]
+constexpr std::size_t kMaxStrangers = 128, kMaxKnown = 768;
+constexpr std::size_t kPiece = 65536;  // of a file, that is read at a time [byte]
 constexpr std::chrono::seconds kHeadTime{5}, kIdleTime{30};
-constexpr std::chrono::seconds kPongTime{10};   // of a WebSocket from which nothing comes
-constexpr std::chrono::seconds kWriteTime{60};  // of a file
+constexpr std::chrono::seconds kPongTime{10};  // of a WebSocket from which nothing comes
 
 /// What has been escaped by %; nothing where that is wrong or hides a zero byte.
 std::optional<std::string> decoded(std::string_view text) {
@@ -83,27 +91,125 @@ std::optional<Request> request_of(const http::request<http::empty_body, Fields>&
   return request;
 }
 
+class Visitor;
+
 /// What connections share.
 struct Shared {
   Site* site = nullptr;
-  int connections = 0;
-  asio::thread_pool* files = nullptr;  // where those that take long are made
+  LogSink log;
+  std::list<Visitor*> strangers;  // who have shown no session, the oldest first
+  std::size_t known = 0;
+
+  /// Calls what belongs to a site. @returns  whether it threw nothing; else it is logged.
+  template <typename Call>
+  bool guard(const Call& call) const {
+    try {
+      call();
+      return true;
+    } catch (const std::exception& error) {
+      log(Severity::Error, std::string("server: ") + error.what());
+      return false;
+    }
+  }
 };
 
-/// Counts a connection while it lives.
-class Counted {
+/// A connection, as long as it lives, and whether it has shown a session.
+class Visitor {
  public:
-  explicit Counted(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {
-    ++shared_->connections;
+  Visitor(std::shared_ptr<Shared> shared, std::string source)
+      : shared_(std::move(shared)), source_(std::move(source)) {
+    shared_->strangers.push_back(this);
   }
-  Counted(const Counted&) = delete;
-  Counted& operator=(const Counted&) = delete;
-  ~Counted() { --shared_->connections; }
+  Visitor(const Visitor&) = delete;
+  Visitor& operator=(const Visitor&) = delete;
+  ~Visitor() {
+    if (is_known_)
+      --shared_->known;
+    else
+      std::erase(shared_->strangers, this);
+  }
+
+  /// It has shown a session; whether there is room for it.
+  bool know() {
+    if (is_known_) return true;
+    if (shared_->known >= kMaxKnown) return false;
+    std::erase(shared_->strangers, this);
+    ++shared_->known;
+    return is_known_ = true;
+  }
+  [[nodiscard]] const Shared& shared() const { return *shared_; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
-  [[nodiscard]] asio::thread_pool& files() const { return *shared_->files; }
+
+  /// Closes the oldest stranger of the source that has most of them. False: there is none.
+  static bool drop_one(Shared& shared) {
+    std::map<std::string_view, std::size_t> counts;
+    for (const auto* stranger : shared.strangers) ++counts[stranger->source_];
+    std::size_t most = 0;
+    for (const auto& [source, count] : counts) most = std::max(most, count);
+    const auto oldest = std::ranges::find_if(
+        shared.strangers, [&](const auto* each) { return counts[each->source_] == most; });
+    if (oldest == shared.strangers.end()) return false;
+    const auto close = (*oldest)->close;
+    shared.strangers.erase(oldest);
+    if (close) close();
+    return true;
+  }
+
+  std::function<void()> close;  ///< closes its socket
 
  private:
-  std::shared_ptr<Shared> shared_;
+  const std::shared_ptr<Shared> shared_;
+  const std::string source_;  // the user of this host, or the other host
+  bool is_known_ = false;
+};
+
+/// Who is at the other end: the user, on this host; else the host, of IPv6 its network.
+std::string source_of(tcp::socket& socket) {
+  const auto user = internal::tcp_peer_user(socket.native_handle(), internal::Connected::Accepted);
+  if (user) return "user " + std::to_string(*user);
+  beast::error_code error;
+  const auto address = socket.remote_endpoint(error).address();
+  if (error || !address.is_v6()) return address.to_string();
+  constexpr std::size_t kNetwork = 8;  // [byte]
+  const auto bytes = address.to_v6().to_bytes();
+  return {bytes.begin(), bytes.begin() + kNetwork};
+}
+
+/// Reads a reply's parts one piece after the other.
+class Pieces {
+ public:
+  /// Nothing: an error, of a file. Empty: the end.
+  std::optional<std::string_view> next() {
+    for (; !parts_.empty(); parts_.pop_front()) {
+      Part& part = parts_.front();
+      if ((bytes_ = std::exchange(part.bytes, nullptr)) != nullptr && !bytes_->empty())
+        return *bytes_;
+      if (part.size == 0) continue;
+      if (!file_ && !open(part.file)) return std::nullopt;
+      buffer_.resize(kPiece);
+      const auto got =
+          ::read(file_.get(), buffer_.data(), std::min<std::uint64_t>(kPiece, part.size));
+      if (got <= 0) return std::nullopt;
+      part.size -= static_cast<std::uint64_t>(got);
+      if (part.size == 0) file_.reset();
+      return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
+    }
+    return std::string_view();
+  }
+  void add(Part part) { parts_.push_back(std::move(part)); }
+  void clear() { *this = {}; }
+
+ private:
+  /// Never waits for the other end of a FIFO.
+  bool open(const std::string& path) {
+    file_ = internal::Descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    return static_cast<bool>(file_);
+  }
+
+  std::deque<Part> parts_;
+  Bytes bytes_;  // of the piece
+  internal::Descriptor file_;
+  std::string buffer_;
 };
 
 /// A WebSocket over a stream of either kind. The page's handlers keep it, and it keeps itself while
@@ -111,8 +217,8 @@ class Counted {
 template <typename Stream>
 class Socket final : public WebSocket, public std::enable_shared_from_this<Socket<Stream>> {
  public:
-  Socket(Stream&& stream, std::shared_ptr<Counted> counted)
-      : stream_(std::move(stream)), counted_(std::move(counted)) {}
+  Socket(Stream&& stream, std::shared_ptr<Visitor> visitor)
+      : stream_(std::move(stream)), visitor_(std::move(visitor)) {}
 
   void accept(http::request<http::empty_body> head, Request request, const Reply& reply) {
     beast::get_lowest_layer(stream_).expires_never();
@@ -135,7 +241,8 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
     stream_.async_accept(*kept, [self = this->shared_from_this(), kept,
                                  asked = std::move(request)](beast::error_code error) {
       if (error) return;
-      self->counted_->site().open(self, asked);
+      if (!self->visitor_->shared().guard([&] { self->visitor_->site().open(self, asked); }))
+        return self->lose();
       self->read();
     });
   }
@@ -182,7 +289,8 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
                           if (error) return self->lose();
                           if (self->closing_) return self->finish();
                           if (!self->queue_.empty()) self->write();
-                          if (const auto sent = self->on_sent) sent();
+                          if (const auto sent = self->on_sent)
+                            if (!self->visitor_->shared().guard(sent)) self->lose();
                         });
   }
 
@@ -200,7 +308,8 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
           const std::string_view text(static_cast<const char*>(data.data()), data.size());
           // A handler may replace itself.
           const auto handler = self->stream_.got_text() ? self->on_text : self->on_binary;
-          if (handler) handler(text);
+          if (handler && !self->visitor_->shared().guard([&] { handler(text); }))
+            return self->lose();
           self->buffer_.consume(self->buffer_.size());
           self->read();
         });
@@ -209,12 +318,12 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
   void lose() {
     const auto closed = on_close;
     forget();
-    if (closed) closed();
+    if (closed) visitor_->shared().guard(closed);
   }
   void forget() { on_text = on_binary = nullptr, on_sent = on_close = nullptr; }
 
   websocket::stream<Stream> stream_;
-  std::shared_ptr<Counted> counted_;
+  std::shared_ptr<Visitor> visitor_;
   beast::flat_buffer buffer_;
   std::deque<Outgoing> queue_;  // the first is being written
   bool is_writing_ = false;
@@ -225,10 +334,13 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
 template <typename Stream>
 class Connection : public std::enable_shared_from_this<Connection<Stream>> {
  public:
-  Connection(Stream&& stream, std::shared_ptr<Counted> counted)
-      : stream_(std::move(stream)), counted_(std::move(counted)) {}
+  Connection(Stream&& stream, std::shared_ptr<Visitor> visitor)
+      : stream_(std::move(stream)), visitor_(std::move(visitor)) {}
 
   void begin() {
+    visitor_->close = [weak = this->weak_from_this()] {
+      if (const auto self = weak.lock()) beast::get_lowest_layer(self->stream_).close();
+    };
     if constexpr (std::is_same_v<Stream, Secure>) {
       beast::get_lowest_layer(stream_).expires_after(kHeadTime);
       stream_.async_handshake(asio::ssl::stream_base::server,
@@ -254,28 +366,31 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
   void take(beast::error_code error) {
     if (error == http::error::header_limit || error == http::error::body_limit)
-      return write({431, "text/plain", text("the request is too large\n"), {}, {}, {}}, false);
+      return write({431, "text/plain", text("the request is too large\n"), {}, {}}, false);
     if (error == beast::error::timeout || error == http::error::end_of_stream) return;
     if (error.category() == http::make_error_code(http::error::bad_line_ending).category())
-      return write({400, "text/plain", text("no request of HTTP\n"), {}, {}, {}}, false);
+      return write({400, "text/plain", text("no request of HTTP\n"), {}, {}}, false);
     if (error) return;
     auto head = parser_->release();
     auto request = request_of(head);
-    if (!request)
-      return write({400, "text/plain", text("the path is malformed\n"), {}, {}, {}}, false);
+    if (!request) return write({400, "text/plain", text("the path is malformed\n"), {}, {}}, false);
     if (head.method() != http::verb::get)
-      return write({405, "text/plain", text("only GET is served\n"), {}, {}, {}}, false);
+      return write({405, "text/plain", text("only GET is served\n"), {}, {}}, false);
     const bool keeps = head.keep_alive() && !request->is_socket;
-    Reply reply = counted_->site().reply(*request);
+    Reply reply;
+    if (!visitor_->shared().guard([&] { reply = visitor_->site().reply(*request); })) return;
+    if (reply.status < 400 && !visitor_->know())
+      return write({503, "text/plain", text("too many connections are open\n"), {}, {}}, false);
     if (reply.status != 101) return write(std::move(reply), keeps);
-    std::make_shared<Socket<Stream>>(std::move(stream_), counted_)
+    visitor_->close = nullptr;
+    std::make_shared<Socket<Stream>>(std::move(stream_), visitor_)
         ->accept(std::move(head), std::move(*request), reply);
   }
 
   static Bytes text(const char* words) { return std::make_shared<const std::string>(words); }
 
-  template <typename Response>
-  void set_head(Response& response, const Reply& reply, bool keeps) {
+  void write(Reply reply, bool keeps) {
+    http::response<http::empty_body> response;
     response.version(11);
     response.result(static_cast<unsigned>(reply.status));
     response.set(http::field::content_type, reply.type);
@@ -285,57 +400,36 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     response.set("Cross-Origin-Resource-Policy", "same-origin");
     for (const auto& [name, value] : reply.fields) response.set(name, value);
     response.keep_alive(keeps);
-    response.prepare_payload();
-  }
-
-  template <typename Response>
-  void send(std::shared_ptr<Response> response, bool keeps, std::chrono::seconds time) {
-    beast::get_lowest_layer(stream_).expires_after(time);
-    http::async_write(
-        stream_, *response,
-        [self = this->shared_from_this(), response, keeps](beast::error_code error, std::size_t) {
-          if (error) return;
-          if (keeps) return self->read();
-          self->end();
-        });
-  }
-
-  /// Has the file of a reply made elsewhere, and sends it then.
-  void make(Reply reply, bool keeps) {
-    beast::get_lowest_layer(stream_).expires_never();
-    asio::post(counted_->files(), [self = this->shared_from_this(), reply = std::move(reply),
-                                   keeps] {
-      auto path = reply.make_file();
-      asio::post(self->stream_.get_executor(), [self, reply, keeps,
-                                                path = std::move(path)]() mutable {
-        reply.make_file = nullptr;
-        if (path) reply.file = *path;
-        if (!path)
-          reply = {
-              404, "text/plain", std::make_shared<const std::string>(path.error().detail + "\n"),
-              {},  {},           {}};
-        self->write(std::move(reply), keeps);
-      });
-    });
-  }
-
-  void write(Reply reply, bool keeps) {
-    if (reply.make_file) return make(std::move(reply), keeps);
-    if (!reply.file.empty()) {
-      auto response = std::make_shared<http::response<http::file_body>>();
-      beast::error_code error;
-      response->body().open(reply.file.c_str(), beast::file_mode::scan, error);
-      if (error)
-        return write({404, "text/plain", text("there is no such file\n"), {}, {}, {}}, keeps);
-      set_head(*response, reply, keeps);
-      return send(response, keeps, kWriteTime);
-    }
+    std::uint64_t size = reply.body ? reply.body->size() : 0;
+    for (const auto& part : reply.parts) size += (part.bytes ? part.bytes->size() : 0) + part.size;
+    response.content_length(size);
+    std::ostringstream head;
+    head << response.base();
+    pieces_.clear();
+    pieces_.add({std::make_shared<const std::string>(head.str()), {}, 0});
     // The body is shared by all pages, and not copied.
-    auto response = std::make_shared<http::response<http::span_body<const char>>>();
-    if (reply.body) response->body() = {reply.body->data(), reply.body->size()};
-    bodies_ = reply.body;
-    set_head(*response, reply, keeps);
-    send(response, keeps, kIdleTime);
+    pieces_.add({std::move(reply.body), {}, 0});
+    for (auto& part : reply.parts) pieces_.add(std::move(part));
+    write_on(keeps);
+  }
+
+  /// Writes the next of the reply. Only who takes nothing for a while is given up, however long the
+  /// whole takes.
+  void write_on(bool keeps) {
+    if (piece_.empty()) {
+      const auto next = pieces_.next();
+      if (!next) return beast::get_lowest_layer(stream_).close();
+      piece_ = *next;
+      if (piece_.empty()) return keeps ? read() : end();
+    }
+    beast::get_lowest_layer(stream_).expires_after(kIdleTime);
+    stream_.async_write_some(
+        asio::buffer(piece_.data(), piece_.size()),
+        [self = this->shared_from_this(), keeps](beast::error_code error, std::size_t written) {
+          if (error) return;
+          self->piece_.remove_prefix(written);
+          self->write_on(keeps);
+        });
   }
 
   void end() {
@@ -344,15 +438,16 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   }
 
   Stream stream_;
-  std::shared_ptr<Counted> counted_;
+  std::shared_ptr<Visitor> visitor_;
   beast::flat_buffer buffer_{kMaxHead};
   std::optional<http::request_parser<http::empty_body>> parser_;
-  Bytes bodies_;  // of the reply that is being written
+  Pieces pieces_;           // of the reply that is being written
+  std::string_view piece_;  // what is left of one
 };
 
 class BeastServer final : public Server {
  public:
-  explicit BeastServer(LogSink log) : log_(std::move(log)) {}
+  explicit BeastServer(LogSink log) { shared_->log = std::move(log); }
 
   Status open(const std::string& address, std::uint16_t first, int ports) {
     beast::error_code error;
@@ -394,15 +489,9 @@ class BeastServer final : public Server {
 
   void run(Site& site) override {
     shared_->site = &site;
-    shared_->files = &files_;
     accept();
-    while (true) {
-      try {
-        context_.run();
-        return;
-      } catch (const std::exception& error) {  // of a Site; the others are served on
-        log_(Severity::Error, std::string("server: ") + error.what());
-      }
+    // What is posted may throw; the others are served on.
+    while (!shared_->guard([&] { context_.run(); })) {
     }
   }
   void stop() override {
@@ -421,8 +510,8 @@ class BeastServer final : public Server {
       timer->expires_after(period);
       timer->async_wait([call, again = weak.lock()](beast::error_code error) {
         if (error || !again) return;
+        (*again)();  // first, since the other may throw
         call();
-        (*again)();
       });
     };
     asio::post(context_, [next] { (*next)(); });
@@ -432,31 +521,34 @@ class BeastServer final : public Server {
   void accept() {
     acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error) {
-        // No descriptors are left, as a rule: the next attempt is not to be at once.
-        log_(Severity::Warning, "server: accept: " + error.message());
-        auto timer = std::make_shared<asio::steady_timer>(context_, std::chrono::seconds(1));
-        return timer->async_wait([this, timer](beast::error_code) { accept(); });
+        // No descriptors are left, as a rule. Where no stranger can give one back, the next attempt
+        // is not to be at once.
+        if (error != asio::error::no_descriptors || !Visitor::drop_one(*shared_)) {
+          shared_->log(Severity::Warning, "server: accept: " + error.message());
+          auto timer = std::make_shared<asio::steady_timer>(context_, std::chrono::seconds(1));
+          return timer->async_wait([this, timer](beast::error_code) { accept(); });
+        }
+      } else {
+        shared_->guard([&] { begin(std::move(socket)); });
       }
-      if (shared_->connections < static_cast<int>(kMaxConnections)) begin(std::move(socket));
       accept();
     });
   }
 
   void begin(tcp::socket socket) {
-    auto counted = std::make_shared<Counted>(shared_);
+    auto visitor = std::make_shared<Visitor>(shared_, source_of(socket));
+    if (shared_->strangers.size() > kMaxStrangers) Visitor::drop_one(*shared_);
     if (secure_)
-      std::make_shared<Connection<Secure>>(Secure(Plain(std::move(socket)), *secure_), counted)
+      std::make_shared<Connection<Secure>>(Secure(Plain(std::move(socket)), *secure_), visitor)
           ->begin();
     else
-      std::make_shared<Connection<Plain>>(Plain(std::move(socket)), counted)->begin();
+      std::make_shared<Connection<Plain>>(Plain(std::move(socket)), visitor)->begin();
   }
 
-  LogSink log_;
   std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
   std::optional<asio::ssl::context> secure_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
-  asio::thread_pool files_{1};  // last: what it makes is posted to the above
 };
 
 }  // namespace

@@ -32,13 +32,18 @@ struct Request {
 /// The value of an option in a query; empty where there is none.
 std::string_view option(std::string_view query, std::string_view name);
 
+/// A piece of a reply: bytes, and behind them so many of a file.
+struct Part {
+  Bytes bytes;  ///< null: none
+  std::string file;
+  std::uint64_t size = 0;  ///< [byte]; a file that has become shorter breaks the connection
+};
+
 struct Reply {
-  int status = 200;
+  int status = 200;  ///< below 400: who asks has shown a session
   std::string type = "text/plain; charset=utf-8";
-  Bytes body;        ///< null: none, or `file`
-  std::string file;  ///< path of a file to send instead
-  /// Gives that path; called on another thread, since it may take long. What fails is a 404.
-  std::function<Result<std::string>()> make_file;
+  Bytes body;                                               ///< null: none
+  std::vector<Part> parts;                                  ///< that follow it
   std::vector<std::pair<std::string, std::string>> fields;  ///< of the head, beside the usual ones
 };
 
@@ -65,6 +70,7 @@ class WebSocket {
 class Site {
  public:
   virtual ~Site() = default;
+  // What they throw is logged, and ends the connection that it is about alone.
   /// What is answered to a GET; of a request for a WebSocket, why it is refused, or status 101 and
   /// the fields of that answer.
   virtual Reply reply(const Request& request) = 0;
@@ -88,6 +94,9 @@ class Server {
   /// @param port  the first that is tried of `ports`; 0: any that is free.
   /// @param identity  null: no TLS.
   /// Errors: Invalid (the address is none), System (no port is free; the identity is of no use).
+  /// Of connections that have not shown a session yet, 128 are served at a time: each further one
+  /// closes the oldest of the user or host that has most of them. Those with a session, at most
+  /// 768, are closed for nobody.
   static Result<std::unique_ptr<Server>> listen(const std::string& address, std::uint16_t port,
                                                 int ports, const Identity* identity, LogSink log);
 

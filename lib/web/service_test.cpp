@@ -6,7 +6,10 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <hc/testing/loopback.h>
 
@@ -86,6 +89,25 @@ TEST(Service, logs_by_the_inbox_alone) {
   EXPECT_EQ(logged, "");
   inbox.work_off();
   EXPECT_EQ(logged, "server: it fails");
+}
+
+TEST(Service, a_call_that_throws_is_logged_and_made_again) {
+  Inbox inbox;
+  std::vector<std::string> logged;
+  std::atomic<int> closed = 0, calls = 0;
+  auto service =
+      Service::open({}, inbox, [&](std::string_view line) { logged.emplace_back(line); });
+  ASSERT_TRUE(service) << service.error().text();
+  (*service)->server().every(std::chrono::milliseconds(1), [&] {
+    if (++calls < 3) throw std::runtime_error("it fails");
+  });
+  (*service)->serve(std::make_unique<Hello>(closed));
+  while (logged.size() < 2) {
+    ASSERT_TRUE(is_readable(inbox.descriptor()));
+    inbox.work_off();
+  }
+  EXPECT_EQ(logged[1], "server: it fails");
+  EXPECT_TRUE(answer(ask((*service)->server().port(), "/").get()).ends_with("\r\n\r\nhello"));
 }
 
 TEST(Service, ends_though_it_served_nothing) {

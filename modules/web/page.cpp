@@ -143,7 +143,7 @@ web::Reply Page::reply(const web::Request& request) {
     const bool is_known =
         request.path == "/graph" || request.path == "/drive" ||
         (request.path.starts_with("/streams/") && is_port_name(request.path.substr(9)));
-    return is_known ? web::Reply{101, {}, {}, {}, {}, {}} : refusal(404, "there is no such socket");
+    return is_known ? web::Reply{101, {}, {}, {}, {}} : refusal(404, "there is no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
     return reply_with_recording(request);
@@ -156,13 +156,12 @@ web::Reply Page::reply_to_token(const web::Request& request) {
     // Whoever has a session already opened the link once more.
     if (!access_.right_of(request.cookies))
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
-    return {303, "text/plain", {}, {}, {}, {{"Location", "/"}}};
+    return {303, "text/plain", {}, {}, {{"Location", "/"}}};
   }
   callbacks_.log("notice: page opened; for another browser: " +
                  access_.invite(web::Right::Operate));
   return {303,
           "text/plain",
-          {},
           {},
           {},
           {{"Location", "/"},
@@ -192,8 +191,7 @@ web::Reply Page::reply_with_recording(const web::Request& request) const {
     for (const auto& each : list_recordings(options_.recordings))
       list += hc::format(R"({}{{"name":{},"bytes":{},"streams":{}}})", list.empty() ? "" : ",",
                          json_string(each.name), each.bytes, json_list(each.streams));
-    return {
-        200, "application/json", text("[" + list + "]"), {}, {}, {{"Cache-Control", "no-store"}}};
+    return {200, "application/json", text("[" + list + "]"), {}, {{"Cache-Control", "no-store"}}};
   }
   std::string_view rest =
       std::string_view(request.path).substr(std::string_view("/recordings/").size());
@@ -201,23 +199,23 @@ web::Reply Page::reply_with_recording(const web::Request& request) const {
   if (slash == std::string_view::npos && rest.ends_with(".tar")) {
     rest.remove_suffix(4);
     if (!is_recording_name(rest)) return refusal(404, "there is no such recording");
+    auto parts = archive_of(options_.recordings, std::string(rest));
+    if (!parts) return refusal(404, parts.error().detail);
     return {200,
             "application/x-tar",
             {},
-            {},
-            [folder = options_.recordings, name = std::string(rest)] {
-              return write_archive(folder, name);
-            },
+            std::move(*parts),
             {{"Content-Disposition", "attachment; filename=\"" + std::string(rest) + ".tar\""}}};
   }
   if (slash == std::string_view::npos || !rest.ends_with(".mtp"))
     return refusal(404, "there is no such recording");
-  const auto name = rest.substr(0, slash);
-  const auto port = rest.substr(slash + 1, rest.size() - slash - 1 - 4);
+  const std::string name(rest.substr(0, slash));
+  const std::string port(rest.substr(slash + 1, rest.size() - slash - 1 - 4));
   if (!is_recording_name(name) || !is_port_name(port))
     return refusal(404, "there is no such recording");
-  return {200, "application/octet-stream", {}, options_.recordings + "/" + std::string(rest), {},
-          {}};
+  auto part = recorded_file(options_.recordings, name, port);
+  if (!part) return refusal(404, part.error().detail);
+  return {200, "application/octet-stream", {}, {std::move(*part)}, {}};
 }
 
 // Sockets.
@@ -406,6 +404,7 @@ void Page::give(const std::vector<Order>& orders) const {
 
 void Page::tick() {
   if (driver_socket_) give(driver_.tick(clock_.wall(), clock_.monotonic()));
+  if (recorder_ && recorder_->has_failed()) recorder_.reset();
   for (auto& [number, session] : sessions_) send_session(session);
   std::erase_if(streams_, [&](const auto& each) { return !each.second->is_viewed(); });
 }

@@ -2,10 +2,7 @@
 #include "recorder.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <utility>
@@ -27,9 +24,17 @@ bool is_word(std::string_view word) {
   });
 }
 
-/// The head of a file in an archive, 512 bytes (POSIX.1-1988, ustar).
-std::string archive_head(const std::string& path, std::uintmax_t size) {
-  std::string head(512, '\0');
+constexpr std::size_t kBlock = 512, kMostInHead = 100;          // of an archive [byte]
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 33;  // of a file in a plain archive
+
+std::string padding(std::uintmax_t size) {
+  return std::string(static_cast<std::size_t>((kBlock - size % kBlock) % kBlock), '\0');
+}
+
+/// A head of ustar. @param kind  '0': a file, 'x': what the next head has no room for.
+std::string plain_head(const std::string& folder, const std::string& file, std::uintmax_t size,
+                       char kind) {
+  std::string head(kBlock, '\0');
   auto put = [&](std::size_t at, const std::string& text) {
     std::copy(text.begin(), text.end(), head.begin() + static_cast<std::ptrdiff_t>(at));
   };
@@ -37,21 +42,58 @@ std::string archive_head(const std::string& path, std::uintmax_t size) {
     for (std::size_t i = digits; i-- > 0; number /= 8)
       head[at + i] = static_cast<char>('0' + number % 8);
   };
-  put(0, path);
+  put(0, file.substr(0, kMostInHead));
   octal(100, 7, 0644);
   octal(108, 7, 0);
   octal(116, 7, 0);
   octal(124, 11, size);
   octal(136, 11, 0);
   put(148, "        ");
-  head[156] = '0';
+  head[156] = kind;
   put(257, "ustar");
   put(263, "00");
+  put(345, folder);
   unsigned sum = 0;
   for (const char c : head) sum += static_cast<unsigned char>(c);
   octal(148, 6, sum);
   head[154] = '\0';
   return head;
+}
+
+/// "LENGTH KEY=VALUE\n", where the length counts itself.
+std::string pax_record(const std::string& key, const std::string& value) {
+  const std::string rest = " " + key + "=" + value + "\n";
+  std::size_t length = rest.size() + 1;
+  while (std::to_string(length).size() + rest.size() != length) ++length;
+  return std::to_string(length) + rest;
+}
+
+/// The head of a file FOLDER/FILE in an archive, and before it what has no room there.
+std::string archive_head(const std::string& folder, const std::string& file, std::uintmax_t size) {
+  if (file.size() <= kMostInHead && size < kMostBytes) return plain_head(folder, file, size, '0');
+  const std::string more =
+      pax_record("path", folder + "/" + file) + pax_record("size", std::to_string(size));
+  return plain_head(folder, "pax", more.size(), 'x') + more + padding(more.size()) +
+         plain_head(folder, file, size % kMostBytes, '0');
+}
+
+/// The size of a file that can be read to its end; nothing of anything else.
+std::optional<std::uintmax_t> size_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  const auto size = fs::file_size(path, error);
+  if (error) return std::nullopt;
+  return size;
+}
+
+/// What is in a folder; nothing where it cannot be read.
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    entries.push_back(entry->path());
+  return entries;
 }
 
 }  // namespace
@@ -69,15 +111,14 @@ bool is_port_name(std::string_view text) {
 
 std::vector<Recorded> list_recordings(const std::string& folder) {
   std::vector<Recorded> all;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    Recorded recorded{entry.path().filename().string(), 0, {}};
-    if (!is_recording_name(recorded.name) || !entry.is_directory(ignored)) continue;
-    for (const auto& file : fs::directory_iterator(entry.path(), ignored)) {
-      const std::string stem = file.path().stem().string();
-      if (file.path().extension() != kEnding || !is_port_name(stem)) continue;
-      const auto size = file.file_size(ignored);
-      recorded.bytes += ignored ? 0 : size;
+  for (const auto& entry : entries_of(folder)) {
+    Recorded recorded{entry.filename().string(), 0, {}};
+    if (!is_recording_name(recorded.name)) continue;
+    for (const auto& file : entries_of(entry)) {
+      const std::string stem = file.stem().string();
+      const auto size = size_of(file);
+      if (file.extension() != kEnding || !is_port_name(stem) || !size) continue;
+      recorded.bytes += *size;
       recorded.streams.push_back(stem);
     }
     std::ranges::sort(recorded.streams);
@@ -87,31 +128,33 @@ std::vector<Recorded> list_recordings(const std::string& folder) {
   return all;
 }
 
-hc::Result<std::string> write_archive(const std::string& folder, const std::string& name) {
+hc::Result<web::Part> recorded_file(const std::string& folder, const std::string& name,
+                                    const std::string& port) {
+  const std::string path = folder + "/" + name + "/" + port + std::string(kEnding);
+  const auto size = size_of(path);
+  if (!size)
+    return hc::Error{hc::Code::NotFound, "there is no recording of " + port + " in " + name};
+  return web::Part{{}, path, *size};
+}
+
+hc::Result<std::vector<web::Part>> archive_of(const std::string& folder, const std::string& name) {
   const auto all = list_recordings(folder);
   const auto found = std::ranges::find(all, name, &Recorded::name);
   if (found == all.end()) return hc::Error{hc::Code::NotFound, "there is no recording " + name};
-  const std::string path = folder + "/." + name + ".tar";
-  std::ofstream archive(path, std::ios::binary | std::ios::trunc);
+  auto bytes = [](std::string text) {
+    return std::make_shared<const std::string>(std::move(text));
+  };
+  std::vector<web::Part> parts;
+  std::string before;  // the padding of the file before
   for (const auto& stream : found->streams) {
-    const std::string file = name + "/" + stream + std::string(kEnding);
-    const auto size = fs::file_size(folder + "/" + file);
-    std::ifstream from(folder + "/" + file, std::ios::binary);
-    archive << archive_head(file, size);
-    // As long as it was: it may still grow.
-    std::array<char, 65536> piece;
-    for (std::uintmax_t left = size; left > 0 && archive;) {
-      const auto part = static_cast<std::streamsize>(std::min<std::uintmax_t>(left, piece.size()));
-      if (!from.read(piece.data(), part)) break;
-      archive.write(piece.data(), part);
-      left -= static_cast<std::uintmax_t>(part);
-    }
-    archive << std::string((512 - size % 512) % 512, '\0');
+    auto file = recorded_file(folder, name, stream);
+    if (!file) continue;  // it has just been deleted
+    file->bytes = bytes(before + archive_head(name, stream + std::string(kEnding), file->size));
+    before = padding(file->size);
+    parts.push_back(std::move(*file));
   }
-  archive << std::string(1024, '\0');
-  archive.close();
-  if (!archive) return hc::Error{hc::Code::System, "cannot write " + path};
-  return path;
+  parts.push_back({bytes(before + std::string(2 * kBlock, '\0')), {}, 0});
+  return parts;
 }
 
 hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& graph,
@@ -140,15 +183,19 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
 class Recorder::Track {
  public:
   Track(const hc::RunningGraph& graph, std::string port, std::string path,
-        std::atomic<std::uint64_t>& bytes, hc::LogSink log)
-      : port_(std::move(port)), path_(std::move(path)), bytes_(bytes), log_(std::move(log)) {
+        std::atomic<std::uint64_t>& bytes, std::atomic<bool>& has_failed, hc::LogSink log)
+      : port_(std::move(port)),
+        path_(std::move(path)),
+        bytes_(bytes),
+        has_failed_(has_failed),
+        log_(std::move(log)) {
     observer_.emplace(
         graph, port_,
         web::Observer::Callbacks{.open = [this] { open(); },
                                  .message = [this](const hc::Message& message) { write(message); },
                                  .end =
                                      [this](const std::string& why, bool is_error) {
-                                       if (is_error) fail(why);
+                                       if (is_error) end(why);
                                      }});
   }
   ~Track() {
@@ -172,18 +219,29 @@ class Recorder::Track {
     auto kept = hc::expand(message);
     if (kept && is_picture(kept->header) && kept->header.info.components != 4)
       kept = hc::compress(*kept, hc::Encoding::Jpeg);
-    if (!kept) return fail(kept.error().detail);
+    if (!kept) {  // one that is bad is left out
+      if (!std::exchange(has_left_out_, true))
+        log_(hc::Severity::Warning,
+             "recording of " + port_ + ": left out a message: " + kept.error().detail);
+      return;
+    }
     if (auto sent = sink_->send(*kept); !sent) return fail(sent.error().detail);
     bytes_ += kept->elements.size();
   }
-  void fail(const std::string& why) {
+  void end(const std::string& why) {
     log_(hc::Severity::Error, "recording of " + port_ + " ended: " + why);
     sink_.reset();
+  }
+  void fail(const std::string& why) {
+    end(why + "; what was written before is kept");
+    has_failed_ = true;
   }
 
   const std::string port_, path_;
   std::atomic<std::uint64_t>& bytes_;
+  std::atomic<bool>& has_failed_;
   const hc::LogSink log_;
+  bool has_left_out_ = false;
   std::unique_ptr<hc::Sink> sink_;  // null: before it is open, and once it has failed
   std::optional<web::Observer> observer_;
 };
@@ -193,7 +251,7 @@ Recorder::Recorder(const hc::RunningGraph& graph, std::string path, std::string 
     : path_(std::move(path)), name_(std::move(name)), ports_(std::move(ports)) {
   for (const auto& port : ports_)
     tracks_.push_back(std::make_unique<Track>(
-        graph, port, path_ + "/" + port + std::string(kEnding), bytes_, log));
+        graph, port, path_ + "/" + port + std::string(kEnding), bytes_, has_failed_, log));
 }
 
 Recorder::~Recorder() = default;

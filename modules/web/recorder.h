@@ -13,6 +13,7 @@
 
 #include <hc/base/log.h>
 #include <web/observer.h>
+#include <web/server.h>
 
 namespace web = hc::web;
 
@@ -30,11 +31,15 @@ struct Recorded {
 /// The recordings in a folder, by name.
 std::vector<Recorded> list_recordings(const std::string& folder);
 
-/// Writes all files of a recording as one archive (POSIX ustar) beside it; replaces an earlier one.
-/// @returns  its path. Errors: NotFound, System.
-hc::Result<std::string> write_archive(const std::string& folder, const std::string& name);
+/// A file of a recording, to be sent as long as it is now. Errors: NotFound.
+hc::Result<web::Part> recorded_file(const std::string& folder, const std::string& name,
+                                    const std::string& port);
 
-/// A recording that is being made, until it is destroyed.
+/// All files of a recording as one archive (POSIX.1-2001, pax), to be sent. Errors: NotFound.
+hc::Result<std::vector<web::Part>> archive_of(const std::string& folder, const std::string& name);
+
+/// A recording that is being made, until it is destroyed. What cannot be written, on a full disk,
+/// ends it: what was written before is kept.
 class Recorder {
  public:
   /// Errors: Invalid (a name or port that is none; the recording exists), System.
@@ -51,6 +56,8 @@ class Recorder {
   [[nodiscard]] const std::vector<std::string>& ports() const { return ports_; }
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] double seconds() const;
+  /// Whether a file could not be written: the recording is to be ended.
+  [[nodiscard]] bool has_failed() const { return has_failed_; }
 
  private:
   class Track;
@@ -62,5 +69,6 @@ class Recorder {
   const std::vector<std::string> ports_;
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::atomic<std::uint64_t> bytes_{0};
+  std::atomic<bool> has_failed_{false};
   std::vector<std::unique_ptr<Track>> tracks_;
 };

@@ -349,7 +349,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
       };
       window.unplug = () => {
         window.unplugged = true;
-        for (const socket of window.sockets) socket.close();
+        for (const socket of window.sockets) socket.close(4000);
       };
     });
     await show("seat", alone);

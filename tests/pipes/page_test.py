@@ -5,7 +5,9 @@ import contextlib
 import io
 import json
 import os
+import pathlib
 import re
+import resource
 import signal
 import ssl
 import struct
@@ -13,7 +15,7 @@ import tarfile
 import unittest
 
 from graphs import GRAPH, Graphs
-from web_socket import BINARY, CLOSE, TEXT, Refused, WebSocket, connect, get
+from web_socket import BINARY, CLOSE, TEXT, Refused, WebSocket, connect, get, read_head
 
 TASKS = (
     GRAPH
@@ -59,10 +61,10 @@ class Page(Graphs):
         super().setUp()
         self.environment["XDG_CONFIG_HOME"] = self.path("settings")
 
-    def serve(self, graph=TASKS, options=""):
+    def serve(self, graph=TASKS, options="", before=""):
         """Runs a graph; gives the process, and has the port and a token of its page."""
         self.write_graph(graph)
-        process = self.start("exec hc run g.toml " + options)
+        process = self.start(before + "exec hc run g.toml " + options)
         line = self.await_lines(process, "web: page: ")[-1]
         self.port, self.token = re.search(r":(\d+)/\?token=(\w+)", line).groups()
         self.port = int(self.port)
@@ -553,7 +555,94 @@ class Seat(Page):
         self.stop(process)
 
 
+class Strangers(Page):
+    def test_who_has_no_session_keeps_nobody_out(self):
+        resource.setrlimit(resource.RLIMIT_NOFILE, (4096, 4096))
+        self.serve()
+        cookie = self.session()
+        graph = self.socket("/graph", cookie)
+        held = []
+        self.addCleanup(lambda: [each.close() for each in held])
+
+        def flood(half):
+            for _ in range(650):
+                held.append(connect(self.port))
+                try:
+                    held[-1].sendall(half)
+                except (BrokenPipeError, ConnectionResetError):
+                    pass  # it has been closed for a later one
+
+        for half in (
+            b"GET / HTTP/1.1\r\nHost: ",
+            b"",
+            b"\x16\x03\x01\x02\x00\x01",  # a handshake of TLS
+            b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+        ):
+            flood(half)
+            for _ in range(20):
+                self.assertEqual(get(self.port, "/", Cookie=cookie)[0], 200)
+            self.hear(graph, 1)  # the session was not closed for them
+        self.assertEqual(self.command(graph, "describe camera")[0], "ok")
+
+    def test_who_answers_no_ping_is_closed(self):
+        self.serve()
+        cookie = self.session()
+        graph, silent = self.socket("/graph", cookie), self.socket("/drive", cookie)
+        self.hear(graph, 3, lambda text: '"driver":"other"' in text)
+        # This client reads nothing of it, and so answers nothing, while the other one does.
+        self.hear(graph, 3, lambda text: '"driver":null' in text)
+        silent.close()
+
+
 class Recordings(Page):
+    def test_a_download_lasts_as_long_as_it_takes_and_no_link_ends_the_server(self):
+        self.serve()
+        cookie = self.session()
+        folder = pathlib.Path(self.path("recordings/one"))
+        folder.mkdir(parents=True)
+        size = 40 << 20
+        with open(folder / "a.b.mtp", "wb") as file:
+            file.truncate(size)
+        (folder / "c.d.mtp").symlink_to("nowhere")
+        os.mkfifo(folder / "e.f.mtp")
+        graph = self.socket("/graph", cookie)
+        listed = json.loads(get(self.port, "/recordings", Cookie=cookie)[2])
+        self.assertEqual(listed, [{"name": "one", "bytes": size, "streams": ["a.b"]}])
+        for name in ("c.d", "e.f", "g.h"):
+            path = "/recordings/one/%s.mtp" % name
+            self.assertEqual(get(self.port, path, Cookie=cookie)[0], 404)
+        # Two at the same time, of which one waits for the other.
+        request = "GET /recordings/one.tar HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nCookie: %s\r\n\r\n"
+        request = (request % (self.port, cookie)).encode()
+        with connect(self.port) as first, first.makefile("rb") as file:
+            first.sendall(request)
+            head = read_head(file)
+            total = int(re.search(r"Content-Length: (\d+)", head)[1])
+            self.assertEqual(len(get(self.port, "/recordings/one.tar", Cookie=cookie)[2]), total)
+            archive = file.read(total)
+        with tarfile.open(fileobj=io.BytesIO(archive)) as files:
+            self.assertEqual([(each.name, each.size) for each in files], [("one/a.b.mtp", size)])
+        self.assertEqual(os.listdir(self.path("recordings")), ["one"])  # nothing was left there
+        self.assertIn("already", self.command(graph, "record one camera.left")[0])
+        self.assertEqual((folder / "a.b.mtp").stat().st_size, size)
+
+    def test_a_full_disk_ends_the_recording_and_keeps_it(self):
+        self.serve(before="trap '' XFSZ; ")
+        cookie = self.session()
+        graph = self.socket("/graph", cookie)
+        self.assertEqual(self.command(graph, "record one camera.left"), ["ok"])
+        self.hear(
+            graph, 3, lambda text: (json.loads(text)["recording"] or {}).get("bytes", 0) > 9999
+        )
+        state = json.loads(self.hear(graph, 1))
+        pid = next(each["pid"] for each in state["modules"] if each["name"] == "web")
+        path = self.path("recordings/one/camera.left.mtp")
+        # As on a full disk: a write that fails.
+        resource.prlimit(pid, resource.RLIMIT_FSIZE, (os.stat(path).st_size + 5000,) * 2)
+        self.hear(graph, 2, lambda text: "what was written before is kept" in text)
+        self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
+        self.assertGreater(os.stat(path).st_size, 9999)
+
     def test_what_is_recorded_is_listed_and_read_again(self):
         process = self.serve()
         cookie = self.session()
