@@ -31,6 +31,26 @@ test("the files of an archive that tar made", async () => {
   }
 });
 
+test("a name that is too long for a head is read from the head before it", async () => {
+  const folder = mkdtempSync(join(tmpdir(), "tar-"));
+  try {
+    const name = `a.${"b".repeat(200)}.mtp`;
+    writeFileSync(join(folder, name), "long");
+    writeFileSync(join(folder, "c.d.mtp"), "short");
+    execFileSync("tar", ["--format=pax", "-cf", "take.tar", name, "c.d.mtp"], { cwd: folder });
+    const files = await filesOfTar(new Blob([readFileSync(join(folder, "take.tar"))]));
+    assert.deepEqual(
+      await Promise.all(files.map(async (file) => [file.name, await file.blob.text()])),
+      [
+        [name, "long"],
+        ["c.d.mtp", "short"],
+      ],
+    );
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+});
+
 test("an empty archive, no files", async () => {
   assert.deepEqual(await filesOfTar(new Blob([new Uint8Array(1024)])), []);
 });
