@@ -28,7 +28,8 @@ constexpr std::size_t kBlock = 512, kMostInHead = 100;          // of an archive
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 33;  // of a file in a plain archive
 
 std::string padding(std::uintmax_t size) {
-  return std::string(static_cast<std::size_t>((kBlock - size % kBlock) % kBlock), '\0');
+  std::string zeros(static_cast<std::size_t>((kBlock - size % kBlock) % kBlock), '\0');
+  return zeros;
 }
 
 /// A head of ustar. @param kind  '0': a file, 'x': what the next head has no room for.
