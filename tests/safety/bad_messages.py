@@ -47,8 +47,8 @@ class Bad:
         row = b" ".join([word] * (self.width * self.kind["components"]))
         return self.of(TEXT, b"\n".join([row] * self.height))
 
-    def compressed(self, encoding, elements, **sides):
-        return self.of(encoding, b"%d\n%s" % (len(elements), elements), **sides)
+    def compressed(self, encoding, elements, *sides):
+        return self.of(encoding, b"%d\n%s" % (len(elements), elements), *sides)
 
     # Each ends the connection (a peer that has lost its place), or is one message that is dropped.
 
@@ -113,12 +113,12 @@ class Bad:
         return self.compressed(ZSTD, b"\x28\xb5\x2f\xfd" + b"\x77" * 40)
 
     def much_of_little(self):
-        """8 kB of zstd that say to be 200 MB: blocks of 128 kB that repeat one byte."""
-        block = struct.pack("<I", (131072 << 3) | (1 << 1))[:3] + b"\0"
-        frame = b"\x28\xb5\x2f\xfd\x00\x58" + block * 2000
-        kind = dict(self.kind, components=1, scalar="u8", type="intensity_image")
-        number = info(kind, ZSTD)
-        return header(number, 131072, 2000, 7, self.mode) + b"%d\n%s\n" % (len(frame), frame)
+        """8 kB of zstd that are 250 MB: blocks of 128 kB, each of one byte that is repeated."""
+        element = self.kind["components"] * BYTES[SCALARS.index(self.kind["scalar"])]
+        height = 1900 // element
+        block = lambda is_last: struct.pack("<I", 131072 << 3 | 1 << 1 | is_last)[:3] + b"\0"
+        blocks = block(0) * (height * element - 1) + block(1)
+        return self.compressed(ZSTD, b"\x28\xb5\x2f\xfd\x00\x58" + blocks, 131072, height)
 
 
 KINDS = (

@@ -341,6 +341,23 @@ TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
+TEST_F(RunningModule, AGeneratorReadsTheWriterThatFollowsAnother) {
+  const std::string name = "shm:generator-" + std::to_string(::getpid());
+  Module module{"generator", "Reads, and never waits for it."};
+  int come = 0;
+  module.on(module.input("in", table<double>(), ""), [&](const auto&) { ++come; });
+  module.generate([&] {
+    module.keep_rate(1000);
+    return come < 2;
+  });
+  start(module, {"--in=" + name + "?reconnect=60"});
+  for (int writers = 0; writers < 2; ++writers) {
+    auto writer = sink_of(name);  // it leaves without closing, as who is killed does
+    ASSERT_TRUE(writer->send(table({1.0})));
+  }
+  EXPECT_EQ(join(), 0);
+}
+
 TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {
   const std::string nowhere = "unix:@nowhere-" + std::to_string(::getpid());
   Module module{"reader", "Reads."};
