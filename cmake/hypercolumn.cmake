@@ -72,6 +72,16 @@ if(HC_COVERAGE)
   add_link_options(--coverage)
 endif()
 
+if(NOT HC_SANITIZE AND NOT HC_COVERAGE)
+  # Hardening, of all that is built here; tests/install/hardening_test.py looks at what is installed.
+  # Without optimisation glibc has no checks to fortify with.
+  add_compile_options(-fstack-protector-strong $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE>
+                      $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=2>)
+  add_link_options(-Wl,-z,relro,-z,now)
+  include(CheckPIESupported)
+  check_pie_supported(LANGUAGES CXX)
+endif()
+
 set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
 set(HC_TEST_SECONDS 120) # a test that takes longer hangs
 # What a sanitizer finds in other people's libraries is overlooked. ThreadSanitizer would have each

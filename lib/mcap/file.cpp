@@ -81,7 +81,7 @@ Status File::write(std::span<const std::byte> bytes) {
     if (size <= 0) {
       auto error = internal::system_error("write", path_);
       size_ = begin;
-      static_cast<void>(::ftruncate(descriptor_.get(), static_cast<off_t>(begin)));
+      [[maybe_unused]] const int cut = ::ftruncate(descriptor_.get(), static_cast<off_t>(begin));
       return error;
     }
     size_ += static_cast<std::uint64_t>(size);

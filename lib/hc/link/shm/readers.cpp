@@ -226,7 +226,7 @@ bool ShmReaders::wake() {
     if (armed == 0 || armed == reader->woken) continue;
     reader->woken = armed;
     any = true;
-    static_cast<void>(::write(reader->wakes.get(), "!", 1));
+    [[maybe_unused]] const auto size = ::write(reader->wakes.get(), "!", 1);
   }
   return any;
 }

@@ -235,7 +235,7 @@ void ShmSource::look_at_socket() {
 
 void ShmSource::drain_pipe() const {
   std::array<char, std::size_t{2} * kDrainEvery> bytes;
-  static_cast<void>(::read(wake_descriptor(), bytes.data(), bytes.size()));
+  [[maybe_unused]] const auto size = ::read(wake_descriptor(), bytes.data(), bytes.size());
 }
 
 bool ShmSource::prepare_wait() {
