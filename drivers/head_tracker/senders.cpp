@@ -33,7 +33,7 @@ std::string host_of(const sockaddr_storage& from) {
   const void* address = &reinterpret_cast<const sockaddr_in&>(from).sin_addr;
   if (from.ss_family == AF_INET6) address = &reinterpret_cast<const sockaddr_in6&>(from).sin6_addr;
   return ::inet_ntop(from.ss_family, address, text.data(), text.size()) == nullptr ? "?"
-                                                                                  : text.data();
+                                                                                   : text.data();
 }
 
 }  // namespace

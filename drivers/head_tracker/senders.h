@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Who is heard of all that send packets to a tracker's port: UDP has no connections and no password.
+// Who is heard of all that send packets to a tracker's port: UDP has no connections and no
+// password.
 
 #include <sys/socket.h>
 #include <sys/types.h>

@@ -42,16 +42,15 @@ class SendersTest : public ::testing::Test {
   }
 
   /// By port, those of this host; -1: nobody's.
-  std::map<int, std::optional<uid_t>> users{{1, ::geteuid()}, {2, kOther}, {3, ::geteuid()},
-                                            {4, 0},           {5, {}}};
+  std::map<int, std::optional<uid_t>> users{
+      {1, ::geteuid()}, {2, kOther}, {3, ::geteuid()}, {4, 0}, {5, {}}};
   int looks = 0;
   hc::MonotonicTime now{milliseconds(5000)};
   hc::Senders senders{{"192.0.2.7", "2001:db8::7"},
                       milliseconds(1000),
                       [this](const sockaddr_storage& from) -> hc::Result<std::optional<uid_t>> {
                         ++looks;
-                        const int port =
-                            ntohs(reinterpret_cast<const sockaddr_in&>(from).sin_port);
+                        const int port = ntohs(reinterpret_cast<const sockaddr_in&>(from).sin_port);
                         if (port == 9) return hc::Error{hc::Code::NotFound, "closed"};
                         const auto user = users.find(port);
                         return user == users.end() ? std::optional<uid_t>(kOther) : user->second;
@@ -66,11 +65,12 @@ TEST_F(SendersTest, another_user_is_not_heard) {
   EXPECT_EQ(admit("127.0.0.1", 1), "heard");
 }
 
-TEST_F(SendersTest, root_is_heard) { EXPECT_EQ(admit("::1", 4), "heard"); }
+TEST_F(SendersTest, root_is_heard) {
+  EXPECT_EQ(admit("::1", 4), "heard");
+}
 
 TEST_F(SendersTest, of_other_hosts_those_that_are_named) {
-  EXPECT_EQ(admit("192.0.2.8", 5),
-            "192.0.2.8 port 5: another host, which `sender` does not name");
+  EXPECT_EQ(admit("192.0.2.8", 5), "192.0.2.8 port 5: another host, which `sender` does not name");
   EXPECT_EQ(admit("::ffff:192.0.2.7", 5), "heard");
   now += milliseconds(1001);
   EXPECT_EQ(admit("2001:db8::7", 5), "heard");

@@ -35,9 +35,15 @@ std::vector<std::string> writer() {
           "size=shm:" + name("in")};
 }
 
-bool is_free(const std::string& uri) { return open_sink(*parse_uri(uri)).has_value(); }
-std::string left() { return "shm:" + name("left"); }
-std::string right() { return "unix-listen:@" + name("right"); }
+bool is_free(const std::string& uri) {
+  return open_sink(*parse_uri(uri)).has_value();
+}
+std::string left() {
+  return "shm:" + name("left");
+}
+std::string right() {
+  return "unix-listen:@" + name("right");
+}
 
 TEST(HeldNames, are_free_for_nobody_else_until_they_are_let_go) {
   HeldNames names;

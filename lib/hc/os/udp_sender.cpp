@@ -45,7 +45,8 @@ std::string in_hexadecimal(std::span<const std::uint32_t> words, in_port_t port)
 /// those that are bound to it, or to every address.
 std::vector<std::string> local_addresses(const sockaddr_storage& from) {
   std::array<std::uint32_t, 4> words{};
-  const in_port_t port = reinterpret_cast<const sockaddr_in&>(from).sin_port;  // in both at the same place
+  const in_port_t port =
+      reinterpret_cast<const sockaddr_in&>(from).sin_port;  // in both at the same place
   if (from.ss_family == AF_INET)
     words[0] = reinterpret_cast<const sockaddr_in&>(from).sin_addr.s_addr;
   else
