@@ -3,12 +3,6 @@
 
 #include <utility>
 
-namespace {
-
-constexpr int kFarewells = 3;
-
-}  // namespace
-
 template <typename IsSettled, typename Problem>
 void Stop::answer(const IsSettled& is_settled, const Problem& problem_of) {
   for (const auto& order : orders_)
@@ -17,7 +11,6 @@ void Stop::answer(const IsSettled& is_settled, const Problem& problem_of) {
 }
 
 Stop::Word Stop::order(bool stops, bool is_linked, hc::MonotonicTime now, Answer answer_it) {
-  has_begun_ = true;
   is_wanted_ = stops;
   has_cleared_ = !stops;
   answer([&](const Order& before) { return before.stops != stops; },
@@ -35,8 +28,6 @@ Stop::Word Stop::order(bool stops, bool is_linked, hc::MonotonicTime now, Answer
 }
 
 void Stop::hear(bool is_stopped, hc::MonotonicTime now) {
-  // After a restart of this program, what was asked for before still counts.
-  if (!std::exchange(has_begun_, true)) is_wanted_ = is_stopped;
   heard_ = is_stopped;
   heard_at_ = now;
   answer([&](const Order& order) { return order.stops == is_stopped; },

@@ -97,15 +97,16 @@ TEST(Stop, of_two_orders_the_later_counts) {
   EXPECT_EQ(page.answers.at(3), "stop NOT confirmed: it was cleared meanwhile");
 }
 
-TEST(Stop, lasts_when_this_program_is_restarted) {
-  Page page;
+TEST(Stop, of_another_source_is_not_taken_over) {
+  Page page;  // the workspace remembers the stop of the process before, and who else has stopped
   page.stop.hear(true, page.now);
-  EXPECT_EQ(page.tick(false), Word::Stop);
-  // A later stop is another source's, who clears it.
-  Page other;
-  other.stop.hear(false, other.now);
-  other.stop.hear(true, other.now);
-  EXPECT_EQ(other.tick(), Word::Free);
+  EXPECT_EQ(page.tick(), Word::Free);
+}
+
+TEST(Stop, begins_with_a_farewell_of_the_process_before) {
+  Page page;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(page.tick(false), Word::Unguarded);
+  EXPECT_EQ(page.tick(false), std::nullopt);
 }
 
 TEST(Stop, says_three_times_that_the_last_page_has_gone) {
