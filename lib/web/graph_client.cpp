@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/graph_client.h>
 
+#include <exception>
 #include <utility>
 
 namespace hc::web {

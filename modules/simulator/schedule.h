@@ -10,8 +10,8 @@
 /// @param rate  [Hz]
 std::int64_t period_end(std::int64_t number, double rate);
 
-/// Whether a clock was set, or so much time was missed that nobody wants what it would have brought:
-/// it is far from what was expected [ns].
+/// Whether a clock was set, or so much time was missed that nobody wants what it would have
+/// brought: it is far from what was expected [ns].
 bool was_set(std::int64_t now, std::int64_t expected);
 
 class Schedule {

@@ -3,6 +3,7 @@
 // it may hold one that does, and loops that lead over two actors or workspaces.
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <set>
 

@@ -2,6 +2,7 @@
 #include <hc/contract/report.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include <hc/mtp/rows.h>
 

@@ -294,16 +294,14 @@ void Connection::give_up_reader(Outgoing& message) {
   } else if (writer_.borrows()) {
     writer_.keep(message.kept());
   }
-  remarks_.add(patience_.line());
-  flush_log();
+  remark(patience_.line());
 }
 
 /// Drops a message where the reader that was given up has taken nothing since.
 bool Connection::drops_for_reader(const Outgoing& message, TimePoint now) {
   if (connected() && all_written()) patience_.renew();
   if (!patience_.is_over(writer_.total())) {
-    remarks_.add(std::string(Patience::kAgain));
-    flush_log();
+    remark(std::string(Patience::kAgain));
     return false;
   }
   ++losses_.timed_out;

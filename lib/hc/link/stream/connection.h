@@ -91,6 +91,7 @@ class Connection {
   /// Logs what has happened to the connection; on the thread that sends, which also hears
   /// of it while it waits in send() or close().
   void flush_log() { remarks_.flush(log_); }
+  void remark(std::string line) { remarks_.add(std::move(line)), flush_log(); }
   [[nodiscard]] int descriptor() const { return writer_.descriptor(); }
 
  private:
