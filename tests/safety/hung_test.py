@@ -68,7 +68,7 @@ class Hung(Safety):
             for each in burst:
                 self.head.seat.socket.send_frame(BINARY, each)
 
-    def note_lost(self, name):
+    def note_lost(self, name, is_driven):
         """Which modules wait for one that hangs, or have stopped sending, and do not need it."""
         time.sleep(FILLED)
         flows = self.flows(HUNG - FILLED)
@@ -79,6 +79,7 @@ class Hung(Safety):
             if each["detail"].startswith("blocked")
         }
         lost = {each for each in lost if name not in self.needs[each]}
+        lost -= set() if is_driven else {"web"}  # which sends what a person wants
         self.note("lost", len(lost), "%s %s" % (name, sorted(lost)))
 
     def stop_beside(self, name):
@@ -87,7 +88,7 @@ class Hung(Safety):
             if is_driven:
                 self.fill_queues()
                 head.sit(head.seat.says)
-            self.note_lost(name)
+            self.note_lost(name, is_driven)
             with head.waits() as waits:
                 stopped = head.press_stop()
                 if name == "head_unit":  # it says nothing, and moves on when it returns

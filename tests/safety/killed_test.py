@@ -35,11 +35,12 @@ class Killed(Safety):
         outputs = [end for end in head.sent() if end.endswith(steady) and end != "web.bid"]
         for name in head.names():
             before, begun = head.restarts(but=[name]), time.monotonic()
+            said = len(head.said())
             pid = head.send_signal(name, signal.SIGKILL)
             # What a new process has sent is counted from 0 on.
             self.is_back(name, pid, {each: 0 for each in outputs if each.startswith(name + ".")})
             self.is_back(name, pid, {each: head.sent()[each] for each in outputs})
-            self.note("back", time.monotonic() - begun, name)
+            self.note("back", time.monotonic() - begun, "%s: %s" % (name, head.said()[said:]))
             self.note_ended(before, but=[name], where=name)
         self.hold()
 

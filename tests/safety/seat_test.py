@@ -30,6 +30,7 @@ class Seat(Safety):
             # It may have been moving when that was chosen.
             self.note("travelled", head.motion.travelled(chosen + 10**9), task)
             head.leave()
+            head.wait(lambda: head.focus() != task, "the seat is left")
         self.hold()
 
     def test_after_a_drag(self):
