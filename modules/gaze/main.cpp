@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns the head to where a task wants it to look, and bids for the head while it wants that.
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -44,7 +45,7 @@ int main(int argc, char** argv) {
                    hc::any_of(hc::position<double>(), hc::transformation<double>(4, 4),
                               hc::table<double>().of(hc::vision::kMarkerColumns, 0)),
                    "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
-                   "pose of marker, or its table");
+                   "pose of marker, or its table; in each image or frame of one source at a time");
   auto setpoint = module.input(
       "setpoint", hc::rotation<double>(),
       "orientation to take, roll, tilt, pan [rad]: of the neck (13) or a person's head "
@@ -67,7 +68,8 @@ int main(int argc, char** argv) {
   std::optional<Controller> controller;
   bool was_wanted = false;  // in the last bid
   hc::Turn<std::int32_t> pushes{kLetGo};
-  std::optional<hc::Turn<std::int32_t>> sets;  // a setpoint
+  std::optional<hc::Turn<std::int32_t>> sets;             // a setpoint
+  std::map<std::int32_t, hc::Turn<std::int32_t>> sights;  // the target, by coordinate system
 
   module.on_start([&] {
     sets.emplace(hc::duration(*parameters.timeout));
@@ -129,6 +131,9 @@ int main(int argc, char** argv) {
     const auto time = time_of(message.header, *parameters.timeout);
     const std::int32_t frame = Targets::frame_of(seen->coord);
     check_frame(frame, "an eye and its image (4, 5, 7, 8)");
+    // Two eyes see one target; two who see it with one eye see different ones.
+    auto& turn = sights.try_emplace(seen->coord, hc::duration(*parameters.timeout)).first->second;
+    if (!has_turn("target", turn, message.header.src)) return;
     frames.when_known(kRobot, frame, time, [&, time, frame, seen](const auto& T_robot_frame) {
       controller->targets.see(time, seen->coord, seen->p,
                               T_robot_frame ? *T_robot_frame : frames.nearest(kRobot, frame, time));
