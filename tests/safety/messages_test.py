@@ -25,7 +25,7 @@ class BadMessages(Safety):
             answer = head.ask(head.process, "describe " + name, name="head")
             for port in json.loads(answer[1])["inputs"]:
                 types["%s.%s" % (name, port["name"])] = port["types"]
-        return [(end, types.get(end, [])) for end in ends]
+        return [(end, types.get(end, [])) for end in ends if ":" not in end]
 
     def flood(self, end, types):
         """Sends 1,000 bad messages into an input, and waits until all have come."""
