@@ -266,11 +266,11 @@ from = "tcp:7000"
   record_outputs(*graph, {"b"}, "kept");
   ASSERT_EQ(graph->links.size(), 6U);
   EXPECT_EQ(graph->links[3].from.text() + " " + graph->links[3].to.text(),
-            "a.out file:kept/a.out.mtp");
+            "a.out file:kept/a.out.mtp?append=1");
   EXPECT_EQ(graph->links[4].from.text() + " " + graph->links[4].to.text(),
-            "b.trace file:kept/b.trace.mtp");
+            "b.trace file:kept/b.trace.mtp?append=1");
   EXPECT_EQ(graph->links[5].from.text() + " " + graph->links[5].to.text(),
-            "w.focus file:kept/w.focus.mtp");
+            "w.focus file:kept/w.focus.mtp?append=1");
 }
 
 TEST(GraphFile, ARecorderHasAnInputForEveryLinkedOutput) {

@@ -8,6 +8,7 @@
 int main(int argc, char** argv) {
   hc::Module module{"calibrate_score", "Compares a head's calibration with the truth."};
   auto result = module.input("result", hc::table<double>(), "result of calibrate");
+  module.keep(result);
   auto score = module.output("score", hc::table<double>().of(3, 1),
                              "left and right identified correctly 0/1, error of the zero, of the "
                              "right eye's offset [rad]");

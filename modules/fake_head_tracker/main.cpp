@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   hc::Module module{"fake_head_tracker", "Simulated head tracker (opentrack protocol)."};
   auto address = module.input("address", hc::string(),
                               "where the head_tracker of its graph listens; nowhere when empty");
+  module.keep(address);
   auto rotation =
       module.output("rotation", hc::rotation<double>().of(1, 1).in(hc::Coord::kSupervisor),
                     "truth: roll 0, pitch, yaw of the head [rad]");

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
       "truth: setpoint roll, tilt, pan [rad]");
   auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
+  module.keep(setpoint, 64);
+  module.keep(motion, 64);
   auto result = module.output("score", hc::table<double>().of(4, 1),
                               "RMS error [rad], maximum error [rad], delay [s], samples");
   auto settle = module.parameter("settle", 2.0, "s", "delay of the scoring after the first of both",

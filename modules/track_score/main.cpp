@@ -18,6 +18,9 @@ int main(int argc, char** argv) {
                            "truth, of which the last number is the share that is seen");
   auto begin = module.input("begin", hc::table<double>(),
                             "the first message restarts the score: as calibrate's result");
+  module.keep(eye, 64);
+  module.keep(ball, 64);
+  module.keep(seen, 64);
   auto result = module.output("score", hc::table<double>().of(5, 1),
                               "RMS error [rad], time to acquire it [s], times that it came "
                               "back, longest time to acquire it then [s], samples");

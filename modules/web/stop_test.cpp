@@ -40,7 +40,6 @@ TEST(Stop, is_answered_when_the_workspace_says_so_after_the_order) {
 
 TEST(Stop, is_repeated_until_it_is_cleared_whoever_watches) {
   Page page;
-  EXPECT_EQ(page.tick(false), std::nullopt);
   page.order(true);
   for (const bool is_guarded : {true, false, true}) EXPECT_EQ(page.tick(is_guarded), Word::Stop);
   page.stop.hear(true, page.now);

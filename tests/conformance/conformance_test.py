@@ -33,6 +33,7 @@ IMAGES = sorted((HERE / "images").glob("*.jpg"))
 HC = "hc"
 SEEDS = (1, 2, 3)
 COUNT = 800
+DAMAGED = ("R36", "R37")  # rules of compressed elements, behind which hc cat goes on
 REFUSED = re.compile(r": (R\d+) (\w+): .*, at byte (\d+)$")
 
 # What RFC 8878 and ITU-T T.81 forbid in compressed bytes, but the libraries behind hc may let pass.
@@ -88,8 +89,10 @@ def reported_by_hc(data):
     text, error = shown.stdout.decode(), shown.stderr.decode().strip()
     if shown.returncode == 0:
         return Report(text, {}, error)
-    found = REFUSED.search(error)
-    if shown.returncode != 1 or "\n" in error or not found:
+    first = error.split("\n")[0]
+    found = REFUSED.search(first)
+    goes_on = found and found[1] in DAMAGED
+    if shown.returncode != 1 or not found or (first != error and not goes_on):
         return Report(text, None, error)
     refusal = {"rule": found[1], "field": found[2], "byte": int(found[3])}
     refusal["messages"] = text.count("\n")
@@ -302,6 +305,9 @@ class RandomMessages(unittest.TestCase):
         """
         shown, read = reported_by_hc(data), reported_by_python(data)
         refusal = read.refusal
+        if shown.refusal and refusal and refusal["rule"] in DAMAGED:
+            self.assertTrue(shown.text.startswith(read.text))
+            shown.text, shown.refusal["messages"] = read.text, refusal["messages"]
         if LET_PASS.search(read.reason) and len(shown.text) > len(read.text):
             self.assertTrue(shown.text.startswith(read.text))
         elif STRICTER.search(shown.reason) and len(shown.text) < len(read.text):

@@ -24,9 +24,9 @@ class Sound(Bodies):
             self.write_wav("in.wav", samples, 16000, channels)
             self.shell(
                 "hc microphone in.wav --channels %d --paced=false | "
-                "hc speaker --device none --save out.wav" % channels
+                "hc speaker --device none --save out%d.wav" % (channels, channels)
             )
-            self.assertEqual(self.read_wav("out.wav"), (16000, channels, samples))
+            self.assertEqual(self.read_wav("out%d.wav" % channels), (16000, channels, samples))
 
     def test_the_side_that_a_sound_comes_from(self):
         mono = tone(16000, 0.3)
@@ -84,11 +84,11 @@ class Sound(Bodies):
         heard = self.read_bytes("heard.raw")
         self.assertIn(samples.tobytes(), heard)
 
-    def test_a_file_is_whole_after_the_speaker_was_killed_and_appended_to(self):
+    def test_a_file_is_whole_after_the_speaker_was_killed_and_is_not_overwritten(self):
         samples = tone(8000, 0.2)
         self.write_wav("in.wav", samples, 8000)
-        path = pathlib.Path(self.path("out.wav"))
-        for times in 1, 2, 3:
+        for name in "out.wav", "out_2.wav", "out_3.wav":
+            path = pathlib.Path(self.path(name))
             port = free_port()
             process = self.run_module(
                 "hc speaker --device none --save out.wav --in tcp-listen:%d" % port
@@ -97,11 +97,11 @@ class Sound(Bodies):
             self.shell(
                 "hc microphone in.wav --rate 8000 --paced=false --out mono=tcp:127.0.0.1:%d" % port
             )
-            size = 44 + 2 * len(samples) * times
+            size = 44 + 2 * len(samples)
             wait_until(lambda: path.exists() and path.stat().st_size == size)
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-            self.assertEqual(self.read_wav("out.wav"), (8000, 1, samples * times))
+            self.assertEqual(self.read_wav(name), (8000, 1, samples))
 
     def test_a_long_sound_does_not_keep_the_speaker_from_its_end(self):
         port = free_port()

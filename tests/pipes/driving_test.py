@@ -159,24 +159,26 @@ class Gaze(Pipes):
                 ("0 0.1 0.2", now + 1000),
             )
         )
-        out = self.shell("(%s) | hc gaze --timeout 60 --in setpoint=- --out command=-" % setpoints)
+        out = self.shell(
+            "(%s) | hc gaze --timeout 60 --in setpoint=- --out command=-" % setpoints, status=1
+        )
         self.assertRegex(
             self.err,
-            r"^gaze: setpoint dropped: (59|60)\.\d+ s in the future .*\n"
-            r"gaze: total: 1 setpoint of another time\n$",
+            r"^gaze: setpoint: dropped: it is (59|60)\.\d+ s in the future .*\n"
+            r"gaze: total: 1 bad at setpoint\n$",
         )
         angles = [line.split() for line in out.splitlines()[1::2]]
         self.assertGreaterEqual(len(angles), 2)
         for roll, tilt, pan in angles:
             self.assertEqual((float(roll), float(tilt), float(pan)), (0, 0.1, 0.2))
 
-    def commands(self, *inputs):
+    def commands(self, *inputs, status=0):
         """Rows of what is commanded after some messages, files of MTP by their ports."""
         links = ""
         for number, (port, text) in enumerate(inputs):
             self.write("%d.mtp" % number, text)
             links += " --in %s=file:%d.mtp" % (port, number)
-        out = self.shell("hc gaze --timeout 60 --acceleration 0%s --out command=-" % links)
+        out = self.shell("hc gaze --timeout 60 --acceleration 0%s --out command=-" % links, status)
         return [[float(word) for word in line.split()] for line in out.splitlines()[1::2]]
 
     @staticmethod
@@ -198,9 +200,9 @@ class Gaze(Pipes):
         now = time.time_ns()
         for coord in (205, 7, 20):
             both = self.setpoint(1, now, coord) + self.setpoint(0.25, now + 1000, 13)
-            rows = self.commands(("setpoint", both))
+            rows = self.commands(("setpoint", both), status=1)
             self.assertEqual({row[2] for row in rows}, {0.25}, self.err)
-            self.assertIn("setpoint dropped: coordinate system %d is none of" % coord, self.err)
+            self.assertIn("setpoint: dropped: coordinate system %d is none of" % coord, self.err)
 
     def test_two_that_set_the_head_do_not_alternate(self):
         now = time.time_ns()
@@ -217,11 +219,15 @@ class Gaze(Pipes):
             push = "1 1 0 0 8 %d 120190 0 0 2 1\n1 0\n" % stamp
             target = "1 1 0 0 8 %d 10390 0 2 1 1\n2 1 0\n" % stamp
             setpoint = self.setpoint(1, stamp, 13)
-            rows = self.commands(("stick", push), ("target", target), ("setpoint", setpoint))
+            rows = self.commands(
+                ("stick", push), ("target", target), ("setpoint", setpoint), status=1
+            )
             self.assertEqual(rows, [])
             for what in ("stick", "target", "setpoint"):
-                self.assertRegex(self.err, "gaze: %s dropped: .* s (old|in the future)" % what)
-                self.assertIn("1 %s of another time" % what, self.err)
+                self.assertRegex(
+                    self.err, "gaze: %s: dropped: it is .* s (old|in the future)" % what
+                )
+                self.assertIn("1 bad at %s" % what, self.err)
 
     def test_of_two_sticks_that_are_pushed_one_is_obeyed(self):
         row = "1 %d 0 0 8 0 120190 0 0 2 1\n%d 0\n"

@@ -4,6 +4,7 @@
 
 import math
 import os
+import pathlib
 import time
 import unittest
 
@@ -75,6 +76,7 @@ class Frames(Pipes):
         self.write("graph.toml", GRAPH % (BUILD / "tests/whereabouts", parameters))
         self.write("poses", "".join(map(pose, poses)))
         self.write("images", "".join(image(*each) for each in enumerate(times)))
+        pathlib.Path(self.path("found")).unlink(missing_ok=True)  # which would be kept
         self.shell("exec hc run graph.toml")
         self.logged = self.err
         lines = self.shell("hc cat --raw found").splitlines()

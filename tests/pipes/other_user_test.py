@@ -126,8 +126,10 @@ class OtherUser(Graphs):
 
         # Nothing came of it: no pose of the tracker, nobody's bid, no stop, no module lost.
         link = {each["from"]: each for each in after["links"]}
-        for source in ("head_tracker.rotation", "web.stick", "web.bid", "web.stop"):
+        for source in ("head_tracker.rotation", "web.stick", "web.bid"):
             self.assertEqual(link[source]["messages"], 0, source)
+        # The page's server has said that no page is open, and no more.
+        self.assertEqual((link["web.stop"]["messages"], after["stopped"]), (3, []))
         restarts = {each["name"]: each["restarts"] for each in after["modules"]}
         self.assertEqual({name for name, count in restarts.items() if count}, set(KILLED))
         _, err = self.stop(head)

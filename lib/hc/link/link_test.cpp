@@ -33,8 +33,9 @@ TEST(Open, OptionsAreChecked) {
             "Invalid: option wait has no value");
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
   EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Invalid);
-  EXPECT_EQ(open_sink(*parse_uri("-?wait=3")).error().detail,
-            "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"memory\"");
+  EXPECT_EQ(
+      open_sink(*parse_uri("-?wait=3")).error().detail,
+      "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"memory\", \"timeout\"");
   EXPECT_EQ(open_sink(*parse_uri("-?keep=some")).error().code, Code::Invalid);
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?wait=x")).error().code, Code::Invalid);
   EXPECT_EQ(open_sink(*parse_uri("unix-listen:@x?readers=-1")).error().code, Code::Invalid);
@@ -51,7 +52,7 @@ TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
                     .detail.ends_with(", did you mean \"keep\"?"))
         << end;
   // One that another end has is spelled well.
-  EXPECT_TRUE(open_sink(*parse_uri("shm:x?wait=1")).error().detail.ends_with("\"memory\""));
+  EXPECT_TRUE(open_sink(*parse_uri("shm:x?wait=1")).error().detail.ends_with("\"timeout\""));
 }
 
 TEST(Open, NumbersHaveARange) {
