@@ -276,9 +276,13 @@ class Recordings(Pipes):
             "exec hc run g.toml --as full --record x.mcap --set camera.width=640"
             " --set camera.height=480 2>log"
         )
-        for pid in wait_until(self.recorders):
-            resource.prlimit(pid, resource.RLIMIT_FSIZE, (8 << 20, 8 << 20))
-        wait_until(lambda: "error: recording ended" in self.read("log"))
+
+        def limited():  # also one that has only just begun
+            for pid in self.recorders():
+                resource.prlimit(pid, resource.RLIMIT_FSIZE, (8 << 20, 8 << 20))
+            return "error: recording ended" in self.read("log")
+
+        wait_until(limited)
         sent = lambda: self.sent("full", "camera.left", "brightness.image")
         before = sent()
         wait_until(lambda: sent() > before + 10)  # the robot continues

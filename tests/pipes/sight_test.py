@@ -308,8 +308,8 @@ class Sight(Pipes):
         for name, pixels in maps.items():
             self.write(name + ".mtp", header + pixels + b"\n")
             link = "--in confidence=%s.mtp --clock messages" % name
-            self.shell(self.augment(options + link, "left=out.mtp"))
-            shown[name] = self.read_bytes("out.mtp")
+            self.shell(self.augment(options + link, "left=%s_shown.mtp" % name))
+            shown[name] = self.read_bytes(name + "_shown.mtp")
         self.assertEqual(shown["unsure"], shown["unsure_there"])
         self.assertNotEqual(shown["unsure"], shown["sure"])
 
