@@ -63,7 +63,8 @@ class Clocks(HostsTest):
         for hours in (1, -1):
             self.write("offset", str(3600 * hours))
             begin = time.time()
-            process = self.run_graph("--record kept", "here: started")
+            kept = "kept_of_%d" % hours
+            process = self.run_graph("--record " + kept, "here: started")
             messages = self.observe(process)
             state = self.state(
                 messages,
@@ -84,7 +85,7 @@ class Clocks(HostsTest):
             self.clock_is(state, 7200)
             self.stop(process)
             recorded = [
-                each.time / 1e9 for each in read_messages(self.path("kept/camera.left.mtp"))
+                each.time / 1e9 for each in read_messages(self.path(kept + "/camera.left.mtp"))
             ]
             self.assertGreater(len(recorded), 10)
             after = [each for each in recorded if each > sure]  # before, the clock may be corrected

@@ -36,7 +36,7 @@ file = "{0}/graphs/simulated_head.toml"
 host = "h1"
 modules.eyes.parameters = {{ ball = "roll", ball_hidden = 2 }}
 modules.neck.inputs.command = {{ from = "track.command", keep = "latest", rate = 200 }}
-modules.neck.outputs.pose = {{ to = "file:{1}", keep = "all" }}
+modules.neck.outputs.pose = {{ to = "file:{1}?append=1", keep = "all" }}
 """
 FOLLOWS = """
 [modes]
