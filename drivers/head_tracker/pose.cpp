@@ -55,8 +55,8 @@ Result<HeadPose> read_head_packet(std::span<const std::byte> packet) {
     const double size = std::abs(numbers[i]);
     // Written so that not-a-number fails too.
     if (!(size <= (i < 3 ? kMostCentimetres : kMostDegrees)) || (size > 0 && size < kLeast))
-      return Error{Code::Malformed, format("a packet whose {} is {}{}", kNames[i], numbers[i],
-                                           size < kLeast ? ", as by big-endian numbers" : "")};
+      return Error{Code::Malformed, hc::format("a packet whose {} is {}{}", kNames[i], numbers[i],
+                                               size < kLeast ? ", as by big-endian numbers" : "")};
   }
   const auto [x, y, z, yaw, pitch, roll] = numbers;
   constexpr double kRadians = std::numbers::pi / 180, kMetres = 0.01;

@@ -29,7 +29,7 @@ Status TrackedHead::listen(MonotonicTime now) {
   tracker_.emplace(std::move(*opened));
   active_ = now;
   const bool is_six = options_.host.find(':') != std::string::npos;
-  address_ = format(is_six ? "[{}]:{}" : "{}:{}", options_.host, tracker_->port());
+  address_ = hc::format(is_six ? "[{}]:{}" : "{}:{}", options_.host, tracker_->port());
   log_("listening on UDP " + address_);
   return {};
 }
@@ -43,8 +43,8 @@ Result<std::optional<TimedHeadPose>> TrackedHead::receive(MonotonicTime now) {
   HeadPose& head = (*pose)->pose;
   if (std::exchange(is_first_, false) && options_.centre_first) {
     const Eigen::Vector3d angles = head.angles().array() + 0.0;  // not -0
-    log_(format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad", angles.x(),
-                angles.y(), angles.z()));
+    log_(hc::format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad",
+                    angles.x(), angles.y(), angles.z()));
     centres_next_ = true;
   }
   if (std::exchange(centres_next_, false)) zero_ = head;

@@ -122,12 +122,12 @@ void Neck::command(MonotonicTime now, std::int64_t wall, const NeckCommand& comm
   if (command.time == 0) return problem_("without a time", "command dropped: it has no time");
   const double old = seconds(wall - command.time);
   if (std::abs(old) > settings_.age)
-    return problem_("stale", format("command dropped: {:.3f} s {}", std::abs(old),
-                                    old > 0 ? "old" : "in the future"));
+    return problem_("stale", hc::format("command dropped: {:.3f} s {}", std::abs(old),
+                                        old > 0 ? "old" : "in the future"));
   if (std::exchange(mode_, command.mode) != command.mode) turn_ = Turn<std::int32_t>(kTurn);
   if (!turn_.take(command.source, now))
-    return problem_("second source", format("command of source {} dropped: source {} commands",
-                                            command.source, *turn_.holder(now)));
+    return problem_("second source", hc::format("command of source {} dropped: source {} commands",
+                                                command.source, *turn_.holder(now)));
   const bool is_taken = conversation_.command(now, command.pan, command.tilt,
                                               duration(settings_.age - std::max(old, 0.0)));
   work(now);
