@@ -21,8 +21,8 @@ int main(int argc, char** argv) {
       module.parameter("dead_zone", 0.1, "", "of the stick: positions nearer to the middle are 0",
                        {.min = 0, .max = 0.9});
   auto rate = module.parameter("rate", 50.0, "Hz",
-                               "how often the stick is repeated while out of its middle; who is "
-                               "silent has let it go",
+                               "how often the stick is repeated while out of its middle; a silent "
+                               "stick counts as released",
                                {.min = 20, .max = 1000});
 
   std::unique_ptr<hc::Joystick> joystick;

@@ -71,11 +71,11 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   auto sources = module.parameter(hc::kSourceNames, "", "",
                                   "names of who bids and stops, by src, e.g. web.stop=12: set by "
                                   "`hc run`");
-  auto stops = module.parameter(
-      hc::kStops, "", "",
-      "who has stopped (1) or guards (0) the robot, by src, e.g. 12=1,14=0: set by `hc run` at a "
-      "restart",
-      {.fixed = true});
+  auto stops = module.parameter(hc::kStops, "", "",
+                                "sources that have stopped (1) or guard (0) the robot, by src, "
+                                "e.g. 12=1,14=0: set by `hc run` at a "
+                                "restart",
+                                {.fixed = true});
 
   Workspace workspace;
   Complaints complaints;
