@@ -175,11 +175,13 @@ class HeadTracker(Bodies):
         send = (
             "import socket, struct; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM);"
             "[s.sendto(struct.pack('<6d', 0, 0, 0, 90, 0, 0), ('127.0.0.1', %d)) for _ in range(9)];"
-            "s.recv(1)" % self.port
+            "print(flush=True); s.recv(1)" % self.port
         )
-        nobody = subprocess.Popen([PYTHON, "-c", send], user=65534, group=65534)
+        nobody = subprocess.Popen([PYTHON, "-c", send], user=65534, group=65534, stdout=-1)
+        self.addCleanup(nobody.stdout.close)
         self.addCleanup(nobody.wait)
         self.addCleanup(nobody.kill)
+        self.assertEqual(nobody.stdout.readline(), b"\n")  # all are sent
         self.wait_for("another user (uid 65534)")
         self.feed(0, 0, 0, 20, 0, 0)
         self.assertEqual(len(self.rows("rotation")), 1)
