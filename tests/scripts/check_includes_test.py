@@ -2,28 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The check of includes finds what it is there for, and nothing in this tree."""
 
-import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
-CHECK = pathlib.Path(__file__).parents[2] / "scripts/check_includes.py"
-
-
-def check(files):
-    with tempfile.TemporaryDirectory() as root:
-        for name, text in files.items():
-            path = pathlib.Path(root, name)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text + "\n")
-        done = subprocess.run([sys.executable, str(CHECK), root], stdout=-1)
-        return done.returncode, done.stdout.decode()
+from trees import SCRIPTS, check
 
 
 class Includes(unittest.TestCase):
     def test_this_tree_passes(self):
-        done = subprocess.run([sys.executable, str(CHECK)], stdout=-1)
+        done = subprocess.run([sys.executable, str(SCRIPTS / "check_includes.py")], stdout=-1)
         self.assertEqual(done.returncode, 0, done.stdout.decode())
 
     def test_each_name_without_its_header_is_named(self):
@@ -36,18 +24,19 @@ class Includes(unittest.TestCase):
             "// std::map\n\nauto a = std::sqrt(2);": "3: std::sqrt needs <cmath>",
         }.items():
             with self.subTest(text):
-                status, out = check({"lib/a.cpp": text})
+                status, out = check("check_includes.py", {"lib/a.cpp": text})
                 self.assertEqual((status, out), (1, "lib/a.cpp:" + missing + "\n"))
 
     def test_a_header_of_ours_counts_and_text_does_not(self):
         status, out = check(
+            "check_includes.py",
             {
                 "lib/hc/base/a.h": "#include <string>",
                 "lib/hc/base/b.h": "#include <hc/base/a.h>",
                 "lib/b/b.cpp": '#include "c.h"\nstd::string a = "std::map";  // std::set',
                 "lib/b/c.h": "#include <hc/base/b.h>\n/* std::optional\n */",
                 "modules/a/main.cpp": "#include <signal.h>\nint a = SIGTERM;",
-            }
+            },
         )
         self.assertEqual(status, 0, out)
 

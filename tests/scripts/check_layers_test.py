@@ -2,23 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The layer check finds what it is there for."""
 
-import pathlib
-import subprocess
-import sys
-import tempfile
 import unittest
 
-CHECK = pathlib.Path(__file__).parents[2] / "scripts/check_layers.py"
-
-
-def check(files):
-    with tempfile.TemporaryDirectory() as root:
-        for name, text in files.items():
-            path = pathlib.Path(root, name)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text + "\n")
-        done = subprocess.run([sys.executable, str(CHECK), root], stdout=-1)
-        return done.returncode, done.stdout.decode()
+from trees import check
 
 
 class Layers(unittest.TestCase):
@@ -27,7 +13,7 @@ class Layers(unittest.TestCase):
             "lib/hc/link/tcp.cpp": "#include <hc/mtp/codec.h>\n#include <sys/socket.h>",
             "lib/vision/messages.h": "#include <hc/module/kind.h>",
         }
-        self.assertEqual(check(files)[0], 0)
+        self.assertEqual(check("check_layers.py", files)[0], 0)
 
     def test_each_wrong_arrow_is_named(self):
         for name, text in {
@@ -48,7 +34,7 @@ class Layers(unittest.TestCase):
             "lib/hc/new/a.cpp": "#include <vector>",
         }.items():
             with self.subTest(name):
-                status, out = check({name: text})
+                status, out = check("check_layers.py", {name: text})
                 self.assertEqual(status, 1)
                 self.assertTrue(out.startswith(name + ":1: "), out)
 
