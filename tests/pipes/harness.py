@@ -20,6 +20,7 @@ DATA = os.environ.get("HC_DATA", "/usr/share/doc/opencv-doc/examples/data")
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
 WATCHDOG = 100  # seconds after which a program hangs
+LONGEST = 300  # a test, unless HC_FULL=1 [s]
 PRESSURE = pathlib.Path("/proc/pressure/cpu")
 
 
@@ -36,6 +37,18 @@ def wait_until(condition):
         assert time.monotonic() < end, "nothing happened"
         time.sleep(0.01)
     return result
+
+
+def end_when_hung(test):
+    """Has a test fail where it is when it takes too long: events may come for ever, but not that
+    which it waits for."""
+
+    def fail(*_):
+        raise AssertionError("not at its end after %d s" % LONGEST)
+
+    signal.signal(signal.SIGALRM, fail)
+    signal.alarm(0 if os.environ.get("HC_FULL") == "1" else LONGEST)
+    test.addCleanup(signal.alarm, 0)
 
 
 def waited_for_processor():
@@ -72,7 +85,18 @@ def listens(port):
 
 
 class Pipes(unittest.TestCase):
+    result = None  # of the run
+
+    def run(self, result=None):
+        self.result = result
+        return super().run(result)
+
+    def has_failed(self):
+        failed = self.result.failures + self.result.errors if self.result else []
+        return any(test is self for test, _ in failed)
+
     def setUp(self):
+        end_when_hung(self)
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
         self.environment = dict(os.environ, HC_DATA=DATA)
@@ -98,9 +122,12 @@ class Pipes(unittest.TestCase):
         return process
 
     def end(self, process):
+        """Ends a process that was started; of a failed test, prints what it logged last."""
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
+        _, log = process.communicate()
+        if log and self.has_failed():
+            print("… " + log[-3000:].decode(errors="replace"), flush=True)
 
     def shell(self, command, status=0, data=b""):
         process = self.start(command, stdin=-1)

@@ -14,6 +14,7 @@ import struct
 import tarfile
 import unittest
 
+from feeder import Feeder
 from graphs import GRAPH, Graphs
 from web_socket import BINARY, CLOSE, TEXT, Refused, WebSocket, connect, get, read_head
 
@@ -39,6 +40,8 @@ inputs.stick = "web.stick"
 [frames.robot]
 parent = "world"
 translation = [0.0, 0.0, 1.2]
+[frames.head]
+parent = "robot"
 """
 )
 STICK = b"1 1 0 0 8 0 120190 0 0 2 1\n"
@@ -79,6 +82,13 @@ class Page(Graphs):
         opened = WebSocket(self.port, path, cookie, context, **fields)
         self.addCleanup(opened.close)
         return opened
+
+    def keep_alive(self, drive, *frames):
+        """Says what a page does all the time while somebody drives, until the end of the test."""
+        says = lambda _: [drive.send_frame(BINARY, each) for each in (ALIVE + b"0\n", *frames)]
+        feeder = Feeder(says, 0.05)
+        self.addCleanup(feeder.end)
+        return feeder
 
     def next(self, graph):
         """The next src and string; keeps the last session, which is sent only when it changes."""
@@ -286,24 +296,11 @@ class Graph(Page):
         graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
         self.hear(graph, 3, lambda text: '"stopped":false' in text)
         stopped = lambda text: json.loads(text)["focus"]["workspace"] is None
-        drive.send_frame(BINARY, number(5, 1, 1))
         in_focus = lambda text: not stopped(text)
-
-        def hold():
-            drive.send_frame(BINARY, ALIVE + b"0\n")
-            return True
-
-        def hear_held(condition):
-            while True:
-                hold()
-                header, elements = message(graph.next()[1])
-                if header[1] == 1 and condition(elements.decode()):
-                    return
-                drive.send_frame(BINARY, number(5, 1, 1))
-
-        hear_held(in_focus)
+        driver = self.keep_alive(drive, number(5, 1, 1))
+        self.hear(graph, 1, in_focus)
         self.assertEqual(self.command(graph, "estop"), ["ok"])
-        hear_held(stopped)
+        self.hear(graph, 1, stopped)
         state = json.loads(self.hear(graph, 1))
         pids = {module["name"]: module["pid"] for module in state["modules"]}
         # Both ends of it may crash.
@@ -312,8 +309,8 @@ class Graph(Page):
         self.hear(graph, 2, lambda text: "workspace: stopped" in text)
         self.assertEqual(self.command(graph, "estop clear"), ["ok"])
         self.hear(graph, 3, lambda text: '"stopped":false' in text)
-        hear_held(in_focus)
-        # Silence commands nothing.
+        self.hear(graph, 1, in_focus)
+        driver.end()  # silence commands nothing
         self.hear(graph, 1, stopped)
         self.stop(process)
 
@@ -530,14 +527,14 @@ class Seat(Page):
         cookie = self.session()
         graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
         self.hear(graph, 1, lambda text: json.loads(text)["focus"]["workspace"] is None)
+        driver = self.keep_alive(drive)
         drive.send_frame(BINARY, number(5, 1, 1))
         focus = lambda text: (json.loads(text)["focus"]["workspace"] or {}).get("number")
 
         def changes(until):
-            """The modes in focus one after the other, the driver alive, until a condition."""
+            """The modes in focus one after the other, until a condition."""
             seen = []
             while not until(seen):
-                drive.send_frame(BINARY, ALIVE + b"0\n")
                 src, rows = self.next(graph)
                 if src == 1:
                     seen.append(focus("\n".join(rows)))
@@ -547,6 +544,7 @@ class Seat(Page):
         self.assertIn(changes(lambda seen: len(seen) > 8), ([1], [None, 1]))
         drive.send_frame(BINARY, number(5, 1, 2))
         self.assertIn(changes(lambda seen: seen[-2:] == [2, 2]), ([1, 2], [2]))
+        driver.end()
         for mode in (3, 0, -1):
             drive.send_frame(BINARY, number(5, 1, mode))
             code, why = drive.code()

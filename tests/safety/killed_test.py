@@ -7,6 +7,7 @@ import time
 import unittest
 
 from head import Safety
+from streams import run_delay
 
 
 class Killed(Safety):
@@ -36,11 +37,15 @@ class Killed(Safety):
         for name in head.names():
             before, begun = head.restarts(but=[name]), time.monotonic()
             said = len(head.said())
+            waited = run_delay(head.process.pid)
             pid = head.send_signal(name, signal.SIGKILL)
             # What a new process has sent is counted from 0 on.
             self.is_back(name, pid, {each: 0 for each in outputs if each.startswith(name + ".")})
             self.is_back(name, pid, {each: head.sent()[each] for each in outputs})
-            self.note("back", time.monotonic() - begun, "%s: %s" % (name, head.said()[said:]))
+            took = time.monotonic() - begun
+            waited = (run_delay(head.process.pid) - waited + run_delay(head.pid(name))) / 1e9
+            where = "%s, beside others who had the processor for %.3f s: %s"
+            self.note("back", took, where % (name, waited, head.said()[said:]), waited)
             self.note_ended(before, but=[name], where=name)
         self.hold()
 

@@ -8,8 +8,9 @@ import struct
 import time
 import unittest
 
+from feeder import Feeder
 from head import Safety
-from streams import Feeder, bid, message, rotation, stick, stop
+from streams import bid, message, rotation, stick, stop
 
 SECONDS = 2  # for which sources contradict each other [s]
 SLOW = 0.6  # a push with which the head does not reach its limits meanwhile
@@ -122,8 +123,10 @@ class People(Safety):
         head = self.head
         head.source("workspace.stop", 0).insist(stop(1, src=90))
         head.wait(lambda: head.page.session["stopped"], "the robot is stopped")
-        self.feed("workspace.stop", 1, lambda _: stop(0, src=91), 0.1)
+        feeder = self.feed("workspace.stop", 1, lambda _: stop(0, src=91), 0.1)
         self.note_rest()
+        feeder.end()  # it leaves: its silence would stop the robot again
+        head.source("workspace.stop", 1).insist(stop(3, src=91))
 
     def test_a_button_falls_silent(self):
         head = self.head

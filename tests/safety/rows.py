@@ -29,10 +29,10 @@ class Row:
 
     def note(self, limit, value, where="", excused=0):
         """Takes a measurement. "" where it is within its limit, else what happened, in one line. So
-        much of it as is `excused` does not count."""
+        much of it as is `excused` does not count, up to the limit itself."""
         self.worst[limit] = max(value, self.worst.get(limit, value))
         most, unit = self.limits[limit]["most"], self.limits[limit].get("unit", "")
-        if value - excused <= most:
+        if value - min(excused, most) <= most:
             return ""
         text = "%s%s: %s: %s %s, at most %s"
         return text % (

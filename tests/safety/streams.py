@@ -177,26 +177,6 @@ class Source:
         self.connection = None
 
 
-class Feeder:
-    """Does something each `period` seconds until its end, beside the test."""
-
-    def __init__(self, does, period=0.02):
-        self.does, self.period, self.is_over = does, period, threading.Event()
-        self.thread = threading.Thread(target=self.run, daemon=True)
-        self.thread.start()
-
-    def run(self):
-        while not self.is_over.wait(self.period):
-            try:
-                self.does(time.monotonic())
-            except OSError:  # what it sends to is gone
-                pass
-
-    def end(self):
-        self.is_over.set()
-        self.thread.join()
-
-
 def message(info, rows, coord=0, mode=0, src=90, stamp=None, width=1, height=1):
     """A message in text. `stamp` None: now [ns]."""
     stamp = time.time_ns() if stamp is None else stamp
