@@ -21,6 +21,9 @@ struct SupervisionLimits {
   std::chrono::nanoseconds grace = std::chrono::seconds(5);  ///< between SIGTERM and SIGKILL
   /// Without a report from a module that has reported before: stalled.
   std::chrono::nanoseconds stall = std::chrono::milliseconds(1500);
+  /// For the first report of a module that takes commands and has a `hang`, where that is not
+  /// longer: it may have to load what it needs.
+  std::chrono::nanoseconds first_report = std::chrono::seconds(60);
 };
 
 }  // namespace hc

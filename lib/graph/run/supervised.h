@@ -141,7 +141,7 @@ class Supervised {
   void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);
   void look_at_silent();
-  bool look_whether_hung(MonotonicTime time, bool is_blocked);
+  bool kill_if_hung(bool is_blocked);
   void forget_process();
   void go_on(int status);
   void decide(int status);
@@ -171,7 +171,7 @@ class Supervised {
   MonotonicTime said_at_{0};  // the last of them
   Reports reports_;
   MonotonicTime heard_{0};                // when this process reported last; 0: it has not
-  MonotonicTime looked_{0}, silence_{0};  // the last look; without a report, as far as one looked
+  MonotonicTime looked_{0}, silence_{0};  // the last look; without a sign, as far as one looked
   MonotonicTime blocked_{0};              // since when it waits for a reader; 0: it does not
   std::string hung_;  // why this process was killed: "hung for 5 s"; empty: it was not
   Usage usage_;

@@ -110,15 +110,22 @@ void Supervised::take_report(const Message& message) {
 }
 
 void Supervised::look(MonotonicTime time) {
+  constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1);
   end_observations(time);
   send_wall_offset();
   note_dropped_lines(time);
-  if (process_ && heard_ == MonotonicTime(0)) return look_at_silent();
+  // Time in which nobody looked, as this process was stopped or starved itself, counts as a second
+  // at most.
+  const auto before = std::exchange(looked_, time);
+  if (!process_) return;
+  if (before != MonotonicTime(0)) silence_ += std::min(time - before, kMostAtOnce);
+  const bool is_silent = heard_ == MonotonicTime(0);
+  if (is_silent) look_at_silent();
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const bool is_blocked = reports_.state().blocked_row != 0;
-  if (look_whether_hung(time, is_blocked)) return;
+  if (kill_if_hung(is_blocked) || is_silent) return;
   if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
-  if (!process_ || time - heard_ < limits_.stall) return;
+  if (time - heard_ < limits_.stall) return;
   const bool is_stopped = process_->usage(false).is_stopped;
   if (is_blocked && !is_stopped) {
     if (is_stalled) callbacks_.event("resumed");
@@ -132,30 +139,36 @@ void Supervised::look(MonotonicTime time) {
   callbacks_.event("unresponsive: " + detail_);
 }
 
-/// Whether it has been killed since it has not reported for as long as the graph allows. One that
-/// is looked at in a debugger, or waits for a reader and runs, has a reason. Time in which nobody
-/// looked, as this process was stopped or starved itself, counts as a second at most.
-bool Supervised::look_whether_hung(MonotonicTime time, bool is_blocked) {
-  constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1);
-  if (looked_ != MonotonicTime(0)) silence_ += std::min(time - looked_, kMostAtOnce);
-  looked_ = time;
-  if (!process_ || !hung_.empty() || status_ == ModuleStatus::Stopping) return false;
-  if (plan_.hang.count() == 0 || silence_ < plan_.hang) return false;
+/// Whether it has been killed since it has not reported for as long as the graph allows, or has
+/// been stopped for so long. One that is looked at in a debugger, or waits for a reader and runs,
+/// has a reason; and one that has not reported yet may have to load what it needs.
+bool Supervised::kill_if_hung(bool is_blocked) {
+  if (!hung_.empty() || status_ == ModuleStatus::Stopping) return false;
+  MonotonicTime patience = plan_.hang;
+  if (patience == MonotonicTime(0) || silence_ < patience) return false;
   const auto usage = process_->usage(false);
   if (usage.is_traced || (is_blocked && !usage.is_stopped)) return false;
-  hung_ = "hung for " + std::to_string(plan_.hang.count()) + " s";
+  if (heard_ == MonotonicTime(0) && !usage.is_stopped) {
+    if (!control_) return false;  // it may never report
+    patience = std::max(patience, limits_.first_report);
+    if (silence_ < patience) return false;
+  }
+  hung_ = "hung for " +
+          std::to_string(std::chrono::duration_cast<std::chrono::seconds>(patience).count()) + " s";
   process_->kill();
   return true;
 }
 
-/// Asks the kernel whether a module that sends no reports has been stopped by a signal.
+/// Asks the kernel whether a module that has sent no reports has been stopped by a signal, and from
+/// when on.
 void Supervised::look_at_silent() {
   const bool is_stalled = status_ == ModuleStatus::Stalled;
-  if (status_ != ModuleStatus::Running && !is_stalled) return;
+  const auto usual = control_ ? ModuleStatus::Starting : ModuleStatus::Running;
+  if (status_ != usual && !is_stalled) return;
   const bool is_stopped = process_->usage(false).is_stopped;
   if (is_stopped == is_stalled) return;
-  change(is_stopped ? ModuleStatus::Stalled : ModuleStatus::Running,
-         is_stopped ? "stopped by a signal" : "");
+  silence_ = MonotonicTime(0);
+  change(is_stopped ? ModuleStatus::Stalled : usual, is_stopped ? "stopped by a signal" : "");
   callbacks_.event(is_stopped ? "unresponsive: " + detail_ : "resumed");
 }
 

@@ -254,6 +254,48 @@ TEST_F(Supervision, OneThatHangsIsKilledAndRestarted) {
   EXPECT_EQ(module(*report, "patient").restarts, 0);
 }
 
+TEST_F(Supervision, OneThatHangsBeforeItsFirstReportIsKilledAndRestarted) {
+  options_.limits.first_report = 1s;
+  for (const std::string name : {"hung", "stopped", "silent", "stopped_silent"}) {
+    auto& module = add(name, "exec sleep 1000");
+    module.hang = 1s;
+    if (!name.ends_with("silent")) module.control_uri = "unix-listen:@" + token_ + "." + name;
+  }
+  options_.state = [&](const GraphState& state) {
+    for (const auto& module : state.modules)
+      if (module.name.starts_with("stopped") && module.process > 0 && module.restarts == 0)
+        ::kill(module.process, SIGSTOP);
+  };
+  std::set<std::string> hung;
+  heard_ = [&](std::string_view line) {
+    if (line.ends_with(": hung for 1 s; restarting")) hung.emplace(line, 0, line.find(':'));
+    if (hung.size() == 3) stop();
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_EQ(hung, (std::set<std::string>{"hung", "stopped", "stopped_silent"}));
+}
+
+TEST_F(Supervision, OneThatLoadsForLongerThanItsHangIsLeftAlone) {
+  options_.limits.first_report = 1h;
+  auto& slow = add("slow", "exec sleep 1000");
+  slow.hang = 1s;
+  slow.control_uri = "unix-listen:@" + token_ + ".slow";
+  add("hung", "exec sleep 1000").hang = 3s;
+  std::unique_ptr<Reporter> reporter;
+  heard_ = [&](std::string_view line) {
+    if (line == "hung: started") {
+      if (reporter) return stop();
+      reporter = std::make_unique<Reporter>(plan_.modules[1].manage_uri);
+      reporter->publish_state(false);
+    }
+  };
+  auto report = run();
+  ASSERT_TRUE(report) << report.error().detail;
+  EXPECT_TRUE(said("hung: hung for 3 s; restarting"));
+  EXPECT_EQ(module(*report, "slow").restarts, 0);
+}
+
 TEST_F(Supervision, OneThatWaitsSaysForWhomSinceWhen) {
   const std::string uri = "unix-listen:@" + token_ + ".a.out";
   add("a", "exec sleep 1000").ends = {{false, "out", uri, ""}};
