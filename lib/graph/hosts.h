@@ -43,6 +43,8 @@ class Host {
   [[nodiscard]] virtual HostState state() const = 0;
   /// Starts a module there. It ends with status kHostLost when the connection does.
   virtual std::unique_ptr<internal::ModuleProcess> start(const PlannedModule& module) = 0;
+  /// No process of a module will follow there: the names that it listened at are let go of.
+  virtual void let_go(const PlannedModule& module) = 0;
   /// Has a reader there take the place of one that has ended, as long as the result.
   virtual std::shared_ptr<void> read_in_place(const std::string& reader_uri) = 0;
   /// A port of all addresses for who observes, where one is at hand. Errors: Closed.

@@ -16,6 +16,7 @@
 #include <graph/programs.h>
 #include <graph/run/announcer.h>
 #include <graph/run/aside.h>
+#include <graph/run/held_names.h>
 #include <graph/run/intake.h>
 #include <graph/run/log_limit.h>
 #include <graph/run/process.h>
@@ -41,12 +42,21 @@ constexpr std::chrono::seconds kTimeToEnd{1};
 constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
 constexpr int kHeartbeatsOfUsage = 2, kUsagesOfMemory = 4;
 
+/// Where a module is met, by the readers of its outputs and by us: the same for all its processes,
+/// and held between them, so that nobody else takes a name.
+struct Place {
+  internal::HeldNames names;
+  std::unique_ptr<Intake> reports;
+  std::unique_ptr<Announcer> commands;
+  std::int64_t child = 0;  // the process there now; 0: none
+  bool is_over = false;    // none will follow
+};
+
 /// A module that runs here.
 struct Child {
   explicit Child(Process started) : process(std::move(started)) {}
 
-  std::unique_ptr<Intake> reports;
-  std::unique_ptr<Announcer> commands;
+  std::string place;
   Process process;
   std::uint64_t unsaid = 0;  // bytes of its log that were dropped
   internal::LogLimit log_limit;
@@ -142,8 +152,8 @@ class Agent {
         return conversation_->say(make_numbers(Heartbeat, answer, answer.size()));
       }
       case Commands:
-        if (auto* child = find(message.header.dst); child != nullptr && child->commands)
-          child->commands->say(message);
+        if (auto* child = find(message.header.dst); child != nullptr)
+          if (auto& commands = places_[child->place].commands) commands->say(message);
         return;
       default:
         return;
@@ -174,6 +184,8 @@ class Agent {
       readers_[order.at("number")] = std::move(*reader);
     } else if (what == "leave") {
       readers_.erase(order.at("number").get<std::int64_t>());
+    } else if (what == "over") {
+      end_place(order.at("manage"), true);
     } else if (what == "release") {
       ports_.erase(order.at("port").get<std::int64_t>());
     } else if (what == "hold") {
@@ -197,6 +209,7 @@ class Agent {
     const std::int64_t number = order.at("number");
     auto started = make_child(number, order);
     if (started) return;
+    if (const auto* child = find(number)) end_place(child->place, false);
     children_.erase(number);
     send({{"what", "ended"},
           {"number", number},
@@ -204,29 +217,54 @@ class Agent {
           {"error", started.error().detail}});
   }
 
-  Status make_child(std::int64_t number, const Json& order) {
-    // Both listen before the module starts, which connects to them.
-    LinkOptions options;
-    options.limits.element_bytes = kMostReported;
-    auto reports = Intake::make(
-        *loop_, order.at("manage").get<std::string>(),
-        [this, number](const Message& message) { report(number, message); }, options);
-    if (!reports) return reports.error();
-    std::unique_ptr<Announcer> commands;
-    if (const std::string uri = order.at("control"); !uri.empty()) {
-      auto made = Announcer::make(*loop_, uri, [this, number] {
-        send({{"what", "listens"}, {"number", number}});
+  /// Listens where a module is met, unless that is done already. All before it starts.
+  Status make_place(const std::string& manage, const std::string& control,
+                    const std::vector<std::string>& command) {
+    auto& place = places_[manage];
+    place.is_over = false;
+    if (!place.reports) {
+      LinkOptions options;
+      options.limits.element_bytes = kMostReported;
+      auto reports = Intake::make(
+          *loop_, manage, [this, &place](const Message& message) { report(place.child, message); },
+          options);
+      if (!reports) return reports.error();
+      place.reports = std::move(*reports);
+    }
+    if (control.empty()) place.commands.reset();
+    if (!control.empty() && !place.commands) {
+      auto made = Announcer::make(*loop_, control, [this, &place] {
+        if (place.child != 0) send({{"what", "listens"}, {"number", place.child}});
         return std::vector<Message>();
       });
       if (!made) return made.error();
-      commands = std::move(*made);
+      place.commands = std::move(*made);
     }
-    auto process = Process::start(order.at("command").get<std::vector<std::string>>(),
-                                  Process::Capture::Errors, {key_.get(), {}});
+    return place.names.hold(command);
+  }
+
+  /// There is no process any more, or none will follow.
+  void end_place(const std::string& manage, bool is_over) {
+    const auto found = places_.find(manage);
+    if (found == places_.end()) return;
+    auto& place = found->second;
+    place.is_over = place.is_over || is_over;
+    if (!is_over) place.child = 0;
+    if (place.child == 0 && place.commands) place.commands->leave_all();
+    if (place.child == 0 && place.is_over) places_.erase(found);
+  }
+
+  Status make_child(std::int64_t number, const Json& order) {
+    const auto manage = order.at("manage").get<std::string>();
+    const auto command = order.at("command").get<std::vector<std::string>>();
+    if (auto made = make_place(manage, order.at("control"), command); !made) return made;
+    auto& place = places_[manage];
+    auto process =
+        Process::start(command, Process::Capture::Errors, {key_.get(), place.names.descriptors()});
     if (!process) return process.error();
     auto& child = *(children_[number] = std::make_unique<Child>(std::move(*process)));
-    child.reports = std::move(*reports);
-    child.commands = std::move(commands);
+    child.place = manage;
+    place.child = number;
     auto said = loop_->watch(child.process.output(), EPOLLIN,
                              [this, number](auto) { pass_on_log(number); });
     if (!said) return said.error();
@@ -242,6 +280,7 @@ class Agent {
   }
 
   void report(std::int64_t number, const Message& message) {
+    if (number == 0) return;
     const bool is_counters = message.header.src <= 1;  // the next ones say the same and more
     if (is_counters && conversation_->backlog() > kCrowded) return;
     if (message.header.src < 0 || message.header.src >= Report) return;
@@ -280,10 +319,12 @@ class Agent {
     auto& child = *children_.at(number);
     const auto status = child.process.poll_status();
     if (!status) return;
-    child.reports->take();  // accepts a connection that has just been made,
-    child.reports->take();  // and reads what came on it
+    auto& reports = *places_[child.place].reports;
+    reports.take();  // accepts a connection that has just been made,
+    reports.take();  // and reads what came on it
     for (int i = 0; i < kLastPieces && child.said; ++i) pass_on_log(number);
     send({{"what", "ended"}, {"number", number}, {"status", *status}});
+    end_place(child.place, false);
     children_.erase(number);
   }
 
@@ -359,6 +400,7 @@ class Agent {
   std::unique_ptr<Aside> aside_;
   std::unique_ptr<Conversation> conversation_;
   internal::Descriptor key_;
+  std::map<std::string, Place> places_;  // by where the module reports
   std::map<std::int64_t, std::unique_ptr<Child>> children_;
   std::map<std::int64_t, std::shared_ptr<const internal::HeldPort>> ports_;
   std::map<std::int64_t, std::unique_ptr<Intake>> readers_;

@@ -54,6 +54,9 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   [[nodiscard]] HostPlace place() const override;
   [[nodiscard]] HostState state() const override;
   std::unique_ptr<internal::ModuleProcess> start(const PlannedModule& module) override;
+  void let_go(const PlannedModule& module) override {
+    send({{"what", "over"}, {"manage", module.manage_uri}});
+  }
   std::shared_ptr<void> read_in_place(const std::string& reader_uri) override;
   Result<std::shared_ptr<const internal::HeldPort>> spare_port() override;
   [[nodiscard]] std::int64_t wall_offset() const override;

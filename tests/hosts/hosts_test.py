@@ -517,6 +517,50 @@ class Hosts(HostsTest):
 
     # Strangers.
 
+    @staticmethod
+    def names_of(host):
+        """Those of the abstract namespace where somebody listens."""
+        return [
+            row.split()[-1][1:]
+            for row in host.inside("cat /proc/net/unix", stdout=-1).stdout.decode().splitlines()
+            if "@hc-" in row and row.split()[3] == "00010000"
+        ]
+
+    def test_another_user_takes_no_name_while_its_module_restarts(self):
+        (host,) = self.network.add()
+        self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % "host = \"h1\"\n")
+        process = self.run_graph()
+        messages = self.observe(process)
+        state = self.flows(messages)
+        names = self.names_of(host)
+        self.assertTrue([name for name in names if "camera" in name], names)
+        script = """
+import os, select, socket, sys
+os.setgid(65534); os.setuid(65534)
+print("ready", flush=True)
+while not select.select([0], [], [], 0)[0]:
+    for name in sys.argv[1:]:
+        with socket.socket(socket.AF_UNIX) as taken:
+            try:
+                taken.bind("\\0" + name)
+                print(name, flush=True)
+            except OSError:
+                pass
+"""
+        command = [*host.enter(sys.executable), "-c", script, *names]
+        with subprocess.Popen(command, stdin=-1, stdout=-1) as stranger:
+            self.assertEqual(stranger.stdout.readline(), b"ready\n")
+            for _ in range(3):
+                restarts = self.module(state, "camera")["restarts"]
+                os.kill(self.modules_of(host)["camera"], signal.SIGKILL)
+                self.state(
+                    messages, lambda state: self.module(state, "camera")["restarts"] > restarts
+                )
+                state = self.flows(messages, self.state(messages)["links"][0]["messages"])
+            self.assertEqual(stranger.communicate()[0], b"")
+        self.stop(process)
+        self.assert_empty(host)
+
     def test_other_users_get_nothing(self):
         host, process, messages, _ = self.run_two()
         camera = self.modules_of(host)["camera"]
@@ -524,11 +568,7 @@ class Hosts(HostsTest):
         self.assertIn(b"key=/proc/self/fd/3", words)
         self.assertNotIn(b"PRIVATE", words + pathlib.Path("/proc/%d/environ" % camera).read_bytes())
         self.assertIn(b"PRIVATE", pathlib.Path("/proc/%d/fd/3" % camera).read_bytes())
-        names = [
-            row.split()[-1][1:]
-            for row in host.inside("cat /proc/net/unix", stdout=-1).stdout.decode().splitlines()
-            if "@hc-" in row and row.split()[3] == "00010000"
-        ]
+        names = self.names_of(host)
         self.assertEqual(len([name for name in names if name.endswith(".control")]), 1)
         script = (
             """

@@ -114,8 +114,13 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
   if (status_ == status && detail_ == detail) return;
   status_ = status;
   detail_ = detail;
-  if (is_over()) names_.let_go();
+  if (is_over()) let_names_go();
   callbacks_.changed();
+}
+
+void Supervised::let_names_go() {
+  names_.let_go();
+  if (const auto there = host()) there->let_go(plan_);
 }
 
 std::shared_ptr<Host> Supervised::host() const {
@@ -233,6 +238,7 @@ ModuleChange Supervised::adopt(PlannedModule plan) {
   // new.
   auto change = change_between(is_heard() ? told_ : plan_, plan);
   const bool needs_restart = change_between(told_, plan).needs_restart;
+  if (plan.host != plan_.host) let_names_go();
   plan_ = std::move(plan);
   reports_.set_ends(plan_.ends);
   restarts_.set_policy(plan_.restart);

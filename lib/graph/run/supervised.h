@@ -134,6 +134,7 @@ class Supervised {
   std::vector<std::string> catch_up();
   void set_told();
   [[nodiscard]] bool is_heard() const;
+  void let_names_go();
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
   void read_lines();
