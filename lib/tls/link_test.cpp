@@ -19,9 +19,14 @@ internal::Descriptor connect(const std::string& place) {
 
 /// Both ends have the same two keys, so that each lets the other in.
 const SocketScheme& scheme() {
-  static const SocketScheme kTls{"tls",   free_port,
-                                 "tls:",  "tls-listen:",
-                                 connect, "?key=" + key_file("b") + "&peer=" + key_file("b"),
+  static const SocketScheme kTls{"tls",
+                                 free_port,
+                                 "tls:",
+                                 "tls-listen:",
+                                 connect,
+                                 internal::tls_peer,
+                                 internal::listen_tls,
+                                 "?key=" + key_file("b") + "&peer=" + key_file("b"),
                                  1000};
   return kTls;
 }

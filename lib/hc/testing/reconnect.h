@@ -5,6 +5,8 @@
 #include <memory>
 #include <thread>
 
+#include <hc/link/stream/dialer.h>
+#include <hc/os/wait_readable.h>
 #include <hc/testing/socket_link.h>
 
 namespace hc::testing {
@@ -68,6 +70,27 @@ TEST_P(SocketLink, GarbageIsTheEndOfAConnectionAndNotOfTheLink) {
   }
   EXPECT_EQ(source->traffic().bad, 1U);
   EXPECT_NE(warnings.lines.at(0).find("TooLarge: "), std::string::npos) << warnings.lines[0];
+}
+
+TEST_P(SocketLink, BehindAConnectionThatLivedPausesAreShortAgain) {
+  internal::TimePoint now{std::chrono::seconds(1000)};  // turned by hand
+  constexpr std::chrono::seconds kPatience(600);
+  internal::Dialer dialer(*GetParam().peer(*parse_uri(dial())), kPatience, kPatience, now);
+  for (int i = 0; i < 10; ++i) {
+    for (int failures = 0; failures < 9; now = dialer.due(), ++failures) {  // until pauses are long
+      do ASSERT_FALSE(*dialer.dial(now));
+      while (dialer.descriptor() >= 0);
+    }
+    auto listening = *GetParam().socket(*parse_uri(listen()));
+    auto connection = *dialer.dial(now);
+    for (; !connection; connection = *dialer.dial(now)) {
+      ASSERT_GE(dialer.descriptor(), 0) << dialer.why();
+      ASSERT_TRUE(internal::wait_for(dialer.descriptor(), dialer.events(), -1));
+    }
+    now += internal::kFirstPause;
+    dialer.lost(now, false, "it was killed");
+    ASSERT_LE(dialer.due() - now, internal::kFirstPause);
+  }
 }
 
 TEST_P(SocketLink, ASinkThatLosesNothingWaitsForEachReader) {

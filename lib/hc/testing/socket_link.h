@@ -30,6 +30,9 @@ struct SocketScheme {
   std::string dial, listen;            ///< schemes
   /// A stream socket that is connected to a place, for what no link would send.
   std::function<internal::Descriptor(const std::string& place)> connect;
+  /// What the two schemes stand for.
+  std::function<Result<internal::Peer>(const Uri&)> peer = {};
+  std::function<Result<internal::ListeningSocket>(const Uri&)> socket = {};
   std::string options = {};  ///< of every end, such as "?key=eyes.pem"
   int cuts = 10'000;         ///< how many streams to cut
 };
@@ -71,6 +74,14 @@ class SocketLink : public ::testing::TestWithParam<SocketScheme> {
   [[nodiscard]] std::string dial() const { return GetParam().dial + place_ + GetParam().options; }
   [[nodiscard]] std::string listen() const {
     return GetParam().listen + place_ + GetParam().options;
+  }
+  /// A source that listens, whose peers have so long.
+  [[nodiscard]] std::unique_ptr<Source> source_with(internal::PeerTimes times,
+                                                    Warnings& warnings) const {
+    auto source = internal::listening_source(*GetParam().socket(*parse_uri(listen())),
+                                             warnings.options(), times);
+    EXPECT_TRUE(source) << source.error().text();
+    return std::move(*source);
   }
   std::string place_;
 };
@@ -399,8 +410,9 @@ TEST_P(SocketLink, WhoIsSilentLongestMakesRoom) {
 }
 
 TEST_P(SocketLink, WhoDoesNotEndItsHeaderIsClosed) {
+  EXPECT_EQ(internal::PeerTimes().header, std::chrono::seconds(5));
   Warnings warnings;
-  auto source = source_of(listen(), warnings.options());
+  auto source = source_with({.header = std::chrono::seconds(0)}, warnings);
   auto peer = GetParam().connect(place_);
   ASSERT_EQ(::write(peer.get(), "1 2", 3), 3);
   Message message;
@@ -408,7 +420,7 @@ TEST_P(SocketLink, WhoDoesNotEndItsHeaderIsClosed) {
     ASSERT_TRUE(source->wait());
     ASSERT_EQ(*source->take(message), Got::Nothing);
   }
-  EXPECT_EQ(warnings.lines[0], listen() + ": closed a connection: no whole header in 5 s");
+  EXPECT_EQ(warnings.lines[0], "closed a connection: no whole header in 0 s");
   char byte = 0;
   EXPECT_LE(::read(peer.get(), &byte, 1), 0);
   auto sink = sink_of(dial());
@@ -434,6 +446,28 @@ TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
   EXPECT_EQ(message.characters(), numbered(1, 1).characters());
   ASSERT_TRUE(*receive(*source, message));  // from who came last, in the place of the seventh
   EXPECT_EQ(message.header.seq, 2);
+}
+
+TEST_P(SocketLink, WhoIsSilentForLongInsideAMessageGivesItsPlaceToOneWhoWaits) {
+  EXPECT_EQ(internal::PeerTimes().silence, std::chrono::seconds(30));
+  Warnings warnings;
+  auto source = source_with({.silence = std::chrono::seconds(0)}, warnings);
+  std::vector<internal::Descriptor> peers;
+  Message message;
+  for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
+    peers.push_back(GetParam().connect(place_));
+    enter_message(peers[i], *source);
+  }
+  ASSERT_EQ(*source->take(message), Got::Nothing);
+  EXPECT_TRUE(warnings.lines.empty());  // nobody waits
+  auto sink = sink_of(with(dial(), "wait=60"));
+  ASSERT_TRUE(sink->send(numbered(2, 1)));
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 2);
+  EXPECT_EQ(warnings.lines,
+            std::vector<std::string>{"closed the peer that was silent longest, to let another in"});
+  char byte = 0;
+  EXPECT_LE(::read(peers[0].get(), &byte, 1), 0);
 }
 
 TEST_P(SocketLink, MoreReadersThanThereIsRoomForWait) {

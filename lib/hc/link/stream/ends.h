@@ -41,16 +41,23 @@ Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
 /// How many peers a listening end has at once.
 constexpr std::size_t kMaxPeers = 256;
 
+/// How long a peer of a listening source may take.
+struct PeerTimes {
+  std::chrono::seconds header{5};  ///< for a whole header, from its first bytes; then it is closed
+  std::chrono::seconds silence{30};  ///< inside a message, when another waits for its place
+};
+
 /// Takes messages from all peers that connect, in the order of arrival. The connection of a peer
 /// that breaks a rule is closed, which is logged; the others are not affected. Never ends by
 /// itself.
 ///
 /// When there are kMaxPeers, a new one replaces the peer whose last message is oldest, unless that
-/// is inside a message: so silent peers cannot keep others out.
+/// is inside a message and was silent for less than its time: so silent peers cannot keep others
+/// out.
 ///
 /// Errors: System.
-Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket,
-                                                 const LinkOptions& options);
+Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket, const LinkOptions& options,
+                                                 PeerTimes times = {});
 
 /// Sends each message to every peer that is connected, each by a Connection of its own: with
 /// another policy than keep=all none waits for another. The URI's options say the readers and the

@@ -12,14 +12,15 @@
 namespace hc::internal {
 namespace {
 
-/// Who is silent inside a message for so long gives its place to who waits for one.
-constexpr std::chrono::seconds kLongSilence{30};
-
 /// Takes turns with those of its peers who have messages; see listening_source().
 class ListeningSource final : public Source {
  public:
-  ListeningSource(ListeningSocket socket, std::unique_ptr<Loop> loop, LinkOptions options)
-      : socket_(std::move(socket)), loop_(std::move(loop)), options_(std::move(options)) {}
+  ListeningSource(ListeningSocket socket, std::unique_ptr<Loop> loop, LinkOptions options,
+                  PeerTimes times)
+      : socket_(std::move(socket)),
+        loop_(std::move(loop)),
+        options_(std::move(options)),
+        times_(times) {}
 
   Status begin() {
     auto watched = loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); });
@@ -76,12 +77,12 @@ class ListeningSource final : public Source {
   /// A peer that begins a message must say its header in time; inside a message it may be silent
   /// for long only as long as nobody else waits for its place.
   void await_rest(Peer& peer) {
-    constexpr std::chrono::seconds kHeaderTime{5};
     peer.said_at = std::chrono::steady_clock::now();
     if (!peer.source->in_header()) return peer.header_due.reset();
     if (peer.header_due) return;
-    peer.header_due = loop_->call_at(peer.said_at + kHeaderTime, [this, each = &peer] {
-      leave(*each, "closed a connection: no whole header in 5 s");
+    peer.header_due = loop_->call_at(peer.said_at + times_.header, [this, each = &peer] {
+      leave(*each, "closed a connection: no whole header in " +
+                       std::to_string(times_.header.count()) + " s");
     });
   }
 
@@ -116,7 +117,7 @@ class ListeningSource final : public Source {
       int unread = 0;
       if (idlest < peers_.size() && peers_[i]->heard > peers_[idlest]->heard) continue;
       const bool is_inside = !source->between_messages();
-      if (is_inside && std::chrono::steady_clock::now() - peers_[i]->said_at < kLongSilence)
+      if (is_inside && std::chrono::steady_clock::now() - peers_[i]->said_at < times_.silence)
         continue;
       if (::ioctl(source->descriptor(), FIONREAD, &unread) != 0) continue;
       if (unread == 0) idlest = i;
@@ -136,6 +137,7 @@ class ListeningSource final : public Source {
   std::unique_ptr<Loop> loop_;  // of the listening socket and all peers
   Loop::Handle listening_;
   LinkOptions options_;
+  PeerTimes times_;
   std::vector<std::unique_ptr<Peer>> peers_;
   std::vector<Peer*> ready_;  // those that may have messages; they take turns
   std::size_t turn_ = 0;
@@ -146,11 +148,12 @@ class ListeningSource final : public Source {
 
 }  // namespace
 
-Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket,
-                                                 const LinkOptions& options) {
+Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket, const LinkOptions& options,
+                                                 PeerTimes times) {
   auto loop = Loop::make();
   if (!loop) return loop.error();
-  auto source = std::make_unique<ListeningSource>(std::move(socket), std::move(*loop), options);
+  auto source =
+      std::make_unique<ListeningSource>(std::move(socket), std::move(*loop), options, times);
   if (auto begun = source->begin(); !begun) return begun.error();
   return std::unique_ptr<Source>(std::move(source));
 }

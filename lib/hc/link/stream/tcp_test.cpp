@@ -63,7 +63,8 @@ Ends make_connection() {
   return {std::move(dialed), internal::Descriptor(::accept(listening.get(), nullptr, nullptr))};
 }
 
-const SocketScheme kTcp{"tcp", free_port, "tcp:", "tcp-listen:", connect};
+const SocketScheme kTcp{
+    "tcp", free_port, "tcp:", "tcp-listen:", connect, internal::tcp_peer, internal::listen_tcp};
 
 INSTANTIATE_TEST_SUITE_P(Tcp, LinkConformance, ::testing::ValuesIn(both_ways(kTcp)));
 INSTANTIATE_TEST_SUITE_P(Tcp, SocketLink, ::testing::Values(kTcp));

@@ -37,8 +37,11 @@ internal::Descriptor connect(const std::string& place) {
   return socket;
 }
 
-const SocketScheme kAbstract{"abstract", abstract_name, "unix:", "unix-listen:", connect};
-const SocketScheme kPath{"path", path, "unix:", "unix-listen:", connect};
+const SocketScheme kAbstract{
+    "abstract",          abstract_name,        "unix:", "unix-listen:", connect,
+    internal::unix_peer, internal::listen_unix};
+const SocketScheme kPath{
+    "path", path, "unix:", "unix-listen:", connect, internal::unix_peer, internal::listen_unix};
 
 INSTANTIATE_TEST_SUITE_P(Abstract, LinkConformance, ::testing::ValuesIn(both_ways(kAbstract)));
 INSTANTIATE_TEST_SUITE_P(Path, LinkConformance, ::testing::ValuesIn(both_ways(kPath)));
