@@ -402,7 +402,7 @@ bool Module::Loop::take_one(Inlet& link) {
 
 void Module::Loop::handle(Inlet& link, Message& message) {
   if (link.inputs.empty())
-    set_focus(message);
+    set_focus(link, message);
   else
     deliver(link, message);
 }

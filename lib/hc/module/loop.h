@@ -151,7 +151,7 @@ struct Module::Loop {
   void attend();
   void serve();
   void receive_focus();
-  void set_focus(const Message& message);
+  void set_focus(internal::Inlet& link, const Message& message);
   void expire_focus();
   void obey(const std::string& command);
   bool obey_while_sending();

@@ -61,15 +61,17 @@ void Module::Loop::receive_focus() {
   if (!focus_.empty() && !module_.message_time_) {  // else in its time
     Message message;
     for (auto& link : focus_)
-      while (link.source != nullptr && take(link, message) == Got::Message) set_focus(message);
+      while (link.source != nullptr && take(link, message) == Got::Message)
+        set_focus(link, message);
   }
   expire_focus();
 }
 
-void Module::Loop::set_focus(const Message& message) {
+void Module::Loop::set_focus(Inlet& link, const Message& message) {
   auto& focus = module_.focus_;
   const auto modes = message.view<std::int32_t>();
-  if (!modes || modes->empty()) return;
+  if (!modes) return drop(link, internal::kFocusPort, modes.error().detail);
+  if (modes->empty()) return drop(link, internal::kFocusPort, "it has no mode");
   note(TraceEvent::What::Took, internal::kFocusPort, message.header);
   focus.received = time();
   if (std::exchange(focus.current, modes->at(0, 0)) != focus.current) report_state();

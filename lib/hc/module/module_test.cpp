@@ -434,6 +434,28 @@ TEST(Module, ABadSetIsDropped) {
             std::string::npos);
 }
 
+TEST(Module, ABadFocusIsOneBadMessage) {
+  Module module{"actor", "Acts."};
+  auto in = module.input("in", table<double>(), "");
+  std::vector<bool> had;
+  module.on(in, [&](const auto&) { had.push_back(module.has_focus()); });
+  auto focus = sink_of("inproc:m_focus"), sink = sink_of("inproc:m_in");
+  Message none = table<std::int32_t>({0});
+  none.header.height = 0;
+  none.elements = {};
+  for (const Message& message :
+       {Message(table<std::int32_t>({2})), Message(position(1.0, 2.0, 3.0)), none})
+    ASSERT_TRUE(focus->send(message));
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->close());
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in=inproc:m_in", "--in=focus=inproc:m_focus", "--mode=2"}), 0);
+  EXPECT_EQ(had, std::vector<bool>{true});
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "actor: focus: dropped: the elements are position of 3 x f64, text, not plain i32 "
+            "(further ones are counted, not logged)\nactor: total: 2 bad at focus\n");
+}
+
 TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
   const std::string file = ::testing::TempDir() + "bad_messages.mtp";
   {
