@@ -26,16 +26,10 @@ ModuleFrames::ModuleFrames(Module& module, const Options& options)
       module.input("frames", any_of(transformation<double>(4, 4), transformation<float>(4, 4)),
                    "poses of the frames that move, T_parent_child [m]: linked by hc run");
   module.on(poses, [this](const Message& message) {
-    auto mover = known().mover_of(message.header.src, message.header.coord);
-    auto pose = rigid_of(message);
-    Status fed;
-    if (!mover)
-      fed = mover.error();
-    else if (!pose)
-      fed = pose.error();
-    else
-      fed = feed((*mover)->parent, (*mover)->child, message.header.time, *pose);
-    if (!fed) module_.log(fed.error().detail);
+    const auto& header = message.header;
+    const auto* mover = value_or_drop(known().mover_of(header.src, header.coord));
+    succeed_or_drop(
+        feed(mover->parent, mover->child, header.time, value_or_drop(rigid_of(message))));
   });
   module.every(std::chrono::milliseconds(10), [this] { answer_known(); });
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <hc/base/format.h>
+#include <hc/base/visible.h>
 #include <hc/mtp/coords.h>
 #include <hc/mtp/rows.h>
 
@@ -50,19 +51,6 @@ std::string rows_of(const hc::MatrixView<const T>& matrix) {
   return text;
 }
 
-/// Text with what would disturb a terminal made visible.
-std::string harmless(std::string_view text) {
-  std::string result;
-  for (char c : text) {
-    bool control = (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f;
-    if (control)
-      result += hc::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    else
-      result += c;
-  }
-  return result;
-}
-
 }  // namespace
 
 std::string time_in_words(std::int64_t time) {
@@ -90,7 +78,7 @@ std::string to_readable(const hc::Message& message) {
            hc::format("  {} bytes of {}\n", message.elements.size(), name(header.info.encoding));
   if (header.empty()) return text;
   if (header.info.type == hc::MatrixType::String) {
-    for (const auto& row : hc::rows_of(message)) text += "  " + harmless(row) + "\n";
+    for (const auto& row : hc::rows_of(message)) text += "  " + hc::visible(row) + "\n";
     return text;
   }
   hc::visit_scalar(header.info.scalar,
