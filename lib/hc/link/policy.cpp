@@ -67,8 +67,7 @@ void TokenBucket::take(TimePoint now) {
 
 bool Patience::waits(std::uint64_t taken, TimePoint now) {
   if (!began_) began_ = now;
-  if (!last_taken_ || std::exchange(taken_, taken) != taken) last_taken_ = now;
-  taken_ = taken;
+  if (std::exchange(taken_, taken) != taken || !last_taken_) last_taken_ = now;
   if (timeout_.count() > 0 && now - *last_taken_ >= timeout_) {
     end();
     is_over_ = true;

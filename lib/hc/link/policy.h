@@ -75,8 +75,7 @@ class Patience {
   static constexpr std::chrono::milliseconds kLong{200};
 
   /// @param timeout  0: it is waited for as long as it takes.
-  /// @param tell  called with true when a wait gets long, and with false when it ends; may be
-  /// empty.
+  /// @param tell  called with true when a wait gets long, with false when it ends; may be empty.
   explicit Patience(std::chrono::seconds timeout, std::function<void(bool)> tell = {})
       : timeout_(timeout), tell_(std::move(tell)) {}
 

@@ -47,13 +47,11 @@ struct PeerTimes {
   std::chrono::seconds silence{30};  ///< inside a message, when another waits for its place
 };
 
-/// Takes messages from all peers that connect, in the order of arrival. The connection of a peer
-/// that breaks a rule is closed, which is logged; the others are not affected. Never ends by
-/// itself.
+/// Takes messages from all peers that connect, in the order of arrival. A peer that breaks a rule
+/// is closed, which is logged; the others are not affected. Never ends by itself.
 ///
-/// When there are kMaxPeers, a new one replaces the peer whose last message is oldest, unless that
-/// is inside a message and was silent for less than its time: so silent peers cannot keep others
-/// out.
+/// When there are kMaxPeers, a new one replaces the peer that was silent longest, unless that is
+/// inside a message and was so for less than its time: silent peers keep nobody out.
 ///
 /// Errors: System.
 Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket, const LinkOptions& options,

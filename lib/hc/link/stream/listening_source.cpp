@@ -49,7 +49,6 @@ class ListeningSource final : public Source {
         std::erase(ready_, &peer);
         await_rest(peer);
       } else {
-        peer.heard = ++count_;
         peer.header_due.reset();
         ++turn_;
         return Got::Message;
@@ -68,14 +67,12 @@ class ListeningSource final : public Source {
  private:
   struct Peer {
     std::unique_ptr<StreamSource> source;
-    std::uint64_t heard = 0;  // when: the number of messages and peers that had come by then
-    bool is_ready = false;    // is in ready_
-    TimePoint said_at;        // something of a message, last
+    bool is_ready = false;  // is in ready_
+    TimePoint said_at;      // something, last
     Loop::Handle watch, header_due;
   };
 
-  /// A peer that begins a message must say its header in time; inside a message it may be silent
-  /// for long only as long as nobody else waits for its place.
+  /// Gives a peer that has begun a message its time for the header.
   void await_rest(Peer& peer) {
     peer.said_at = std::chrono::steady_clock::now();
     if (!peer.source->in_header()) return peer.header_due.reset();
@@ -102,25 +99,23 @@ class ListeningSource final : public Source {
       set_up_reader(accepted.get());
       peer->source = std::make_unique<StreamSource>(std::move(accepted), options_);
       peer->watch = std::move(*watched);
-      peer->heard = ++count_;
+      peer->said_at = std::chrono::steady_clock::now();
       peers_.push_back(std::move(peer));
       return {};
     });
   }
 
-  /// The peer whose last message was longest ago, of those that say nothing now, or are silent for
-  /// long inside a message; peers_.size() when there is none.
+  /// The peer that is silent longest, of those that are so between messages, or for long inside
+  /// one; peers_.size() when there is none.
   [[nodiscard]] std::size_t find_idlest() const {
     std::size_t idlest = peers_.size();
+    const auto now = std::chrono::steady_clock::now();
     for (std::size_t i = 0; i < peers_.size(); ++i) {
-      const auto& source = peers_[i]->source;
+      const auto& [source, is_ready, said_at, watch, header_due] = *peers_[i];
       int unread = 0;
-      if (idlest < peers_.size() && peers_[i]->heard > peers_[idlest]->heard) continue;
-      const bool is_inside = !source->between_messages();
-      if (is_inside && std::chrono::steady_clock::now() - peers_[i]->said_at < times_.silence)
-        continue;
-      if (::ioctl(source->descriptor(), FIONREAD, &unread) != 0) continue;
-      if (unread == 0) idlest = i;
+      if (idlest < peers_.size() && said_at > peers_[idlest]->said_at) continue;
+      if (!source->between_messages() && now - said_at < times_.silence) continue;
+      if (::ioctl(source->descriptor(), FIONREAD, &unread) == 0 && unread == 0) idlest = i;
     }
     return idlest;
   }
@@ -141,9 +136,8 @@ class ListeningSource final : public Source {
   std::vector<std::unique_ptr<Peer>> peers_;
   std::vector<Peer*> ready_;  // those that may have messages; they take turns
   std::size_t turn_ = 0;
-  int takes_ = 0;            // since the others were last asked
-  std::uint64_t count_ = 0;  // of messages and peers that have come
-  Traffic left_;             // of the peers that have left
+  int takes_ = 0;  // since the others were last asked
+  Traffic left_;   // of the peers that have left
 };
 
 }  // namespace
