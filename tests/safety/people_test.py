@@ -8,8 +8,8 @@ import struct
 import time
 import unittest
 
+from head import Safety  # which knows the way to the others
 from feeder import Feeder
-from head import Safety
 from streams import bid, message, rotation, stick, stop
 
 SECONDS = 2  # for which sources contradict each other [s]
