@@ -59,7 +59,9 @@ FollowScore score_follow(const std::vector<TimedAngles>& wanted,
   double best = 0, least = mean_square(wanted, compared, 0);
   for (double step : {50 * kStep, 10 * kStep, kStep}) {
     const double middle = best, reach = step == 50 * kStep ? kMostBehind : 10 * step;
-    for (double behind = middle - reach; behind <= middle + reach; behind += step) {
+    const auto steps = static_cast<int>(std::lround(reach / step));
+    for (int i = -steps; i <= steps; ++i) {
+      const double behind = middle + i * step;
       const double error = mean_square(wanted, compared, behind);
       if (error < least) {
         least = error;
