@@ -94,6 +94,8 @@ class Recording(Pipes):
         self.assert_close(name + ".command", seconds, degrees * DEGREE, 0.85, begin=0.7)
         self.assert_close(name + ".bid", 0.25, 0, 0.95)
         first = self.messages("again", name + ".command")
+        for path in pathlib.Path(self.path("again")).glob(name + ".*"):
+            path.unlink()  # it would be kept
         self.replay(name)  # to the byte the same, since it goes by nothing but what it is fed with
         self.assertEqual(first, self.messages("again", name + ".command"))
 
