@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The commands of the README and the documents."""
 
+import os
 import pathlib
 import re
 import resource
+import shutil
 import unittest
 
 from harness import BUILD, DATA, Pipes, ROOT, free_port
@@ -121,11 +123,16 @@ class Documents(Pipes):
             with self.subTest(block):
                 # Figures are measured again where the machine may have been too busy.
                 has_figures = any(re.search(pattern, block) for pattern, _, _ in BOUNDS)
+                before = set(os.listdir(self.folder.name))
                 for _ in range(3 if has_figures else 1):
                     wrong = Documents.run_block(self, block)
                     if not wrong:
                         break
                     print(wrong, flush=True)
+                    # What an attempt has written would stay, and the next be written beside it.
+                    for name in set(os.listdir(self.folder.name)) - before:
+                        path = pathlib.Path(self.path(name))
+                        shutil.rmtree(path) if path.is_dir() else path.unlink()
                 else:
                     self.fail(wrong)
 
