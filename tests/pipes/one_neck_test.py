@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tasks that want the head at once: what the unit is reported on its line is of the task in focus."""
+"""Tasks that want the head at once: the unit obeys the one in focus alone."""
 
 import math
 import os
@@ -18,7 +18,7 @@ from harness import ROOT, wait_until
 STEP = math.radians(185.1428 / 3600)  # of the unit [rad]
 LEFT, RIGHT, POINT = 1, 2, 3  # modes
 TILT = 0.2  # [rad] of what the task to the left looks at; to the right it is up, by stick 0
-ENOUGH = 5  # commands that the unit is reported of a task before something changes
+ENOUGH = 5  # commands of a task that reach the unit before something changes
 
 GRAPH = """
 [graphs.head]
@@ -140,11 +140,11 @@ def owner_of(pan, tilt):
 
 
 class Mixed(AssertionError):
-    """The unit was log what no task in focus has commanded."""
+    """The unit was told what no task in focus has commanded."""
 
 
-def reported_in(stints, commands):
-    """How many commands the unit has been log in each stint of the focus.
+def told_in(stints, commands):
+    """How many commands the unit was given in each stint of the focus.
 
     stints: (begin, mode); commands: (time, mode). Commands of a stint come behind its begin, and
     none of an older one behind those of a newer one. When a stint's last command comes nothing
@@ -205,7 +205,7 @@ class OneNeck(Graphs):
         return changes
 
     def commands(self):
-        """When and by whom the unit has been log where to go."""
+        """When and by whom the unit was told where to go."""
         words, rest = [], ""
         for at, piece in self.messages("received"):
             rest += piece
@@ -225,7 +225,7 @@ class OneNeck(Graphs):
         return found
 
     def wait_told(self, mode):
-        """Waits until the unit has been log enough from now on by a task that has the focus."""
+        """Waits until a task that has the focus has given the unit enough commands from now on."""
         known = len(self.commands())
 
         def is_enough():
@@ -254,9 +254,9 @@ class OneNeck(Graphs):
 
     def finish(self):
         self.stop(self.process)
-        return reported_in(self.stints(), self.commands())
+        return told_in(self.stints(), self.commands())
 
-    def test_the_unit_is_reported_nothing_but_by_the_task_in_focus(self):
+    def test_the_unit_is_told_nothing_but_by_the_task_in_focus(self):
         self.start_tasks()
         for change in range(10):
             self.set_saliences(0.2, 0.5 + 0.04 * change)
@@ -332,7 +332,7 @@ class OneNeck(Graphs):
         wait_until(lambda: asked().count("pp") > 20)
         self.assertFalse([word for word in asked() if re.fullmatch(r"pp-?\d+", word)])
 
-    def test_a_neck_that_takes_all_is_reported_by_all(self):
+    def test_a_neck_that_takes_all_is_told_by_all(self):
         """What the test above looks for would be found."""
         self.start_tasks(is_exclusive=False)
         self.set_saliences(0.2, 0.5)
