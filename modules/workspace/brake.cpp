@@ -19,7 +19,7 @@ hc::Status Brake::take(const Message& message, hc::MonotonicTime now) {
   const bool is_timely = message.said > now - kOld && message.said <= now + kAhead;
   if (!is_stop && !is_timely) return hc::Error{hc::Code::Malformed, "its time is not of now"};
   const auto said = is_stop ? now : std::min(message.said, now);
-  if (message.word == kClearAll) clear_all(said);
+  if (message.word == kClearAll) clear_all(message.source, said);
   if (Source* source = find(message.source); source != nullptr) {
     hear(*source, message, said);
   } else {
@@ -49,11 +49,14 @@ void Brake::hear(Source& source, const Message& message, hc::MonotonicTime said)
   if (!source.stops) source.is_forgetful = false;
 }
 
-void Brake::clear_all(hc::MonotonicTime now) {
+/// @param by  its own messages come in their order; those of others may have come before, and been
+/// said later.
+void Brake::clear_all(std::int32_t by, hc::MonotonicTime said) {
   others_stop_ = false;
   for (auto& [number, source] : sources_) {
+    source.guards = source.guards && !source.is_silent(said);
+    if (number != by && source.heard > said) continue;
     source.stops = source.is_forgetful = false;
-    source.guards = source.guards && !source.is_silent(now);
   }
 }
 

@@ -4,9 +4,9 @@
 //
 // The rules, for each source of the input `stop` by itself:
 // - A 1 stops the robot. It holds until the same process of that source sends a 0, or any source a
-//   2: a person clears all stops. A source that repeated its 1 and was then silent for kSilence, or
-//   has left, or began to count its messages anew, may have forgotten what it asked for: its 0
-//   clears nothing until it has stopped the robot again.
+//   2: a person clears all stops that there are when it is said. A source that repeated its 1 and
+//   was then silent for kSilence, or has left, or began to count its messages anew, may have
+//   forgotten what it asked for: its 0 clears nothing until it has stopped the robot again.
 // - A source guards from the second of two 0 on that are no further apart than kSilence: it can
 //   stop the robot at any time, and says so. While it is silent for longer, nobody may move the
 //   robot, since a stop could not arrive. A 3 says that it leaves and guards no more; a 2 of
@@ -82,7 +82,7 @@ class Brake {
 
   Source* find(std::int32_t number);
   static void hear(Source& source, const Message& message, hc::MonotonicTime said);
-  void clear_all(hc::MonotonicTime now);
+  void clear_all(std::int32_t by, hc::MonotonicTime said);
 
   std::map<std::int32_t, std::string> names_;
   std::map<std::int32_t, Source> sources_;

@@ -57,6 +57,20 @@ TEST(Brake, a_person_clears_all_stops) {
   EXPECT_EQ(robot.reason(), "");
 }
 
+TEST(Brake, a_stop_that_is_newer_than_what_clears_all_holds) {
+  Robot robot;
+  ASSERT_TRUE(robot.say(99, 1));
+  const auto said = robot.now += milliseconds(500);
+  robot.now += milliseconds(100);
+  ASSERT_TRUE(robot.say(kButton, 1));
+  robot.now += milliseconds(100);  // for which it was on its way
+  ASSERT_TRUE(robot.brake.take({kPage, Brake::kClearAll, 0, said}, robot.now));
+  EXPECT_EQ(robot.reason(), "stopped by source 7");
+  EXPECT_FALSE(robot.brake.stops_robot(99));
+  ASSERT_TRUE(robot.say(kPage, 2));
+  EXPECT_EQ(robot.reason(), "");
+}
+
 TEST(Brake, a_guard_that_is_silent_halts_the_robot_and_its_word_frees_it) {
   Robot robot;
   robot.repeat(kPage, 0, milliseconds(200));
