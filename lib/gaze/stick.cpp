@@ -2,6 +2,7 @@
 #include <gaze/stick.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hc::gaze {
 
@@ -24,7 +25,8 @@ void Stick::push(const Angles& rates, double now, const Angles& measured) {
 }
 
 std::optional<Motion> Stick::at(double now, const Angles& measured) {
-  if (motion_ && now - pushed_at_ > kHold) motion_.reset();
+  // Also when the clock was set back: else it would count until that time comes again.
+  if (motion_ && std::abs(now - pushed_at_) > kHold) motion_.reset();
   if (!motion_) return std::nullopt;
   constexpr double kReach = 0.1;  // [rad]
   const double dt = now - time_;

@@ -53,6 +53,16 @@ TEST(Stick, a_push_that_is_not_told_again_ends) {
   EXPECT_NEAR(stick.at(20.01, {-1, 0})->angles.pan, -0.99, 1e-12);
 }
 
+TEST(Stick, a_push_before_the_clock_was_set_has_ended) {
+  for (double now : {-3590.0, 3610.0}) {
+    Stick stick;
+    stick.push({1, 0}, 10, {});
+    EXPECT_FALSE(stick.at(now, {}));
+    stick.push({1, 0}, now + 1, {-1, 0});
+    EXPECT_NEAR(stick.at(now + 1.01, {-1, 0})->angles.pan, -0.99, 1e-9);
+  }
+}
+
 TEST(Stick, is_never_far_ahead_of_a_head_that_cannot_follow) {
   Stick stick;
   for (double now = 10; now < 12; now += 0.05) stick.push({2, 0}, now, {0.3, 0});

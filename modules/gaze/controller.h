@@ -2,6 +2,7 @@
 #pragma once
 // What the head is commanded: to follow a target, or a stick. No messages; times in nanoseconds.
 
+#include <cmath>
 #include <optional>
 
 #include <gaze/stick.h>
@@ -31,7 +32,7 @@ class Controller {
 
  private:
   [[nodiscard]] bool is_fresh(std::optional<double> last, std::int64_t now) const {
-    return last && hc::seconds(now) - *last <= *parameters_.timeout;
+    return last && std::abs(hc::seconds(now) - *last) <= *parameters_.timeout;
   }
   /// The command for what moves so: ahead of it by the unit's braking distance, within its limits.
   [[nodiscard]] hc::gaze::Angles command(const hc::gaze::Motion& motion) const;

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The wall clock is put forward, back and to 1970: it stamps messages, and steers nothing."""
 
+import os
 import pathlib
+import socket
 import time
 import unittest
 
@@ -96,6 +98,20 @@ class WallClock(Endurance):
         most = sum(0.1 * 2**i for i in range(max(0, failing["restarts"] - 3)))
         if IS_FULL and failing["status"] == "waiting":
             self.assertLess(passed, most + 2)
+
+    def test_a_wish_ends_though_the_clock_was_set_back(self):
+        self.start(
+            "exec hc gaze --mode 1 --timeout 1 --in setpoint=unix-listen:link --out bid=file:bids"
+        )
+        link = socket.socket(socket.AF_UNIX)
+        self.addCleanup(link.close)
+        wait_until(lambda: link.connect_ex(self.path("link")) == 0)
+        bids = lambda: self.read("bids").split("\n")[1:-1:2]  # of rows that are whole
+        wait_until(lambda: os.path.exists(self.path("bids")))
+        link.sendall(b"1 1 0 0 8 0 20390 0 13 1 1\n0 0 1\n")
+        wait_until(lambda: bids()[-1:] == ["0.5"])
+        self.step(-HOUR)
+        wait_until(lambda: bids()[-1] == "0")
 
     def test_a_recording_is_played_at_its_own_speed(self):
         count, apart = (100 if IS_FULL else 10), 0.1
