@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/run/held_names.h>
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
+#include <graph/plan.h>
 #include <hc/base/uri.h>
 #include <hc/link/shm/greeting.h>
 #include <hc/link/stream/ends.h>
@@ -35,7 +38,10 @@ Status HeldNames::hold(const std::vector<std::string>& command) {
     } else if (!wanted.contains(socket->rest)) {
       auto listening = listen_unix(*socket);
       if (!listening) return listening.error();
-      wanted[socket->rest] = std::move(listening->descriptor);
+      // The number below is the key's in the program (Process::start).
+      const int kept = ::fcntl(listening->descriptor.get(), F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
+      if (kept < 0) return system_error("fcntl", socket->rest);
+      wanted[socket->rest] = Descriptor(kept);
     }
   }
   held_ = std::move(wanted);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <graph/plan.h>
 #include <graph/run/process.h>
 #include <hc/base/uri.h>
 #include <hc/link/link.h>
@@ -59,6 +60,13 @@ TEST(HeldNames, are_free_for_nobody_else_until_they_are_let_go) {
   EXPECT_TRUE(is_free(right()));
   names.let_go();
   EXPECT_TRUE(is_free(left()));
+}
+
+TEST(HeldNames, none_has_the_number_of_a_key) {
+  ::close(kKeyDescriptor);  // a test has no such file open, or can do without it
+  HeldNames names;
+  ASSERT_TRUE(names.hold(writer()));
+  for (const int number : names.descriptors()) EXPECT_GT(number, kKeyDescriptor);
 }
 
 TEST(HeldNames, who_is_given_them_listens_there) {
