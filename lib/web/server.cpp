@@ -171,7 +171,9 @@ std::string source_of(tcp::socket& socket) {
   const auto address = socket.remote_endpoint(error).address();
   if (error || !address.is_v6()) return address.to_string();
   constexpr std::size_t kNetwork = 8;  // [byte]
-  const auto bytes = address.to_v6().to_bytes();
+  const auto six = address.to_v6();
+  if (six.is_v4_mapped()) return asio::ip::make_address_v4(asio::ip::v4_mapped, six).to_string();
+  const auto bytes = six.to_bytes();
   return {bytes.begin(), bytes.begin() + kNetwork};
 }
 
