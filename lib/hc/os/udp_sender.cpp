@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -22,14 +23,16 @@
 namespace hc::internal {
 namespace {
 
-/// Whether this host has the address: only such ones can be bound to.
+/// Whether this host has the address: only such ones can be bound to. Where that cannot be tried,
+/// since descriptors or ports have run out, it counts as one, so that its user is looked for.
 bool is_of_this_host(sockaddr_storage address) {
   Descriptor probe(::socket(address.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (address.ss_family == AF_INET)
     reinterpret_cast<sockaddr_in&>(address).sin_port = 0;
   else
     reinterpret_cast<sockaddr_in6&>(address).sin6_port = 0;
-  return ::bind(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  return ::bind(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
+         errno != EADDRNOTAVAIL;
 }
 
 /// An address as /proc/net writes it: its words in hexadecimal, the port after a colon.

@@ -12,8 +12,8 @@
 namespace hc::internal {
 
 /// The user whose socket sent a UDP packet that came from this address; nothing where the address
-/// is another host's. Of several sockets with that address it is another user's than this
-/// process's.
+/// is another host's. Where several sockets have that address, one of another user counts before
+/// those of this process's user.
 ///
 /// Errors: NotFound (the socket is closed meanwhile). Cost: a look at all UDP sockets of this host.
 Result<std::optional<uid_t>> udp_sender_user(const sockaddr_storage& from);
