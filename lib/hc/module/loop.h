@@ -4,6 +4,7 @@
 // and reports. Internal.
 
 #include <deque>
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ inline const std::string kFocusPort = "focus", kNoPort;
 
 /// Thrown to end a module cleanly: nobody reads it any more, or it was asked to stop.
 struct Stopped {};
+
+/// What was thrown, without where that is in the sources of a library.
+std::string thrown_in_words(const std::exception& error);
 
 /// A link whose messages come in: to one port, to all of them from standard input, or the focus.
 struct Inlet {
@@ -126,7 +130,7 @@ struct Module::Loop {
       throw;
     } catch (const std::exception& why) {
       module_.handled_ = {};
-      drop(link, who, why.what());
+      drop(link, who, internal::thrown_in_words(why));
     }
   }
   void call(const internal::InputState& input, internal::Inlet& link, Message& message);

@@ -22,9 +22,12 @@ namespace {
 constexpr int kDone = 0, kFailure = 1, kUsage = 2;
 constexpr int kBackgroundNice = 10;
 
-/// What a library threw, without where it is in its sources: "OpenCV(4.6.0) ./x.cpp:73: error:
-/// (-4:Insufficient memory) … in function 'y'".
-std::string in_words(const std::exception& error) {
+const SystemClock kSystemClock;
+
+}  // namespace
+
+/// OpenCV says "OpenCV(4.6.0) ./x.cpp:73: error: (-4:Insufficient memory) … in function 'y'".
+std::string internal::thrown_in_words(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "System: not enough memory";
   std::string text = error.what();
   if (text.starts_with("OpenCV(")) {
@@ -35,10 +38,6 @@ std::string in_words(const std::exception& error) {
   while (text.ends_with('\n')) text.pop_back();
   return text;
 }
-
-const SystemClock kSystemClock;
-
-}  // namespace
 
 Module::Module(std::string name, std::string summary)
     : Module(std::move(name), std::move(summary), kSystemClock) {}
@@ -353,7 +352,7 @@ int Module::run_loop(const internal::Arguments& arguments) {
     log(error.what());
     return error.is_usage ? kUsage : kFailure;
   } catch (const std::exception& error) {
-    log(in_words(error));
+    log(internal::thrown_in_words(error));
     return kFailure;
   }
   return kDone;

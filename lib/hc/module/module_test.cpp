@@ -411,6 +411,24 @@ TEST(Module, ABadMessageIsOneBadMessage) {
   EXPECT_EQ(bad, 5U);
 }
 
+TEST(Module, WhatALibraryThrowsIsLoggedWithoutItsSources) {
+  Module module{"strict", "Takes no message."};
+  auto in = module.input("in", table<double>(), "");
+  module.on(in, [](const auto&) {
+    throw std::runtime_error(
+        "OpenCV(4.6.0) ./alloc.cpp:73: error: (-4:Insufficient memory) Failed to allocate 8 bytes "
+        "in function 'OutOfMemoryError'\n");
+  });
+  auto sink = sink_of("inproc:m_library");
+  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->close());
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, {"--in", "inproc:m_library"}), 0);
+  EXPECT_TRUE(::testing::internal::GetCapturedStderr().starts_with(
+      "strict: in: dropped: System: OpenCV: (-4:Insufficient memory) Failed to allocate 8 bytes "
+      "("));
+}
+
 TEST(Module, ABadSetIsDropped) {
   Module module{"pair", "Takes pairs."};
   auto left = module.input("left", table<double>(), "");
