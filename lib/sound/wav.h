@@ -73,6 +73,7 @@ class WavWriter {
 
   NewFile file_;
   Format format_;
+  std::int64_t begin_ = 0;  // of the sound in the file
   std::int64_t data_bytes_ = 0;
 };
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sound/wav.h>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <span>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -101,6 +103,23 @@ TEST_F(Wav, a_file_that_has_contents_stays) {
   std::filesystem::remove(beside->path());
   EXPECT_FALSE(WavWriter::create("/dev/full", {8000, 1}));
   EXPECT_FALSE(WavWriter::create("/no/such.wav", {8000, 1}));
+}
+
+TEST_F(Wav, a_descriptor_by_name_is_written_behind_what_it_has) {
+  save("shell ");
+  const int own = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const std::vector<std::int16_t> some = {1, 2, 3, 4};
+  for (int i = 0; i < 2; ++i) {
+    auto writer = WavWriter::create("/proc/self/fd/" + std::to_string(own), {8000, 1});
+    ASSERT_TRUE(writer) << writer.error().text();
+    for (const auto sample : some) ASSERT_TRUE(writer->write(std::span(&sample, 1)));
+  }
+  ::close(own);
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto sound =
+      riff(format(1, 1, 8000, 16) + chunk("data", std::string("\1\0\2\0\3\0\4\0", 8)));
+  EXPECT_EQ(bytes, "shell " + sound + sound);
 }
 
 TEST_F(Wav, all_kinds_of_samples) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -52,13 +53,18 @@ Result<WavWriter> WavWriter::create(const std::string& path, const Format& forma
   auto file = begin_file(path);
   if (!file) return file.error();
   WavWriter writer(std::move(*file), format);
+  // One that is written in place, as /dev/stdout, is open for appending, and its header is
+  // rewritten.
+  const int descriptor = writer.file_.descriptor.get();
+  ::fcntl(descriptor, F_SETFL, 0);
+  writer.begin_ = std::max<std::int64_t>(0, ::lseek(descriptor, 0, SEEK_END));
   if (auto put = writer.put_header(); !put) return put.error();
   return writer;
 }
 
 Status WavWriter::put(std::span<const std::byte> bytes, std::int64_t at) {
   while (!bytes.empty()) {
-    const ssize_t size = ::pwrite(file_.descriptor.get(), bytes.data(), bytes.size(), at);
+    const ssize_t size = ::pwrite(file_.descriptor.get(), bytes.data(), bytes.size(), begin_ + at);
     if (size < 0 && errno == EINTR) continue;
     if (size < 0)
       return Error{Code::System, path() + ": " + std::generic_category().message(errno)};
