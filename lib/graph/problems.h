@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <hc/base/result.h>
+#include <hc/base/visible.h>
 
 namespace hc {
 
@@ -47,7 +48,7 @@ class Problems {
   }
 
   /// Each as "FILE:LINE: WHAT", "--set: WHAT" or "WHAT", in the order of the files and their lines,
-  /// after those in no file; what would end a line is shown as \x0a.
+  /// after those in no file; what would steer a terminal or end a line is shown as \x0a.
   [[nodiscard]] std::vector<std::string> lines() const { return lines_of(found_); }
   /// The warnings in the same way.
   [[nodiscard]] std::vector<std::string> warnings() const { return lines_of(warnings_); }
@@ -71,19 +72,6 @@ class Problems {
   [[nodiscard]] std::string before(const Place& place) const {
     if (place.line == 0) return place.file == kCommandLine.file ? "--set: " : "";
     return file(place.file) + ":" + std::to_string(place.line) + ": ";
-  }
-
-  static std::string visible(std::string_view text) {
-    constexpr std::string_view kHex = "0123456789abcdef";
-    std::string result;
-    for (char c : text) {
-      auto byte = static_cast<unsigned char>(c);
-      if (byte < 0x20 || byte == 0x7f)
-        result.append({'\\', 'x', kHex[byte >> 4], kHex[byte & 15]});
-      else
-        result += c;
-    }
-    return result;
   }
 
   std::vector<std::string> files_;
