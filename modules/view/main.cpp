@@ -3,6 +3,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -113,7 +114,10 @@ int main(int argc, char** argv) {
     if (!*legend) return bgr;
     return hc::vision::with_legend(bgr, span.least, span.most, unit_of(header));
   };
-  auto is_free = [](const std::string& path) { return !fs::exists(path); };
+  auto is_free = [](const std::string& path) {
+    std::error_code unknown;  // whether it can be written is seen then
+    return !fs::exists(path, unknown);
+  };
   auto write = [&](const Picture& picture) {
     auto saved = hc::vision::save_image(picture.path, picture.bgr);
     if (saved) last = picture.path;
