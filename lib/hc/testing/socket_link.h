@@ -428,6 +428,22 @@ TEST_P(SocketLink, WhoDoesNotEndItsHeaderIsClosed) {
   ASSERT_TRUE(*receive(*source, message));
 }
 
+TEST_P(AcceptingLink, AHeaderThatCameWhileItsReaderWasBusyIsNotLate) {
+  Warnings warnings;
+  const auto source = source_with({.header = std::chrono::seconds(0)}, warnings);
+  const auto peer = GetParam().connect(place_);
+  const std::string whole = encode(numbered(1, 1)), begun = whole + whole.substr(0, 3);
+  ASSERT_EQ(::write(peer.get(), begun.data(), begun.size()), static_cast<ssize_t>(begun.size()));
+  Message message;
+  ASSERT_TRUE(*receive(*source, message));
+  ASSERT_EQ(*source->take(message), Got::Nothing);
+  const auto rest = static_cast<ssize_t>(whole.size()) - 3;
+  ASSERT_EQ(::write(peer.get(), whole.data() + 3, whole.size() - 3), rest);
+  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(message.header.seq, 1);
+  EXPECT_EQ(warnings.lines, std::vector<std::string>());
+}
+
 TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
   auto source = source_of(listen());
   std::vector<internal::Descriptor> peers;

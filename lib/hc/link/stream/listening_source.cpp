@@ -78,9 +78,15 @@ class ListeningSource final : public Source {
     if (!peer.source->in_header()) return peer.header_due.reset();
     if (peer.header_due) return;
     peer.header_due = loop_->call_at(peer.said_at + times_.header, [this, each = &peer] {
+      // What this module had no time to read is not late.
+      if (has_unread(*each)) return each->header_due.reset();
       leave(*each, "closed a connection: no whole header in " +
                        std::to_string(times_.header.count()) + " s");
     });
+  }
+  static bool has_unread(const Peer& peer) {
+    int unread = 0;
+    return ::ioctl(peer.source->descriptor(), FIONREAD, &unread) == 0 && unread > 0;
   }
 
   /// Lets in who waits, as far as there is room or can be made.
@@ -111,11 +117,10 @@ class ListeningSource final : public Source {
     std::size_t idlest = peers_.size();
     const auto now = std::chrono::steady_clock::now();
     for (std::size_t i = 0; i < peers_.size(); ++i) {
-      const auto& [source, is_ready, said_at, watch, header_due] = *peers_[i];
-      int unread = 0;
-      if (idlest < peers_.size() && said_at > peers_[idlest]->said_at) continue;
-      if (!source->between_messages() && now - said_at < times_.silence) continue;
-      if (::ioctl(source->descriptor(), FIONREAD, &unread) == 0 && unread == 0) idlest = i;
+      const Peer& peer = *peers_[i];
+      if (idlest < peers_.size() && peer.said_at > peers_[idlest]->said_at) continue;
+      if (!peer.source->between_messages() && now - peer.said_at < times_.silence) continue;
+      if (!has_unread(peer)) idlest = i;
     }
     return idlest;
   }
