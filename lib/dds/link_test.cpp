@@ -241,6 +241,23 @@ TEST(Dds, AReaderMayLeaveAndComeBack) {
   EXPECT_EQ(sink->traffic().messages, static_cast<std::uint64_t>(sent));
 }
 
+TEST(Dds, WhoHasLeftIsGivenUpUntilAnotherComes) {
+  for (const char* options : {"&readers=1&stay=1&timeout=1", "&timeout=1"}) {
+    SCOPED_TRACE(options);
+    const auto uri = fresh_topic();
+    const auto sink = sink_of(uri + options);
+    Message message;
+    for (int i = 0; i < 2; ++i) {
+      auto source = source_of(uri);
+      for (bool has_come = false; !has_come; has_come = *source->take(message) == Got::Message)
+        ASSERT_TRUE(sink->send(numbered(i, 10)));
+      source.reset();
+      const auto before = sink->traffic().timed_out;
+      while (sink->traffic().timed_out < before + 3) ASSERT_TRUE(sink->send(numbered(i, 10)));
+    }
+  }
+}
+
 TEST(Dds, AKilledReaderIsNoticedAndMayComeBack) {
   const auto uri = fresh_topic();
   const auto sink = sink_of(uri + "&readers=1");

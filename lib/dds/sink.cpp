@@ -84,8 +84,8 @@ class DdsSink final : public Sink {
         return Error{Code::Closed,
                      has_lost_all_ ? "all readers disconnected" : "the link is closed"};
       if (readers_ != 0) absence_.renew();
-      const bool is_awaited = waits_ && !absence_.is_over();
-      const bool needs_none = wanted_ == 0 || (has_begun_ && stays_ && !is_awaited);
+      const bool goes_on = absence_.is_over() || (stays_ && !waits_);
+      const bool needs_none = wanted_ == 0 || (has_begun_ && goes_on);
       if (readers_ == 0 && needs_none) {
         has_begun_ = true;
         ++messages_;

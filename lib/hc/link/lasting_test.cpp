@@ -105,6 +105,32 @@ TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   EXPECT_LE(sink_->traffic().cut, 1U);  // the one in flight to the reader that left
 }
 
+TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
+  for (const char* options : {"?readers=1&stay=1&timeout=1", "?timeout=1"}) {
+    SCOPED_TRACE(options);
+    const Ends ends = ends_of(GetParam());
+    const auto sink = sink_of(ends.sink + options);
+    auto source = source_of(ends.source);
+    Message message;
+    std::thread first([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
+    ASSERT_TRUE(*receive(*source, message));
+    first.join();
+    source.reset();
+    while (sink->traffic().timed_out < 3) ASSERT_TRUE(sink->send(numbered(1, 10)));
+    source = source_of(ends.source);
+    std::atomic<bool> heard = false, done = false;
+    std::thread sender([&] {
+      while (!heard) ASSERT_TRUE(sink->send(numbered(2, 10)));
+      done = true;
+    });
+    ASSERT_TRUE(*receive(*source, message));
+    EXPECT_EQ(message.header.seq, 2);
+    heard = true;
+    while (!done) ASSERT_TRUE(source->take(message));
+    sender.join();
+  }
+}
+
 TEST_P(LastingLink, WithoutStayItEndsWithItsReaders) {
   begin("&keep=latest");
   source_.reset();

@@ -173,10 +173,10 @@ struct LinkOptions {
 /// - `keep=all|latest|N`: what to do while the reader is slow: wait for it (default), or keep the
 ///   newest or so many messages that have not begun to go, and drop the oldest. What the kernel has
 ///   taken, and small messages that are gathered to be written together, have begun. `latest` is 1.
-/// - `timeout=SECONDS` (default 0: none): with keep=all, how long a reader may take nothing while
-/// it
-///   is waited for, or none be there, once the readers counted have come. From then on messages to
-///   it are dropped (Traffic::timed_out), until it takes some again. With dds, to all readers.
+/// - `timeout=SECONDS` (default 0: none): how long a reader may hold the writer: with keep=all by
+///   taking nothing, and by having left where the next one is waited for. From then on messages are
+///   dropped (Traffic::timed_out), until it takes some again, or another has come. With dds they
+///   are dropped for all readers.
 /// - `rate=N` [message/s], `burst=N` (default 1): messages go no faster, but so many may follow at
 ///   once. Where none is dropped the writer waits for its turn.
 /// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be

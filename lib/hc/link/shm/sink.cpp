@@ -52,7 +52,7 @@ Status ShmSink::send(const Message& message) {
     if (counted_ > 0 && !stays_) return Error{Code::Closed, "the readers disconnected"};
     if (keep_ == 0 && !absence_.is_over())
       if (auto came = await_readers(1); !came) return came;
-    if (present_ == 0 && stays_) {
+    if (present_ == 0 && (stays_ || absence_.is_over())) {
       ++traffic_.messages;
       ++(absence_.is_over() ? traffic_.timed_out : traffic_.cut);
       return {};

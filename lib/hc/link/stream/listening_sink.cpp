@@ -133,8 +133,8 @@ class ListeningSink final : public Sink {
 
   /// Whether a message without a reader waits for one.
   [[nodiscard]] bool waits_for_peer() const {
-    if (readers_ == 0) return false;
-    return !begun_ || !stays_ || (policy_.writer_waits() && !absence_.is_over());
+    if (readers_ == 0 || (begun_ && absence_.is_over())) return false;
+    return !begun_ || !stays_ || policy_.writer_waits();
   }
 
   /// Waits for those that the next message is for, or for all before the first one. Who has left
