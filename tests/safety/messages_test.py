@@ -9,7 +9,7 @@ import unittest
 
 from bad_messages import CLOSES, bad_messages
 from head import Safety
-from streams import bid, message, rotation, stick
+from streams import Feeder, bid, message, rotation, stick
 
 EACH = 50  # of each of 20 kinds
 TILT = 0.3  # of these commands, and nobody else's [rad]
@@ -55,6 +55,8 @@ class BadMessages(Safety):
 
 
 class Times(Safety):
+    bids = None  # of a person, while there are some
+
     def moving(self, stamp):
         """What would move the head, of a time [ns]: into which input, and what."""
         mode = self.head.mode("point")
@@ -73,6 +75,8 @@ class Times(Safety):
         now = time.time_ns()
         for what, stamp in (("1 h ago", now - HOUR), ("in 1 h", now + HOUR), ("1970", 10**9)):
             for port, sent in self.moving(stamp):
+                if port == "head_neck.command":  # it is refused for its time alone
+                    self.keep_focus("point")
                 begun = time.time_ns()
                 for number in range(50):
                     for data in sent:
@@ -80,7 +84,21 @@ class Times(Safety):
                     time.sleep(0.01)  # as often as they are sent
                 head.motion.rests_at(time.time_ns(), 0.2)
                 self.note("travelled", head.motion.travelled(begun), "%s %s" % (port, what))
+                self.end_focus()
         self.hold()
+
+    def keep_focus(self, task):
+        """A person wants a task that nobody steers by."""
+        mode, person = self.head.mode(task), self.head.source("workspace.person", 1)
+        self.bids = Feeder(lambda _: person.send(bid(1, mode)), 0.1)
+        self.addCleanup(self.bids.end)
+        self.head.wait_focus(task)
+
+    def end_focus(self):
+        if self.bids:
+            self.bids.end()
+            self.bids = None
+            self.head.wait(lambda: self.head.focus() is None, "nobody wants a task")
 
     def test_commands_without_the_focus(self):
         head, chosen = self.head, random.Random(1)
