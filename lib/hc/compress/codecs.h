@@ -10,7 +10,7 @@ namespace hc::internal {
 
 /// The message with its elements expanded. `message` is compressed in that encoding.
 ///
-/// Errors: Malformed (R36, R37), Unsupported (this build lacks the library).
+/// Errors: Malformed (R36, R37), TooLarge (R36), Unsupported (this build lacks the library).
 /// Cost: no more memory than the header promises and, for a JPEG image, a few rows; six times that
 /// for a progressive one.
 Result<Message> expand_zstd(const Message& message);

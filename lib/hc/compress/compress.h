@@ -12,7 +12,8 @@ namespace hc {
 /// encoding binary.
 ///
 /// Errors: Malformed (R36, R37: the bytes are damaged, or hold less, more or another image than
-/// the header says); Unsupported (this build lacks the codec). The detail names rule and field.
+/// the header says); TooLarge (R36: far more than has come); Unsupported (this build lacks the
+/// codec). The detail names rule and field.
 /// Cost: decompression; allocates what the header promises, and no more whatever the bytes hold.
 Result<Message> expand(const Message& message);
 
