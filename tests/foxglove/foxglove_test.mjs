@@ -233,7 +233,7 @@ function processOf(name) {
   return 0;
 }
 
-test("parameters go both ways, and only for who may drive", async () => {
+test("parameters go both ways, and only for who may operate", async () => {
   const client = new Client(driver), other = new Client(viewer);
   await Promise.all([client.ready, other.ready]);
   await until("the blob", () => client.channels.has("/blob/target") && other.channels.has("/blob/target"));
