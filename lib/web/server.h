@@ -96,7 +96,7 @@ class Server {
   /// Errors: Invalid (the address is none), System (no port is free; the identity is of no use).
   /// Of connections that have not shown a session yet, 128 are served at a time: each further one
   /// closes the oldest of the user or host that has most of them. Those with a session, at most
-  /// 768, are closed for nobody.
+  /// 768, never have to make room.
   static Result<std::unique_ptr<Server>> listen(const std::string& address, std::uint16_t port,
                                                 int ports, const Identity* identity, LogSink log);
 

@@ -68,7 +68,7 @@ class Page final : public web::Site {
     std::string port;
     std::unique_ptr<Stream::Viewer> viewer;
   };
-  /// A command: of which session, and the how manieth of it.
+  /// A command: its session, and its number among those of the session, from 0 on.
   struct Asked {
     std::uint64_t session = 0;
     std::int64_t number = 0;

@@ -51,9 +51,9 @@ class Program {
   /// raised to end the interpreter.
   int run(const std::vector<std::string>& words);
 
-  /// Calls a handler from the loop, with the GIL. A handler that raises ends the module: by the
-  /// text of a hypercolumn.Error; or by name and text of another exception, whose traceback goes to
-  /// standard error.
+  /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage drops the message. Any
+  /// other exception ends the module: by the text of a hypercolumn.Error; or by name and text of
+  /// another, whose traceback goes to standard error.
   template <typename... Arguments>
   py::object call(PyObject* handler, Arguments... arguments) {
     PyObject* const all[] = {nullptr, arguments...};

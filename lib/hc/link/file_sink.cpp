@@ -17,9 +17,8 @@
 namespace hc::internal {
 namespace {
 
-/// Goes to the end of the last whole message of a file, which a writer that was killed may have
-/// begun another one behind, and cuts that off; false where the file is damaged or none of
-/// messages.
+/// Goes behind the last whole message of a file, and cuts off what a writer that was killed has
+/// begun there. False: the file is damaged, or has no messages but something else.
 Result<bool> go_behind_messages(int file) {
   StreamReader reader({~std::uint64_t{0}});
   Message message;

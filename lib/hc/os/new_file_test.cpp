@@ -67,7 +67,7 @@ TEST_F(NewFiles, TwoThatBeginAtTheSameTimeHaveTwoFiles) {
   EXPECT_FALSE(continue_file(at("x.mtp")));
 }
 
-TEST_F(NewFiles, AnEmptyFileThatMayNotBeWrittenIsAnError) {
+TEST_F(NewFiles, AFolderThatIsNotThereIsAnError) {
   EXPECT_EQ(begin_file(at("none/x.mtp")).error().code, Code::NotFound);
 }
 

@@ -83,14 +83,14 @@ Result<Peer> unix_peer(const Uri& uri);
 /// `same_user` as above. Errors: Invalid, NotFound, System.
 Result<ListeningSocket> listen_tcp(const Uri& uri);
 /// A socket that listens at `unix-listen:PATH` or `unix-listen:@NAME`; connections to a @NAME are
-/// accepted from processes of this user or root only. A socket of kListeners that has
-/// the name is used. Errors: Invalid, System.
+/// accepted from processes of this user or root only. A socket of kListeners that has the name is
+/// used. Errors: Invalid, System.
 Result<ListeningSocket> listen_unix(const Uri& uri);
 
 /// Names the variable of the environment with the numbers of sockets that listen already at @NAMEs,
 /// separated by blanks: whoever starts a program holds them for it.
 inline constexpr const char* kListeners = "HC_LISTENERS";
-/// Of these the one that listens at an address, once more; -1: there is none.
+/// A descriptor of its own for the one that listens at an address; none (-1): there is no such one.
 Descriptor held_for_us(const Address& address);
 
 /// The same of `tls:HOST:PORT` and `tls-listen:[HOST:]PORT`. They are in lib/tls, and null in
