@@ -86,10 +86,6 @@ class Motion(Stream):
             number -= 1
         return number
 
-    def has_moved(self, begin, end=None):
-        """Whether it has moved between two times [ns]."""
-        return any(begin <= at <= (end or at) for at in self.moves(self.since(begin)))
-
     def travelled(self, begin):
         """How far it was from where it was first, at most, since a time [rad]."""
         rows = self.angles(self.since(begin))
