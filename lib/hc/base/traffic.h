@@ -24,8 +24,7 @@ struct Traffic {
   std::uint64_t cut = 0;
   /// … because the reader had taken nothing for so long (`timeout`).
   std::uint64_t timed_out = 0;
-  /// Messages that came and were dropped by the reader since they were damaged, did not fit, or
-  /// said what cannot be.
+  /// Messages that came and were dropped: damaged, unfit, or saying what cannot be.
   std::uint64_t bad = 0;
 
   Traffic& operator+=(const Traffic& other);

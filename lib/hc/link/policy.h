@@ -79,8 +79,7 @@ class Patience {
   explicit Patience(std::chrono::seconds timeout, std::function<void(bool)> tell = {})
       : timeout_(timeout), tell_(std::move(tell)) {}
 
-  /// Looks at a reader that is to be waited for, each time before one waits.
-  /// @param taken  what it has taken so far, in whatever it is counted.
+  /// Looks at a reader before each wait for it, when it has `taken` so much, in whatever unit.
   /// @returns  whether to wait, until due() at most; if not, it has just been given up.
   bool waits(std::uint64_t taken, TimePoint now);
   /// There is room for a message, or the wait was given up.
@@ -88,10 +87,7 @@ class Patience {
   [[nodiscard]] TimePoint due() const;
 
   /// Whether it is given up still; it is not when it has taken something since.
-  [[nodiscard]] bool is_over(std::uint64_t taken) {
-    is_over_ = is_over_ && taken == taken_;
-    return is_over_;
-  }
+  [[nodiscard]] bool is_over(std::uint64_t taken) { return is_over_ = is_over_ && taken == taken_; }
   [[nodiscard]] bool is_over() const { return is_over_; }
   /// It is waited for again, whatever it has taken.
   void renew() { is_over_ = false; }
