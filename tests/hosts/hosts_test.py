@@ -528,7 +528,7 @@ class Hosts(HostsTest):
 
     def test_another_user_takes_no_name_while_its_module_restarts(self):
         (host,) = self.network.add()
-        self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % "host = \"h1\"\n")
+        self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % 'host = "h1"\n')
         process = self.run_graph()
         messages = self.observe(process)
         state = self.flows(messages)
