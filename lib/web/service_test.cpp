@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/service.h>
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 
@@ -9,6 +10,7 @@
 #include <chrono>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <hc/testing/loopback.h>
@@ -75,6 +77,32 @@ TEST(Service, serves_a_site_and_closes_it_at_the_end) {
   EXPECT_EQ(closed, 0);
   service->reset();
   EXPECT_EQ(closed, 1);
+}
+
+TEST(Server, hosts_of_ipv4_are_told_apart_at_a_socket_of_ipv6) {
+  auto server = Server::listen("::", 0, 1, nullptr, [](Severity, std::string_view) {});
+  if (!server) GTEST_SKIP() << server.error().text();
+  std::atomic<int> closed = 0;
+  Hello site(closed);
+  std::thread thread([&] { (*server)->run(site); });
+  const auto connect = [&](const char* from) {
+    internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    auto place = testing::loopback(0);
+    EXPECT_EQ(::inet_pton(AF_INET, from, &place.sin_addr), 1);
+    EXPECT_EQ(::bind(socket.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
+    place = testing::loopback((*server)->port());
+    EXPECT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
+    return socket;
+  };
+  const auto one = connect("127.0.0.2");
+  std::vector<internal::Descriptor> crowd;
+  while (crowd.size() < 200) crowd.push_back(connect("127.0.0.1"));  // more than may be strangers
+  EXPECT_TRUE(is_readable(crowd.front().get())) << "the crowd's oldest is closed";
+  const std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  EXPECT_EQ(::send(one.get(), request.data(), request.size(), MSG_NOSIGNAL), std::ssize(request));
+  EXPECT_TRUE(answer(one.get()).ends_with("\r\n\r\nhello"));
+  (*server)->stop();
+  thread.join();
 }
 
 TEST(Service, logs_by_the_inbox_alone) {
