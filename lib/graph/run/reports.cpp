@@ -89,10 +89,11 @@ void Reports::take_counters(const std::vector<LinkCounters>& rows, MonotonicTime
 }
 
 void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, MonotonicTime now) {
-  constexpr double kSilent = 5;  // after which nothing comes any more [s]
+  constexpr double kSilent = 5;      // after which nothing comes any more [s]
+  constexpr double kShortest = 0.1;  // what came together says nothing of a rate [s]
   const Traffic& traffic = row.traffic;
   if (traffic.messages < counted.now.traffic.messages) counted.end();  // the link was replaced
-  const Traffic& before = counted.now.traffic;
+  const Traffic& before = counted.measured;
   EndReport report;
   report.per_second = counted.report.per_second;
   report.bytes_per_second = counted.report.bytes_per_second;
@@ -104,12 +105,14 @@ void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, Mo
   const auto carried_now = carried(traffic);
   const auto messages = static_cast<double>(carried_now - std::min(carried_now, carried(before)));
   const auto bytes = static_cast<double>(traffic.bytes - std::min(traffic.bytes, before.bytes));
-  if (counted.arrived == MonotonicTime(0) || messages > 0) {
-    const bool is_measured = counted.arrived != MonotonicTime(0);
-    report.per_second = is_measured ? messages / seconds : 0;
-    report.bytes_per_second = is_measured ? bytes / seconds : 0;
+  const bool is_first = counted.arrived == MonotonicTime(0);
+  if (is_first || (messages > 0 && seconds >= kShortest)) {
+    report.per_second = is_first ? 0 : messages / seconds;
+    report.bytes_per_second = is_first ? 0 : bytes / seconds;
     counted.arrived = now;
-  } else if (report.per_second * seconds > 1) {  // less than one in the time since the last
+    counted.measured = traffic;
+  } else if (messages == 0 &&
+             report.per_second * seconds > 1) {  // less than one in the time since the last
     const double slower = seconds > kSilent ? 0 : 1 / (seconds * report.per_second);
     report.per_second *= slower;
     report.bytes_per_second *= slower;

@@ -52,7 +52,8 @@ class Reports {
   struct Counted {
     EndReport report;
     LinkCounters past, now;    // of processes that have ended and links that were replaced; of this
-    MonotonicTime arrived{0};  // when messages came last
+    MonotonicTime arrived{0};  // when messages came last, as far as a rate was measured
+    Traffic measured;          // at that time
     bool has_row = false;
 
     void end();

@@ -61,6 +61,20 @@ TEST_F(ReportsTest, RatesAreBetweenTwoReports) {
   EXPECT_DOUBLE_EQ(reports_.find(out_)->bytes_per_second, 2000);
 }
 
+TEST_F(ReportsTest, ReportsThatWaitedTogetherGiveNoRate) {
+  count({{0, 0}, {0, 0}});
+  count({{0, 0}, {10, 100}});
+  for (std::int64_t i = 1; i <= 3; ++i) {
+    now_ += std::chrono::microseconds(1);
+    reports_.take(table(1, {{0, 0}, {10 + i, 100 + i}}), now_);
+    EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 20);
+    EXPECT_EQ(reports_.find(out_)->traffic.messages, 10U + static_cast<unsigned>(i));
+  }
+  now_ -= std::chrono::microseconds(3);
+  count({{0, 0}, {20, 200}});
+  EXPECT_DOUBLE_EQ(reports_.find(out_)->per_second, 20);
+}
+
 TEST_F(ReportsTest, RatesFallWhenNothingComes) {
   count({{0, 0}, {0, 0}});
   count({{0, 0}, {10, 100}});
