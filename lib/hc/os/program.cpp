@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <ctime>
 #include <system_error>
 
 namespace hc {
@@ -15,9 +16,18 @@ namespace {
 
 int stop_event = -1;  // written by the signal handler
 volatile std::sig_atomic_t stop_asked = 0;
+volatile std::time_t asked_at = 0;  // [s]
 
-extern "C" void ask_to_stop(int) {
+extern "C" void ask_to_stop(int number) {
+  constexpr std::time_t kSame = 1;  // so close together they are one: `timeout` sends two
   int saved = errno;
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  if (stop_asked == 0) asked_at = now.tv_sec;
+  if (now.tv_sec - asked_at > kSame) {
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+  }
   stop_asked = 1;
   std::uint64_t one = 1;
   [[maybe_unused]] auto written = ::write(stop_event, &one, sizeof one);
@@ -31,7 +41,6 @@ int stop_descriptor() {
   stop_event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   struct sigaction action {};
   action.sa_handler = ask_to_stop;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
   struct sigaction inherited {};

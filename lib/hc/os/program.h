@@ -10,7 +10,8 @@
 namespace hc {
 
 /// A descriptor that is readable once SIGINT, SIGTERM or, unless it is ignored as under nohup,
-/// SIGHUP has come, caught from the first call on; a second signal of the kind kills, as usual.
+/// SIGHUP has come, caught from the first call on; another one kills, as usual, unless it follows
+/// at once.
 /// SIGPIPE and SIGXFSZ are ignored from then on. Always the same descriptor. For the main thread.
 int stop_descriptor();
 

@@ -21,6 +21,7 @@ bool is_stopped_by(int signal, bool is_ignored) {
     std::signal(signal, is_ignored ? SIG_IGN : SIG_DFL);
     static_cast<void>(stop_descriptor());
     std::raise(signal);
+    std::raise(signal);  // as `timeout` does
     ::_exit(stop_requested() ? 1 : 0);
   }
   int status = 0;
