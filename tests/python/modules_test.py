@@ -338,7 +338,7 @@ module.on_end(lambda: module.log("end"))
 module.run()
 """
         pose = b"1 1 0 0 8 5 70190 2001 0 4 4\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
-        self.run_module(text, "--in frames=/dev/stdin", pose)
+        self.run_module(text, "--in frames=/dev/stdin", pose, 1)  # of no frame: it is bad
         self.assertIn("frames: end", self.err)
         for make in (
             lambda module: module.after(1)(print),

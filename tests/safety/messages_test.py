@@ -8,8 +8,9 @@ import time
 import unittest
 
 from bad_messages import CLOSES, bad_messages
-from head import Safety
-from streams import Feeder, bid, message, rotation, stick
+from head import Safety  # which knows the way to the others
+from feeder import Feeder
+from streams import bid, message, rotation, stick
 
 EACH = 50  # of each of 20 kinds
 TILT = 0.3  # of these commands, and nobody else's [rad]
