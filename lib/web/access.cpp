@@ -4,19 +4,23 @@
 #include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
-#include <sys/random.h>
 
 #include <algorithm>
 #include <array>
 
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
+
 #include <hc/base/check.h>
+#include <hc/base/format.h>
+#include <hc/os/secret.h>
 
 namespace hc::web {
 
 namespace {
 
 constexpr std::array<std::string_view, 3> kRights = {"view", "drive", "operate"};
-constexpr std::size_t kMaxTokens = 64, kMaxSessions = 1024;
+constexpr std::size_t kMaxTokens = 64;
 
 /// "host" and "port" of "host:port"; brackets around an IPv6 address stay.
 std::pair<std::string_view, std::string_view> split(std::string_view host) {
@@ -48,11 +52,16 @@ bool is_same(std::string_view a, std::string_view b) {
   return different == 0;
 }
 
-template <typename Secrets>
-std::string add(Secrets& secrets, Right right, std::size_t limit) {
-  secrets.emplace_back(make_secret(), right);
-  if (secrets.size() > limit) secrets.pop_front();
-  return secrets.back().first;
+/// HMAC-SHA256 in hexadecimal digits.
+std::string signature(std::string_view text, const std::string& key) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> bytes;
+  unsigned size = 0;
+  HC_CHECK(::HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
+                  reinterpret_cast<const unsigned char*>(text.data()), text.size(), bytes.data(),
+                  &size) != nullptr);
+  std::string digits;
+  for (unsigned i = 0; i < size; ++i) digits += hc::format("{:02x}", unsigned{bytes[i]});
+  return digits;
 }
 
 }  // namespace
@@ -84,17 +93,6 @@ std::string own_address() {
   return found;
 }
 
-std::string make_secret() {
-  std::array<unsigned char, 16> bytes;
-  HC_CHECK(::getrandom(bytes.data(), bytes.size(), 0) == std::ssize(bytes));
-  std::string text;
-  for (const unsigned byte : bytes) {
-    text += "0123456789abcdef"[byte / 16];
-    text += "0123456789abcdef"[byte % 16];
-  }
-  return text;
-}
-
 bool Access::is_host(std::string_view host) const {
   const auto [name, port] = split(host);
   if (!port.empty() && port != std::to_string(place_.port)) return false;
@@ -108,7 +106,9 @@ bool Access::is_origin(std::string_view origin, std::string_view host) const {
 }
 
 std::string Access::make_token(Right right) {
-  return add(tokens_, right, kMaxTokens);
+  tokens_.emplace_back(internal::make_secret(), right);
+  if (tokens_.size() > kMaxTokens) tokens_.pop_front();
+  return tokens_.back().first;
 }
 
 std::string Access::authority() const {
@@ -140,13 +140,14 @@ std::optional<std::string> Access::redeem(std::string_view token) {
 }
 
 std::string Access::begin_session(Right right) {
-  return add(sessions_, right, kMaxSessions);
+  const std::string begin = std::string(name_of(right)) + "." + internal::make_secret() + ".";
+  return begin + signature(begin, key_);
 }
 
 std::optional<Right> Access::right_of_session(std::string_view name) const {
-  for (const auto& [session, right] : sessions_)
-    if (is_same(session, name)) return right;
-  return std::nullopt;
+  const auto end = name.rfind('.') + 1;
+  if (!is_same(name.substr(end), signature(name.substr(0, end), key_))) return std::nullopt;
+  return right_named(name.substr(0, name.find('.')));
 }
 
 std::optional<Right> Access::right_of(std::string_view cookies) const {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <hc/os/secret.h>
+
 namespace hc::web {
 
 /// What a session may; each includes those before it.
@@ -36,7 +38,9 @@ struct Place {
 
 class Access {
  public:
-  explicit Access(Place place) : place_(std::move(place)) {}
+  /// @param key  signs sessions: one of the same key knows those of another process.
+  explicit Access(Place place, std::string key = internal::run_secret())
+      : place_(std::move(place)), key_(std::move(key)) {}
 
   /// Whether a `Host` header means this server, and not a name that somebody has pointed at it.
   /// On loopback these are loopback's names; elsewhere any address, since only names can be
@@ -51,7 +55,7 @@ class Access {
   /// A URL with a new token.
   std::string invite(Right right);
 
-  /// Begins a session; nothing for a wrong or used token. Of more than 1024 the oldest ends.
+  /// Begins a session, which ends with the run; nothing for a wrong or used token.
   /// @returns  the value of the session's cookie, cookie_name().
   std::optional<std::string> redeem(std::string_view token);
 
@@ -71,21 +75,17 @@ class Access {
   [[nodiscard]] const Place& place() const { return place_; }
 
  private:
-  using Secrets = std::deque<std::pair<std::string, Right>>;  // the newest last
-
   /// Where the server is reached, as in a URL: "127.0.0.1:8470".
   [[nodiscard]] std::string authority() const;
   /// @returns  its name.
   std::string begin_session(Right right);
 
   Place place_;
-  Secrets tokens_, sessions_;
+  std::string key_;
+  std::deque<std::pair<std::string, Right>> tokens_;  // the newest last
 };
 
 /// The first address by which other machines reach this one, IPv4; 127.0.0.1 where there is none.
 std::string own_address();
-
-/// 128 bits that nobody guesses, in hexadecimal digits.
-std::string make_secret();
 
 }  // namespace hc::web

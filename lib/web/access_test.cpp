@@ -90,6 +90,19 @@ TEST(Access, a_socket_is_opened_by_the_name_of_a_session) {
   EXPECT_TRUE(secure.invite_socket(Right::View).starts_with("wss://[::1]:443/?token="));
 }
 
+TEST(Access, a_session_is_known_to_a_process_of_the_same_run_alone) {
+  const Place place{.address = "127.0.0.1", .port = 8470, .is_secure = false, .hosts = {}};
+  Access before(place, "key");
+  const auto name = *before.redeem(before.make_token(Right::View));
+  EXPECT_EQ(Access(place, "key").right_of_session(name), Right::View);
+  EXPECT_FALSE(Access(place, "other").right_of_session(name));
+  EXPECT_NE(*before.redeem(before.make_token(Right::View)), name);
+  const auto end = name.substr(name.find('.'));
+  for (const auto& forged : {"operate" + end, "drive" + end, name + "0", "." + name, name.substr(1),
+                             name.substr(0, name.rfind('.') + 1), std::string("view.."), end})
+    EXPECT_FALSE(before.right_of_session(forged)) << forged;
+}
+
 TEST(Access, secrets_differ_and_the_oldest_tokens_are_forgotten) {
   auto access = local();
   const auto first = access.make_token(Right::View), second = access.make_token(Right::View);

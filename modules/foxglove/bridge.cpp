@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include <hc/os/secret.h>
+
 namespace web = hc::web;
 
 namespace {
@@ -81,7 +83,7 @@ Bridge::Bridge(Options options, web::Access& access, web::Server& server)
     : options_(std::move(options)),
       access_(access),
       server_(server),
-      session_(web::make_secret()),
+      session_(hc::internal::make_secret()),
       catalog_(options_.jpeg) {
   for (const auto& joint : options_.joints.fixed) joints_[joint.child] = joint;
   constexpr std::chrono::milliseconds kTick{100};

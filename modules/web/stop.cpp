@@ -39,8 +39,10 @@ std::optional<Stop::Word> Stop::tick(bool is_guarded, hc::MonotonicTime now) {
          [&](const Order& order) { return problem(order); });
   // What clears is not to be overtaken by what follows it.
   if (std::exchange(has_cleared_, false)) return std::nullopt;
+  if (is_guarded && !first_) first_ = now;
   if (is_guarded) farewells_ = kFarewells;
   if (is_wanted_) return Word::Stop;
+  if (is_guarded && now - *first_ < kFirst) return std::nullopt;
   if (is_guarded) return Word::Free;
   if (farewells_ == 0) return std::nullopt;
   --farewells_;

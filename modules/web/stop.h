@@ -24,6 +24,8 @@ class Stop {
   static constexpr std::chrono::milliseconds kPeriod{50};
   /// So long the workspace has to confirm an order.
   static constexpr std::chrono::milliseconds kPatience{500};
+  /// So long the first page has for a stop that was pressed while it had no server.
+  static constexpr std::chrono::milliseconds kFirst{250};
   /// How often it is said that nobody is there any more.
   static constexpr int kFarewells = 3;
   /// What it said counts for so long.
@@ -65,8 +67,9 @@ class Stop {
 
   const std::string module_;
   bool is_wanted_ = false;
-  bool has_cleared_ = false;    // since the last tick
-  int farewells_ = kFarewells;  // still to be sent: the process before may have guarded
+  bool has_cleared_ = false;                // since the last tick
+  std::optional<hc::MonotonicTime> first_;  // when a page was open
+  int farewells_ = 0;                       // still to be sent
   std::optional<bool> heard_;
   hc::MonotonicTime heard_at_{};
   std::vector<Order> orders_;  // not confirmed yet

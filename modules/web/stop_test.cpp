@@ -20,6 +20,10 @@ struct Page {
     return stop.order(stops, is_linked, now,
                       [this](const std::string& problem) { answers.push_back(problem); });
   }
+  /// A page is open for a while.
+  void open() {
+    while (!tick()) continue;
+  }
   std::optional<Word> tick(bool is_guarded = true, milliseconds later = Stop::kPeriod) {
     now += later;
     return stop.tick(is_guarded, now);
@@ -40,6 +44,7 @@ TEST(Stop, is_answered_when_the_workspace_says_so_after_the_order) {
 
 TEST(Stop, is_repeated_until_it_is_cleared_whoever_watches) {
   Page page;
+  page.open();
   page.order(true);
   for (const bool is_guarded : {true, false, true}) EXPECT_EQ(page.tick(is_guarded), Word::Stop);
   page.stop.hear(true, page.now);
@@ -96,20 +101,32 @@ TEST(Stop, of_two_orders_the_later_counts) {
   EXPECT_EQ(page.answers.at(3), "stop NOT confirmed: it was cleared meanwhile");
 }
 
+TEST(Stop, that_a_page_has_kept_comes_before_its_guard) {
+  Page page;
+  for (auto passed = milliseconds(0); passed < Stop::kFirst; passed += Stop::kPeriod)
+    EXPECT_EQ(page.tick(), std::nullopt);
+  EXPECT_EQ(page.tick(), Word::Free);
+  Page again;
+  EXPECT_EQ(again.tick(), std::nullopt);
+  EXPECT_EQ(again.order(true), Word::Stop);
+  EXPECT_EQ(again.tick(), Word::Stop);
+}
+
 TEST(Stop, of_another_source_is_not_taken_over) {
-  Page page;  // the workspace remembers the stop of the process before, and who else has stopped
+  Page page;
+  page.open();  // the workspace remembers the stop of the process before, and who else has stopped
   page.stop.hear(true, page.now);
   EXPECT_EQ(page.tick(), Word::Free);
 }
 
-TEST(Stop, begins_with_a_farewell_of_the_process_before) {
+TEST(Stop, says_nothing_for_a_process_before_it_whose_page_may_have_wanted_a_stop) {
   Page page;
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(page.tick(false), Word::Unguarded);
-  EXPECT_EQ(page.tick(false), std::nullopt);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(page.tick(false), std::nullopt);
 }
 
 TEST(Stop, says_three_times_that_the_last_page_has_gone) {
   Page page;
+  page.open();
   EXPECT_EQ(page.tick(), Word::Free);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(page.tick(false), Word::Unguarded);
   EXPECT_EQ(page.tick(false), std::nullopt);

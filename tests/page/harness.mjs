@@ -36,6 +36,9 @@ export async function until(what, condition) {
 }
 
 /** A graph that runs in a folder of its own, with its page. */
+/** The first that is tried: a restarted server has the same one again. */
+const port = 20000 + (process.pid % 10000);
+
 export class Graph {
   name = `page-${process.pid}`;
   folder = mkdtempSync(join(tmpdir(), "hc-page-"));
@@ -45,7 +48,15 @@ export class Graph {
     const programs = join(build, "tests/programs"); // those of tests
     this.process = spawn(
       hc,
-      ["run", join(root, "graphs", file), "--as", this.name, "--set", "web.port=0", ...options],
+      [
+        "run",
+        join(root, "graphs", file),
+        "--as",
+        this.name,
+        "--set",
+        `web.port=${port}`,
+        ...options,
+      ],
       {
         cwd: this.folder,
         env: { ...process.env, PATH: `${programs}:${process.env.PATH}` },

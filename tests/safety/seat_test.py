@@ -67,6 +67,18 @@ class Seat(Safety):
     def test_the_server_of_the_page_is_killed(self):
         self.note_end_of_push(lambda: self.head.send_signal("web", signal.SIGKILL))
 
+    def test_a_stop_is_pressed_while_its_server_hangs(self):
+        head = self.head
+        head.wait(lambda: head.sent()["web.stop"] > 5, "the page guards the robot")
+        pid = head.send_signal("web", signal.SIGSTOP)
+        head.press_stop()
+        head.motion.rests_at(time.time_ns())
+        rested = time.time_ns()
+        head.wait(lambda: head.is_whole() and head.pid("web") != pid, "it is restarted")
+        head.motion.wait_until(time.time_ns() + int(2e9))  # in which tasks bid
+        self.note("travelled", head.motion.travelled(rested))
+        self.hold()
+
 
 if __name__ == "__main__":
     unittest.main()

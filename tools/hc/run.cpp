@@ -15,6 +15,7 @@
 #include <hc/contract/recording.h>
 #include <hc/os/new_file.h>
 #include <hc/os/program.h>
+#include <hc/os/secret.h>
 
 #include "common.h"
 #include "graph.h"
@@ -173,6 +174,7 @@ void run(RunOptions options) {
     status.say("graph: not recorded, as not linked: " + list);
   }
   // What a module starts, such as `hc`, means this graph; no thread reads the environment yet.
+  ::setenv(hc::internal::kRunSecret, hc::internal::make_secret().c_str(), 1);
   ::setenv("HC_GRAPH", (name_of(options) + "." + std::to_string(::getpid())).c_str(), 1);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();

@@ -42,6 +42,8 @@ export class Server {
       binary: (bytes) => this.receive(bytes),
       lost: (code, reason, retry) => {
         this.connections.set({ status: "lost", why: whyLost(code, reason), retry });
+        const { session } = this;
+        if (session) this.sessions.set({ ...session, stopped: null }); // it is not known any more
         const lost = [...this.waiting.values()];
         this.waiting.clear();
         for (const each of lost) {
@@ -161,5 +163,5 @@ export class Server {
 function whyLost(code: number, reason: string): string {
   if (code === 1000) return "The graph has ended. Start it again, then open the URL it prints.";
   const detail = reason && ` (${reason})`;
-  return `No connection to the server${detail}. If it runs again, open the URL that it prints.`;
+  return `No connection to the server${detail}: whether the robot is stopped is not known. If the graph was started again, open the URL that it prints.`;
 }

@@ -97,7 +97,7 @@ export type Right = "view" | "drive" | "operate";
 export interface Session {
   readonly right: Right;
   readonly driver: "other" | null;
-  /** null: the graph has no workspace, or it does not say. */
+  /** null: the graph has no workspace, it does not say, or there is no connection. */
   readonly stopped: boolean | null;
   readonly recording: RecordingState | null;
   readonly drives: readonly DriveOutput[];

@@ -117,8 +117,8 @@ export class Shell {
     ];
     this.element.classList.toggle("is-lost", connection.status === "lost");
     if (connection.status === "open") this.trouble.hidden = true;
-    if (connection.status !== "lost" || this.trouble.textContent?.startsWith(connection.why))
-      return;
+    if (connection.status !== "lost") return;
+    if (!this.trouble.hidden && this.trouble.textContent?.startsWith(connection.why)) return;
     this.trouble.hidden = false;
     fill(
       this.trouble,
