@@ -80,6 +80,7 @@ std::string Brake::reason(hc::MonotonicTime now) const {
     if (source.stops) return "stopped by " + name(number);
   if (others_stop_) return "stopped by one of too many sources";
   for (const auto& [number, source] : sources_)
-    if (source.guards && source.is_silent(now)) return "the stop of " + name(number) + " is silent";
+    if (source.guards && source.is_silent(now))
+      return name(number) + " is silent: its stop could not arrive";
   return "";
 }

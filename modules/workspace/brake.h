@@ -55,7 +55,8 @@ class Brake {
     const auto found = sources_.find(source);
     return found != sources_.end() && found->second.stops;
   }
-  /// Why nobody may move the robot: "stopped by web.stop", "the stop of source 14 is silent";
+  /// Why nobody may move the robot: "stopped by web.stop", "source 14 is silent: its stop could not
+  /// arrive";
   /// empty: who has the focus may.
   [[nodiscard]] std::string reason(hc::MonotonicTime now) const;
 

@@ -77,13 +77,13 @@ TEST(Brake, a_guard_that_is_silent_halts_the_robot_and_its_word_frees_it) {
   robot.now += Brake::kSilence - milliseconds(50);
   EXPECT_EQ(robot.reason(), "");
   robot.now += milliseconds(1);
-  EXPECT_EQ(robot.reason(), "the stop of source 12 is silent");
+  EXPECT_EQ(robot.reason(), "source 12 is silent: its stop could not arrive");
   EXPECT_FALSE(robot.brake.is_stopped());
   robot.seq.clear();  // its process has been restarted
   ASSERT_TRUE(robot.say(kPage, 0));
   EXPECT_EQ(robot.reason(), "");
   robot.now += std::chrono::hours(1);
-  EXPECT_EQ(robot.reason(), "the stop of source 12 is silent");
+  EXPECT_EQ(robot.reason(), "source 12 is silent: its stop could not arrive");
 }
 
 TEST(Brake, a_guard_may_leave_or_be_dismissed_while_it_is_silent) {
@@ -104,7 +104,7 @@ TEST(Brake, a_guard_may_leave_or_be_dismissed_while_it_is_silent) {
   robot.repeat(kPage, 0, milliseconds(200));
   ASSERT_TRUE(robot.say(kButton, 2));
   robot.now += std::chrono::seconds(1);
-  EXPECT_EQ(robot.reason(), "the stop of source 12 is silent");
+  EXPECT_EQ(robot.reason(), "source 12 is silent: its stop could not arrive");
 }
 
 TEST(Brake, who_says_a_word_now_and_then_guards_nothing) {
@@ -158,7 +158,7 @@ TEST(Brake, stops_and_guards_outlive_the_process) {
   EXPECT_EQ(robot.reason(), "");
   Robot guarded;
   guarded.brake.restore({{kPage, false}});
-  EXPECT_EQ(guarded.reason(), "the stop of source 12 is silent");
+  EXPECT_EQ(guarded.reason(), "source 12 is silent: its stop could not arrive");
   ASSERT_TRUE(guarded.say(kPage, 0));
   EXPECT_EQ(guarded.reason(), "");
 }

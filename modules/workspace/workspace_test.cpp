@@ -73,7 +73,7 @@ TEST(Workspace, nobody_has_the_focus_while_who_guards_is_silent) {
   };
   EXPECT_EQ(later(300), 1);
   EXPECT_EQ(later(1), 0);
-  EXPECT_EQ(table.workspace.last_change(), "none; the stop of source 12 is silent");
+  EXPECT_EQ(table.workspace.last_change(), "none; source 12 is silent: its stop could not arrive");
   table.stop(0, 12);
   EXPECT_EQ(later(0), 1);
 }

@@ -278,7 +278,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     const viewer = await other.newPage();
     await viewer.goto(invitation);
     await show("seat", viewer);
-    await viewer.locator(".seat-who", { hasText: "You may look" }).waitFor();
+    await viewer.locator(".seat-who", { hasText: "You may only look" }).waitFor();
     assert.ok(await viewer.getByRole("button", { name: "Take the seat" }).isHidden());
     await viewer.getByRole("button", { name: "Stop" }).click();
     const bar = page.locator(".stopped-bar");
@@ -368,23 +368,39 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await alone.close();
   });
 
-  test("a stop outlives its server", async () => {
+  test("a stop outlives its server, and is pressed again where that hung", async () => {
     await show("graph");
-    await page.getByRole("button", { name: "Stop" }).click();
-    await page.locator(".stopped-bar").waitFor();
-    const { pid } = graph.module("web");
-    const before = graph.log.length;
-    process.kill(pid, "SIGKILL");
-    const url = await until(
-      "another server prints its URL",
-      () => graph.log.slice(before).match(/https?:\/\/\S+token=\w+/)?.[0],
-    );
-    await page.goto(url);
-    origin = new URL(url).origin;
     const bar = page.locator(".stopped-bar");
+    const alarm = page.locator(".not-stopped");
+    const clear = async () => {
+      await bar.getByLabel("nobody is in its way").check();
+      await bar.getByRole("button", { name: "Let it move" }).click();
+      await bar.waitFor({ state: "hidden" });
+    };
+    await page.getByRole("button", { name: "Stop" }).click();
     await bar.waitFor();
-    await bar.getByLabel("nobody is in its way").check();
-    await bar.getByRole("button", { name: "Let it move" }).click();
-    await bar.waitFor({ state: "hidden" });
+    // Whoever has no server does not know whether the robot is stopped.
+    const trouble = page.locator(".trouble", { hasText: "whether the robot is stopped" });
+    await page.evaluate(() => {
+      window.seen = [];
+      new MutationObserver(() => {
+        const lost = document.querySelector(".trouble")?.textContent.includes("not known");
+        if (lost) window.seen.push(document.querySelector(".stopped-bar").hidden);
+      }).observe(document.body, { subtree: true, childList: true, characterData: true });
+    });
+    process.kill(graph.module("web").pid, "SIGKILL");
+    await until("the connection is lost", () => page.evaluate(() => window.seen.length > 0));
+    assert.equal(await page.evaluate(() => window.seen.at(-1)), true);
+    await trouble.waitFor({ state: "hidden" }); // the session is that of the run
+    await bar.waitFor();
+    await clear();
+    const { pid } = graph.module("web");
+    process.kill(pid, "SIGSTOP");
+    await page.getByRole("button", { name: "Stop" }).click();
+    await alarm.waitFor();
+    process.kill(pid, "SIGKILL");
+    await bar.waitFor();
+    await alarm.waitFor({ state: "hidden" });
+    await clear();
   });
 });

@@ -443,7 +443,7 @@ mode = "look"
     def test_who_guards_and_is_silent_halts_the_robot(self):
         self.start_workspace()
         link = self.connect("stop")
-        silent = "focus: none; the stop of source 12 is silent"
+        silent = "focus: none; source 12 is silent: its stop could not arrive"
         for _ in range(2):
             self.say(link, 12, 0)
         self.wait_said(silent)

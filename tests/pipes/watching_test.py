@@ -280,9 +280,9 @@ class Watching(Graphs):
         end = "unix-listen:@hc_%d" % os.getpid()
         text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
         name, process = self.run_named("waits", text, "camera: started")
-        waits = "camera .* waits for %s since [0-9]+ s\n" % end
+        waits = "camera .* has waited [0-9]+ s for %s\n" % end
         wait_until(lambda: re.search(waits, self.hc("top " + name)))
-        waiting = r"camera  \(waits for %s since [0-9]+ s\)\n" % end
+        waiting = r"camera  \(has waited [0-9]+ s for %s\)\n" % end
         wait_until(lambda: re.search(waiting, self.hc("graph --of " + name)))
         self.assertRegex(self.hc("ps"), name + " .* 1/1 .* running\n")
         camera = self.module(self.state(self.observe(process, name), lambda state: True), "camera")

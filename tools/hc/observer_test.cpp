@@ -139,7 +139,7 @@ TEST(Screen, SaysWhyAModuleDoesNotWork) {
   EXPECT_TRUE(is_in_trouble(module));
   module.waits_for = "augment.focus";
   module.waits = 11;
-  EXPECT_EQ(status_text(module), "waits for augment.focus since 11 s");
+  EXPECT_EQ(status_text(module), "has waited 11 s for augment.focus");
   module.waits.reset();
   module.detail = "";
   module.last_line = "/dev/ttyUSB0: disconnected";

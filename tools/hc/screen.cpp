@@ -242,7 +242,7 @@ std::string status_text(const hc::ModuleState& module) {
   const bool is_running = module.status == hc::ModuleStatus::Running;
   if (is_running && !module.in_focus) status = "idle (not in focus)";
   if (is_running && module.waits && !module.waits_for.empty())
-    return hc::format("waits for {} since {}", module.waits_for, seconds_in_words(*module.waits));
+    return hc::format("has waited {} for {}", seconds_in_words(*module.waits), module.waits_for);
   if (module.detail.empty()) return status;
   return is_running ? module.detail : status + ": " + module.detail;
 }

@@ -110,7 +110,7 @@ function stoppedBar(clear: () => void): {
     h("label", { for: "stop-confirm" }, confirm, "nobody is in its way"),
     button,
   );
-  const note = h("span", { class: "stop-note" }, "Who may drive it can clear this.");
+  const note = h("span", { class: "stop-note" }, "Only who may drive can clear this stop.");
   const bar = h(
     "div",
     { class: "stopped-bar", role: "alert", hidden: true },

@@ -69,7 +69,7 @@ test("who does not have the seat reads who does", () => {
   assert.equal(text({ ...free, session: session({ stopped: true }) }), "Stopped.");
   assert.equal(
     text({ ...free, session: session({ right: "view" }) }),
-    "The robot decides: point. You may look; ask for a URL that may drive.",
+    "The robot decides: point. You may only look; to drive, ask for another URL.",
   );
   const lost = { ...free, seat: "lost", lost: "It was taken.", session: session() } as const;
   assert.equal(text(lost), "It was taken. The robot decides: point.");

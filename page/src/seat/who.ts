@@ -60,6 +60,6 @@ export function whoText(now: Situation): string {
       : other
         ? `In focus: ${has}.`
         : `The robot decides: ${has}.`;
-  const right = mayDrive(session) ? "" : "You may look; ask for a URL that may drive.";
+  const right = mayDrive(session) ? "" : "You may only look; to drive, ask for another URL.";
   return [who, head, right].filter((words) => words !== "").join(" ") || "Nobody has the seat.";
 }

@@ -60,7 +60,7 @@ export function opener(
       found.push({ label: typed, detail: "stream", args: { kind: "stream", port: typed } });
     }
     fill(list, found.map(item));
-    if (found.length === 0) fill(list, h("li", { class: "muted" }, "Nothing is called so."));
+    if (found.length === 0) fill(list, h("li", { class: "muted" }, "Nothing has that name."));
   };
   const search = h("input", {
     type: "search",
