@@ -76,8 +76,9 @@ int main(int argc, char** argv) {
   std::optional<Stop> wanted;
   hc::MonotonicTime seen{};  // when a page was open
 
-  auto send_stop = [&](Stop::Word word) {
-    stop.send(hc::table({static_cast<std::uint8_t>(word)}).at(module.now()));
+  std::int64_t ordered = 0;  // when a person stopped the robot or cleared that [ns]
+  auto send_stop = [&](Stop::Word word, std::int64_t said) {
+    stop.send(hc::table({static_cast<std::uint8_t>(word)}).at(said));
   };
   auto obey = [&](const Order& order) {
     const auto& message = order.message;
@@ -123,7 +124,9 @@ int main(int argc, char** argv) {
             [&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
             [&](bool stops_robot, Stop::Answer answer) {
               stops.put([&, stops_robot, answer = std::move(answer)] {
-                send_stop(wanted->order(stops_robot, stop.linked(), module.monotonic(), answer));
+                ordered = module.now();
+                send_stop(wanted->order(stops_robot, stop.linked(), module.monotonic(), answer),
+                          ordered);
               });
             },
             [&](const std::string& line) { inbox.put([&, line] { module.log(line); }); }}));
@@ -138,7 +141,8 @@ int main(int argc, char** argv) {
     robot.stopped = wanted->is_stopped(module.monotonic());
   });
   module.every(Stop::kPeriod, [&] {
-    if (const auto word = wanted->tick(robot.sessions > 0, module.monotonic())) send_stop(*word);
+    if (const auto word = wanted->tick(robot.sessions > 0, module.monotonic()))
+      send_stop(*word, *word == Stop::Word::Clear ? ordered : module.now());
     robot.stopped = wanted->is_stopped(module.monotonic());
   });
   module.every(std::chrono::milliseconds(100), [&] {

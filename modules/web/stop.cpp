@@ -38,7 +38,9 @@ std::optional<Stop::Word> Stop::tick(bool is_guarded, hc::MonotonicTime now) {
   answer([&](const Order& order) { return now >= order.due; },
          [&](const Order& order) { return problem(order); });
   // What clears is not to be overtaken by what follows it.
-  if (std::exchange(has_cleared_, false)) return std::nullopt;
+  const bool has_cleared = std::exchange(has_cleared_, false);
+  if (!is_wanted_ && !orders_.empty()) return Word::Clear;
+  if (has_cleared) return std::nullopt;
   if (is_guarded && !first_) first_ = now;
   if (is_guarded) farewells_ = kFarewells;
   if (is_wanted_) return Word::Stop;

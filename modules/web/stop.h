@@ -17,7 +17,7 @@ class Stop {
   enum class Word : std::uint8_t {
     Free = 0,       ///< no stop, but somebody is there who could press it
     Stop = 1,       ///< to be repeated for as long as it is wanted
-    Clear = 2,      ///< a person clears the stops of all sources, once
+    Clear = 2,      ///< a person clears the stops of all sources; see tick()
     Unguarded = 3,  ///< nobody is there any more
   };
   /// How often what is wanted is repeated.
@@ -47,7 +47,9 @@ class Stop {
   void hear(bool is_stopped, hc::MonotonicTime now);
 
   /// To be called each kPeriod. @param is_guarded  whether a page is open.
-  /// @returns  what is to be sent; nothing: nothing.
+  /// @returns  what is to be sent; nothing: nothing. Clear is said again until it is confirmed,
+  /// since a workspace that restarts may not have got it, and with the time of its order: stops
+  /// that are newer hold.
   std::optional<Word> tick(bool is_guarded, hc::MonotonicTime now);
 
   /// What the workspace said last; nothing: it is silent, or was never heard.

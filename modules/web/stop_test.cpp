@@ -49,9 +49,9 @@ TEST(Stop, is_repeated_until_it_is_cleared_whoever_watches) {
   for (const bool is_guarded : {true, false, true}) EXPECT_EQ(page.tick(is_guarded), Word::Stop);
   page.stop.hear(true, page.now);
   EXPECT_EQ(page.order(false), Word::Clear);
-  EXPECT_EQ(page.tick(), std::nullopt);  // so that the word is not overtaken
-  EXPECT_EQ(page.tick(), Word::Free);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(page.tick(), Word::Clear) << "it may not have arrived";
   page.stop.hear(false, page.now);
+  EXPECT_EQ(page.tick(), Word::Free);
   EXPECT_EQ(page.answers, (std::vector<std::string>{"", ""}));
 }
 
