@@ -119,7 +119,7 @@ try {
       }).observe(element, { attributes: true });
       window.red = undefined;
     });
-    const { pid } = graph.module(name);
+    const pid = graph.pid(name);
     const killed = Date.now();
     process.kill(pid, "SIGKILL");
     const red = await page.waitForFunction(() => window.red, null, { timeout: watchdog });

@@ -89,6 +89,13 @@ export class Graph {
     return this.state().modules.find((module) => module.name === name);
   }
 
+  /** The process of a module. One that is started anew has none: 0 would be our own group. */
+  pid(name) {
+    const { pid } = this.module(name);
+    if (!pid) throw new Error(`${name} has no process`);
+    return pid;
+  }
+
   async end() {
     if (this.process.exitCode === null) {
       const ended = new Promise((resolve) => this.process.once("exit", resolve));

@@ -133,8 +133,8 @@ describe("the page", { timeout: 10 * watchdog }, () => {
         subtree: true,
       });
     });
-    const { restarts, pid } = graph.module("left_ball");
-    process.kill(pid, "SIGKILL");
+    const { restarts } = graph.module("left_ball");
+    process.kill(graph.pid("left_ball"), "SIGKILL");
     // It may have been red before, where it had no processor for long.
     await page.waitForFunction(() =>
       window.seen.find(({ broken, text }) => broken && /left_ball.*signal 9/.test(text)),

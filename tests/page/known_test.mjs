@@ -308,7 +308,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
       ["workspace", "the workspace does not answer"],
       ["web", "The server of the page does not answer."],
     ]) {
-      const { pid } = graph.module(name);
+      const pid = graph.pid(name);
       process.kill(pid, "SIGSTOP");
       try {
         await until("the stop is pressed", async () => {
@@ -388,13 +388,13 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
         if (lost) window.seen.push(document.querySelector(".stopped-bar").hidden);
       }).observe(document.body, { subtree: true, childList: true, characterData: true });
     });
-    process.kill(graph.module("web").pid, "SIGKILL");
+    process.kill(graph.pid("web"), "SIGKILL");
     await until("the connection is lost", () => page.evaluate(() => window.seen.length > 0));
     assert.equal(await page.evaluate(() => window.seen.at(-1)), true);
     await trouble.waitFor({ state: "hidden" }); // the session is that of the run
     await bar.waitFor();
     await clear();
-    const { pid } = graph.module("web");
+    const pid = graph.pid("web");
     process.kill(pid, "SIGSTOP");
     await page.getByRole("button", { name: "Stop" }).click();
     await alarm.waitFor();

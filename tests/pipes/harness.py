@@ -21,6 +21,7 @@ BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
 WATCHDOG = 100  # seconds after which a program hangs
 LONGEST = 300  # a test, unless HC_FULL=1 [s]
+KILL = os.kill
 PRESSURE = pathlib.Path("/proc/pressure/cpu")
 
 
@@ -37,6 +38,16 @@ def wait_until(condition):
         assert time.monotonic() < end, "nothing happened"
         time.sleep(0.01)
     return result
+
+
+def kill_process(pid, number):
+    """As os.kill(), for tests that have a process from a state, where it is 0 while it is started
+    anew: that would be the group of this test, and of what runs all tests."""
+    assert pid > 0, "there is no process %d" % pid
+    KILL(pid, number)
+
+
+os.kill = kill_process
 
 
 def end_when_hung(test):

@@ -317,9 +317,12 @@ class Graph(Page):
 
 class Stop(Page):
     def pid(self, graph, name):
-        """The process of a module, by the next state."""
-        modules = json.loads(self.hear(graph, 1))["modules"]
-        return next(module["pid"] for module in modules if module["name"] == name)
+        """The process of a module, once it has one."""
+        pid = 0
+        while pid == 0:
+            modules = json.loads(self.hear(graph, 1))["modules"]
+            pid = next(module["pid"] for module in modules if module["name"] == name)
+        return pid
 
     def freeze(self, graph, name):
         """Stops a process for a while; gives its number."""
