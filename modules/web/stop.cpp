@@ -60,7 +60,6 @@ std::string Stop::problem(const Order& order) const {
   if (!heard_)
     return what + "nothing comes to " + module_ + ".stopped; link it to the workspace's output";
   if (heard_at_ <= order.due - kPatience) return what + "the workspace does not answer";
-  return what + (order.stops
-                     ? "the workspace says that the robot is not stopped"
-                     : "the workspace says that the robot is still stopped, by another source");
+  return what + (order.stops ? "the workspace says that the robot is not stopped"
+                             : "the workspace says that the robot is still stopped");
 }

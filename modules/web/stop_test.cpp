@@ -81,8 +81,7 @@ TEST(Stop, says_that_the_workspace_has_not_confirmed_it) {
   page.order(false);
   page.stop.hear(true, page.now + milliseconds(400));
   page.tick(true, milliseconds(500));
-  EXPECT_EQ(page.answers.at(3),
-            "NOT cleared: the workspace says that the robot is still stopped, by another source");
+  EXPECT_EQ(page.answers.at(3), "NOT cleared: the workspace says that the robot is still stopped");
   page.order(true, false);
   EXPECT_TRUE(page.answers.at(4).starts_with("stop NOT confirmed: nothing is linked to web.stop"));
 }
