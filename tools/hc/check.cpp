@@ -28,10 +28,10 @@ void add_check(CLI::App& app) {
     auto counted = [](std::size_t count, std::string_view what) {
       return hc::format("{} {}{}", count, what, count == 1 ? "" : "s");
     };
-    print(hc::format("{}: {}, {}: {}\n", options->file, counted(plan.modules.size(), "module"),
-                     counted(plan.links.size(), "link"),
-                     plan.warnings.empty() ? "no problems found"
-                                           : counted(plan.warnings.size(), "warning")));
+    print(hc::format(
+        "{}: {}, {}: {}\n", options->file, counted(plan.modules.size(), "module"),
+        counted(plan.links.size(), "link"),
+        plan.warnings.empty() ? "no problems found" : counted(plan.warnings.size(), "warning")));
   });
 }
 
