@@ -42,6 +42,12 @@ parent = "world"
 translation = [0.0, 0.0, 1.2]
 [frames.head]
 parent = "robot"
+[frames.left_eye]
+parent = "head"
+translation = [0.0, 0.05, 0.0]
+[frames.right_eye]
+parent = "head"
+translation = [0.0, -0.05, 0.0]
 """
 )
 STICK = b"1 1 0 0 8 0 120190 0 0 2 1\n"
