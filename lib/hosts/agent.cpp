@@ -43,7 +43,7 @@ constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one messa
 constexpr int kHeartbeatsOfUsage = 2, kUsagesOfMemory = 4;
 
 /// Where a module is met, by the readers of its outputs and by us: the same for all its processes,
-/// and held between them, so that nobody else takes a name.
+/// and held between them, so that no other user takes a name.
 struct Place {
   internal::HeldNames names;
   std::unique_ptr<Intake> reports;

@@ -24,7 +24,7 @@ class Stop {
   static constexpr std::chrono::milliseconds kPeriod{50};
   /// So long the workspace has to confirm an order.
   static constexpr std::chrono::milliseconds kPatience{500};
-  /// So long the first page has for a stop that was pressed while it had no server.
+  /// The time of the first page to repeat a stop that was pressed without a server.
   static constexpr std::chrono::milliseconds kFirst{250};
   /// How often it is said that nobody is there any more.
   static constexpr int kFarewells = 3;
@@ -47,9 +47,8 @@ class Stop {
   void hear(bool is_stopped, hc::MonotonicTime now);
 
   /// To be called each kPeriod. @param is_guarded  whether a page is open.
-  /// @returns  what is to be sent; nothing: nothing. Clear is said again until it is confirmed,
-  /// since a workspace that restarts may not have got it, and with the time of its order: stops
-  /// that are newer hold.
+  /// @returns  the word to be sent, if any. Clear is repeated until the workspace confirms it,
+  /// which may have restarted without it, and with the time of its order, so that newer stops hold.
   std::optional<Word> tick(bool is_guarded, hc::MonotonicTime now);
 
   /// What the workspace said last; nothing: it is silent, or was never heard.

@@ -4,9 +4,9 @@
 //
 // The rules, for each source of the input `stop` by itself:
 // - A 1 stops the robot. It holds until the same process of that source sends a 0, or any source a
-//   2: a person clears all stops that there are when it is said. A source that repeated its 1 and
-//   was then silent for kSilence, or has left, or began to count its messages anew, may have
-//   forgotten what it asked for: its 0 clears nothing until it has stopped the robot again.
+//   2: a person clears all stops made before. A source that repeated its 1 and was then silent for
+//   kSilence, or has left, or whose `seq` has begun again, may have forgotten its stop: its 0
+//   clears nothing until it has stopped the robot again.
 // - A source guards from the second of two 0 on that are no further apart than kSilence: it can
 //   stop the robot at any time, and says so. While it is silent for longer, nobody may move the
 //   robot, since a stop could not arrive. A 3 says that it leaves and guards no more; a 2 of
@@ -55,9 +55,8 @@ class Brake {
     const auto found = sources_.find(source);
     return found != sources_.end() && found->second.stops;
   }
-  /// Why nobody may move the robot: "stopped by web.stop", "source 14 is silent: its stop could not
-  /// arrive";
-  /// empty: who has the focus may.
+  /// The reason why no mode may have the focus: "stopped by web.stop", "source 14 is silent: its
+  /// stop could not arrive"; empty: there is none.
   [[nodiscard]] std::string reason(hc::MonotonicTime now) const;
 
   /// The names of sources.

@@ -114,8 +114,7 @@ void Supervised::look(MonotonicTime time) {
   end_observations(time);
   send_wall_offset();
   note_dropped_lines(time);
-  // Time in which nobody looked, as this process was stopped or starved itself, counts as a second
-  // at most.
+  // A gap between two looks counts as a second at most: this process was stopped or starved itself.
   const auto before = std::exchange(looked_, time);
   if (!process_) return;
   if (before != MonotonicTime(0)) silence_ += std::min(time - before, kMostAtOnce);
@@ -139,9 +138,9 @@ void Supervised::look(MonotonicTime time) {
   callbacks_.event("unresponsive: " + detail_);
 }
 
-/// Whether it has been killed since it has not reported for as long as the graph allows, or has
-/// been stopped for so long. One that is looked at in a debugger, or waits for a reader and runs,
-/// has a reason; and one that has not reported yet may have to load what it needs.
+/// Kills a process whose last report is older than the graph allows, or that a signal has stopped
+/// for that time; returns whether it did. A process in a debugger, or one that runs and waits for a
+/// reader, is spared. The first report has more time, for the loading of libraries.
 bool Supervised::kill_if_hung(bool is_blocked) {
   if (!hung_.empty() || status_ == ModuleStatus::Stopping) return false;
   MonotonicTime patience = plan_.hang;

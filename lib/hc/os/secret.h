@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What nobody guesses. Internal.
+// Random secrets. Internal.
 
 #include <string>
 

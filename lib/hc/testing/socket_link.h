@@ -75,7 +75,7 @@ class SocketLink : public ::testing::TestWithParam<SocketScheme> {
   [[nodiscard]] std::string listen() const {
     return GetParam().listen + place_ + GetParam().options;
   }
-  /// A source that listens, whose peers have so long.
+  /// A listening source with these times for its peers.
   [[nodiscard]] std::unique_ptr<Source> source_with(internal::PeerTimes times,
                                                     Warnings& warnings) const {
     auto source = internal::listening_source(*GetParam().socket(*parse_uri(listen())),
@@ -475,7 +475,7 @@ TEST_P(SocketLink, WhoIsSilentForLongInsideAMessageGivesItsPlaceToOneWhoWaits) {
     enter_message(peers[i], *source);
   }
   ASSERT_EQ(*source->take(message), Got::Nothing);
-  EXPECT_TRUE(warnings.lines.empty());  // nobody waits
+  EXPECT_TRUE(warnings.lines.empty());  // no other peer waits for a place
   auto sink = sink_of(with(dial(), "wait=60"));
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   ASSERT_TRUE(*receive(*source, message));

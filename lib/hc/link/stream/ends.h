@@ -50,8 +50,8 @@ struct PeerTimes {
 /// Takes messages from all peers that connect, in the order of arrival. A peer that breaks a rule
 /// is closed, which is logged; the others are not affected. Never ends by itself.
 ///
-/// When there are kMaxPeers, a new one replaces the peer that was silent longest, unless that is
-/// inside a message and was so for less than its time: silent peers keep nobody out.
+/// When there are kMaxPeers, a new one replaces the peer with the longest silence, so that silent
+/// peers do not lock others out. A peer inside a message is replaced only after PeerTimes::silence.
 ///
 /// Errors: System.
 Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket, const LinkOptions& options,
