@@ -89,7 +89,7 @@ export class Graph {
     return this.state().modules.find((module) => module.name === name);
   }
 
-  /** The process of a module. One that is started anew has none: 0 would be our own group. */
+  /** The process of a module. During a restart it is 0, which a signal takes for our own group. */
   pid(name) {
     const { pid } = this.module(name);
     if (!pid) throw new Error(`${name} has no process`);
