@@ -8,10 +8,10 @@ import pathlib
 import re
 import signal
 import socket
-import threading
 import time
 import unittest
 
+from feeder import Feeder, Source
 from graphs import Graphs
 from harness import ROOT, wait_until
 
@@ -84,39 +84,17 @@ rate = 500
 """
 
 
-class Feeder:
-    """Sends a message to a module again and again, also when that was restarted."""
+def feeder(path, message):
+    """`message` gives info, coord, width and the row, from the time [s]; nothing: silence."""
+    source = Source(path)
 
-    def __init__(self, path, message):
-        """`message` gives info, coord, width and the row, from the time [s]; nothing: silence."""
-        self.path, self.message = path, message
-        self.is_over = threading.Event()
-        self.thread = threading.Thread(target=self.feed, daemon=True)
-        self.thread.start()
+    def say(now):
+        if made := message(now):
+            info, coord, width, row = made
+            text = "1 1 0 0 8 %d %d 0 %d %d 1\n%s\n"
+            source.send((text % (time.time_ns(), info, coord, width, row)).encode())
 
-    def feed(self):
-        link = None
-        while not self.is_over.wait(0.005):
-            made = self.message(time.monotonic())
-            if made is None:
-                continue
-            try:
-                if link is None:
-                    link = socket.socket(socket.AF_UNIX)
-                    link.connect(self.path)
-                info, coord, width, row = made
-                stamp = time.time_ns()
-                text = "1 1 0 0 8 %d %d 0 %d %d 1\n%s\n" % (stamp, info, coord, width, row)
-                link.sendall(text.encode())
-            except OSError:  # it is being started
-                link.close()
-                link = None
-        if link:
-            link.close()
-
-    def end(self):
-        self.is_over.set()
-        self.thread.join()
+    return Feeder(say, 0.005)
 
 
 def setpoint(side):
@@ -180,9 +158,9 @@ class OneNeck(Graphs):
         self.stick = 0.0
         pushed = lambda now: (120190, 0, 2, "%g 0" % self.stick) if self.stick else None
         self.feeders = [
-            Feeder(self.path("left"), setpoint(1)),
-            Feeder(self.path("right"), setpoint(-1)),
-            Feeder(self.path("stick"), pushed),
+            feeder(self.path("left"), setpoint(1)),
+            feeder(self.path("right"), setpoint(-1)),
+            feeder(self.path("stick"), pushed),
         ]
         self.addCleanup(lambda: [feeder.end() for feeder in self.feeders])
         self.wait_told(LEFT)

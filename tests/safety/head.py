@@ -11,6 +11,7 @@ import os
 import pathlib
 import re
 import signal
+import socket
 import sys
 import threading
 import time
@@ -19,12 +20,12 @@ import unittest
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests/pipes"))
 
-from feeder import Feeder  # noqa: E402
+from feeder import Feeder, Source  # noqa: E402
 from graphs import Messages  # noqa: E402
 from harness import BUILD, end_when_hung, wait_until  # noqa: E402
 from page_test import Page, message as message_of, number  # noqa: E402
 from rows import Row, rows  # noqa: E402
-from streams import Focus, Line, Motion, Source, run_delay, rotation, stick  # noqa: E402
+from streams import Focus, Line, Motion, run_delay, rotation, stick  # noqa: E402
 from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
 
 IS_FULL = os.environ.get("HC_FULL") == "1"
@@ -47,7 +48,8 @@ class PageSocket:
     def __init__(self, port, cookie):
         self.socket = WebSocket(port, "/graph", cookie)
         self.session, self.answers, self.orders = {}, {}, 0
-        threading.Thread(target=self.read, daemon=True).start()
+        self.thread = threading.Thread(target=self.read, daemon=True)
+        self.thread.start()
 
     def read(self):
         with contextlib.suppress(OSError, ValueError):
@@ -68,6 +70,14 @@ class PageSocket:
     def ask(self, text):
         number = self.order(text)
         return wait_until(lambda: self.answers.get(number))
+
+    def end(self):
+        """Closes only once nobody reads: the descriptor's number is given to the next socket, and
+        who waits for that keeps its name taken."""
+        with contextlib.suppress(OSError):  # the server has closed
+            self.socket.connection.shutdown(socket.SHUT_RDWR)
+        self.thread.join()
+        self.socket.close()
 
 
 class Seat:
@@ -281,8 +291,7 @@ class Head(Page):
     def close_page(self):
         self.leave()
         if self.page:
-            with contextlib.suppress(OSError):
-                self.page.socket.close()
+            self.page.end()
         self.page = None
 
     def sit(self, says):
@@ -302,17 +311,22 @@ class Head(Page):
         found = self.state_now()["focus"]["workspace"]
         return found and found["mode"]
 
-    def pushing(self):
-        """What one says who pushes the stick to and fro, and so moves the head all the time."""
-        mode, way = self.mode("point"), 1
+    def to_and_fro(self):
+        """Which way the stick is to be pushed, now, so that the head moves all the time: 1 or -1."""
+        way = 1
 
-        def says(_):
+        def now():
             nonlocal way
             if abs(self.motion.pan()) > MOST_PAN:
                 way = -1 if self.motion.pan() > 0 else 1
-            return seat_bid(1, mode), seat_stick(way)
+            return way
 
-        return says
+        return now
+
+    def pushing(self):
+        """What one says who pushes the stick in the page to and fro."""
+        mode, way = self.mode("point"), self.to_and_fro()
+        return lambda _: (seat_bid(1, mode), seat_stick(way()))
 
     def turning(self):
         """The same with the own head."""
@@ -347,8 +361,9 @@ class Head(Page):
         mode = self.mode(name)
         self.wait(lambda: self.focused.modes(0)[-1][1] == mode, name + " has the focus")
 
-    def wait_moving(self, seconds=0.3):
+    def wait_moving(self):
         """Waits until it has been moving for a while."""
+        seconds = 0.3
 
         def moves():
             now = time.time_ns()

@@ -23,10 +23,12 @@ class Seat(Safety):
     def test_nothing_touched(self):
         head = self.head
         for task in ("point", "telepresence"):
+            head.wait_focus("track")
             chosen = self.choose(task)
             head.wait_focus(task)
             head.motion.wait_until(chosen + int(UNTOUCHED * 1e9))
-            self.note("changes", head.focused.changes(chosen - 10**7), task)
+            changes = head.focused.changes(chosen)
+            self.note("changes", len(changes), "%s: %s" % (task, changes))
             # It may have been moving when that was chosen.
             self.note("travelled", head.motion.travelled(chosen + 10**9), task)
             head.leave()

@@ -119,8 +119,13 @@ class Focus(Stream):
         return [(at, int(row)) for at, row in list(self.messages) if at >= begin]
 
     def changes(self, begin):
-        modes = self.modes(begin)
-        return sum(a[1] != b[1] for a, b in zip(modes, modes[1:]))
+        """(how long after a time [s], mode that came into focus then), of all changes since."""
+        modes = self.modes(0)
+        return [
+            (round((b[0] - begin) / 1e9, 3), b[1])
+            for a, b in zip(modes, modes[1:])
+            if a[1] != b[1] and b[0] >= begin
+        ]
 
 
 class Line(Stream):
@@ -143,34 +148,6 @@ class Line(Stream):
         """When it was commanded to this tilt [rad]."""
         words = [(at, re.fullmatch(r"tp(-?\d+)", word)) for at, word in self.words(begin)]
         return [at for at, found in words if found and abs(int(found[1]) * STEP + tilt) < 0.01]
-
-
-class Source:
-    """Sends messages into an input of the head, over a link of its own, again and again."""
-
-    def __init__(self, address):
-        self.address, self.connection = address, None
-
-    def send(self, data):
-        """Whether it is on its way; a reader that closed is connected to again at the next."""
-        try:
-            if self.connection is None:
-                self.connection = socket.socket(socket.AF_UNIX)
-                self.connection.settimeout(5)
-                self.connection.connect(self.address)
-            self.connection.sendall(data)
-            return True
-        except OSError:
-            self.end()
-            return False
-
-    def insist(self, data):
-        wait_until(lambda: self.send(data))
-
-    def end(self):
-        if self.connection:
-            self.connection.close()
-        self.connection = None
 
 
 def message(info, rows, coord=0, mode=0, src=90, stamp=None, width=1, height=1):
