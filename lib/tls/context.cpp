@@ -7,12 +7,14 @@
 #include <array>
 #include <cerrno>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/x509.h>
 
+#include <hc/base/format.h>
 #include <hc/os/descriptor.h>
 #include <tls/channel.h>
 
@@ -71,12 +73,7 @@ std::string fingerprint(const X509& certificate) {
   unsigned length = 0;
   EVP_Digest(der, static_cast<std::size_t>(size), digest.data(), &length, EVP_sha256(), nullptr);
   OPENSSL_free(der);
-  std::string text;
-  for (unsigned i = 0; i < length; ++i) {
-    const unsigned byte = digest.at(i);
-    for (unsigned digit : {byte >> 4U, byte & 15U}) text += "0123456789abcdef"[digit];
-  }
-  return text;
+  return hexadecimal(std::span(digest).first(length));
 }
 
 Result<File> open_file(const std::string& path) {

@@ -330,6 +330,21 @@ exec sleep 1000
         self.write(name, "#!/bin/bash\n" + describe + script, 0o755)
         return "[modules.%s]\nprogram = './%s'\n" % (name, name)
 
+    def test_a_signal_that_comes_again_kills_unless_it_follows_at_once(self):
+        script = "trap '' TERM INT; echo deaf >&2; while :; do sleep 1; done\n"
+        self.write_graph(self.write_module("module", script))
+        process = self.run_graph(last="module: deaf")
+        messages = self.observe(process)
+        os.kill(process.pid, signal.SIGINT)
+        self.state(messages, lambda state: state["status"] == "stopping")
+        os.kill(process.pid, signal.SIGINT)
+        os.kill(process.pid, signal.SIGTERM)
+        for _ in range(4):  # more than a second
+            self.state(messages)
+        self.assertIsNone(process.poll())
+        os.kill(process.pid, signal.SIGINT)
+        self.assertEqual(process.wait(WATCHDOG), -signal.SIGINT)
+
     def test_a_module_that_floods_its_log_is_counted(self):
         count = 200000
         script = "seq 1 %d >&2; echo 'result: done' >&2\n" % count

@@ -163,6 +163,9 @@ void run(RunOptions options) {
   hc::LoadOptions load_options = options.graph;
   take_record(options, load_options);
   load_options.holds_ports = true;
+  // What a module starts, such as `hc`, means this graph; no thread reads the environment yet.
+  ::setenv(hc::internal::kRunSecret, hc::internal::make_secret().c_str(), 1);
+  ::setenv("HC_GRAPH", (name_of(options) + "." + std::to_string(::getpid())).c_str(), 1);
   const auto hosts = make_hosts();
   load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
@@ -173,9 +176,6 @@ void run(RunOptions options) {
     for (const auto& output : unlinked) list += (list.empty() ? "" : ", ") + output;
     status.say("graph: not recorded, as not linked: " + list);
   }
-  // What a module starts, such as `hc`, means this graph; no thread reads the environment yet.
-  ::setenv(hc::internal::kRunSecret, hc::internal::make_secret().c_str(), 1);
-  ::setenv("HC_GRAPH", (name_of(options) + "." + std::to_string(::getpid())).c_str(), 1);
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
   run_options.with_module_lines = !options.quiet;

@@ -131,3 +131,14 @@ std::string format(std::string_view pattern, std::initializer_list<FormatValue> 
 }
 
 }  // namespace hc::internal
+
+namespace hc {
+
+std::string hexadecimal(std::span<const unsigned char> bytes) {
+  std::string text;
+  for (const unsigned byte : bytes)
+    for (const unsigned digit : {byte / 16, byte % 16}) text += "0123456789abcdef"[digit];
+  return text;
+}
+
+}  // namespace hc

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -42,5 +43,8 @@ template <typename... Values>
 std::string format(std::string_view pattern, const Values&... values) {
   return internal::format(pattern, {internal::format_value(values)...});
 }
+
+/// Two lower-case hexadecimal digits of each byte.
+std::string hexadecimal(std::span<const unsigned char> bytes);
 
 }  // namespace hc

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include <hc/base/format.h>
@@ -36,6 +37,11 @@ TEST(FormatDeathTest, APatternThatDoesNotFitIsABug) {
   EXPECT_DEATH(format("{} {}", 1), "check");
   EXPECT_DEATH(format("{}", 1, 2), "check");
   EXPECT_DEATH(format("}"), "check");
+}
+
+TEST(Format, HexadecimalDigitsOfBytes) {
+  EXPECT_EQ(hexadecimal(std::array<unsigned char, 3>{0x00, 0x9a, 0xff}), "009aff");
+  EXPECT_EQ(hexadecimal({}), "");
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -16,15 +18,18 @@ namespace {
 
 int stop_event = -1;  // written by the signal handler
 volatile std::sig_atomic_t stop_asked = 0;
-volatile std::time_t asked_at = 0;  // [s]
+std::array<std::atomic<std::int64_t>, SIGTERM + 1> first_asked{};  // by signal [ns]
 
 extern "C" void ask_to_stop(int number) {
-  constexpr std::time_t kSame = 1;  // so close together they are one: `timeout` sends two
+  constexpr std::int64_t kSame =
+      1'000'000'000;  // so close together they are one: `timeout` sends two
   int saved = errno;
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  if (stop_asked == 0) asked_at = now.tv_sec;
-  if (now.tv_sec - asked_at > kSame) {
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  const std::int64_t now = time.tv_sec * 1'000'000'000 + time.tv_nsec;
+  std::int64_t first = 0;
+  auto& known = first_asked.at(static_cast<std::size_t>(number));
+  if (!known.compare_exchange_strong(first, now) && now - first > kSame) {
     std::signal(number, SIG_DFL);
     std::raise(number);
   }

@@ -8,18 +8,14 @@
 #include <iterator>
 
 #include <hc/base/check.h>
+#include <hc/base/format.h>
 
 namespace hc::internal {
 
 std::string make_secret() {
   std::array<unsigned char, 16> bytes;
   HC_CHECK(::getrandom(bytes.data(), bytes.size(), 0) == std::ssize(bytes));
-  std::string text;
-  for (const unsigned byte : bytes) {
-    text += "0123456789abcdef"[byte / 16];
-    text += "0123456789abcdef"[byte % 16];
-  }
-  return text;
+  return hexadecimal(bytes);
 }
 
 std::string run_secret() {
