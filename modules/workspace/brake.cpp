@@ -62,6 +62,10 @@ void Brake::clear_all(std::int32_t by, hc::MonotonicTime said) {
 
 void Brake::restore(const hc::Stops& stops) {
   for (const auto& [number, is_stop] : stops) {
+    if (number == kOthers) {
+      others_stop_ = true;
+      continue;
+    }
     Source& source = sources_[number];
     source.stops = source.is_forgetful = is_stop;
     source.guards = !is_stop;
@@ -72,6 +76,7 @@ hc::Stops Brake::stops() const {
   hc::Stops stops;
   for (const auto& [number, source] : sources_)
     if (source.matters()) stops[number] = source.stops;
+  if (others_stop_) stops[kOthers] = true;
   return stops;
 }
 

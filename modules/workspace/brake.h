@@ -31,6 +31,7 @@ class Brake {
   static constexpr std::chrono::milliseconds kSilence{300}, kOld{1000}, kAhead{200};
   /// Sources that are known at the same time. A stop of one more holds until all are cleared.
   static constexpr std::size_t kMostSources = 64;
+  static constexpr std::int32_t kOthers = -1;  ///< no source: those beyond, in stops()
 
   /// What a source says.
   struct Message {
@@ -50,7 +51,7 @@ class Brake {
   /// What is to outlive this process.
   [[nodiscard]] hc::Stops stops() const;
 
-  [[nodiscard]] bool is_stopped() const { return others_stop_ || hc::any_stops(stops()); }
+  [[nodiscard]] bool is_stopped() const { return hc::any_stops(stops()); }
   [[nodiscard]] bool stops_robot(std::int32_t source) const {
     const auto found = sources_.find(source);
     return found != sources_.end() && found->second.stops;

@@ -193,12 +193,17 @@ TEST(Brake, any_number_of_sources_is_borne_and_none_is_unheard) {
     ASSERT_TRUE(robot.say(source, source % 2 == 0 ? 0 : 3));
   EXPECT_TRUE(robot.brake.stops().empty());
   for (std::int32_t source = 0; source < 100; ++source) ASSERT_TRUE(robot.say(source, 1));
-  EXPECT_EQ(robot.brake.stops().size(), Brake::kMostSources);
+  EXPECT_EQ(robot.brake.stops().size(), Brake::kMostSources + 1);
   EXPECT_FALSE(robot.say(99, 0));
   for (std::int32_t source = 0; source < 64; ++source) ASSERT_TRUE(robot.say(source, 0));
   EXPECT_EQ(robot.reason(), "stopped by one of too many sources");
-  ASSERT_TRUE(robot.say(99, 2));
-  EXPECT_EQ(robot.reason(), "");
+  Robot restarted;
+  restarted.brake.restore(*hc::parse_stops(hc::stops_text(robot.brake.stops())));
+  EXPECT_EQ(restarted.reason(), "stopped by one of too many sources");
+  for (Robot* each : {&robot, &restarted}) {
+    ASSERT_TRUE(each->say(99, 2));
+    EXPECT_EQ(each->reason(), "");
+  }
 }
 
 }  // namespace
