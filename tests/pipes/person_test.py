@@ -188,8 +188,7 @@ class HeadTracker(Bodies):
         self.stop(process)
         self.assertIn("head_tracker: total: 9 packet of another", self.said())
 
-    def test_another_machine_is_heard_if_it_is_named(self):
-        """From an address of this machine it is this user who counts, named or not."""
+    def test_this_user_is_heard_also_where_other_machines_are_named(self):
         process = self.start_tracker("--sender '192.0.2.7 192.0.2.8'", "0.0.0.0:0")
         self.feed(0, 0, 0, 0, 0, 0)
         self.stop(process)
