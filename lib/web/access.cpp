@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include <openssl/evp.h>
 #include <openssl/hmac.h>
@@ -59,9 +60,7 @@ std::string signature(std::string_view text, const std::string& key) {
   HC_CHECK(::HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
                   reinterpret_cast<const unsigned char*>(text.data()), text.size(), bytes.data(),
                   &size) != nullptr);
-  std::string digits;
-  for (unsigned i = 0; i < size; ++i) digits += hc::format("{:02x}", unsigned{bytes[i]});
-  return digits;
+  return hexadecimal(std::span(bytes).first(size));
 }
 
 }  // namespace
@@ -139,14 +138,18 @@ std::optional<std::string> Access::redeem(std::string_view token) {
   return begin_session(right);
 }
 
+std::string Access::sign(std::string_view begin) const {
+  return signature(cookie_name() + "=" + std::string(begin), key_);
+}
+
 std::string Access::begin_session(Right right) {
   const std::string begin = std::string(name_of(right)) + "." + internal::make_secret() + ".";
-  return begin + signature(begin, key_);
+  return begin + sign(begin);
 }
 
 std::optional<Right> Access::right_of_session(std::string_view name) const {
   const auto end = name.rfind('.') + 1;
-  if (!is_same(name.substr(end), signature(name.substr(0, end), key_))) return std::nullopt;
+  if (!is_same(name.substr(end), sign(name.substr(0, end)))) return std::nullopt;
   return right_named(name.substr(0, name.find('.')));
 }
 

@@ -38,7 +38,7 @@ struct Place {
 
 class Access {
  public:
-  /// @param key  signs sessions: one of the same key knows those of another process.
+  /// @param key  signs sessions: one of the same key and port knows those of another process.
   explicit Access(Place place, std::string key = internal::run_secret())
       : place_(std::move(place)), key_(std::move(key)) {}
 
@@ -79,6 +79,8 @@ class Access {
   [[nodiscard]] std::string authority() const;
   /// @returns  its name.
   std::string begin_session(Right right);
+  /// The end of the name of a session of this server, and of no other of the run.
+  [[nodiscard]] std::string sign(std::string_view begin) const;
 
   Place place_;
   std::string key_;

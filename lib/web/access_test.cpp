@@ -96,6 +96,9 @@ TEST(Access, a_session_is_known_to_a_process_of_the_same_run_alone) {
   const auto name = *before.redeem(before.make_token(Right::View));
   EXPECT_EQ(Access(place, "key").right_of_session(name), Right::View);
   EXPECT_FALSE(Access(place, "other").right_of_session(name));
+  auto elsewhere = place;
+  elsewhere.port = 8765;
+  EXPECT_FALSE(Access(elsewhere, "key").right_of_session(name)) << "another server of the run";
   EXPECT_NE(*before.redeem(before.make_token(Right::View)), name);
   const auto end = name.substr(name.find('.'));
   for (const auto& forged : {"operate" + end, "drive" + end, name + "0", "." + name, name.substr(1),

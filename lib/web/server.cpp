@@ -113,11 +113,17 @@ struct Shared {
   }
 };
 
+/// Where a connection comes from.
+struct Origin {
+  std::string name;              ///< the user, on this host; else the host, of IPv6 its network
+  bool is_another_user = false;  ///< of this host, but root
+};
+
 /// A connection, as long as it lives, and whether it has shown a session.
 class Visitor {
  public:
-  Visitor(std::shared_ptr<Shared> shared, std::string source)
-      : shared_(std::move(shared)), source_(std::move(source)) {
+  Visitor(std::shared_ptr<Shared> shared, Origin origin)
+      : shared_(std::move(shared)), origin_(std::move(origin)) {
     shared_->strangers.push_back(this);
   }
   Visitor(const Visitor&) = delete;
@@ -138,16 +144,17 @@ class Visitor {
     return is_known_ = true;
   }
   [[nodiscard]] const Shared& shared() const { return *shared_; }
+  [[nodiscard]] const Origin& origin() const { return origin_; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
 
   /// Closes the oldest stranger of the source that has most of them. False: there is none.
   static bool drop_one(Shared& shared) {
     std::map<std::string_view, std::size_t> counts;
-    for (const auto* stranger : shared.strangers) ++counts[stranger->source_];
+    for (const auto* stranger : shared.strangers) ++counts[stranger->origin_.name];
     std::size_t most = 0;
     for (const auto& [source, count] : counts) most = std::max(most, count);
     const auto oldest = std::ranges::find_if(
-        shared.strangers, [&](const auto* each) { return counts[each->source_] == most; });
+        shared.strangers, [&](const auto* each) { return counts[each->origin_.name] == most; });
     if (oldest == shared.strangers.end()) return false;
     const auto close = (*oldest)->close;
     shared.strangers.erase(oldest);
@@ -159,22 +166,21 @@ class Visitor {
 
  private:
   const std::shared_ptr<Shared> shared_;
-  const std::string source_;  // the user of this host, or the other host
+  const Origin origin_;
   bool is_known_ = false;
 };
 
-/// Who is at the other end: the user, on this host; else the host, of IPv6 its network.
-std::string source_of(tcp::socket& socket) {
+Origin origin_of(tcp::socket& socket) {
   const auto user = internal::tcp_peer_user(socket.native_handle(), internal::Connected::Accepted);
-  if (user) return "user " + std::to_string(*user);
+  if (user) return {"user " + std::to_string(*user), *user != ::geteuid() && *user != 0};
   beast::error_code error;
   const auto address = socket.remote_endpoint(error).address();
-  if (error || !address.is_v6()) return address.to_string();
+  if (error || !address.is_v6()) return {address.to_string()};
   constexpr std::size_t kNetwork = 8;  // [byte]
   const auto six = address.to_v6();
-  if (six.is_v4_mapped()) return asio::ip::make_address_v4(asio::ip::v4_mapped, six).to_string();
+  if (six.is_v4_mapped()) return {asio::ip::make_address_v4(asio::ip::v4_mapped, six).to_string()};
   const auto bytes = six.to_bytes();
-  return {bytes.begin(), bytes.begin() + kNetwork};
+  return {{bytes.begin(), bytes.begin() + kNetwork}};
 }
 
 /// Reads a reply's parts one piece after the other.
@@ -378,6 +384,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     if (!request) return write({400, "text/plain", text("the path is malformed\n"), {}, {}}, false);
     if (head.method() != http::verb::get)
       return write({405, "text/plain", text("only GET is served\n"), {}, {}}, false);
+    request->is_another_user = visitor_->origin().is_another_user;
     const bool keeps = head.keep_alive() && !request->is_socket;
     Reply reply;
     if (!visitor_->shared().guard([&] { reply = visitor_->site().reply(*request); })) return;
@@ -538,7 +545,7 @@ class BeastServer final : public Server {
   }
 
   void begin(tcp::socket socket) {
-    auto visitor = std::make_shared<Visitor>(shared_, source_of(socket));
+    auto visitor = std::make_shared<Visitor>(shared_, origin_of(socket));
     if (shared_->strangers.size() > kMaxStrangers) Visitor::drop_one(*shared_);
     if (secure_)
       std::make_shared<Connection<Secure>>(Secure(Plain(std::move(socket)), *secure_), visitor)

@@ -25,8 +25,9 @@ struct Request {
   std::string path;   ///< "/streams/eyes.left", decoded
   std::string query;  ///< behind `?`, as it came
   std::string host, origin, cookies;
-  bool is_socket = false;  ///< asks for a WebSocket
-  std::string protocols;   ///< of WebSockets, those that it offers
+  bool is_socket = false;        ///< asks for a WebSocket
+  std::string protocols;         ///< of WebSockets, those that it offers
+  bool is_another_user = false;  ///< it comes from another user of this machine, who is not root
 };
 
 /// The value of an option in a query; empty where there is none.

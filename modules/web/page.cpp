@@ -151,6 +151,9 @@ web::Reply Page::reply(const web::Request& request) {
 }
 
 web::Reply Page::reply_to_token(const web::Request& request) {
+  // A link that opens a browser is in that program's command line.
+  if (request.is_another_user)
+    return refusal(403, "on this machine the page is for the user who runs the graph");
   const auto session = access_.redeem(web::option(request.query, "token"));
   if (!session) {
     // Whoever has a session already opened the link once more.
@@ -403,6 +406,7 @@ void Page::give(const std::vector<Order>& orders) const {
 }
 
 void Page::tick() {
+  robot_.served = clock_.monotonic();
   if (driver_socket_) give(driver_.tick(clock_.wall(), clock_.monotonic()));
   if (recorder_ && recorder_->has_failed()) recorder_.reset();
   for (auto& [number, session] : sessions_) send_session(session);

@@ -28,7 +28,8 @@ struct Robot {
   std::atomic<unsigned> linked{0};  ///< a bit for each Control whose output is linked
   /// What the workspace says; nothing: the graph has none, or it is silent.
   std::atomic<std::optional<bool>> stopped{};
-  std::atomic<unsigned> sessions{0};  ///< pages that are open
+  std::atomic<unsigned> sessions{0};        ///< pages that are open
+  std::atomic<hc::MonotonicTime> served{};  ///< when the server's thread ran
 };
 
 class Page final : public web::Site {

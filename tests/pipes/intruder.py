@@ -106,12 +106,13 @@ def try_process(number):
             yield "signal %d to %d" % (each, number), ""
 
 
-def try_page(port):
+def try_page(port, token):
     key = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
     key += "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n"
     asked = {
         "/": "",
         "/?token=" + "0" * 32: "",
+        "/?token=" + token: "",  # which the command line of a browser told
         "/state": "",
         "/recordings": "",
         "/drive": key,
@@ -151,7 +152,7 @@ def main():
     for found in (
         try_names(facts["names"]),
         *map(try_process, facts["processes"]),
-        *map(try_page, facts["tcp"]),
+        *(try_page(port, facts["token"]) for port in facts["tcp"]),
     ):
         for way, through in found:
             say(way, through)

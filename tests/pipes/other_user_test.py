@@ -85,6 +85,7 @@ class OtherUser(Graphs):
             names=sorted(set(names)),
             terminals=terminals,
             files=[self.path("left.png"), self.path("new")],
+            token=re.search(r"token=(\w+)", self.lines[-1])[1],
             graph="head",
             hc=self.hc,
         )
