@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Serves a page in the browser: the graph live, its streams, and the driver's seat.
+#include <linux/close_range.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -24,6 +25,7 @@ void open_in_browser(const std::string& url) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   const pid_t child = ::fork();
   if (child != 0) return;
+  ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // the server's sockets
   ::execlp("xdg-open", "xdg-open", url.c_str(), nullptr);
   ::_exit(127);
 }
@@ -61,7 +63,8 @@ int main(int argc, char** argv) {
   auto tls = module.parameter("tls", false, "", "use TLS on 127.0.0.1 too", {.fixed = true});
   auto hosts = module.parameter("hosts", "", "", "names by which browsers may call this machine",
                                 {.fixed = true});
-  auto browser = module.parameter("browser", false, "", "open the page where there is a desktop",
+  auto browser = module.parameter("browser", false, "",
+                                  "open the page where there is a desktop, if listen is local",
                                   {.fixed = true});
   auto recordings =
       module.parameter("recordings", "recordings", "", "folder for recordings", {.fixed = true});
@@ -130,7 +133,7 @@ int main(int argc, char** argv) {
               });
             },
             [&](const std::string& line) { inbox.put([&, line] { module.log(line); }); }}));
-    if (*browser) open_in_browser(url);
+    if (*browser && web::is_local(*listen)) open_in_browser(url);
     seen = module.monotonic();
   });
   module.keep_running();
@@ -140,8 +143,13 @@ int main(int argc, char** argv) {
     wanted->hear(message.numbers()[0] != 0, module.monotonic());
     robot.stopped = wanted->is_stopped(module.monotonic());
   });
+  // Nothing while the server hangs, which may wait for a disk: a stop could not arrive.
+  auto is_guarded = [&]() -> std::optional<bool> {
+    if (module.monotonic() - robot.served.load() > Stop::kHung) return std::nullopt;
+    return robot.sessions > 0;
+  };
   module.every(Stop::kPeriod, [&] {
-    if (const auto word = wanted->tick(robot.sessions > 0, module.monotonic()))
+    if (const auto word = wanted->tick(is_guarded(), module.monotonic()))
       send_stop(*word, *word == Stop::Word::Clear ? ordered : module.now());
     robot.stopped = wanted->is_stopped(module.monotonic());
   });

@@ -34,18 +34,21 @@ void Stop::hear(bool is_stopped, hc::MonotonicTime now) {
          [](const Order&) { return ""; });
 }
 
-std::optional<Stop::Word> Stop::tick(bool is_guarded, hc::MonotonicTime now) {
+std::optional<Stop::Word> Stop::tick(std::optional<bool> is_guarded, hc::MonotonicTime now) {
   answer([&](const Order& order) { return now >= order.due; },
          [&](const Order& order) { return problem(order); });
   // What clears is not to be overtaken by what follows it.
   const bool has_cleared = std::exchange(has_cleared_, false);
-  if (!is_wanted_ && !orders_.empty()) return Word::Clear;
+  if (!is_wanted_ && !orders_.empty() && heard_) return Word::Clear;
   if (has_cleared) return std::nullopt;
-  if (is_guarded && !first_) first_ = now;
-  if (is_guarded) farewells_ = kFarewells;
   if (is_wanted_) return Word::Stop;
-  if (is_guarded && now - *first_ < kFirst) return std::nullopt;
-  if (is_guarded) return Word::Free;
+  if (!is_guarded) return std::nullopt;
+  if (*is_guarded) {
+    if (!first_) first_ = now;
+    farewells_ = kFarewells;
+    if (now - *first_ < kFirst) return std::nullopt;
+    return Word::Free;
+  }
   if (farewells_ == 0) return std::nullopt;
   --farewells_;
   return Word::Unguarded;

@@ -24,8 +24,10 @@ class Stop {
   static constexpr std::chrono::milliseconds kPeriod{50};
   /// So long the workspace has to confirm an order.
   static constexpr std::chrono::milliseconds kPatience{500};
-  /// The time of the first page to repeat a stop that was pressed without a server.
-  static constexpr std::chrono::milliseconds kFirst{250};
+  /// From the first page on that opens, so that others repeat what was pressed without a server.
+  static constexpr std::chrono::milliseconds kFirst{1500};
+  /// What serves the pages hangs when it has done nothing for so long.
+  static constexpr std::chrono::milliseconds kHung{200};
   /// How often it is said that nobody is there any more.
   static constexpr int kFarewells = 3;
   /// What it said counts for so long.
@@ -46,10 +48,12 @@ class Stop {
   /// The workspace says whether the robot is stopped.
   void hear(bool is_stopped, hc::MonotonicTime now);
 
-  /// To be called each kPeriod. @param is_guarded  whether a page is open.
-  /// @returns  the word to be sent, if any. Clear is repeated until the workspace confirms it,
-  /// which may have restarted without it, and with the time of its order, so that newer stops hold.
-  std::optional<Word> tick(bool is_guarded, hc::MonotonicTime now);
+  /// To be called each kPeriod.
+  /// @param is_guarded  whether a page is open; nothing: nobody knows, so only a stop is repeated.
+  /// @returns  the word to be sent, if any. Clear is repeated until a workspace that can confirm it
+  /// does, which may have restarted without it, and with the time of its order, so that newer stops
+  /// hold.
+  std::optional<Word> tick(std::optional<bool> is_guarded, hc::MonotonicTime now);
 
   /// What the workspace said last; nothing: it is silent, or was never heard.
   [[nodiscard]] std::optional<bool> is_stopped(hc::MonotonicTime now) const;

@@ -24,7 +24,8 @@ struct Page {
   void open() {
     while (!tick()) continue;
   }
-  std::optional<Word> tick(bool is_guarded = true, milliseconds later = Stop::kPeriod) {
+  std::optional<Word> tick(std::optional<bool> is_guarded = true,
+                           milliseconds later = Stop::kPeriod) {
     now += later;
     return stop.tick(is_guarded, now);
   }
@@ -121,6 +122,25 @@ TEST(Stop, of_another_source_is_not_taken_over) {
 TEST(Stop, says_nothing_for_a_process_before_it_whose_page_may_have_wanted_a_stop) {
   Page page;
   for (int i = 0; i < 3; ++i) EXPECT_EQ(page.tick(false), std::nullopt);
+}
+
+TEST(Stop, guards_nobody_while_pages_cannot_be_heard) {
+  Page page;
+  page.open();
+  EXPECT_EQ(page.tick(), Word::Free);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(page.tick(std::nullopt), std::nullopt);
+  EXPECT_EQ(page.tick(), Word::Free);
+  page.order(true);
+  EXPECT_EQ(page.tick(std::nullopt), Word::Stop);
+}
+
+TEST(Stop, is_cleared_once_where_nothing_can_confirm_it) {
+  Page page;
+  page.open();
+  page.order(true);
+  EXPECT_EQ(page.order(false), Word::Clear);
+  EXPECT_EQ(page.tick(), std::nullopt);
+  EXPECT_EQ(page.tick(), Word::Free);
 }
 
 TEST(Stop, says_three_times_that_the_last_page_has_gone) {

@@ -35,10 +35,10 @@ export async function until(what, condition) {
   }
 }
 
-/** A graph that runs in a folder of its own, with its page. */
 /** The first that is tried: a restarted server has the same one again. */
 const port = 20000 + (process.pid % 10000);
 
+/** A graph that runs in a folder of its own, with its page. */
 export class Graph {
   name = `page-${process.pid}`;
   folder = mkdtempSync(join(tmpdir(), "hc-page-"));

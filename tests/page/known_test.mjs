@@ -390,7 +390,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     });
     process.kill(graph.pid("web"), "SIGKILL");
     await until("the connection is lost", () => page.evaluate(() => window.seen.length > 0));
-    assert.equal(await page.evaluate(() => window.seen.at(-1)), true);
+    assert.equal(await page.evaluate(() => window.seen[0]), true);
     await trouble.waitFor({ state: "hidden" }); // the session is that of the run
     await bar.waitFor();
     await clear();

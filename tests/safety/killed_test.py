@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Modules of the head that are killed."""
 
+import os
 import signal
 import time
 import unittest
@@ -53,10 +54,11 @@ class Killed(Safety):
         head = self.head
         head.sit(head.pushing())
         head.wait_moving()
+        pid = head.pid("head_neck")
         with head.waits() as waits:
-            head.leave()
             moment = time.time_ns()
-            head.send_signal("head_neck", signal.SIGKILL)
+            os.kill(pid, signal.SIGKILL)
+            head.leave()  # else it moves again once it is back
             self.note_halt(moment, waits)
         head.wait(head.is_whole, "all run")
         head.sit(head.pushing())

@@ -8,6 +8,7 @@ import unittest
 
 from head import IS_FULL, Safety, seat_bid, seat_stick
 from page_test import ALIVE
+from threads import held_threads
 
 UNTOUCHED, AFTER = (20, 30) if IS_FULL else (5, 5)  # [s]
 ALIVE = ALIVE + b"0\n"
@@ -78,7 +79,25 @@ class Seat(Safety):
         rested = time.time_ns()
         head.wait(lambda: head.is_whole() and head.pid("web") != pid, "it is restarted")
         head.motion.wait_until(time.time_ns() + int(2e9))  # in which tasks bid
+        # A page opens, and repeats what was pressed.
+        head.open_page()
+        head.press_stop()
+        head.wait(lambda: head.page.session["stopped"], "the robot is stopped")
+        head.motion.wait_until(time.time_ns() + int(2e9))
         self.note("travelled", head.motion.travelled(rested))
+        self.hold()
+
+    def test_the_server_of_the_page_waits_for_a_disk(self):
+        head = self.head
+        head.wait(lambda: head.sent()["web.stop"] > 5, "the page guards the robot")
+        head.sit(head.pushing())
+        head.wait_moving()
+        with head.waits() as waits, held_threads(head.pid("web")):
+            self.note_halt(time.time_ns(), waits)
+            halted = time.time_ns()
+            head.motion.wait_until(halted + int(2e9))  # in which tasks bid
+            self.note("travelled", head.motion.travelled(halted))
+        head.wait(lambda: head.focus() is not None, "a task has the focus")
         self.hold()
 
 

@@ -6,7 +6,8 @@ import { Stopping } from "./stopping";
 
 /** Two presses of Escape within this time stop the robot [ms]. */
 const twice = 600;
-/** How often it is looked whether a stop has arrived, and one that has not is sent again [ms]. */
+/** How often it is looked whether a stop has arrived; one that has not is sent again, over a new
+ * connection where there is none [ms]. */
 const period = 200;
 
 /**
@@ -40,6 +41,7 @@ export function addStop(shell: Shell): void {
   };
   const look = (): void => {
     const isOpen = server.connection.status === "open";
+    if (stopping.isUnconfirmed && !isOpen) server.reconnect();
     if (stopping.isUnconfirmed && isOpen && !isAsked) void order(true);
     show();
   };
