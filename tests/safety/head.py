@@ -461,11 +461,14 @@ class Rows(unittest.TestCase):
         self.note("ended", sum(ended.values()), "%s %s" % (where, ended or ""))
 
     def note_halt(self, moment, waits, where=""):
-        """When the head has come to rest, after a moment [ns]. What processes waited for is excused."""
-        last = self.head.motion.rests_at(moment)
-        waited = waits.until(last)
+        """When the head has come to rest, after a moment [ns]."""
+        self.note_time("halts", moment, self.head.motion.rests_at(moment), waits, where)
+
+    def note_time(self, limit, begin, end, waits, where=""):
+        """From one moment to another [ns]. What processes waited for meanwhile is excused."""
+        waited = waits.until(end)
         where += " beside others who had the processor for %.3f s" % waited
-        self.note("halts", (last - moment) / 1e9, where.strip(), waited)
+        self.note(limit, (end - begin) / 1e9, where.strip(), waited)
 
 
 class Safety(Rows):

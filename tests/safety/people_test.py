@@ -113,10 +113,11 @@ class People(Safety):
         head, mode = self.head, self.head.mode("telepresence")
         feeder = self.feed("workspace.person", 0, lambda _: bid(1, mode), 0.1)
         head.wait_focus("telepresence")
-        moment = self.end(feeder)
-        withdrawn = lambda: [at for at, now in head.focused.modes(moment) if now != mode]
-        head.wait(withdrawn, "the bid is withdrawn")
-        self.note("withdrawn", (withdrawn()[0] - moment) / 1e9)
+        with head.waits() as waits:
+            moment = self.end(feeder)
+            withdrawn = lambda: [at for at, now in head.focused.modes(moment) if now != mode]
+            head.wait(withdrawn, "the bid is withdrawn")
+        self.note_time("withdrawn", moment, withdrawn()[0], waits)
         self.hold()
 
     def test_two_bids(self):
