@@ -5,17 +5,15 @@ own, so that the sockets of others are not counted."""
 
 import os
 import pathlib
-import shutil
-import subprocess
 import sys
 import time
 import unittest
 
-ALONE = ["unshare", "--map-root-user", "--net"]
-if os.environ.pop("HC_ALONE", None) is None and shutil.which("unshare"):
-    if subprocess.run([*ALONE, "true"], stderr=-3, check=False).returncode == 0:
-        os.environ["HC_ALONE"] = "1"
-        os.execvp(ALONE[0], [*ALONE, sys.executable, *sys.argv])
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "pipes"))
+
+from namespaces import move_to_own_network  # noqa: E402
+
+move_to_own_network()
 
 from endurance import Endurance, IS_FULL, processes_of, ring, report  # noqa: E402
 from harness import wait_until  # noqa: E402

@@ -5,33 +5,18 @@
 import json
 import os
 import re
-import shlex
 import shutil
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
+from namespaces import move_to_own_network
+
 FAKE = shutil.which("arv-fake-gv-camera-0.8")
-IN_NETWORK = "HC_TEST_NETWORK"  # set in the network of our own
 
-if IN_NETWORK not in os.environ:
-    # Such a camera has a port of its address that cannot be chosen; and a second address is wanted.
-    inside = "ip link set lo up && ip addr add 127.0.0.2/8 dev lo && exec %s" % shlex.join(
-        [sys.executable] + sys.argv
-    )
-    own = ["unshare", "--net", "--map-root-user"]
-    may = subprocess.run(
-        own + ["sh", "-c", "ip link set lo up && ip addr add 127.0.0.2/8 dev lo"],
-        stderr=subprocess.DEVNULL,
-        check=False,
-    )
-    if may.returncode == 0:
-        os.execvpe(own[0], own + ["sh", "-c", inside], dict(os.environ, **{IN_NETWORK: "own"}))
-    os.environ[IN_NETWORK] = "shared"
-
-OWN = os.environ[IN_NETWORK] == "own"
+# Such a camera has a port of its address that cannot be chosen; and a second address is wanted.
+OWN = move_to_own_network("ip link set lo up && ip addr add 127.0.0.2/8 dev lo")
 
 # It takes an argument away.
 from harness import Pipes, WATCHDOG, succeeds_once, wait_until  # noqa: E402

@@ -16,6 +16,7 @@ import subprocess
 import unittest
 
 from harness import BUILD, Pipes, WATCHDOG, wait_until
+from namespaces import UNSHARE
 
 KILLS = 200 if os.environ.get("HC_FULL") else 20
 CAMERA = "hc camera $HC_DATA/aloeL.jpg --width 80 --height 60 --loop --rate 50"
@@ -302,7 +303,7 @@ class Recordings(Pipes):
     def on_a_small_disk(self, command):
         """The status of a command in a shell for which the folder `disk` is a disk of 2 MB; what is on
         it then is in the folder `kept`."""
-        own = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
+        own = [*UNSHARE, "--mount", "sh", "-c"]
         mount = "mount -t tmpfs -o size=2m none disk"
         os.makedirs(self.path("disk"), exist_ok=True)
         if subprocess.run(own + [mount], cwd=self.folder.name, stderr=-1, check=False).returncode:

@@ -11,21 +11,17 @@ import json
 import os
 import pathlib
 import re
-import shlex
 import signal
 import subprocess
 import sys
 import unittest
 
-# Peers of others use all interfaces, and the graph only loopback: here there is nothing else.
-ALONE = ["unshare", *([] if os.geteuid() == 0 else ["--map-root-user"]), "--net", "sh", "-c"]
-if os.environ.pop("HC_ALONE", None) is None:
-    if subprocess.run([*ALONE, "ip link set lo up"], stderr=-3, check=False).returncode == 0:
-        os.environ["HC_ALONE"] = "1"
-        command = shlex.join([sys.executable, *sys.argv])
-        os.execvp(ALONE[0], [*ALONE, "ip link set lo up && exec " + command])
-
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "pipes"))
+
+from namespaces import move_to_own_network  # noqa: E402
+
+# Peers of others use all interfaces, and the graph only loopback: here there is nothing else.
+move_to_own_network("ip link set lo up")
 
 from graphs import Graphs  # noqa: E402
 from harness import ROOT, WATCHDOG  # noqa: E402

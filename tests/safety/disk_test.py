@@ -10,9 +10,10 @@ import time
 import unittest
 
 from head import SMALL, Head, Rows
+from namespaces import UNSHARE
 
 DISKS = {"folder": 8, "file.mcap": 2}  # of their own, each full within some seconds [MB]
-ALONE = ["unshare", "--map-root-user", "--mount"]
+ALONE = [*UNSHARE, "--mount"]
 MOUNT = "%s sh -c 'mount -t tmpfs -o size=%dm none disk && exec \"$@\"' -"
 AFTER = 3  # for which a head runs on a full disk [s]
 WRITES = 0.3  # how often it is looked how far files are [s]
