@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include <hc/compress/compress.h>
@@ -255,7 +256,12 @@ Recorder::Recorder(const hc::RunningGraph& graph, std::string path, std::string 
         graph, port, path_ + "/" + port + std::string(kEnding), bytes_, has_failed_, log));
 }
 
-Recorder::~Recorder() = default;
+/// All tracks at once: each may have an image to compress, and the pages are not served meanwhile.
+Recorder::~Recorder() {
+  std::vector<std::thread> ends;
+  for (auto& track : tracks_) ends.emplace_back([&track] { track.reset(); });
+  for (auto& end : ends) end.join();
+}
 
 double Recorder::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();

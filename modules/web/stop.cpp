@@ -45,8 +45,8 @@ std::optional<Stop::Word> Stop::tick(std::optional<bool> is_guarded, hc::Monoton
   if (!is_guarded) return std::nullopt;
   if (*is_guarded) {
     if (!first_) first_ = now;
-    farewells_ = kFarewells;
     if (now - *first_ < kFirst) return std::nullopt;
+    farewells_ = kFarewells;
     return Word::Free;
   }
   if (farewells_ == 0) return std::nullopt;

@@ -106,6 +106,9 @@ TEST(Stop, that_a_page_has_kept_comes_before_its_guard) {
   for (auto passed = milliseconds(0); passed < Stop::kFirst; passed += Stop::kPeriod)
     EXPECT_EQ(page.tick(), std::nullopt);
   EXPECT_EQ(page.tick(), Word::Free);
+  Page closed;
+  EXPECT_EQ(closed.tick(), std::nullopt);
+  EXPECT_EQ(closed.tick(false), std::nullopt) << "one that guarded nothing does not leave";
   Page again;
   EXPECT_EQ(again.tick(), std::nullopt);
   EXPECT_EQ(again.order(true), Word::Stop);

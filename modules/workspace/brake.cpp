@@ -63,7 +63,7 @@ void Brake::clear_all(std::int32_t by, hc::MonotonicTime said) {
 void Brake::restore(const hc::Stops& stops) {
   for (const auto& [number, is_stop] : stops) {
     if (number == kOthers) {
-      others_stop_ = true;
+      others_stop_ = is_stop;
       continue;
     }
     Source& source = sources_[number];

@@ -4,7 +4,7 @@
     intruder.py FACTS
 
 FACTS is JSON: the names of the graph's sockets, which anybody can see in /proc/net/unix, its
-process numbers, terminals, files, ports of UDP and TCP. Prints a
+process numbers, terminals, files, ports of UDP and TCP, and a token of its page. Prints a
 line for each way in: what it is, a tab, and empty, or what went through. Then takes names that become
 free until its standard input ends, and prints those.
 """

@@ -8,6 +8,7 @@ import pathlib
 import re
 import signal
 import socket
+import time
 import unittest
 
 from graphs import GRAPH, Graphs
@@ -335,12 +336,11 @@ exec sleep 1000
         self.write_graph(self.write_module("module", script))
         process = self.run_graph(last="module: deaf")
         messages = self.observe(process)
-        os.kill(process.pid, signal.SIGINT)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGINT):
+            os.kill(process.pid, number)
+        begun = time.monotonic()
         self.state(messages, lambda state: state["status"] == "stopping")
-        os.kill(process.pid, signal.SIGINT)
-        os.kill(process.pid, signal.SIGTERM)
-        for _ in range(4):  # more than a second
-            self.state(messages)
+        self.state(messages, lambda state: time.monotonic() > begun + 1.1)
         self.assertIsNone(process.poll())
         os.kill(process.pid, signal.SIGINT)
         self.assertEqual(process.wait(WATCHDOG), -signal.SIGINT)

@@ -26,8 +26,7 @@ class Clock(Safety):
         before = head.restarts()
         for seconds in (HOUR, 0, -HOUR, 100 - int(time.time()), 0):
             where = "%+d s" % seconds
-            head.sit(head.pushing())
-            head.wait_moving()
+            head.drive()
             self.step(seconds)
             begun = time.time_ns()
             head.motion.wait_until(begun + 3 * 10**8)

@@ -328,6 +328,12 @@ class Head(Page):
         mode, way = self.mode("point"), self.to_and_fro()
         return lambda _: (seat_bid(1, mode), seat_stick(way()))
 
+    def drive(self):
+        """Pushes the stick in the page, until that moves the head, and not a task of its own."""
+        self.sit(self.pushing())
+        self.wait_focus("point")
+        self.wait_moving()
+
     def turning(self):
         """The same with the own head."""
         mode = self.mode("telepresence")

@@ -121,8 +121,7 @@ class Hung(Safety):
     def test_driving_through_a_hung_module(self):
         for name in ("web", "point", "workspace", "head_neck"):
             self.head.settle()
-            self.head.sit(self.head.pushing())
-            self.head.wait_moving()
+            self.head.drive()
             with self.head.waits() as waits, self.head.hung(name) as moment:
                 self.note_halt(moment, waits, name)
         self.hold()

@@ -52,8 +52,7 @@ class Killed(Safety):
 
     def test_the_neck_is_killed_while_it_moves(self):
         head = self.head
-        head.sit(head.pushing())
-        head.wait_moving()
+        head.drive()
         pid = head.pid("head_neck")
         with head.waits() as waits:
             moment = time.time_ns()
@@ -61,14 +60,12 @@ class Killed(Safety):
             head.leave()  # else it moves again once it is back
             self.note_halt(moment, waits)
         head.wait(head.is_whole, "all run")
-        head.sit(head.pushing())
-        head.wait_moving()
+        head.drive()
         self.hold()
 
     def test_a_stop_outlives_those_who_keep_it(self):
         head = self.head
-        head.sit(head.pushing())
-        head.wait_moving()
+        head.drive()
         assert head.page.ask("estop") == "ok"
         head.motion.rests_at(time.time_ns())
         stopped = time.time_ns()

@@ -20,14 +20,18 @@ def ptrace(request, thread):
 @contextlib.contextmanager
 def held_threads(pid):
     """All threads of a process but the first are stopped meanwhile. For a parent of it, or root."""
-    threads = [int(name) for name in os.listdir("/proc/%d/task" % pid) if int(name) != pid]
-    assert threads
-    for thread in threads:
-        ptrace(SEIZE, thread)
-        ptrace(INTERRUPT, thread)
-        os.waitpid(thread, WALL)
+    held = []
     try:
+        for thread in map(int, os.listdir("/proc/%d/task" % pid)):
+            with contextlib.suppress(ProcessLookupError):  # it has just ended
+                if thread != pid:
+                    ptrace(SEIZE, thread)
+                    held.append(thread)
+                    ptrace(INTERRUPT, thread)
+                    os.waitpid(thread, WALL)
+        assert held
         yield
     finally:
-        for thread in threads:
-            ptrace(DETACH, thread)
+        for thread in held:
+            with contextlib.suppress(OSError):
+                ptrace(DETACH, thread)

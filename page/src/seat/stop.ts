@@ -41,11 +41,15 @@ export function addStop(shell: Shell): void {
   };
   const look = (): void => {
     const isOpen = server.connection.status === "open";
-    if (stopping.isUnconfirmed && !isOpen) server.reconnect();
     if (stopping.isUnconfirmed && isOpen && !isAsked) void order(true);
     show();
   };
-  setInterval(look, period);
+  setInterval(() => {
+    const { connection } = server;
+    const mayReturn = connection.status === "lost" && connection.retry !== null;
+    if (stopping.isUnconfirmed && mayReturn) server.reconnect();
+    look();
+  }, period);
 
   const button = h(
     "button",
