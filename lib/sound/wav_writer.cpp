@@ -30,7 +30,7 @@ Header header_of(const Format& format, std::int64_t data_bytes) {
   auto add = [&](std::int64_t value, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) header[at++] = std::byte(value >> (8 * i) & 0xFF);
   };
-  const std::int64_t frame = 2 * format.channels;
+  const std::int64_t frame = std::int64_t{2} * format.channels;
   add_name("RIFF");
   add(kHeaderBytes - 8 + data_bytes, 4);
   add_name("WAVE");

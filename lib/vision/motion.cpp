@@ -58,9 +58,9 @@ Eigen::VectorXd errors(const State& state, const std::vector<Vector3d>& a,
   const Matrix3d E = cross_matrix(state.t) * state.R;
   Eigen::VectorXd result(static_cast<Eigen::Index>(a.size()));
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const Vector3d Eb = E * b[i], Ea = E.transpose() * a[i];
-    const double slope = Eb.head<2>().squaredNorm() + Ea.head<2>().squaredNorm();
-    result(static_cast<Eigen::Index>(i)) = focal * a[i].dot(Eb) / std::sqrt(slope + 1e-18);
+    const Vector3d line_in_a = E * b[i], line_in_b = E.transpose() * a[i];
+    const double slope = line_in_a.head<2>().squaredNorm() + line_in_b.head<2>().squaredNorm();
+    result(static_cast<Eigen::Index>(i)) = focal * a[i].dot(line_in_a) / std::sqrt(slope + 1e-18);
   }
   return result;
 }
@@ -70,11 +70,11 @@ int in_front(const State& state, const std::vector<Vector3d>& a, const std::vect
   int count = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     // s a = z R b + t, least squares.
-    const Vector3d Rb = state.R * b[i];
+    const Vector3d turned_b = state.R * b[i];
     Eigen::Matrix2d normal;
-    normal << a[i].dot(a[i]), -a[i].dot(Rb), -a[i].dot(Rb), Rb.dot(Rb);
+    normal << a[i].dot(a[i]), -a[i].dot(turned_b), -a[i].dot(turned_b), turned_b.dot(turned_b);
     const Eigen::Vector2d depths =
-        normal.inverse() * Eigen::Vector2d(a[i].dot(state.t), -Rb.dot(state.t));
+        normal.inverse() * Eigen::Vector2d(a[i].dot(state.t), -turned_b.dot(state.t));
     if (depths(0) > 0 && depths(1) > 0) ++count;
   }
   return count;
@@ -121,9 +121,9 @@ void refine(State& state, const std::vector<Vector3d>& a, const std::vector<Vect
 
 Matches match(const cv::Mat& a, const cv::Mat& b, const Intrinsics& camera, const Matrix3d& R_a_b) {
   // b as it would be without the turn, so that the same things look the same.
-  const Matrix3d H_a_b = matrix(camera) * R_a_b * matrix(camera).inverse();
+  const Matrix3d homography = matrix(camera) * R_a_b * matrix(camera).inverse();
   cv::Mat turned;
-  cv::warpPerspective(b, turned, as_cv(H_a_b), a.size(), cv::INTER_LINEAR);
+  cv::warpPerspective(b, turned, as_cv(homography), a.size(), cv::INTER_LINEAR);
   std::vector<cv::Point2f> corners, found, back;
   constexpr int kMost = 800, kApart = 10;
   cv::goodFeaturesToTrack(a, corners, kMost, 0.005, kApart);
@@ -145,7 +145,7 @@ Matches match(const cv::Mat& a, const cv::Mat& b, const Intrinsics& camera, cons
       to.push_back(found[i]);
     }
   if (from.empty()) return {};
-  cv::perspectiveTransform(to, to, as_cv(H_a_b.inverse()));
+  cv::perspectiveTransform(to, to, as_cv(homography.inverse()));
   // What was drawn from outside of b is nothing.
   Matches matches;
   for (std::size_t i = 0; i < to.size(); ++i)

@@ -81,7 +81,7 @@ std::vector<pid_t> descendants(pid_t process) {
       for (auto child : children_of(parent, thread)) all.push_back(static_cast<pid_t>(child));
   };
   add(process);
-  for (std::size_t i = 0; i < all.size(); ++i) add(all[i]);
+  for (std::size_t known = 0; known < all.size();) add(all[known++]);  // which grows meanwhile
   return all;
 }
 
