@@ -96,6 +96,10 @@ class Seat:
     def send(self, data):
         self.socket.send_frame(BINARY, data)
 
+    def was_silent(self):
+        """For almost as long as its server waits until the seat is left, or longer."""
+        return max(self.feeder.pauses, default=0) > 0.15
+
     def leave(self):
         self.feeder.end()
         with contextlib.suppress(OSError):
