@@ -27,7 +27,7 @@ struct Request {
   std::string host, origin, cookies;
   bool is_socket = false;        ///< asks for a WebSocket
   std::string protocols;         ///< of WebSockets, those that it offers
-  bool is_another_user = false;  ///< it comes from another user of this machine, who is not root
+  bool is_another_user = false;  ///< its sender is another user of this machine, other than root
 };
 
 /// The value of an option in a query; empty where there is none.

@@ -26,7 +26,7 @@ class Stop {
   static constexpr std::chrono::milliseconds kPatience{500};
   /// From the first page on that opens, so that others repeat what was pressed without a server.
   static constexpr std::chrono::milliseconds kFirst{1500};
-  /// What serves the pages hangs when it has done nothing for so long.
+  /// A server thread without a turn for so long hangs.
   static constexpr std::chrono::milliseconds kHung{200};
   /// How often it is said that nobody is there any more.
   static constexpr int kFarewells = 3;
@@ -49,7 +49,8 @@ class Stop {
   void hear(bool is_stopped, hc::MonotonicTime now);
 
   /// To be called each kPeriod.
-  /// @param is_guarded  whether a page is open; nothing: nobody knows, so only a stop is repeated.
+  /// @param is_guarded  whether a page is open; nothing: the server thread hangs, and only a stop
+  /// is repeated.
   /// @returns  the word to be sent, if any. Clear is repeated until a workspace that can confirm it
   /// does, which may have restarted without it, and with the time of its order, so that newer stops
   /// hold.
