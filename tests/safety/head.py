@@ -72,8 +72,8 @@ class PageSocket:
         return wait_until(lambda: self.answers.get(number))
 
     def end(self):
-        """Closes only once nobody reads: the descriptor's number is given to the next socket, and
-        who waits for that keeps its name taken."""
+        """Ends the reading thread before it closes the socket: the next socket gets the same
+        descriptor number, and a thread that waits for that keeps its name taken."""
         with contextlib.suppress(OSError):  # the server has closed
             self.socket.connection.shutdown(socket.SHUT_RDWR)
         self.thread.join()

@@ -14,7 +14,7 @@ from streams import bid, message, rotation, stick, stop
 
 SECONDS = 2  # for which sources contradict each other [s]
 SLOW = 0.6  # a push with which the head does not reach its limits for SECONDS
-SILENCE = 0.1  # the task may hand a silent stick's turn to the other after so long, or later [s]
+SILENCE = 0.1  # of a stick, shorter than the one that ends its turn [s]
 
 
 class People(Safety):

@@ -24,8 +24,8 @@ class Seat(Safety):
         return moment
 
     def untouched(self, task):
-        """Notes what happens after a choice; False: its page got no processor for so long that it
-        has left the seat, and nothing is noted."""
+        """Measures the focus and the motion after a choice. False: no measurement, since the page
+        got no processor for 0.2 s, and so left the seat."""
         head = self.head
         head.wait_focus("track")
         chosen = self.choose(task)
