@@ -17,7 +17,7 @@ ALLOWED = {
     "compress": {"base", "mtp"},
     "testing": set(),  # what tests share
     "link": {"base", "os", "mtp"},
-    "observe": {"base", "os", "mtp", "link"},
+    "observe": {"base", "os", "mtp", "contract", "link"},
     "module": {"base", "os", "mtp", "contract", "compress", "link"},
     "graph": {"base", "os", "mtp", "contract", "link"},
     "frames": {"base"},

@@ -2,7 +2,6 @@
 #include <graph/commands.h>
 
 #include <algorithm>
-#include <array>
 
 #include <graph/file/fields.h>
 #include <hc/base/suggestion.h>
@@ -11,36 +10,6 @@
 
 namespace hc {
 namespace {
-
-using Verb = Command::Verb;
-
-struct Form {
-  std::string_view name;
-  Verb verb;
-  std::size_t words;  // behind it, at least
-  bool takes_more;
-  std::string_view text;
-};
-
-constexpr std::array<Form, 7> kForms = {{
-    {"set", Verb::Set, 1, false, "set MODULE.PARAMETER=VALUE"},
-    {"add", Verb::Add, 2, true, "add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
-    {"remove", Verb::Remove, 1, false, "remove MODULE"},
-    {"restart", Verb::Restart, 1, false, "restart MODULE"},
-    {"link", Verb::Link, 2, true, "link FROM TO [KEY=VALUE ...]"},
-    {"unlink", Verb::Unlink, 2, false, "unlink FROM TO"},
-    {"stop", Verb::Stop, 0, false, "stop"},
-}};
-
-std::vector<std::string> split(std::string_view text) {
-  std::vector<std::string> words;
-  while (!text.empty()) {
-    auto word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (!word.empty()) words.emplace_back(word);
-  }
-  return words;
-}
 
 /// Takes a word "KEY=VALUE" apart; nothing where it is none.
 std::optional<std::pair<std::string, std::string>> pair_of(const std::string& word,
@@ -56,7 +25,7 @@ void add_no_module(const Graph& graph, const std::string& name, Problems& proble
   problems.add({}, "no module \"" + name + "\"" + suggestion(name, graph.module_names()));
 }
 
-void add_module(Graph& graph, const Command& command, Problems& problems) {
+void add_module(Graph& graph, const GraphCommand& command, Problems& problems) {
   GraphModule module;
   module.name = command.words[0].substr(0, command.words[0].find('@'));
   module.program.value = command.words[1];
@@ -87,7 +56,7 @@ void remove_module(Graph& graph, const std::string& name, Problems& problems) {
   });
 }
 
-void add_policy(GraphLink& link, const Command& command, Problems& problems) {
+void add_policy(GraphLink& link, const GraphCommand& command, Problems& problems) {
   static const std::vector<std::string> kKeys(kPolicyKeys.begin(), kPolicyKeys.end());
   Uri policy;
   for (std::size_t i = 2; i < command.words.size(); ++i) {
@@ -110,7 +79,7 @@ void add_observer_policy(GraphLink& link) {
     if (uri->option(key, "").empty()) link.policy.try_emplace(key, Lined<std::string>{value, {}});
 }
 
-void add_link(Graph& graph, const Command& command, Problems& problems) {
+void add_link(Graph& graph, const GraphCommand& command, Problems& problems) {
   auto from = internal::parse_port(command.words[0], true);
   auto to = internal::parse_port(command.words[1], true);
   for (const auto* end : {&from, &to})
@@ -134,7 +103,7 @@ void add_link(Graph& graph, const Command& command, Problems& problems) {
     before->policy = std::move(link.policy);
 }
 
-void remove_link(Graph& graph, const Command& command, Problems& problems) {
+void remove_link(Graph& graph, const GraphCommand& command, Problems& problems) {
   auto count = std::erase_if(graph.links, [&](const auto& link) {
     return link.from.text() == command.words[0] && link.to.text() == command.words[1];
   });
@@ -143,40 +112,24 @@ void remove_link(Graph& graph, const Command& command, Problems& problems) {
 
 }  // namespace
 
-Result<Command> parse_command(std::string_view line) {
-  auto words = split(line);
-  if (words.empty()) return Error{Code::Invalid, "there is no command"};
-  auto form = std::find_if(kForms.begin(), kForms.end(),
-                           [&](const Form& each) { return each.name == words[0]; });
-  if (form == kForms.end()) {
-    std::vector<std::string> names;
-    names.reserve(kForms.size());
-    for (const auto& each : kForms) names.emplace_back(each.name);
-    return Error{Code::Invalid, "no command \"" + words[0] + "\"" + suggestion(words[0], names)};
-  }
-  Command command{form->verb, {words.begin() + 1, words.end()}};
-  if (form->verb == Verb::Set && !command.words.empty())
-    command.words = {std::string(line.substr(line.find(words[1], form->name.size())))};
-  const std::size_t count = command.words.size();
-  if (count < form->words || (count > form->words && !form->takes_more))
-    return Error{Code::Invalid, "the command is: " + std::string(form->text)};
-  return command;
-}
-
-void apply_command(Graph& graph, const Command& command, Problems& problems) {
+void apply_command(Graph& graph, const GraphCommand& command, Problems& problems) {
+  using Verb = GraphCommand::Verb;
+  const auto& words = command.words;
   switch (command.verb) {
     case Verb::Set:
-      return set_parameter(graph, command.words[0], problems);
+      return set_parameter(graph, {words[0], words[1], words[2]}, problems);
     case Verb::Add:
       return add_module(graph, command, problems);
     case Verb::Remove:
-      return remove_module(graph, command.words[0], problems);
+      return remove_module(graph, words[0], problems);
     case Verb::Link:
       return add_link(graph, command, problems);
     case Verb::Unlink:
       return remove_link(graph, command, problems);
     case Verb::Restart:
     case Verb::Stop:
+    case Verb::Describe:
+    case Verb::Observe:
       return;
   }
 }

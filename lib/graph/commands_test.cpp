@@ -21,7 +21,7 @@ class CommandsTest : public ::testing::Test {
 
   /// What is wrong with a command; empty: it has been applied.
   std::string apply(const std::string& line) {
-    auto command = parse_command(line);
+    auto command = parse_graph_command(line);
     if (!command) return command.error().detail;
     Problems problems("");
     apply_command(graph_, *command, problems);

@@ -286,19 +286,14 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
   return inputs;
 }
 
-void set_parameter(Graph& graph, std::string_view assignment, Problems& problems,
+void set_parameter(Graph& graph, const Assignment& assignment, Problems& problems,
                    const Place& place) {
-  auto dot = assignment.find('.'), equals = assignment.find('=');
-  if (dot == std::string_view::npos || equals == std::string_view::npos || dot > equals)
-    return problems.add(place, quoted_name(assignment) + " is not MODULE.PARAMETER=VALUE");
-  std::string name{assignment.substr(0, dot)};
-  GraphModule* module = graph.find(name);
+  GraphModule* module = graph.find(assignment.module);
   if (module == nullptr && graph.modules.empty() && !problems.empty()) return;  // nothing was read
   if (module == nullptr)
-    return problems.add(place, "no module " + quoted_name(name) + " in " + graph.file +
-                                   suggestion(name, graph.module_names()));
-  module->parameters[std::string(assignment.substr(dot + 1, equals - dot - 1))] = {
-      std::string(assignment.substr(equals + 1)), place};
+    return problems.add(place, "no module " + quoted_name(assignment.module) + " in " + graph.file +
+                                   suggestion(assignment.module, graph.module_names()));
+  module->parameters[assignment.parameter] = {assignment.value, place};
 }
 
 }  // namespace hc

@@ -14,6 +14,7 @@
 
 #include <graph/problems.h>
 #include <hc/base/uri.h>
+#include <hc/contract/graph_command.h>
 #include <hc/mtp/element.h>
 
 namespace hc {
@@ -174,9 +175,9 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
                                       const std::string& program,
                                       const std::map<std::string, std::string>& parameters);
 
-/// Sets a parameter, from "MODULE.PARAMETER=VALUE".
+/// Sets a parameter. Problems: there is no such module.
 /// @param place  where that is from.
-void set_parameter(Graph& graph, std::string_view assignment, Problems& problems,
+void set_parameter(Graph& graph, const Assignment& assignment, Problems& problems,
                    const Place& place = {});
 
 }  // namespace hc

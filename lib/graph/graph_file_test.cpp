@@ -238,15 +238,13 @@ TEST(GraphFile, DotsAndBracketsInStringsAndCommentsAreFree) {
 TEST(GraphFile, ParametersAreSetFromOutside) {
   auto graph = parse("[modules.camera]\nparameters.rate = 1\n");
   Problems problems("g.toml");
-  set_parameter(*graph, "camera.rate=5=6", problems, kCommandLine);
+  set_parameter(*graph, {"camera", "rate", "5=6"}, problems, kCommandLine);
   EXPECT_TRUE(problems.empty());
   EXPECT_EQ(graph->modules[0].parameters.at("rate").value, "5=6");
-  for (const char* wrong : {"camra.rate=5", "rate=5", "camera.rate"})
-    set_parameter(*graph, wrong, problems, kCommandLine);
-  EXPECT_EQ(problems.lines(), (std::vector<std::string>{
-                                  "--set: no module \"camra\" in g.toml, did you mean \"camera\"?",
-                                  "--set: \"rate=5\" is not MODULE.PARAMETER=VALUE",
-                                  "--set: \"camera.rate\" is not MODULE.PARAMETER=VALUE"}));
+  set_parameter(*graph, {"camra", "rate", "5"}, problems, kCommandLine);
+  EXPECT_EQ(
+      problems.lines(),
+      (std::vector<std::string>{"--set: no module \"camra\" in g.toml, did you mean \"camera\"?"}));
 }
 
 TEST(GraphFile, EveryLinkedOutputIsRecordedOnce) {

@@ -10,8 +10,8 @@
 
 #include <graph/graph_file.h>
 #include <graph/plan.h>
-#include <graph/state.h>
 #include <hc/base/result.h>
+#include <hc/contract/graph_state.h>
 
 namespace hc {
 

@@ -79,7 +79,7 @@ void find_programs(Graph& graph, Problems& problems) {
 /// choose its task where the graph has a workspace.
 void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   auto obey = [&](const std::string& line) {
-    apply_command(graph, parse_command(line).value(), problems);
+    apply_command(graph, parse_graph_command(line).value(), problems);
   };
   auto runs = [](const GraphModule& module, std::string_view program) {
     return fs::path(module.program.value).filename() == program;
@@ -138,7 +138,10 @@ class FileLoader : public GraphLoader {
     Graph graph = parse_graph(*text, environment, problems, read_file);
     if (options_.page) add_page(graph, options_.listen, problems);
     for (const auto& setting : options_.settings)
-      set_parameter(graph, setting, problems, kCommandLine);
+      if (const auto assignment = parse_assignment(setting))
+        set_parameter(graph, *assignment, problems, kCommandLine);
+      else
+        problems.add(kCommandLine, assignment.error().detail);
     return planned(std::move(graph), problems, running, stop);
   }
 

@@ -59,6 +59,12 @@ struct PlannedModule {
   [[nodiscard]] Status check_parameter(const std::string& parameter,
                                        const std::string& value) const;
 
+  /// Whether a new value of a parameter restarts it: it is fixed, or the module takes no commands.
+  [[nodiscard]] bool is_fixed(const std::string& parameter) const {
+    const auto found = known.find(parameter);
+    return control_uri.empty() || (found != known.end() && found->second.options.fixed);
+  }
+
   /// Program and arguments, as it is started.
   [[nodiscard]] std::vector<std::string> command() const;
 };

@@ -12,8 +12,8 @@
 #include <graph/hosts.h>
 #include <graph/limits.h>
 #include <graph/load.h>
-#include <graph/state.h>
 #include <hc/base/result.h>
+#include <hc/contract/graph_state.h>
 
 namespace hc {
 

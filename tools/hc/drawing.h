@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <graph/plan.h>
-#include <graph/state.h>
+#include <hc/contract/graph_state.h>
 
 namespace tool {
 

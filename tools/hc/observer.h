@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <graph/state.h>
+#include <hc/contract/graph_state.h>
 #include <hc/observe/running.h>
 
 namespace tool {

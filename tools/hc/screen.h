@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <graph/state.h>
+#include <hc/contract/graph_state.h>
 
 namespace tool {
 

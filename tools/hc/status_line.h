@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <graph/state.h>
+#include <hc/contract/graph_state.h>
 
 #include "outbox.h"
 

@@ -38,8 +38,7 @@ void add_settings(const PlannedModule& before, const PlannedModule& after, Modul
   for (const auto& [key, value] : after.parameters) {
     auto found = before.parameters.find(key);
     if (found != before.parameters.end() && found->second == value) continue;
-    auto known = after.known.find(key);
-    if (known != after.known.end() && known->second.options.fixed) change.needs_restart = true;
+    if (after.is_fixed(key)) change.needs_restart = true;
     change.outputs.push_back(text({Verb::Set, true, key, value}));
   }
 }

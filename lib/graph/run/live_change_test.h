@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <graph/run/running_test.h>
+#include <hc/link/link.h>
 #include <hc/mtp/rows.h>
 
 namespace hc {

@@ -2,6 +2,7 @@
 #include <graph/run/runner.h>
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -46,14 +47,12 @@ Status Runner::begin() {
   if (!loop) return loop.error();
   loop_ = std::move(*loop);
   if (!options_.name.empty()) {
-    auto observation = Observation::make(
-        *loop_, options_.name,
-        {[this] { return state(); },
-         [this](const auto& lines, auto answer) { obey(lines, std::move(answer)); },
-         [this](const auto& port) { return observe(port); },
-         [this](const auto& module) { return describe(module); }});
-    if (!observation) return observation.error();
-    observation_ = std::move(*observation);
+    auto server =
+        GraphServer::make(*loop_, {options_.name, ::getpid()},
+                          {[this] { return state(); },
+                           [this](const auto& lines, const auto& reply) { obey(lines, reply); }});
+    if (!server) return server.error();
+    server_ = std::move(*server);
   }
   if (options_.stop >= 0) {
     auto watched = loop_->watch(options_.stop, EPOLLIN, [this](auto) {
@@ -107,7 +106,7 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
   };
   callbacks.changed = [this] {
     is_unsettled_ = true;
-    if (observation_) observation_->changed();
+    if (server_) server_->changed();
   };
   callbacks.ended = [this, name] {
     const Supervised* ended = find(name);
@@ -175,7 +174,7 @@ void Runner::print(const std::string& line) const {
 
 void Runner::log(const std::string& line) {
   print(line);
-  if (observation_) observation_->log(line);
+  if (server_) server_->log(line);
 }
 
 void Runner::take_line(std::string line) {
@@ -194,7 +193,7 @@ void Runner::take_line(std::string line) {
     if (results_.size() < kMaxResults) results_.push_back(line);
   }
   if (options_.with_module_lines || is_error) print(line);
-  if (observation_) observation_->log(line);
+  if (server_) server_->log(line);
 }
 
 /// Puts "MODULE.PORT → MODULE.PORT" in the place of a link's URI.
@@ -215,10 +214,10 @@ void Runner::tick() {
   const auto time = now();
   for (auto& [name, module] : modules_) module->look(time);
   if (ticks_++ % kTicksOfState == 0) {
-    if (observation_ && observation_->is_heard()) {
+    if (server_ && server_->has_clients()) {
       for (auto& [name, module] : modules_)
         module->measure(time, (ticks_ - 1) % kTicksOfMemory == 0);
-      observation_->publish_state();
+      server_->publish_state();
     }
     if (options_.state) options_.state(state());
   }
@@ -230,7 +229,7 @@ void Runner::look_at_hosts() {
   for (const auto& line : options_.hosts->take_events()) log(line);
   for (auto& [name, module] : modules_) module->look_at_host();
   is_unsettled_ = true;
-  if (observation_) observation_->changed();
+  if (server_) server_->changed();
 }
 
 bool Runner::is_over() const {

@@ -13,10 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include <graph/commands.h>
 #include <graph/run.h>
 #include <graph/run/aside.h>
-#include <graph/run/observation.h>
+#include <graph/run/graph_server.h>
 #include <graph/run/supervised.h>
 #include <hc/os/file_watch.h>
 #include <hc/os/loop.h>
@@ -36,9 +35,9 @@ class Runner {
     std::string module;
     int status;
   };
-  struct Change {                   // that is wanted
-    std::vector<Command> commands;  // none: a file was edited
-    Observation::Answer answer;
+  struct Change {                        // that is wanted
+    std::vector<GraphCommand> commands;  // none: a file was edited
+    GraphServer::Reply reply;
   };
 
   Status begin();
@@ -68,16 +67,17 @@ class Runner {
   [[nodiscard]] bool is_over() const;
 
   void reload();
-  void obey(const std::vector<std::string>& lines, Observation::Answer answer);
+  void obey(const std::vector<std::string>& lines, const GraphServer::Reply& reply);
+  GraphAnswer answer_to(const GraphCommand& question);
   Result<std::string> observe(const std::string& port);
   [[nodiscard]] Result<std::string> describe(const std::string& module) const;
-  void carry_out(const std::vector<Command>& commands);
+  void carry_out(const std::vector<GraphCommand>& commands);
   void begin_changes();
   void begin_planning(std::function<Result<LoadedGraph>(int stop)> plan);
   void take_planned(Result<LoadedGraph>& loaded);
-  void end_change(const std::vector<std::string>& wrong);
+  void end_change(const GraphAnswer& answer);
   void refuse_changes();
-  std::vector<std::string> set_parameters(const std::vector<Command>& commands);
+  GraphAnswer set_parameters(const std::vector<GraphCommand>& commands);
   void change_to(Plan plan);
   void add(const PlannedModule& module);
 
@@ -105,7 +105,7 @@ class Runner {
   std::deque<Change> changes_;           // the first of them may be being planned
   std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers
   std::unique_ptr<Loop> loop_;
-  std::unique_ptr<Observation> observation_;
+  std::unique_ptr<GraphServer> server_;
   std::unique_ptr<FileWatch> files_;
   std::unique_ptr<Aside> planning_;
   // In the place of readers that are over; null: it failed.

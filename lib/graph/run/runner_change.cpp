@@ -17,17 +17,18 @@ constexpr const char* kIsStopping = "the graph is stopping";
 
 constexpr std::size_t kMostChanges = 100;  // that wait, as some may need a slow program
 
-using Commands = std::vector<Command>;
+using Commands = std::vector<GraphCommand>;
+using Verb = GraphCommand::Verb;
 
 bool has_edits(const Commands& commands) {
   return std::any_of(commands.begin(), commands.end(),
-                     [](const Command& command) { return command.is_edit(); });
+                     [](const GraphCommand& command) { return command.is_edit(); });
 }
 
 /// Whether commands leave modules and links as they are.
 bool only_set(const Commands& commands) {
-  return std::all_of(commands.begin(), commands.end(), [](const Command& command) {
-    return !command.is_edit() || command.verb == Command::Verb::Set;
+  return std::all_of(commands.begin(), commands.end(), [](const GraphCommand& command) {
+    return !command.is_edit() || command.verb == Verb::Set;
   });
 }
 
@@ -52,28 +53,39 @@ void Runner::reload() {
 }
 
 /// Does all of some commands, or none.
-void Runner::obey(const std::vector<std::string>& lines, Observation::Answer answer) {
+void Runner::obey(const std::vector<std::string>& lines, const GraphServer::Reply& reply) {
   std::vector<std::string> wrong;
   Commands commands;
   for (const auto& line : lines) {
-    auto command = parse_command(line);
+    auto command = parse_graph_command(line);
     if (!command)
       wrong.push_back(command.error().detail);
-    else if (command->verb == Command::Verb::Restart && find(command->words[0]) == nullptr)
+    else if (command->is_question() && lines.size() > 1)
+      wrong.push_back(line + ": it stands alone in a message");
+    else if (command->is_question())
+      return reply(answer_to(*command));
+    else if (command->verb == Verb::Restart && find(command->words[0]) == nullptr)
       wrong.push_back("no module \"" + command->words[0] + "\"");
     else
       commands.push_back(std::move(*command));
   }
+  if (lines.empty()) wrong.emplace_back("there is no command");
   if (is_stopping_) wrong.emplace_back(kIsStopping);
   if (changes_.size() >= kMostChanges)
     wrong.emplace_back("too many changes are waiting; try again");
-  if (!wrong.empty()) return answer(wrong);
+  if (!wrong.empty()) return reply({false, wrong});
   if (!has_edits(commands)) {
     carry_out(commands);
-    return answer({});
+    return reply({true, {}});
   }
-  changes_.push_back({std::move(commands), std::move(answer)});
+  changes_.push_back({std::move(commands), reply});
   begin_changes();
+}
+
+GraphAnswer Runner::answer_to(const GraphCommand& question) {
+  const auto& word = question.words[0];
+  const auto found = question.verb == Verb::Observe ? observe(word) : describe(word);
+  return found ? GraphAnswer{true, {*found}} : GraphAnswer{false, {found.error().detail}};
 }
 
 /// Opens an output to observers; of an input, the output that it is linked to.
@@ -120,9 +132,9 @@ Result<std::string> Runner::describe(const std::string& module) const {
 /// Does what commands say that change nothing in the plan.
 void Runner::carry_out(const Commands& commands) {
   for (const auto& command : commands) {
-    if (command.verb == Command::Verb::Restart) {
+    if (command.verb == Verb::Restart) {
       if (auto* module = find(command.words[0])) module->restart();
-    } else if (command.verb == Command::Verb::Stop) {
+    } else if (command.verb == Verb::Stop) {
       is_stopped_ = true;
       end_all();
     }
@@ -139,17 +151,17 @@ void Runner::begin_changes() {
     Graph graph = graph_;
     Problems problems(graph.files);
     for (const auto& command : commands) apply_command(graph, command, problems);
-    std::vector<std::string> wrong = problems.lines();
-    if (wrong.empty() && only_set(commands))
-      wrong = set_parameters(commands);
-    else if (wrong.empty() && options_.loader != nullptr)
+    GraphAnswer answer{problems.empty(), problems.lines()};
+    if (answer.is_ok && only_set(commands))
+      answer = set_parameters(commands);
+    else if (answer.is_ok && options_.loader != nullptr)
       return begin_planning([this, graph = std::move(graph)](int stop) {
         return options_.loader->plan(graph, plan_, stop);
       });
-    else if (wrong.empty())
-      wrong.emplace_back("this graph cannot be changed");
-    if (wrong.empty()) graph_ = std::move(graph);
-    end_change(wrong);
+    else if (answer.is_ok)
+      answer = {false, {"this graph cannot be changed"}};
+    if (answer.is_ok) graph_ = std::move(graph);
+    end_change(answer);
   }
 }
 
@@ -176,41 +188,40 @@ void Runner::take_planned(Result<LoadedGraph>& loaded) {
   }
   if (is_reload && loaded)
     files_->set_files(loaded->graph.files.empty() ? graph_.files : loaded->graph.files);
-  end_change(wrong);
+  end_change({wrong.empty(), wrong});
   begin_changes();
 }
 
-/// Does the rest of the first change, and answers who asked for it.
-void Runner::end_change(const std::vector<std::string>& wrong) {
+/// Does the rest of the first change, and answers it.
+void Runner::end_change(const GraphAnswer& answer) {
   const Change change = std::move(changes_.front());
   changes_.pop_front();
-  if (wrong.empty()) carry_out(change.commands);
-  if (change.answer) change.answer(wrong);
+  if (answer.is_ok) carry_out(change.commands);
+  if (change.reply) change.reply(answer);
 }
 
-/// Answers who has asked for changes that will not be made.
+/// Answers changes that will not be made.
 void Runner::refuse_changes() {
   if (planning_) planning_->stop();
   for (const auto& change : std::exchange(changes_, {}))
-    if (change.answer) change.answer({kIsStopping});
+    if (change.reply) change.reply({false, {kIsStopping}});
 }
 
-/// Sets all parameters that commands name, or none. @returns  what is wrong.
-std::vector<std::string> Runner::set_parameters(const Commands& commands) {
-  std::vector<std::string> wrong;
+/// Sets all parameters that commands name, or none. The answer says which modules are restarted.
+GraphAnswer Runner::set_parameters(const Commands& commands) {
+  std::vector<std::string> wrong, remarks;
   std::map<std::string, PlannedModule> changed;
   for (const auto& command : commands) {
-    if (command.verb != Command::Verb::Set) continue;
-    const std::string& word = command.words[0];  // MODULE.PARAMETER=VALUE, as apply_command() found
-    const auto dot = word.find('.'), equals = word.find('=');
-    const std::string name = word.substr(0, dot), value = word.substr(equals + 1);
-    const std::string parameter = word.substr(dot + 1, equals - dot - 1);
+    if (command.verb != Verb::Set) continue;
+    const auto &name = command.words[0], &parameter = command.words[1], &value = command.words[2];
     auto& module = changed.emplace(name, find(name)->plan()).first->second;
     if (auto checked = module.check_parameter(parameter, value); !checked)
       wrong.push_back(checked.error().detail);
     module.parameters[parameter] = value;
+    if (module.is_fixed(parameter))
+      remarks.push_back("restarting " + name + ", since " + parameter + " is fixed while it runs");
   }
-  if (!wrong.empty()) return wrong;
+  if (!wrong.empty()) return {false, wrong};
   for (auto& planned : plan_.modules) {
     auto module = changed.find(planned.name);
     if (module == changed.end()) continue;
@@ -218,7 +229,7 @@ std::vector<std::string> Runner::set_parameters(const Commands& commands) {
     auto* supervised = find(planned.name);
     supervised->send_commands(supervised->adopt(planned).outputs);
   }
-  return {};
+  return {true, remarks};
 }
 
 /// Makes the running graph as another plan says: links are removed before any are added, and

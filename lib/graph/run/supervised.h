@@ -22,8 +22,8 @@
 #include <graph/run/module_process.h>
 #include <graph/run/reports.h>
 #include <graph/run/restarts.h>
-#include <graph/state.h>
 #include <hc/base/clock.h>
+#include <hc/contract/graph_state.h>
 #include <hc/os/procfs.h>
 
 namespace hc::internal {

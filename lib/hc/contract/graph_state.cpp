@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <graph/state.h>
+#include <hc/contract/graph_state.h>
 
 #include <algorithm>
 #include <cstdlib>

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include <hc/base/result.h>
-#include <hc/link/link.h>
+#include <hc/base/traffic.h>
 
 namespace hc {
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <graph/run/graph_server.h>
+
+#include <array>
+#include <utility>
+
+#include <hc/base/clock.h>
+#include <hc/mtp/rows.h>
+
+namespace hc::internal {
+namespace {
+
+constexpr std::chrono::milliseconds kSoon{20};
+
+Message stamped(const std::string& row, GraphReport what, std::int64_t& seq) {
+  Message message = make_rows(std::array{row});
+  message.header.src = static_cast<std::int32_t>(what);
+  message.header.seq = seq++;
+  message.header.time = SystemClock().wall();
+  return message;
+}
+
+/// The listening end of a socket that a running graph's clients connect to.
+std::string listening(const std::string& uri) {
+  return "unix-listen" + uri.substr(uri.find(':'));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GraphServer>> GraphServer::make(Loop& loop, const RunningGraph& graph,
+                                                       Callbacks callbacks) {
+  std::unique_ptr<GraphServer> server(new GraphServer(loop, std::move(callbacks)));
+  auto& self = *server;
+  auto states = Announcer::make(loop, listening(graph.state_uri()),
+                                [&self] { return std::vector{self.state_message()}; });
+  if (!states) return states.error();
+  self.states_ = std::move(*states);
+  LinkOptions options;
+  options.limits.element_bytes = kMaxCommandBytes;
+  auto commands = Intake::make(
+      loop, listening(graph.command_uri()),
+      [&self](const Message& message) { self.take_request(message); }, options);
+  if (!commands) return commands.error();
+  self.commands_ = std::move(*commands);
+  return server;
+}
+
+Message GraphServer::state_message() {
+  return stamped(to_json(callbacks_.state()), GraphReport::State, states_sent_);
+}
+
+void GraphServer::publish_state() {
+  if (!has_clients()) return;
+  soon_.reset();
+  states_->say(state_message());
+}
+
+void GraphServer::changed() {
+  if (!has_clients() || soon_) return;
+  soon_ = loop_.call_at(std::chrono::steady_clock::now() + kSoon, [this] { publish_state(); });
+}
+
+void GraphServer::log(const std::string& line) {
+  if (has_clients() && !line.empty()) states_->say(stamped(line, GraphReport::Log, lines_sent_));
+}
+
+void GraphServer::take_request(const Message& message) const {
+  const auto request = read_request(message);
+  callbacks_.obey(request.lines, [to = request.reply](const GraphAnswer& answer) {
+    // A client that has left needs no answer.
+    if (!to.empty()) static_cast<void>(say_at_once(to, make_answer(answer)));
+  });
+}
+
+}  // namespace hc::internal

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What is said to a running graph and what it answers, as messages: commands, a row each, all of
+// which it does or none (spec/graph.md, G47). Pure.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hc/base/result.h>
+#include <hc/mtp/message.h>
+
+namespace hc {
+
+/// "MODULE.PARAMETER=VALUE"; the value is all that follows the first `=`.
+struct Assignment {
+  std::string module, parameter, value;
+};
+/// Errors: Invalid.
+Result<Assignment> parse_assignment(std::string_view text);
+
+struct GraphCommand {
+  enum class Verb { Set, Add, Remove, Restart, Link, Unlink, Stop, Describe, Observe };
+
+  Verb verb = Verb::Stop;
+  std::vector<std::string> words;  ///< behind the verb; of `set` module, parameter and value
+
+  /// Whether it changes the graph, and not only what runs of it.
+  [[nodiscard]] bool is_edit() const {
+    return verb != Verb::Restart && verb != Verb::Stop && !is_question();
+  }
+  /// Whether it changes nothing: `describe` and `observe`, which stand alone in a message.
+  [[nodiscard]] bool is_question() const { return verb == Verb::Describe || verb == Verb::Observe; }
+};
+
+/// Errors: Invalid.
+Result<GraphCommand> parse_graph_command(std::string_view line);
+
+/// A message of commands.
+struct GraphRequest {
+  std::string reply;               ///< `unix:` URI for the answer; empty: none is wanted
+  std::vector<std::string> lines;  ///< a command each
+};
+Message make_request(const GraphRequest& request);
+GraphRequest read_request(const Message& message);
+
+/// What a graph answers.
+struct GraphAnswer {
+  bool is_ok = false;
+  /// Of ok what was asked for, or remarks; else what is wrong, at least one row.
+  std::vector<std::string> rows;
+};
+Message make_answer(const GraphAnswer& answer);
+GraphAnswer read_answer(const Message& message);
+
+}  // namespace hc
