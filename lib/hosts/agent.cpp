@@ -15,7 +15,6 @@
 #include <graph/plan.h>
 #include <graph/programs.h>
 #include <graph/run/announcer.h>
-#include <graph/run/aside.h>
 #include <graph/run/held_names.h>
 #include <graph/run/intake.h>
 #include <graph/run/log_limit.h>
@@ -82,9 +81,6 @@ class Agent {
     auto loop = Loop::make();
     if (!loop) return loop.error();
     loop_ = std::move(*loop);
-    auto aside = Aside::make(*loop_);
-    if (!aside) return aside.error();
-    aside_ = std::move(*aside);
     for (int descriptor : {options_.in, options_.out})
       ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
     auto conversation = Conversation::make(*loop_, options_.in, options_.out, kSilence,
@@ -362,15 +358,17 @@ class Agent {
 
   /// Answers a question on another thread, since programs that are asked may be slow.
   void answer_next() {
-    if (aside_->is_busy() || questions_.empty()) return;
-    const Json question = questions_.front();
+    if (aside_.is_busy() || questions_.empty()) return;
+    auto aside = internal::run_aside(
+        *loop_,
+        [this, question = questions_.front()](int stop) { return answer_to(question, stop); },
+        [this](const Json& answer) {
+          send(answer);
+          answer_next();
+        });
+    if (!aside) return end(aside.error());
+    aside_ = std::move(*aside);
     questions_.pop_front();
-    auto answer = std::make_shared<Json>();
-    aside_->begin([this, question, answer](int stop) { *answer = answer_to(question, stop); },
-                  [this, answer] {
-                    send(*answer);
-                    answer_next();
-                  });
   }
 
   [[nodiscard]] Json answer_to(const Json& question, int stop) const {
@@ -397,7 +395,7 @@ class Agent {
 
   const AgentOptions& options_;
   std::unique_ptr<Loop> loop_;
-  std::unique_ptr<Aside> aside_;
+  Aside aside_;
   std::unique_ptr<Conversation> conversation_;
   internal::Descriptor key_;
   std::map<std::string, Place> places_;  // by where the module reports

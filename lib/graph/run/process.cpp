@@ -35,7 +35,7 @@ struct Start {
 }
 
 /// Becomes the program.
-[[noreturn]] void become(Start start, pid_t parent, const sigset_t& signals) {
+[[noreturn]] void become(Start start, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(kCannotExecute);  // it died before it could be noticed
   int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -54,7 +54,9 @@ struct Start {
   std::signal(SIGPIPE, SIG_DFL);
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
-  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::execvpe(start.arguments[0], start.arguments, start.environment);
   fail(start);
 }
@@ -80,9 +82,9 @@ bool kill_children() {
 
 /// The guard between us and a program: see process.h.
 [[noreturn]] void guard(const Start& start) {
-  sigset_t all, before, ended;
+  sigset_t all, ended;
   ::sigfillset(&all);
-  ::sigprocmask(SIG_SETMASK, &all, &before);
+  ::sigprocmask(SIG_SETMASK, &all, nullptr);
   std::signal(SIGCHLD, SIG_DFL);  // were it ignored, nothing could be waited for
   ::setpgid(0, 0);
   ::prctl(PR_SET_NAME, "guard");
@@ -90,7 +92,7 @@ bool kill_children() {
   pid_t self = ::getpid();
   pid_t program = ::fork();
   if (program < 0) fail(start);
-  if (program == 0) become(start, self, before);
+  if (program == 0) become(start, self);
 
   // All pipes of other processes are open here too, and would not close when we go.
   ::dup2(start.life, 0);

@@ -69,11 +69,6 @@ Status Runner::begin() {
     if (!watched) return watched.error();
     hosts_ = std::move(*watched);
   }
-  if (options_.loader != nullptr) {
-    auto planning = Aside::make(*loop_);
-    if (!planning) return planning.error();
-    planning_ = std::move(*planning);
-  }
   if (options_.loader != nullptr && !graph_.files.empty()) {
     auto files = FileWatch::make(*loop_, [this] { reload(); });
     if (!files) return files.error();

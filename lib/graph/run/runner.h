@@ -14,7 +14,6 @@
 #include <vector>
 
 #include <graph/run.h>
-#include <graph/run/aside.h>
 #include <graph/run/graph_server.h>
 #include <graph/run/supervised.h>
 #include <hc/os/file_watch.h>
@@ -107,7 +106,7 @@ class Runner {
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<GraphServer> server_;
   std::unique_ptr<FileWatch> files_;
-  std::unique_ptr<Aside> planning_;
+  Aside planning_;
   // In the place of readers that are over; null: it failed.
   std::map<LinkName, std::shared_ptr<void>> drains_;
   std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name

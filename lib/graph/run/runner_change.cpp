@@ -47,7 +47,7 @@ void Runner::reload() {
   auto is_reload = [](const Change& change) { return change.commands.empty(); };
   // A queued reload reads the newest files; one in progress is out of date.
   if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_reload)) return;
-  if (!changes_.empty() && is_reload(changes_.front())) planning_->stop();
+  if (!changes_.empty() && is_reload(changes_.front())) planning_.stop();
   changes_.push_back({});
   begin_changes();
 }
@@ -144,7 +144,7 @@ void Runner::carry_out(const Commands& commands) {
 /// Does the changes that are wanted, up to the first that has to be planned: that is done on
 /// another thread, as a new program may be slow to describe itself.
 void Runner::begin_changes() {
-  while (!changes_.empty() && !is_stopping_ && !(planning_ && planning_->is_busy())) {
+  while (!changes_.empty() && !is_stopping_ && !planning_.is_busy()) {
     const Commands& commands = changes_.front().commands;
     if (commands.empty())
       return begin_planning([this](int stop) { return options_.loader->load(&plan_, stop); });
@@ -166,9 +166,13 @@ void Runner::begin_changes() {
 }
 
 void Runner::begin_planning(std::function<Result<LoadedGraph>(int stop)> plan) {
-  auto loaded = std::make_shared<Result<LoadedGraph>>(Error{});
-  planning_->begin([loaded, plan = std::move(plan)](int stop) { *loaded = plan(stop); },
-                   [this, loaded] { take_planned(*loaded); });
+  auto planning = run_aside(*loop_, std::move(plan),
+                            [this](Result<LoadedGraph> loaded) { take_planned(loaded); });
+  if (!planning) {
+    end_change({planning.error().text()});
+    return begin_changes();
+  }
+  planning_ = std::move(*planning);
 }
 
 void Runner::take_planned(Result<LoadedGraph>& loaded) {
@@ -182,7 +186,7 @@ void Runner::take_planned(Result<LoadedGraph>& loaded) {
   if (wrong.empty()) {
     graph_ = std::move(loaded->graph);
     change_to(std::move(*loaded->plan));
-  } else if (is_reload && !planning_->is_stopped()) {  // else there is a newer edit
+  } else if (is_reload && !planning_.is_stopped()) {  // else there is a newer edit
     for (const auto& line : wrong) log("graph: " + line);
     log("graph: keeping the running version");
   }
@@ -202,7 +206,7 @@ void Runner::end_change(const GraphAnswer& answer) {
 
 /// Answers changes that will not be made.
 void Runner::refuse_changes() {
-  if (planning_) planning_->stop();
+  planning_.stop();
   for (const auto& change : std::exchange(changes_, {}))
     if (change.reply) change.reply({false, {kIsStopping}});
 }

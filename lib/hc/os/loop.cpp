@@ -7,6 +7,8 @@
 #include <array>
 #include <span>
 
+#include <hc/os/thread.h>
+
 namespace hc::internal {
 
 constexpr std::uint64_t kTimerId = 0;  // entries have others
@@ -71,10 +73,15 @@ void Loop::set_due(std::uint64_t id, TimePoint when) {
   if (when < timer_due_) set_timer(when);
 }
 
-/// A time that has passed makes the timer readable at once.
 void Loop::set_timer(TimePoint when) {
-  using std::chrono::nanoseconds;
+  const std::lock_guard lock(mutex_);
   timer_due_ = when;
+  arm(posted_.empty() ? when : TimePoint());
+}
+
+/// A time that has passed makes the timer readable at once.
+void Loop::arm(TimePoint when) const {
+  using std::chrono::nanoseconds;
   itimerspec spec{};
   if (when != TimePoint::max()) {
     auto since = std::max<nanoseconds>(nanoseconds(1), when.time_since_epoch());
@@ -91,6 +98,21 @@ void Loop::remove(std::uint64_t id) {
   due_.erase({entry->due, id});
   if (entry->due == timer_due_ && entry->due != TimePoint::max()) set_timer(next_due());
   if (entry->wanted != 0) static_cast<void>(control(EPOLL_CTL_DEL, entry->descriptor, 0, id));
+}
+
+void Loop::post(std::function<void()> job) {
+  const std::lock_guard lock(mutex_);
+  posted_.push_back(std::move(job));
+  if (posted_.size() == 1) arm(TimePoint());
+}
+
+void Loop::do_posted() {
+  std::vector<std::function<void()>> jobs;
+  {
+    const std::lock_guard lock(mutex_);
+    jobs.swap(posted_);
+  }
+  for (const auto& job : jobs) job();
 }
 
 void Loop::call_due() {
@@ -122,8 +144,45 @@ Status Loop::turn(std::chrono::milliseconds timeout) {
     auto wanted = entry->wanted == 0 ? 0 : event.events & (entry->wanted | EPOLLERR | EPOLLHUP);
     if (wanted != 0) entry->callback(wanted);
   }
-  if (is_time) call_due();
+  if (is_time) {
+    do_posted();
+    call_due();
+  }
   return {};
+}
+
+Result<Aside> Aside::begin(Loop& loop, std::function<void(int stop)> work,
+                           std::function<void()> done) {
+  auto stop = Event::make();
+  if (!stop) return stop.error();
+  Aside aside;
+  aside.state_ = std::make_shared<State>(State{std::move(*stop), false, std::move(done), {}});
+  // The thread ends before the state does, which it must not own.
+  auto thread = start_thread([&loop, work = std::move(work), stop = aside.state_->stop.descriptor(),
+                              begun = std::weak_ptr(aside.state_)] {
+    work(stop);
+    loop.post([begun] {
+      const auto state = begun.lock();
+      if (!state || !state->thread.joinable()) return;
+      state->thread.join();
+      std::exchange(state->done, {})();
+    });
+  });
+  if (!thread) return thread.error();
+  aside.state_->thread = std::move(*thread);
+  return aside;
+}
+
+Aside::~Aside() {
+  if (!is_busy()) return;
+  stop();
+  state_->thread.join();
+}
+
+void Aside::stop() {
+  if (!is_busy()) return;
+  state_->is_stopped = true;
+  state_->stop.raise();
 }
 
 }  // namespace hc::internal

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 #include <sys/eventfd.h>
 
+#include <functional>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace hc::internal {
 namespace {
@@ -94,6 +97,87 @@ TEST_F(LoopTest, WhatCannotBeWatchedIsAnError) {
   auto handle = watch(descriptor, [](auto) {});
   EXPECT_FALSE(loop_->watch(descriptor.get(), EPOLLIN, [](auto) {})) << "it is watched already";
   EXPECT_TRUE(loop_->turn());
+}
+
+TEST_F(LoopTest, PostedJobsAreDoneInTheirOrder) {
+  std::thread other([&] {
+    loop_->post([&] { heard_ += "1"; });
+    loop_->post([&] {
+      heard_ += "2";
+      loop_->post([&] { heard_ += "3"; });
+    });
+  });
+  while (heard_.size() < 2) ASSERT_TRUE(loop_->turn());
+  other.join();
+  EXPECT_EQ(heard_, "12") << "what a job posts waits for the next turn";
+  ASSERT_TRUE(loop_->turn());
+  EXPECT_EQ(heard_, "123");
+}
+
+TEST_F(LoopTest, ATimerThatIsSetLaterDoesNotHoldBackAPostedJob) {
+  auto first = loop_->call_at(std::chrono::steady_clock::now() + 1h, [] {});
+  loop_->post([&] { heard_ += "p"; });
+  auto second = loop_->call_at(std::chrono::steady_clock::now() + 30min, [] {});
+  second.reset();
+  ASSERT_TRUE(loop_->turn());
+  EXPECT_EQ(heard_, "p");
+  EXPECT_FALSE(*wait_for(loop_->descriptor(), POLLIN, -1, std::chrono::steady_clock::now()));
+}
+
+TEST_F(LoopTest, NoJobIsLostThatManyThreadsPost) {
+  constexpr int kThreads = 4, kJobs = 1000;
+  int done = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i)
+    threads.emplace_back([&] {
+      for (int job = 0; job < kJobs; ++job) loop_->post([&] { ++done; });
+    });
+  while (done < kThreads * kJobs) {
+    // Setting times meets posting.
+    auto timer = loop_->call_at(std::chrono::steady_clock::now() + 1h, [] {});
+    ASSERT_TRUE(loop_->turn());
+  }
+  for (auto& thread : threads) thread.join();
+}
+
+TEST_F(LoopTest, WorkAsideHandsOverItsResult) {
+  auto aside = run_aside(
+      *loop_, [](int) { return std::string("result"); },
+      [&](const std::string& result) { heard_ = result; });
+  ASSERT_TRUE(aside);
+  EXPECT_TRUE(aside->is_busy());
+  while (heard_.empty()) ASSERT_TRUE(loop_->turn());
+  EXPECT_EQ(heard_, "result");
+  EXPECT_FALSE(aside->is_busy());
+}
+
+TEST_F(LoopTest, WorkAsideIsStopped) {
+  auto until_stopped = [](int stop) { return *wait_for(stop, POLLIN, -1); };
+  auto note = [&](bool) { heard_ += "d"; };
+  Aside aside = std::move(*run_aside(*loop_, until_stopped, note));
+  aside.stop();
+  EXPECT_TRUE(aside.is_stopped());
+  while (heard_.empty()) ASSERT_TRUE(loop_->turn());
+  aside = std::move(*run_aside(*loop_, until_stopped, note));
+  EXPECT_FALSE(aside.is_stopped());
+  aside = Aside();
+  aside = std::move(*run_aside(
+      *loop_, [](int) { return true; }, note));
+  while (heard_.size() < 2) ASSERT_TRUE(loop_->turn());
+  EXPECT_EQ(heard_, "dd") << "the result of one that was ended before is dropped";
+}
+
+TEST_F(LoopTest, WorkAsideMayFollowWork) {
+  Aside aside;
+  std::function<void(int)> again = [&](int count) {
+    heard_ += std::to_string(count);
+    if (count < 3)
+      aside = std::move(*run_aside(
+          *loop_, [count](int) { return count + 1; }, again));
+  };
+  again(1);
+  while (heard_.size() < 3) ASSERT_TRUE(loop_->turn());
+  EXPECT_EQ(heard_, "123");
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <csignal>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
+
+#include <hc/os/thread.h>
 
 namespace hc::internal {
 
@@ -32,7 +32,7 @@ class Watch::Reactor {
       auto loop = Loop::make();
       if (!loop) return loop.error();
       loop_ = std::move(*loop);
-      if (auto started = start_thread(); !started) {
+      if (auto started = start(); !started) {
         loop_.reset();
         return started;
       }
@@ -66,21 +66,12 @@ class Watch::Reactor {
   std::mutex mutex;
 
  private:
-  Status start_thread() {
-    // A signal is for the threads that know what to do about it.
-    sigset_t all, before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    Status started;
-    try {
-      std::thread thread([this] { run(); });
-      thread_ = thread.get_id();
-      thread.detach();
-    } catch (const std::system_error& error) {
-      started = Error{Code::System, std::string("thread: ") + error.what()};
-    }
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return started;
+  Status start() {
+    auto thread = start_thread([this] { run(); });
+    if (!thread) return thread.error();
+    thread_ = thread->get_id();
+    thread->detach();
+    return {};
   }
 
   [[noreturn]] void run() {
