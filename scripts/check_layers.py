@@ -17,7 +17,7 @@ ALLOWED = {
     "compress": {"base", "mtp"},
     "testing": set(),  # what tests share
     "link": {"base", "os", "mtp"},
-    "observe": {"base", "os", "mtp", "contract", "link"},
+    "client": {"base", "os", "mtp", "contract", "link"},
     "module": {"base", "os", "mtp", "contract", "compress", "link"},
     "graph": {"base", "os", "mtp", "contract", "link"},
     "frames": {"base"},
@@ -26,7 +26,7 @@ ALLOWED = {
     "graphics": {"base"},
     "room": {"base", "graphics"},
     "sound": {"base", "os"},
-    "web": {"base", "os", "mtp", "link", "observe"},
+    "web": {"base", "os", "mtp", "link", "client"},
     "ros": {"base", "mtp", "contract", "compress", "frames"},
     "mcap": {"base", "os", "mtp", "link", "ros"},
     "tls": {"base", "os", "link"},
@@ -40,7 +40,7 @@ ALLOWED = {
         "contract",
         "compress",
         "module",
-        "observe",
+        "client",
         "ros",
         "mcap",
         "dds",
@@ -54,7 +54,7 @@ ALLOWED = {
         "contract",
         "compress",
         "link",
-        "observe",
+        "client",
         "module",
         "frames",
         "mcap",
@@ -66,7 +66,7 @@ ALLOWED = {
         "contract",
         "compress",
         "link",
-        "observe",
+        "client",
         "graph",
         "frames",
         "mcap",
@@ -74,7 +74,7 @@ ALLOWED = {
         "hosts",
     },
 }
-CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "observe", "graph"}
+CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "client", "graph"}
 # The mtp layer is pure: no input or output, no threads, no clock.
 IMPURE = re.compile(
     r"<(sys/.*|unistd\.h|fcntl\.h|poll\.h|net.*|thread|mutex|atomic|condition_variable|future"
@@ -99,7 +99,7 @@ def layer_of_include(name):
     if inner.startswith("dds/"):  # as Cyclone DDS has them too
         return "dds" if (pathlib.Path(__file__).parents[1] / "lib" / inner).exists() else None
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|hosts|drivers)/", inner
+        r"(client|graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|hosts|drivers)/", inner
     )
     return match[1] if match else None
 

@@ -15,8 +15,8 @@
 #include <graph/plan.h>
 #include <graph/programs.h>
 #include <graph/run/announcer.h>
+#include <graph/run/drain.h>
 #include <graph/run/held_names.h>
-#include <graph/run/intake.h>
 #include <graph/run/log_limit.h>
 #include <graph/run/process.h>
 #include <hc/base/suggestion.h>

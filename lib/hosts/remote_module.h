@@ -9,8 +9,8 @@
 #include <mutex>
 #include <string>
 
-#include <graph/run/intake.h>
 #include <graph/run/module_process.h>
+#include <hc/link/intake.h>
 #include <hc/link/link.h>
 #include <hosts/worker.h>
 

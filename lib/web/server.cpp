@@ -19,8 +19,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/signal_set.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/ssl.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
@@ -456,7 +455,10 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
 class BeastServer final : public Server {
  public:
-  explicit BeastServer(LogSink log) { shared_->log = std::move(log); }
+  BeastServer(LogSink log, std::unique_ptr<internal::Loop> loop) : loop_(std::move(loop)) {
+    shared_->log = std::move(log);
+  }
+  ~BeastServer() override { loop_ready_.release(); }  // its descriptor is the loop's
 
   Status open(const std::string& address, std::uint16_t first, int ports) {
     beast::error_code error;
@@ -499,34 +501,43 @@ class BeastServer final : public Server {
   void run(Site& site) override {
     shared_->site = &site;
     accept();
+    turn_loop();
     // What is posted may throw; the others are served on.
     while (!shared_->guard([&] { context_.run(); })) {
     }
   }
   void stop() override {
-    asio::post(context_, [this] {
+    loop_->post([this] {
       constexpr std::chrono::milliseconds kMoment{200};
-      auto timer = std::make_shared<asio::steady_timer>(context_, kMoment);
-      timer->async_wait([this, timer](beast::error_code) { context_.stop(); });
+      stop_ =
+          loop_->call_at(std::chrono::steady_clock::now() + kMoment, [this] { context_.stop(); });
     });
   }
-  void post(std::function<void()> call) override { asio::post(context_, std::move(call)); }
+  internal::Loop& loop() override { return *loop_; }
+  void post(std::function<void()> call) override {
+    loop_->post([shared = shared_, call = std::move(call)] { shared->guard(call); });
+  }
 
   void every(std::chrono::milliseconds period, std::function<void()> call) override {
-    auto timer = std::make_shared<asio::steady_timer>(context_);
-    auto next = std::make_shared<std::function<void()>>();
-    *next = [timer, period, call = std::move(call), weak = std::weak_ptr(next)] {
-      timer->expires_after(period);
-      timer->async_wait([call, again = weak.lock()](beast::error_code error) {
-        if (error || !again) return;
-        (*again)();  // first, since the other may throw
-        call();
-      });
-    };
-    asio::post(context_, [next] { (*next)(); });
+    auto& timer = timers_.emplace_back();
+    timer = loop_->call_at(std::chrono::steady_clock::now(),
+                           [shared = shared_, &timer, period, call = std::move(call)] {
+                             timer.call_at(std::chrono::steady_clock::now() + period);
+                             shared->guard(call);
+                           });
   }
 
  private:
+  /// Has the loop served whenever it has something to do.
+  void turn_loop() {
+    loop_ready_.async_wait(asio::posix::descriptor_base::wait_read,
+                           [this](beast::error_code error) {
+                             if (error) return;
+                             turn_loop();  // first, since the other may throw
+                             static_cast<void>(loop_->turn(std::chrono::milliseconds(0)));
+                           });
+  }
+
   void accept() {
     acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error) {
@@ -558,6 +569,10 @@ class BeastServer final : public Server {
   std::optional<asio::ssl::context> secure_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
+  std::unique_ptr<internal::Loop> loop_;
+  asio::posix::stream_descriptor loop_ready_{context_, loop_->descriptor()};
+  std::list<internal::Loop::Handle> timers_;
+  internal::Loop::Handle stop_;
 };
 
 }  // namespace
@@ -574,7 +589,9 @@ std::string_view option(std::string_view query, std::string_view name) {
 
 Result<std::unique_ptr<Server>> Server::listen(const std::string& address, std::uint16_t port,
                                                int ports, const Identity* identity, LogSink log) {
-  auto server = std::make_unique<BeastServer>(std::move(log));
+  auto loop = internal::Loop::make();
+  if (!loop) return loop.error();
+  auto server = std::make_unique<BeastServer>(std::move(log), std::move(*loop));
   if (auto opened = server->open(address, port, ports); !opened) return opened.error();
   if (identity != nullptr)
     if (auto used = server->use(*identity); !used) return used.error();

@@ -15,8 +15,12 @@
 
 #include <hc/base/log.h>
 #include <hc/base/result.h>
+#include <hc/os/loop.h>
 
 namespace hc::web {
+
+/// Has a function called on the server's thread, soon. From any thread.
+using Post = std::function<void(std::function<void()>)>;
 
 /// Bytes that several are sent.
 using Bytes = std::shared_ptr<const std::string>;
@@ -106,7 +110,9 @@ class Server {
   virtual void run(Site& site) = 0;
   /// Ends run() in a moment, so that what was sent last arrives. From any thread.
   virtual void stop() = 0;
-  /// Has a function called on the thread of run(). From any thread.
+  /// The loop of the thread of run(), for what else is done there.
+  [[nodiscard]] virtual internal::Loop& loop() = 0;
+  /// As Loop::post(); what the function throws is logged.
   virtual void post(std::function<void()> call) = 0;
   /// Calls a function periodically, until it ends. To be called before run().
   virtual void every(std::chrono::milliseconds period, std::function<void()> call) = 0;

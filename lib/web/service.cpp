@@ -3,11 +3,11 @@
 
 namespace hc::web {
 
-Result<std::unique_ptr<Service>> Service::open(const Listening& listening, Inbox& inbox,
+Result<std::unique_ptr<Service>> Service::open(const Listening& listening, internal::Loop& loop,
                                                std::function<void(std::string_view)> log) {
   auto opened =
-      open_server(listening, [&inbox, log = std::move(log)](Severity, std::string_view line) {
-        inbox.put([log, kept = std::string(line)] { log(kept); });
+      open_server(listening, [&loop, log = std::move(log)](Severity, std::string_view line) {
+        loop.post([log, kept = std::string(line)] { log(kept); });
       });
   if (!opened) return opened.error();
   return std::unique_ptr<Service>(new Service(std::move(*opened)));

@@ -12,7 +12,6 @@
 
 #include <hc/base/result.h>
 #include <web/access.h>
-#include <web/inbox.h>
 #include <web/listening.h>
 #include <web/server.h>
 
@@ -24,11 +23,10 @@ class Service {
  public:
   /// Listens; serves once there is something to serve().
   ///
-  /// @param inbox  takes what the server's thread hands to the module's; it lives longer.
-  /// @param log  called by Inbox::work_off() with lines of the server; those that come after its
-  ///     last call are lost.
+  /// @param loop  of the module's thread; it lives longer.
+  /// @param log  called in the loop with lines of the server.
   /// Errors: as open_server().
-  static Result<std::unique_ptr<Service>> open(const Listening& listening, Inbox& inbox,
+  static Result<std::unique_ptr<Service>> open(const Listening& listening, internal::Loop& loop,
                                                std::function<void(std::string_view)> log);
   /// Closes the site, and waits a moment until what was sent last has arrived.
   ~Service();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include <hc/module/module.h>
 #include <hc/os/secret.h>
 
 namespace web = hc::web;
@@ -84,18 +85,15 @@ Bridge::Bridge(Options options, web::Access& access, web::Server& server)
       access_(access),
       server_(server),
       session_(hc::internal::make_secret()),
-      catalog_(options_.jpeg) {
+      catalog_(options_.jpeg),
+      graph_(server.loop(), options_.graph) {
   for (const auto& joint : options_.joints.fixed) joints_[joint.child] = joint;
   constexpr std::chrono::milliseconds kTick{100};
   server_.every(kTick, [this] { tick(); });
-  graph_ = std::make_unique<web::GraphClient>(
-      options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
-      web::GraphClient::Callbacks{[this](const hc::Message& message) { take_graph(message); },
-                                  [this] { close(); }});
-}
-
-Bridge::~Bridge() {
-  graph_.reset();  // what is posted from now on is not called any more
+  const auto watched = graph_.watch(
+      {[this](const auto& state, std::string_view) { apply(catalog_.take_state(state)); },
+       [this](std::string_view line) { take_log(line); }, [this] { close(); }});
+  if (!watched) throw hc::ModuleError(watched.error());
 }
 
 web::Reply Bridge::reply(const web::Request& request) {
@@ -248,33 +246,30 @@ void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& r
   if (values.empty()) return reply();
   for (const auto& [name, value] : values) {
     answer->names.push_back(name);
-    graph_->command("set " + name + "=" + value,
-                    [answer, reply, weak = std::weak_ptr(viewer), name = name,
-                     value = value](const std::vector<std::string>& rows) {
-                      const bool is_set = !rows.empty() && rows.front() == "ok";
-                      if (is_set) answer->set[name] = value;
-                      if (const auto still = weak.lock(); still && !is_set)
-                        still->say_status(kFailed, rows.empty() ? name : rows.front());
-                      if (--answer->open == 0) reply();
-                    });
+    graph_.command({"set " + name + "=" + value}, [answer, reply, weak = std::weak_ptr(viewer),
+                                                   name = name, value = value](
+                                                      const hc::Result<hc::GraphAnswer>& answered) {
+      const bool is_set = answered && answered->is_ok;
+      if (is_set) answer->set[name] = value;
+      if (const auto still = weak.lock(); still && !is_set)
+        still->say_status(kFailed, answered ? answered->rows.front() : answered.error().detail);
+      if (--answer->open == 0) reply();
+    });
   }
 }
 
-void Bridge::take_graph(const hc::Message& message) {
-  const std::string_view line(reinterpret_cast<const char*>(message.elements.data()),
-                              message.elements.size());
-  if (message.header.src == hc::kStateSource) return apply(catalog_.take_state(line));
-  if (message.header.src != hc::kLogSource) return;
-  const std::int64_t time = message.header.time != 0 ? message.header.time : clock_.wall();
-  const Channel& log = catalog_.log();
-  publish(log.id, {time, bytes_of(encoder_.encode_log(time, line.substr(0, line.find('\0'))))});
+void Bridge::take_log(std::string_view line) {
+  const std::int64_t time = clock_.wall();
+  publish(catalog_.log().id, {time, bytes_of(encoder_.encode_log(time, line))});
 }
 
 void Bridge::apply(const Catalog::Changes& changes) {
   for (const auto& module : changes.unknown)
-    graph_->command("describe " + module, [this, module](const std::vector<std::string>& rows) {
-      if (rows.size() > 1 && rows.front() == "ok") apply(catalog_.describe(module, rows[1]));
-    });
+    graph_.command({"describe " + module},
+                   [this, module](const hc::Result<hc::GraphAnswer>& answer) {
+                     if (answer && answer->is_ok && !answer->rows.empty())
+                       apply(catalog_.describe(module, answer->rows.front()));
+                   });
   for (const auto& channel : changes.removed) publishers_.erase(channel.id);
   for (const auto& viewer : viewers_) {
     for (const auto& channel : changes.removed) viewer->forget(channel.id);

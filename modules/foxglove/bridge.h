@@ -10,12 +10,11 @@
 #include <string>
 #include <vector>
 
+#include <client/graph_client.h>
 #include <hc/base/clock.h>
-#include <hc/observe/running.h>
 #include <ros/encode.h>
 #include <ros/joints.h>
 #include <web/access.h>
-#include <web/graph_client.h>
 #include <web/server.h>
 
 #include "catalog.h"
@@ -32,7 +31,6 @@ class Bridge final : public hc::web::Site {
   };
 
   Bridge(Options options, hc::web::Access& access, hc::web::Server& server);
-  ~Bridge() override;
 
   hc::web::Reply reply(const hc::web::Request& request) override;
   void open(std::shared_ptr<hc::web::WebSocket> socket, const hc::web::Request& request) override;
@@ -50,7 +48,7 @@ class Bridge final : public hc::web::Site {
   void set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request);
 
   void move(const hc::ros::Joint& joint);
-  void take_graph(const hc::Message& message);
+  void take_log(std::string_view line);
   void apply(const Catalog::Changes& changes);
   void publish(std::uint32_t channel, const Payload& payload);
   void publish_frames();
@@ -69,5 +67,5 @@ class Bridge final : public hc::web::Site {
   std::list<std::shared_ptr<Viewer>> viewers_;
   std::map<std::uint32_t, std::unique_ptr<Publisher>> publishers_;  // by channel
   std::int64_t reported_ = 0;                                       // when what was dropped was
-  std::unique_ptr<hc::web::GraphClient> graph_;  // last: its threads call the above
+  hc::GraphClient graph_;
 };

@@ -26,12 +26,6 @@ hc::ros::Type type_of(const hc::PortDescription& port, bool jpeg) {
   return hc::ros::type_for(type).value_or(Type::Matrix);
 }
 
-/// The value of a key that is a string; empty where it is none.
-std::string string_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 Json list_of(const std::map<std::string, std::vector<std::string>>& names, const char* key) {
   Json list = Json::array();
   for (const auto& [topic, modules] : names) list.push_back({{"name", topic}, {key, modules}});
@@ -50,38 +44,31 @@ Catalog::Catalog(bool jpeg) : jpeg_(jpeg) {
   channels_[kFrames] = {kFrames, "/tf", "", hc::ros::Type::TfMessage};
 }
 
-Catalog::Changes Catalog::take_state(std::string_view state) {
+Catalog::Changes Catalog::take_state(const hc::GraphState& state) {
   Changes changes;
-  const Json json = Json::parse(state, nullptr, false);
-  if (!json.is_object() || !json.contains("modules") || !json.contains("links")) return changes;
   std::set<std::string> there;
-  for (const Json& each : json["modules"]) {
-    const std::string module = string_of(each, "name"), program = string_of(each, "program");
-    there.insert(module);
-    const auto known = modules_.find(module);
-    if (known == modules_.end() || known->second.program != program) {
-      if (known != modules_.end()) remove_outputs(module, changes);
-      modules_[module] = {program, {}};
-      changes.unknown.push_back(module);
+  for (const auto& module : state.modules) {
+    there.insert(module.name);
+    const auto known = modules_.find(module.name);
+    if (known == modules_.end() || known->second.program != module.program) {
+      if (known != modules_.end()) remove_outputs(module.name, changes);
+      modules_[module.name] = {module.program, {}};
+      changes.unknown.push_back(module.name);
     }
-    if (each.contains("parameters")) set_parameters(module, each["parameters"], changes);
+    set_parameters(module, changes);
   }
-  for (auto known = modules_.begin(); known != modules_.end();) {
-    if (!there.contains(known->first)) {
-      remove_outputs(known->first, changes);
-      known = modules_.erase(known);
-    } else {
-      ++known;
-    }
-  }
+  std::erase_if(modules_, [&](const auto& known) {
+    if (there.contains(known.first)) return false;
+    remove_outputs(known.first, changes);
+    return true;
+  });
   Names published, taken;
-  auto split = [](const std::string& port) { return port.substr(0, port.find('.')); };
-  for (const Json& link : json["links"]) {
-    const std::string from = string_of(link, "from"), to = string_of(link, "to");
-    if (!there.contains(split(from))) continue;  // from outside
-    auto& publishers = published[topic_of(from)];
-    publishers = {split(from)};
-    if (there.contains(split(to))) taken[topic_of(from)].push_back(split(to));
+  auto module_of = [](const std::string& port) { return port.substr(0, port.find('.')); };
+  for (const auto& link : state.links) {
+    if (!there.contains(module_of(link.from))) continue;  // from outside
+    published[topic_of(link.from)] = {module_of(link.from)};
+    if (there.contains(module_of(link.to)))
+      taken[topic_of(link.from)].push_back(module_of(link.to));
   }
   changes.graph = published != published_ || taken != taken_;
   published_ = std::move(published);
@@ -124,11 +111,9 @@ void Catalog::remove_outputs(const std::string& module, Changes& changes) {
   std::erase_if(parameters_, [&](const auto& each) { return each.first.starts_with(prefix); });
 }
 
-void Catalog::set_parameters(const std::string& module, const Json& values, Changes& changes) {
-  if (!values.is_object()) return;
-  for (const auto& [key, value] : values.items()) {
-    const std::string name = module + "." + key;
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+void Catalog::set_parameters(const hc::ModuleState& module, Changes& changes) {
+  for (const auto& [key, text] : module.parameters) {
+    const std::string name = module.name + "." + key;
     auto& known = values_[name];
     if (known == text) continue;
     known = text;

@@ -12,6 +12,7 @@
 
 #include <hc/base/parameter.h>
 #include <hc/contract/description.h>
+#include <hc/contract/graph_state.h>
 
 #include "json.h"
 #include "publisher.h"
@@ -27,8 +28,7 @@ class Catalog {
     bool graph = false;                   ///< who publishes and takes what is another
     std::vector<std::string> unknown;     ///< modules that are to be described
   };
-  /// Takes in the graph's state, one line of JSON.
-  Changes take_state(std::string_view state);
+  Changes take_state(const hc::GraphState& state);
   /// Takes in what `--describe` of a module printed; nothing where it is no description.
   Changes describe(const std::string& module, std::string_view description);
 
@@ -66,7 +66,7 @@ class Catalog {
 
   void publish_outputs(const std::string& module, Changes& changes);
   void remove_outputs(const std::string& module, Changes& changes);
-  void set_parameters(const std::string& module, const Json& values, Changes& changes);
+  void set_parameters(const hc::ModuleState& module, Changes& changes);
 
   const bool jpeg_;
   std::uint32_t next_ = kFrames + 1;

@@ -7,10 +7,21 @@
 
 namespace {
 
-constexpr const char* kState = R"({"graph":"g","modules":[
-  {"name":"eyes","program":"camera","parameters":{"rate":"5"}},
-  {"name":"ball","program":"blob","parameters":{}}],
-  "links":[{"from":"eyes.left","to":"ball.image"}]})";
+hc::GraphState some_state() {
+  hc::GraphState state;
+  state.modules.resize(2);
+  state.modules[0].name = "eyes";
+  state.modules[0].program = "camera";
+  state.modules[0].parameters = {{"rate", "5"}};
+  state.modules[1].name = "ball";
+  state.modules[1].program = "blob";
+  state.links.resize(1);
+  state.links[0].from = "eyes.left";
+  state.links[0].to = "ball.image";
+  return state;
+}
+
+const hc::GraphState kState = some_state();
 
 std::string camera() {
   hc::Description description;
@@ -53,7 +64,7 @@ TEST(Catalog, a_module_that_leaves_takes_its_channels_with_it) {
   Catalog catalog(false);
   catalog.take_state(kState);
   const auto added = catalog.describe("eyes", camera()).added;
-  const auto changes = catalog.take_state(R"({"graph":"g","modules":[],"links":[]})");
+  const auto changes = catalog.take_state({});
   EXPECT_EQ(changes.removed, added);
   EXPECT_EQ(catalog.channels().size(), 2u);  // log and frames
   EXPECT_FALSE(catalog.has_parameter("eyes.rate"));
@@ -68,8 +79,8 @@ TEST(Catalog, parameters_are_numbers_and_change) {
   ASSERT_EQ(values["parameters"].size(), 1u);
   EXPECT_EQ(values["parameters"][0],
             (Json{{"name", "eyes.rate"}, {"value", 5.0}, {"type", "float64"}}));
-  std::string other = kState;
-  other.replace(other.find("\"5\""), 3, "\"7\"");
+  auto other = kState;
+  other.modules[0].parameters["rate"] = "7";
   EXPECT_EQ(catalog.take_state(other).parameters, (std::vector<std::string>{"eyes.rate"}));
   EXPECT_TRUE(catalog.take_state(other).parameters.empty());
 }
@@ -93,13 +104,6 @@ TEST(Catalog, the_graph_says_who_publishes_and_takes) {
   EXPECT_EQ(graph["publishedTopics"], (Json{{{"name", "/eyes/left"}, {"publisherIds", {"eyes"}}}}));
   EXPECT_EQ(graph["subscribedTopics"],
             (Json{{{"name", "/eyes/left"}, {"subscriberIds", {"ball"}}}}));
-}
-
-TEST(Catalog, what_is_no_state_changes_nothing) {
-  Catalog catalog(false);
-  for (const char* wrong :
-       {"", "{", "[]", R"({"modules":3,"links":4})", R"({"modules":[3],"links":[{"from":5}]})"})
-    EXPECT_TRUE(catalog.take_state(wrong).added.empty()) << wrong;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Shows the graph in Foxglove and Lichtblick, live: topics on demand, parameters, frames, log.
 #include <memory>
 
+#include <client/running.h>
 #include <frames/default_head.h>
 #include <hc/module/module.h>
 #include <ros/joints.h>
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
                                  "coordinate systems, by `hc run`; else those of the default head",
                                  {.fixed = true});
 
-  web::Inbox inbox;
+  const auto loop = hc::value_or_end(hc::internal::Loop::make());
   std::unique_ptr<web::Service> service;
   Bridge* bridge = nullptr;  // that it serves
   module.on_start([&] {
@@ -40,7 +41,7 @@ int main(int argc, char** argv) {
           "to one: hc graph add foxglove foxglove");
     auto joints = hc::value_or_end(hc::ros::GraphJoints::read(*frames));
     service =
-        hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, inbox,
+        hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, *loop,
                                             [&](std::string_view line) { module.log(line); }));
     auto& access = service->access();
     module.log("notice: foxglove: " + access.invite_socket(web::Right::Operate));
@@ -51,7 +52,8 @@ int main(int argc, char** argv) {
         Bridge::Options{*graph, std::move(joints), *images == "jpeg"}, access, service->server()));
   });
   module.keep_running();
-  module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });
+  module.on_readable([&] { return loop->descriptor(); },
+                     [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
   module.on(poses, [&](const auto& pose) {
     if (const auto moved = bridge->move(pose); !moved)
       module.log_once("pose", moved.error().detail);

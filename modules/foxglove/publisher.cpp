@@ -22,12 +22,12 @@ Publisher::Publisher(hc::RunningGraph graph, Channel channel,
     : channel_(std::move(channel)),
       post_(std::move(post)),
       shared_(std::make_shared<Shared>()),
-      observer_((encoder_.frames = std::move(frames), shared_->callbacks = std::move(callbacks),
-                 std::move(graph)),
-                channel_.port,
-                {.message = [this](const hc::Message& message) { take(message); },
-                 .end = [this](const std::string& why,
-                               bool) { call([why](const Callbacks& to) { to.end(why); }); }}) {}
+      tap_((encoder_.frames = std::move(frames), shared_->callbacks = std::move(callbacks),
+            std::move(graph)),
+           channel_.port,
+           {.message = [this](const hc::Message& message) { take(message); },
+            .end = [this](const std::string& why,
+                          bool) { call([why](const Callbacks& to) { to.end(why); }); }}) {}
 
 void Publisher::call(std::function<void(const Callbacks&)> what) const {
   post_([weak = std::weak_ptr(shared_), what = std::move(what)] {

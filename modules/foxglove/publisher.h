@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
+#include <client/tap.h>
 #include <hc/mtp/message.h>
 #include <ros/encode.h>
-#include <web/observer.h>
 #include <web/server.h>
 
 /// What viewers can subscribe to.
@@ -52,7 +52,7 @@ class Publisher {
   /// What waits for the server's thread at most, but for one message of any size. [byte]
   static constexpr std::size_t kMaxWaiting = std::size_t{32} << 20;
 
-  // On the observer's thread.
+  // On the tap's thread.
   void take(const hc::Message& message);
   hc::Result<hc::web::Bytes> encode(const hc::Message& message);
   void call(std::function<void(const Callbacks&)> what) const;
@@ -68,5 +68,5 @@ class Publisher {
     std::atomic<std::uint64_t> dropped{0};
   };
   std::shared_ptr<Shared> shared_;
-  hc::web::Observer observer_;  // last: its thread uses the above
+  hc::Tap tap_;  // last: its thread uses the above
 };

@@ -44,8 +44,10 @@ void GraphMetadata::record(hc::mcap::Recorder& recorder, std::int64_t now) {
     }
     if (*got == hc::Got::Nothing) break;
     const auto text = message.characters();
-    if (message.header.src == hc::kStateSource) record_state(recorder, text);
-    if (message.header.src == hc::kLogSource) static_cast<void>(recorder.log(now, text));
+    if (message.header.src == static_cast<int>(hc::GraphReport::State))
+      record_state(recorder, text);
+    if (message.header.src == static_cast<int>(hc::GraphReport::Log))
+      static_cast<void>(recorder.log(now, text));
   }
   static_cast<void>(source_->prepare_wait());
   const std::lock_guard lock(mutex_);

@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <hc/observe/running.h>
+#include <client/graph_client.h>
+#include <client/running.h>
 #include <mcap/recorder.h>
 
 /// Observes the graph that one is a module of.

@@ -6,9 +6,9 @@
 
 #include <sys/signalfd.h>
 
+#include <client/running.h>
 #include <hc/base/format.h>
 #include <hc/module/module.h>
-#include <hc/observe/running.h>
 #include <hc/os/descriptor.h>
 
 #include "folder_recording.h"

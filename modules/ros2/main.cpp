@@ -8,11 +8,12 @@
 #include <map>
 #include <optional>
 
+#include <client/running.h>
 #include <frames/default_head.h>
 #include <hc/compress/compress.h>
 #include <hc/module/module.h>
-#include <hc/observe/running.h>
 #include <hc/os/event.h>
+#include <hc/os/loop.h>
 #include <ros/decode.h>
 #include <ros/joints.h>
 
@@ -118,13 +119,13 @@ int main(int argc, char** argv) {
                                        {.fixed = true});
 
   // From other threads; what they say again and again waits in bounds.
-  hc::web::Inbox inbox;
+  const auto loop = hc::value_or_end(hc::internal::Loop::make());
   std::atomic<int> waiting{0};
   const auto log = [&](const std::string& kind, const std::string& line) {
     constexpr int kMostWaiting = 1000;
     if (waiting >= kMostWaiting) return;
     ++waiting;
-    inbox.put([&, kind, line] {
+    loop->post([&, kind, line] {
       --waiting;
       module.log_once(kind, line);
     });
@@ -193,7 +194,8 @@ int main(int argc, char** argv) {
     arrived.raise();
   });
   module.keep_running();
-  module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });
+  module.on_readable([&] { return loop->descriptor(); },
+                     [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
 
   const auto take = [&](Subscription& to, const hc::Result<std::span<const std::byte>>& bytes) {
     const auto& subscribed = to.subscribed;

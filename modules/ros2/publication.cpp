@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <client/graph_client.h>
 #include <hc/base/clock.h>
 #include <hc/contract/description.h>
 
@@ -51,15 +52,15 @@ Publication::Publication(hc::RunningGraph graph, Published published,
       participant_(participant),
       log_(std::move(log)),
       limit_(published_.rate),
-      observer_((encoder_.frames = std::move(frames), encoder_.joints = published_.joints,
-                 std::move(graph)),
-                published_.port,
-                {.open = [this] { open(); },
-                 .message = [this](const hc::Message& message) { take(message); },
-                 .end =
-                     [this](const std::string& why, bool is_error) {
-                       if (is_error) log_(published_.port, published_.port + ": " + why);
-                     }}) {}
+      tap_((encoder_.frames = std::move(frames), encoder_.joints = published_.joints,
+            std::move(graph)),
+           published_.port,
+           {.open = [this] { open(); },
+            .message = [this](const hc::Message& message) { take(message); },
+            .end =
+                [this](const std::string& why, bool is_error) {
+                  if (is_error) log_(published_.port, published_.port + ": " + why);
+                }}) {}
 
 void Publication::open() {
   auto type =

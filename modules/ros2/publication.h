@@ -7,9 +7,8 @@
 #include <optional>
 #include <string>
 
-#include <hc/observe/running.h>
+#include <client/tap.h>
 #include <ros/encode.h>
-#include <web/observer.h>
 
 #include "mapping.h"
 #include "participant.h"
@@ -28,7 +27,7 @@ class Publication {
               std::map<std::int32_t, std::string> frames, Participant& participant, Log log);
 
  private:
-  // On the observer's thread.
+  // On the tap's thread.
   void open();
   void take(const hc::Message& message);
 
@@ -40,5 +39,5 @@ class Publication {
   RateLimit limit_;
   hc::ros::Type type_ = hc::ros::Type::Float64MultiArray;
   std::optional<Writer> writer_;
-  hc::web::Observer observer_;  // last: its thread uses the above
+  hc::Tap tap_;  // last: its thread uses the above
 };

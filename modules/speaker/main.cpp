@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mouth: plays sound and writes it to a file.
+#include <client/running.h>
 #include <hc/module/module.h>
-#include <hc/observe/running.h>
 #include <hc/os/program.h>
 #include <sound/messages.h>
 

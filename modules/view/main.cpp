@@ -7,8 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include <client/running.h>
 #include <hc/module/module.h>
-#include <hc/observe/running.h>
 #include <hc/os/new_file.h>
 #include <hc/os/program.h>
 #include <vision/image.h>

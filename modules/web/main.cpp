@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include <client/running.h>
 #include <hc/module/module.h>
 
 #include <web/qr.h>
@@ -74,7 +75,8 @@ int main(int argc, char** argv) {
       module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
                        {.min = 0, .max = 1e6});
 
-  web::Inbox stops, inbox;  // the stop comes first
+  const auto stops = hc::value_or_end(hc::internal::Loop::make());  // the stop comes first
+  const auto loop = hc::value_or_end(hc::internal::Loop::make());
   Robot robot;
   std::optional<Stop> wanted;
   hc::MonotonicTime seen{};  // when a page was open
@@ -109,7 +111,7 @@ int main(int argc, char** argv) {
           "HC_GRAPH does not name a running graph, NAME.PID; run this module in "
           "a graph, or with hc run GRAPH --page");
     service =
-        hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, inbox,
+        hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, *loop,
                                             [&](std::string_view line) { module.log(line); }));
     wanted.emplace(module.instance());
     auto& access = service->access();
@@ -124,21 +126,22 @@ int main(int argc, char** argv) {
         Page::Options{*graph, module.instance(), *frames, *recordings}, access, service->server(),
         robot,
         Page::Callbacks{
-            [&](Order order) { inbox.put([&, kept = std::move(order)] { obey(kept); }); },
+            [&](Order order) { loop->post([&, kept = std::move(order)] { obey(kept); }); },
             [&](bool stops_robot, Stop::Answer answer) {
-              stops.put([&, stops_robot, answer = std::move(answer)] {
+              stops->post([&, stops_robot, answer = std::move(answer)] {
                 ordered = module.now();
                 send_stop(wanted->order(stops_robot, stop.linked(), module.monotonic(), answer),
                           ordered);
               });
             },
-            [&](const std::string& line) { inbox.put([&, line] { module.log(line); }); }}));
+            [&](const std::string& line) { loop->post([&, line] { module.log(line); }); }}));
     if (*browser && web::is_local(*listen)) open_in_browser(url);
     seen = module.monotonic();
   });
   module.keep_running();
-  module.on_readable([&] { return stops.descriptor(); }, [&] { stops.work_off(); });
-  module.on_readable([&] { return inbox.descriptor(); }, [&] { inbox.work_off(); });
+  for (auto* each : {stops.get(), loop.get()})
+    module.on_readable([each] { return each->descriptor(); },
+                       [each] { hc::succeed_or_end(each->turn(std::chrono::milliseconds(0))); });
   module.on(stopped, [&](const auto& message) {
     wanted->hear(message.numbers()[0] != 0, module.monotonic());
     robot.stopped = wanted->is_stopped(module.monotonic());

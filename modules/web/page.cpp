@@ -6,8 +6,6 @@
 #include <sstream>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include <hc/base/format.h>
 #include <hc/base/json_string.h>
 #include <hc/mtp/codec.h>
@@ -20,7 +18,8 @@ namespace {
 
 using Rows = std::vector<std::string>;
 
-constexpr std::int32_t kSession = 3, kAnswer = 4;         // src of what a page is sent
+// The src of what a page is sent; the first two are the graph's (GraphReport).
+constexpr std::int32_t kState = 1, kLog = 2, kSession = 3, kAnswer = 4;
 constexpr std::size_t kMaxLog = 200;                      // lines for a page that opens
 constexpr std::size_t kMaxStates = 8, kMaxWaiting = 512;  // messages that wait for a slow page
 constexpr int kEnd = 1000, kGoing = 1001, kInvalid = 1007, kPolicy = 1008, kNoStream = 4404,
@@ -46,14 +45,6 @@ web::Reply refusal(int status, std::string words) {
 std::string lacks(web::Right has, web::Right needed) {
   return "this session may " + std::string(name_of(has)) + "; that needs the right to " +
          std::string(name_of(needed));
-}
-
-web::Bytes rows_message(const Rows& rows, std::int32_t src, std::int64_t seq, std::int64_t time) {
-  hc::Message message = hc::make_rows(rows);
-  message.header.src = src;
-  message.header.seq = seq;
-  message.header.time = time;
-  return text(hc::encode(message));
 }
 
 std::string json_string(const std::string& words) {
@@ -108,19 +99,16 @@ Page::Page(Options options, web::Access& access, web::Server& server, Robot& rob
       access_(access),
       server_(server),
       robot_(robot),
-      callbacks_(std::move(callbacks)) {
+      callbacks_(std::move(callbacks)),
+      graph_(server.loop(), options_.graph) {
   server_.every(std::chrono::milliseconds(25), [this] { tick(); });
-  graph_ = std::make_unique<web::GraphClient>(
-      options_.graph, [this](std::function<void()> call) { server_.post(std::move(call)); },
-      web::GraphClient::Callbacks{[this](const hc::Message& message) { take_state(message); },
-                                  [this] { close(); }});
+  const auto watched =
+      graph_.watch({[this](const auto& state, std::string_view json) { take_state(state, json); },
+                    [this](std::string_view line) { take_log(line); }, [this] { close(); }});
+  if (!watched) callbacks_.log("the graph cannot be seen: " + watched.error().detail);
 }
 
-Page::~Page() {
-  // What is posted from now on is not called any more.
-  graph_.reset();
-  watched_.clear();
-}
+Page::~Page() = default;
 
 // What is asked for by HTTP.
 
@@ -314,36 +302,35 @@ void Page::open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::
 
 // The graph.
 
-void Page::take_state(const hc::Message& message) {
-  const bool is_state = message.header.src == hc::kStateSource;
-  const web::Bytes bytes = text(hc::encode(message));
-  if (is_state) {
-    state_ = bytes;
-    take_modes(message);
-  } else {
-    log_.push_back(bytes);
-    if (log_.size() > kMaxLog) log_.pop_front();
-  }
-  // A page that does not read gets no more: of states the newest is worth sending, of lines few.
-  for (auto& [number, session] : sessions_)
-    if (session.socket->waiting() < (is_state ? kMaxStates : kMaxWaiting))
-      session.socket->send(bytes);
+web::Bytes Page::rows_message(const Rows& rows, std::int32_t src, std::int64_t seq) const {
+  hc::Message message = hc::make_rows(rows);
+  message.header.src = src;
+  message.header.seq = seq;
+  message.header.time = clock_.wall();
+  return text(hc::encode(message));
 }
 
-/// Keeps the numbers of the graph's modes.
-void Page::take_modes(const hc::Message& message) {
-  const auto state = nlohmann::json::parse(message.characters(), nullptr, false);
-  const auto modes = state.is_object() ? state.find("modes") : state.end();
-  if (modes == state.end()) return;
+// A page that does not read gets no more: of states the newest is worth sending, of lines few.
+
+void Page::take_state(const hc::GraphState& state, std::string_view json) {
   modes_.clear();
-  for (const auto& mode : *modes)
-    if (mode.is_number_integer()) modes_.insert(mode.get<std::int32_t>());
+  for (const auto& [name, number] : state.modes) modes_.insert(static_cast<std::int32_t>(number));
+  state_ = rows_message({std::string(json)}, kState, states_++);
+  for (auto& [number, session] : sessions_)
+    if (session.socket->waiting() < kMaxStates) session.socket->send(state_);
+}
+
+void Page::take_log(std::string_view line) {
+  log_.push_back(rows_message({std::string(line)}, kLog, lines_++));
+  if (log_.size() > kMaxLog) log_.pop_front();
+  for (auto& [number, session] : sessions_)
+    if (session.socket->waiting() < kMaxWaiting) session.socket->send(log_.back());
 }
 
 void Page::answer(const Asked& asked, const Rows& rows) {
   const auto found = sessions_.find(asked.session);
   if (found == sessions_.end() || found->second.socket->waiting() >= kMaxWaiting) return;
-  found->second.socket->send(rows_message(rows, kAnswer, asked.number, clock_.wall()));
+  found->second.socket->send(rows_message(rows, kAnswer, asked.number));
 }
 
 void Page::take_command(std::uint64_t number, const std::string& command) {
@@ -360,7 +347,11 @@ void Page::take_command(std::uint64_t number, const std::string& command) {
     return answer(asked, {"no command \"" + words[0] + "\"; streams are at /streams"});
   if (session.right < web::Right::Operate && words[0] != "describe")
     return answer(asked, {lacks(session.right, web::Right::Operate)});
-  graph_->command(command, [this, asked](const Rows& rows) { answer(asked, rows); });
+  graph_.command({command}, [this, asked](const hc::Result<hc::GraphAnswer>& answered) {
+    Rows rows = answered ? answered->rows : Rows{answered.error().detail};
+    if (answered && answered->is_ok) rows.insert(rows.begin(), "ok");
+    answer(asked, rows);
+  });
 }
 
 std::optional<Rows> Page::stop(const Asked& asked, const Rows& words) {
@@ -438,7 +429,7 @@ void Page::send_session(Session& session) const {
   auto now = session_text(session);
   if (now == session.sent || session.socket->waiting() >= kMaxStates) return;
   session.sent = std::move(now);
-  session.socket->send(rows_message({session.sent}, kSession, 0, clock_.wall()));
+  session.socket->send(rows_message({session.sent}, kSession, 0));
 }
 
 void Page::close() {

@@ -11,10 +11,9 @@
 #include <string>
 
 #include <hc/base/clock.h>
-#include <hc/observe/running.h>
 
+#include <client/graph_client.h>
 #include <web/access.h>
-#include <web/graph_client.h>
 #include <web/server.h>
 #include "driver.h"
 #include "recorder.h"
@@ -83,8 +82,10 @@ class Page final : public web::Site {
   void open_stream(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
   void open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
 
-  void take_state(const hc::Message& message);
-  void take_modes(const hc::Message& message);
+  void take_state(const hc::GraphState& state, std::string_view json);
+  void take_log(std::string_view line);
+  [[nodiscard]] web::Bytes rows_message(const std::vector<std::string>& rows, std::int32_t src,
+                                        std::int64_t seq) const;
   void take_command(std::uint64_t session, const std::string& command);
   /// Does a command that is none of the graph; gives its answer, nothing where it is one of it.
   std::optional<std::vector<std::string>> command_here(const Session& session,
@@ -112,8 +113,9 @@ class Page final : public web::Site {
   std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
   std::unique_ptr<Recorder> recorder_;
-  web::Bytes state_;                         // the last
-  std::set<std::int32_t> modes_;             // numbers of those that the graph has
-  std::deque<web::Bytes> log_;               // the last lines
-  std::unique_ptr<web::GraphClient> graph_;  // last: its threads call the above
+  web::Bytes state_;                     // the last
+  std::set<std::int32_t> modes_;         // numbers of those that the graph has
+  std::deque<web::Bytes> log_;           // the last lines
+  std::int64_t states_ = 0, lines_ = 0;  // sent
+  hc::GraphClient graph_;
 };

@@ -193,12 +193,12 @@ class Recorder::Track {
         log_(std::move(log)) {
     observer_.emplace(
         graph, port_,
-        web::Observer::Callbacks{.open = [this] { open(); },
-                                 .message = [this](const hc::Message& message) { write(message); },
-                                 .end =
-                                     [this](const std::string& why, bool is_error) {
-                                       if (is_error) end(why);
-                                     }});
+        hc::Tap::Callbacks{.open = [this] { open(); },
+                           .message = [this](const hc::Message& message) { write(message); },
+                           .end =
+                               [this](const std::string& why, bool is_error) {
+                                 if (is_error) end(why);
+                               }});
   }
   ~Track() {
     observer_.reset();
@@ -245,7 +245,7 @@ class Recorder::Track {
   const hc::LogSink log_;
   bool has_left_out_ = false;
   std::unique_ptr<hc::Sink> sink_;  // null: before it is open, and once it has failed
-  std::optional<web::Observer> observer_;
+  std::optional<hc::Tap> observer_;
 };
 
 Recorder::Recorder(const hc::RunningGraph& graph, std::string path, std::string name,

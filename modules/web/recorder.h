@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include <client/tap.h>
 #include <hc/base/log.h>
-#include <web/observer.h>
 #include <web/server.h>
 
 namespace web = hc::web;

@@ -65,14 +65,14 @@ hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted) {
 
 Stream::Stream(hc::RunningGraph graph, std::string port, web::Post post)
     : post_(std::move(post)),
-      observer_(std::move(graph), std::move(port),
-                {.message =
-                     [this](const hc::Message& message) {
-                       newest_ = message.keep();
-                       ++number_;
-                     },
-                 .idle = [this] { return serve(); },
-                 .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
+      tap_(std::move(graph), std::move(port),
+           {.message =
+                [this](const hc::Message& message) {
+                  newest_ = message.keep();
+                  ++number_;
+                },
+            .idle = [this] { return serve(); },
+            .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
 
 void Stream::call(const std::shared_ptr<Seat>& seat,
                   std::function<void(const Callbacks&)> what) const {
@@ -90,7 +90,7 @@ std::unique_ptr<Stream::Viewer> Stream::view(const Wanted& wanted, Callbacks cal
   if (!ended_.empty())
     call(seat,
          [why = ended_, is_error = is_error_](const Callbacks& page) { page.end(why, is_error); });
-  observer_.wake();
+  tap_.wake();
   return std::make_unique<Viewer>(*this, std::move(seat));
 }
 
@@ -198,7 +198,7 @@ Stream::Viewer::~Viewer() {
 void Stream::Viewer::acknowledge() {
   const std::lock_guard lock(stream_.mutex_);
   if (seat_->under_way > 0) --seat_->under_way;
-  stream_.observer_.wake();
+  stream_.tap_.wake();
 }
 
 Wanted Stream::Viewer::wanted() const {
@@ -211,5 +211,5 @@ void Stream::Viewer::want(const Wanted& wanted) {
   if (wanted.form != seat_->wanted.form || wanted.width != seat_->wanted.width)
     seat_->has_changed = true;
   seat_->wanted = wanted;
-  stream_.observer_.wake();
+  stream_.tap_.wake();
 }

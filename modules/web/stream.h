@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include <web/observer.h>
+#include <client/tap.h>
 #include <web/server.h>
 
 #include "encoder.h"
@@ -48,7 +48,7 @@ class Stream {
   [[nodiscard]] bool is_viewed();
 
  private:
-  using Clock = web::Observer::Clock;
+  using Clock = hc::Tap::Clock;
   static constexpr int kMaxUnderWay = 2;  // messages that a page is not done with
 
   /// A page, as the stream sees it.
@@ -71,7 +71,7 @@ class Stream {
     Clock::time_point key_due{};  // before, no other key frame is made
   };
 
-  // On the observer's thread.
+  // On the tap's thread.
   /// Gives the newest message to those who are ready for it. @returns  when the next one is.
   Clock::time_point serve();
   void serve_alike(const Wanted& wanted, const Seats& seats);
@@ -84,11 +84,11 @@ class Stream {
   Seats seats_;
   std::string ended_;  // why; empty: it has not
   bool is_error_ = false;
-  // Of the observer's thread.
+  // Of the tap's thread.
   hc::Message newest_;
   std::uint64_t number_ = 0;     // of the newest message; 0: there is none
   std::map<int, Video> videos_;  // by width
-  web::Observer observer_;       // last: its thread calls the above
+  hc::Tap tap_;                  // last: its thread calls the above
 };
 
 class Stream::Viewer {

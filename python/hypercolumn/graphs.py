@@ -8,7 +8,6 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
-import threading
 import time
 from types import SimpleNamespace, TracebackType
 from typing import Any, Callable, Dict, Iterator, List, Optional, Type, Union
@@ -17,7 +16,6 @@ from hypercolumn import _hypercolumn
 from hypercolumn._hypercolumn import Message, RunningGraph, Stream
 from hypercolumn.errors import Error
 
-_LOOK = 0.25  # seconds after which who waits for a message looks whether the graph has ended
 _SILENCE = 5.0  # seconds after which a graph that says nothing may be stopped
 _REPORT = 2.0  # seconds within which a module reports a new value
 _STATE_LIMIT = 16 << 20  # bytes
@@ -105,23 +103,16 @@ class Port:
 
     def _messages(self, end: float) -> Iterator[Message]:
         """Messages until the graph ends; after a time by time.monotonic() no more."""
-        observation = _hypercolumn.observe(self._graph, self.name)
-        ended = threading.Event()  # the graph has, or the loop
-        thread = threading.Thread(target=_renew, args=(observation, ended), daemon=True)
-        thread.start()
         try:
-            with Stream(observation.uri) as stream:
+            with _hypercolumn.open_tap(self._graph, self.name) as stream:
                 while True:
-                    message = stream.take(max(0.0, min(_LOOK, end - time.monotonic())))
-                    if message is not None:
-                        yield message
-                    elif ended.is_set() or time.monotonic() >= end:
+                    wait = None if end == math.inf else max(0.0, end - time.monotonic())
+                    message = stream.take(wait)
+                    if message is None:
                         return
+                    yield message
         except StopIteration:
             return
-        finally:
-            ended.set()
-            thread.join()
 
     def read(self, seconds: float = math.inf) -> Message:
         """The next message; an error, Closed, after so many seconds without one."""
@@ -134,13 +125,6 @@ class Port:
 
     def __repr__(self) -> str:
         return "<Port %s of %r>" % (self.name, self._graph)
-
-
-def _renew(observation: "_hypercolumn.Observation", ended: threading.Event) -> None:
-    """Keeps an output open for its observer, until either ends."""
-    while not ended.wait(1.0):
-        if not observation.renew():
-            ended.set()
 
 
 class Graph:

@@ -5,10 +5,12 @@
 #include <chrono>
 #include <optional>
 
+#include <client/graph_client.h>
+#include <client/running.h>
+#include <client/tap.h>
 #include <hc/base/clock.h>
 #include <hc/compress/compress.h>
 #include <hc/link/link.h>
-#include <hc/observe/running.h>
 
 #include "message.h"
 #include "python.h"
@@ -38,12 +40,16 @@ hc::LinkOptions link_options(const std::optional<std::uint64_t>& limit) {
 /// Where a script reads messages.
 class Stream {
  public:
-  Stream(const std::string& text, const std::optional<std::uint64_t>& limit)
+  /// @param graph  whose port `text` is; null: it is a URI or a file.
+  Stream(const std::string& text, const std::optional<std::uint64_t>& limit,
+         const hc::RunningGraph* graph = nullptr)
       : keeper_(std::make_shared<Keeper>(Keeper{text})) {
     std::optional<hc::Result<std::unique_ptr<hc::Source>>> opened;
     {
       const py::gil_scoped_release outside;
-      opened.emplace(open_any(text, link_options(limit)));
+      const auto options = link_options(limit);
+      opened.emplace(graph != nullptr ? hc::open_tap(*graph, text, options)
+                                      : open_any(text, options));
     }
     if (!*opened) raise({opened->error().code, text + ": " + opened->error().detail});
     source_ = std::move(**opened);
@@ -125,7 +131,7 @@ PyObject* next(PyObject* self) {
 
 std::vector<std::string> ask(const hc::RunningGraph& graph,
                              const std::vector<std::string>& commands) {
-  std::optional<hc::Result<hc::Answer>> answer;
+  std::optional<hc::Result<hc::GraphAnswer>> answer;
   {
     const py::gil_scoped_release outside;
     answer.emplace(hc::ask(graph, commands));
@@ -135,15 +141,6 @@ std::vector<std::string> ask(const hc::RunningGraph& graph,
   std::string text;
   for (const auto& row : (*answer)->rows) text += (text.empty() ? "" : "\n") + row;
   raise({hc::Code::Invalid, text});
-}
-
-hc::Observation observe(const hc::RunningGraph& graph, const std::string& port) {
-  std::optional<hc::Result<hc::Observation>> made;
-  {
-    const py::gil_scoped_release outside;
-    made.emplace(hc::Observation::make(graph, port));
-  }
-  return value_or_raise(std::move(*made));
 }
 
 }  // namespace
@@ -168,12 +165,11 @@ void add_streams(py::module_& extension) {
       .def_readonly("process", &hc::RunningGraph::process)
       .def_property_readonly("state_uri", &hc::RunningGraph::state_uri)
       .def("__repr__", &hc::RunningGraph::text);
-  py::class_<hc::Observation>(extension, "Observation")
-      .def_property_readonly("uri", &hc::Observation::uri)
-      .def("renew", &hc::Observation::renew, py::call_guard<py::gil_scoped_release>());
   extension.def("find_running", [] { return hc::find_running(); });
   extension.def("ask", ask);
-  extension.def("observe", observe);
+  extension.def("open_tap", [](const hc::RunningGraph& graph, const std::string& port) {
+    return std::make_unique<Stream>(port, std::nullopt, &graph);
+  });
 }
 
 }  // namespace python

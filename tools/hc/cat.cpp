@@ -21,7 +21,7 @@ struct CatOptions {
 };
 
 void run(const CatOptions& options) {
-  auto source = open_source(source_uri(options.uri, options.of), options.limit);
+  auto source = open_named(options.uri, options.of, options.limit);
   std::unique_ptr<hc::Sink> raw;
   if (options.raw) raw = open_sink("-");
   Skipper skipper("hc cat");

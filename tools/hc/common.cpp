@@ -19,14 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-hc::LinkOptions link_options(std::uint64_t limit = kDefaultLimit) {
-  hc::LinkOptions options;
-  options.limits.element_bytes = limit;
-  options.stop = hc::stop_descriptor();
-  options.log = [](hc::Severity, std::string_view line) { say(line); };
-  return options;
-}
-
 hc::Uri parse(const std::string& uri) {
   auto parsed = value_or_fail(hc::parse_uri(uri), uri);
   if (parsed.scheme == "inproc")
@@ -40,6 +32,14 @@ void write_error(const std::string& text) {
 }
 
 }  // namespace
+
+hc::LinkOptions link_options(std::uint64_t limit) {
+  hc::LinkOptions options;
+  options.limits.element_bytes = limit;
+  options.stop = hc::stop_descriptor();
+  options.log = [](hc::Severity, std::string_view line) { say(line); };
+  return options;
+}
 
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit) {
   if (const auto recording = hc::mcap::recording_uri(uri))

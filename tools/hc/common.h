@@ -47,6 +47,9 @@ T value_or_fail(hc::Result<T> result, std::string_view who) {
   return std::move(*result);
 }
 
+/// Limits, log and stop of a link. `limit` bounds the elements that are taken. [byte]
+hc::LinkOptions link_options(std::uint64_t limit = kDefaultLimit);
+
 /// Links as the command line names them. `limit` bounds the elements that are taken. [byte]
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri);

@@ -23,8 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using hc::frames::GraphFrames;
 
-constexpr std::chrono::milliseconds kRenewal{1000};  // of an observation; a graph wants one in 5 s
-constexpr std::chrono::seconds kPatience{5};         // so long a pose is awaited
+constexpr std::chrono::seconds kPatience{5};  // so long a pose is awaited
 
 struct FramesOptions {
   hc::LoadOptions graph;
@@ -80,12 +79,10 @@ RunningGraph choose_graph(const FramesOptions& options, const std::vector<std::s
 void observe(GraphFrames& frames, const FramesOptions& options,
              const std::vector<std::string>& outputs) {
   const auto graph = choose_graph(options, outputs);
-  std::vector<Observation> observations;
   std::vector<std::unique_ptr<hc::Source>> sources;
   std::vector<int> descriptors;
   for (const auto& output : outputs) {
-    observations.push_back(make_observation(graph, output));
-    sources.push_back(open_source(observations.back().uri(), kDefaultLimit));
+    sources.push_back(open_port(graph, output));
     descriptors.push_back(sources.back()->descriptor());
   }
   auto is_known = [&] {
@@ -93,7 +90,7 @@ void observe(GraphFrames& frames, const FramesOptions& options,
                             : frames.tree.known(options.target, options.source).has_value();
   };
   using Clock = std::chrono::steady_clock;
-  auto renewed = Clock::now(), heard = renewed;
+  auto heard = Clock::now();
   hc::Message message;
   while (true) {
     for (std::size_t i = 0; i < sources.size(); ++i)
@@ -102,12 +99,7 @@ void observe(GraphFrames& frames, const FramesOptions& options,
         feed(frames, message, outputs[i]);
     // What is missing at an end, the transform's error tells.
     if (is_known() || Clock::now() - heard > kPatience) return;
-    if (Clock::now() - renewed > kRenewal) {
-      renewed = Clock::now();
-      for (auto& observation : observations)
-        if (!observation.renew()) return;
-    }
-    const auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kRenewal);
+    const auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kPatience);
     if (!ready) throw Failure(ready.error());
   }
 }

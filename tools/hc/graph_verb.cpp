@@ -154,32 +154,13 @@ void get(const RunningGraph& graph, const std::vector<std::string>& wanted) {
   print(text);
 }
 
-/// Says so where setting a parameter restarts its module.
-void say_restart(const RunningGraph& graph, const hc::GraphState& state,
-                 const std::string& assignment) {
-  const auto dot = assignment.find('.'), equals = assignment.find('=');
-  if (dot == std::string::npos || equals == std::string::npos || dot > equals) return;
-  const auto& module = find_module(state, assignment.substr(0, dot));
-  const auto name = assignment.substr(dot + 1, equals - dot - 1);
-  const auto parameters = parameters_of(graph, module);
-  if (auto found = parameters.find(name); found != parameters.end() && found->second.at("fixed"))
-    say("hc graph: restarting " + module.name + ", since " + name + " is fixed while it runs");
-}
-
 /// Has the graph do all of some commands, or none.
 void change(const GraphOptions& options, const std::vector<std::string>& commands) {
   for (const auto& command : commands)
     if (command.find('\n') != std::string::npos)
       throw Failure(hc::Error{hc::Code::Invalid, "a command is one line"});
-  const auto graph = choose_running(options.running);
-  command_graph(graph, commands);
-  const std::string_view set = "set ";
-  std::optional<hc::GraphState> state;
-  for (const auto& command : commands) {
-    if (!command.starts_with(set)) continue;
-    if (!state) state = state_of(graph);
-    say_restart(graph, *state, command.substr(set.size()));
-  }
+  for (const auto& remark : command_graph(choose_running(options.running), commands))
+    say("hc graph: " + remark);
 }
 
 struct Word {

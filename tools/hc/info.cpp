@@ -118,7 +118,7 @@ void run(const InfoOptions& options) {
   const auto recording = hc::mcap::recording_uri(options.uri);
   if (recording && recording->options.empty() && options.count == 0)
     return print_recording(*recording);
-  auto source = open_source(source_uri(options.uri, options.of), options.limit);
+  auto source = open_named(options.uri, options.of, options.limit);
   std::map<std::int32_t, Sender> senders;
   hc::Message message;
   Progress progress("hc info");

@@ -60,9 +60,11 @@ std::vector<std::string> module_arguments(const std::string& program,
     of = found[1];
     arguments.erase(found, found + 2);
   }
-  const auto uri = tool::source_uri(arguments[1], of);
-  if (uri == arguments[1]) return arguments;
-  arguments[1] = "--in=" + inputs[0].at("name").get<std::string>() + "=" + uri;
+  const auto graph = tool::graph_of_port(arguments[1], of);
+  if (!graph) return arguments;
+  auto uri = tool::value_or_fail(hc::tap_uri(*graph, arguments[1]), arguments[1]);
+  uri.options.emplace_back("reconnect", "5");  // a restart of the module, but not the graph's end
+  arguments[1] = "--in=" + inputs[0].at("name").get<std::string>() + "=" + uri.text();
   return arguments;
 }
 

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "observer.h"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -23,7 +19,8 @@
 namespace tool {
 namespace {
 
-constexpr char kGranted = 'u';  // begins the URI of an observation; no code of an error
+/// A graph that has said nothing for so long may be stopped: it speaks twice a second.
+constexpr std::chrono::milliseconds kSilence{5000};
 
 bool is_of_this_terminal(int process) {
   return ::getsid(process) == ::getsid(0);
@@ -79,30 +76,32 @@ RunningGraph choose_running(const std::string& wanted) {
 }
 
 Observer::Observer(const RunningGraph& graph)
-    : name_(graph.text()), source_(open_source(graph.state_uri(), hc::kMaxStateBytes)) {}
+    : loop_(value_or_fail(hc::internal::Loop::make(), graph.text())), client_(*loop_, graph) {
+  const auto watched = client_.watch({[this](const auto& state, auto) {
+                                        state_ = state;
+                                        is_new_ = true;
+                                      },
+                                      [](auto) {}, [this] { has_ended_ = true; }});
+  if (!watched) throw Failure(watched.error());
+}
 
 std::optional<hc::GraphState> Observer::next(const std::vector<int>& inputs) {
-  bool is_new = false;
-  hc::Message message;
-  while (true) {
-    auto got = source_->take(message);
-    if (!got || *got == hc::Got::End) return std::nullopt;
-    if (*got == hc::Got::Message && message.header.src == hc::kStateSource) {
-      state_ = value_or_fail(hc::parse_graph_state(message.characters()), name_);
-      is_new = true;
-    }
-    if (*got == hc::Got::Message) continue;
-    if (is_new) return state_;
-    std::vector<int> descriptors = {source_->descriptor()};
-    descriptors.insert(descriptors.end(), inputs.begin(), inputs.end());
-    auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), hc::kSilence);
+  std::vector<int> descriptors = {loop_->descriptor()};
+  descriptors.insert(descriptors.end(), inputs.begin(), inputs.end());
+  for (is_new_ = false; !is_new_ && !has_ended_;) {
+    const auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kSilence);
     if (!ready && ready.error().code == hc::Code::Stopped) return std::nullopt;
     if (!ready) throw Failure(ready.error());
     if (*ready == descriptors.size())
       throw Failure(
-          hc::Error{hc::Code::Closed, name_ + " has not answered for 5 s; it may be stopped"});
+          hc::Error{hc::Code::Closed,
+                    client_.graph().text() + " has not answered for 5 s; it may be stopped"});
     if (*ready > 0) return state_;
+    if (auto turned = loop_->turn(std::chrono::milliseconds(0)); !turned)
+      throw Failure(turned.error());
   }
+  if (is_new_) return state_;
+  return std::nullopt;
 }
 
 std::optional<hc::GraphState> Observer::next_measured() {
@@ -120,50 +119,10 @@ std::vector<std::string> command_graph(const RunningGraph& graph,
   throw Failure(hc::Error{hc::Code::Invalid, answer.rows.back()});
 }
 
-Observation make_observation(const RunningGraph& graph, const std::string& port) {
-  auto made = Observation::make(graph, port, hc::stop_descriptor());
-  if (!made) throw Failure(made.error());
-  return std::move(*made);
-}
-
-std::string observe(const RunningGraph& graph, const std::string& port) {
-  std::array<int, 2> ends{};
-  const pid_t parent = ::getpid();
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure({hc::Code::System, "pipe2"});
-  // Before this process has any link, and so threads.
-  const pid_t child = ::fork();
-  if (child < 0) throw Failure({hc::Code::System, "fork"});
-  if (child > 0) {
-    ::close(ends[1]);
-    std::string answer;
-    char piece[512];
-    for (ssize_t size = 0; (size = ::read(ends[0], piece, sizeof piece)) > 0;)
-      answer.append(piece, static_cast<std::size_t>(size));
-    ::close(ends[0]);
-    const auto code = static_cast<hc::Code>(answer.empty() ? '\0' : answer.front());
-    if (answer.starts_with(kGranted)) return answer.substr(1);
-    throw Failure(
-        {answer.empty() ? hc::Code::System : code, answer.empty() ? "ended" : answer.substr(1)});
-  }
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(0);
-  auto reply = [&](char kind, const std::string& text) {
-    static_cast<void>(hc::write_all(ends[1], kind + text));
-    ::close(ends[1]);
-  };
-  try {
-    auto observation = make_observation(graph, port);
-    reply(kGranted, observation.uri());
-    // Whoever reads our parent's output is not to wait for us.
-    for (int number : {STDIN_FILENO, STDOUT_FILENO}) ::close(number);
-    do {
-      ::sleep(1);
-    } while (observation.renew());
-    ::kill(parent, SIGTERM);
-  } catch (const Failure& failure) {
-    reply(static_cast<char>(failure.code), failure.detail);
-  }
-  ::_exit(0);
+std::unique_ptr<hc::Source> open_port(const RunningGraph& graph, const std::string& port) {
+  auto opened = hc::open_tap(graph, port, link_options(kDefaultLimit));
+  if (!opened) throw Failure(opened.error());
+  return std::move(*opened);
 }
 
 bool is_running_port(const std::string& text, const std::string& of) {
@@ -181,19 +140,24 @@ bool is_running_port(const std::string& text, const std::string& of) {
   return false;
 }
 
-std::string source_uri(const std::string& text, const std::string& of) {
-  if (!is_port_name(text) && of.empty()) return text;
+std::optional<RunningGraph> graph_of_port(const std::string& text, const std::string& of) {
+  if (!of.empty()) return choose_running(of);
   std::error_code missing;
-  const bool is_file = std::filesystem::exists(text, missing);
-  if (of.empty() && is_file && !is_running_port(text, of)) return text;
-  if (of.empty() && find_running().empty())
+  if (!is_port_name(text)) return std::nullopt;
+  if (std::filesystem::exists(text, missing) && !is_running_port(text, of)) return std::nullopt;
+  if (find_running().empty())
     throw Failure({hc::Code::NotFound, text + ": no such file, and no graph is running here"});
-  try {
-    return observe(choose_running(of), text);
-  } catch (const Failure& failure) {
-    if (is_file || !of.empty()) throw;
-    throw Failure({failure.code, text + ": no such file, and " + failure.detail});
-  }
+  return choose_running(of);
+}
+
+std::unique_ptr<hc::Source> open_named(const std::string& text, const std::string& of,
+                                       std::uint64_t limit) {
+  const auto graph = graph_of_port(text, of);
+  if (!graph) return open_source(text, limit);
+  auto opened = hc::open_tap(*graph, text, link_options(limit));
+  if (opened) return std::move(*opened);
+  throw Failure({opened.error().code,
+                 (of.empty() ? text + ": no such file, and " : "") + opened.error().detail});
 }
 
 }  // namespace tool

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Graphs that run on this host, seen from outside: which there are, their states, and commands to
-// them. spec/graph.md (G45 … G47) has their words.
+// Graphs that run on this host, as the verbs of hc need them: which is meant, its states, and
+// commands to it. spec/graph.md (G45 … G47) has their words.
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <hc/contract/graph_state.h>
-#include <hc/observe/running.h>
+#include <client/graph_client.h>
+#include <client/running.h>
+#include <client/tap.h>
 
 namespace tool {
 
 using hc::find_running;
-using hc::Observation;
 using hc::RunningGraph;
 
 /// The graph that a person means: by its name, or NAME.PROCESS where several have that. Without a
@@ -28,7 +27,7 @@ class Observer {
  public:
   explicit Observer(const RunningGraph& graph);
 
-  /// The next state; nothing when the graph has ended or we are to stop. Skips to the newest.
+  /// The newest state, waiting for the next; nothing when the graph has ended or we are to stop.
   /// @param inputs  descriptors that end the wait too when one is readable: the last state again.
   std::optional<hc::GraphState> next(const std::vector<int>& inputs = {});
 
@@ -36,34 +35,33 @@ class Observer {
   std::optional<hc::GraphState> next_measured();
 
  private:
-  std::string name_;
-  std::unique_ptr<hc::Source> source_;
+  std::unique_ptr<hc::internal::Loop> loop_;
+  hc::GraphClient client_;
   hc::GraphState state_;
+  bool is_new_ = false, has_ended_ = false;
 };
 
-/// Has a graph do what the commands say, a row each; gives what it answers behind "ok", and fails
-/// with any other answer.
+/// Has a graph do what the commands say, a row each; gives what it answers, and fails with what is
+/// wrong.
 std::vector<std::string> command_graph(const RunningGraph& graph,
                                        const std::vector<std::string>& commands);
 
-/// As Observation::make(); fails where that does.
-Observation make_observation(const RunningGraph& graph, const std::string& port);
-
-/// An observation that lasts as long as this process; a child process renews it, and ends this one
-/// with SIGTERM when the graph ends.
-/// For a process that has no links yet.
-std::string observe(const RunningGraph& graph, const std::string& port);
+/// An output of a running graph. Fails as hc::open_tap() does.
+std::unique_ptr<hc::Source> open_port(const RunningGraph& graph, const std::string& port);
 
 /// Whether a module of a running graph has this port, MODULE.PORT.
 ///
 /// @param of  name of the graph; empty: as choose_running(), and no port where that fails.
 bool is_running_port(const std::string& text, const std::string& of);
 
-/// What a person names as a source: a URI, a file, or MODULE.PORT of a running graph. A port comes
-/// before a file of the same name, which ./MODULE.PORT is.
+/// The running graph whose MODULE.PORT a person names as a source; nothing of a URI or a file. A
+/// port comes before a file of the same name, which ./MODULE.PORT is.
 ///
 /// @param of  name of the running graph; empty: as choose_running().
-/// @returns  the URI to read.
-std::string source_uri(const std::string& text, const std::string& of);
+std::optional<RunningGraph> graph_of_port(const std::string& text, const std::string& of);
+
+/// Opens what a person names as a source: a URI, a file, or MODULE.PORT of a running graph.
+std::unique_ptr<hc::Source> open_named(const std::string& text, const std::string& of,
+                                       std::uint64_t limit);
 
 }  // namespace tool

@@ -207,15 +207,12 @@ std::unique_ptr<Output> open_output(const RecordOptions& options) {
 }
 
 void run(const RecordOptions& options) {
-  std::vector<std::string> uris;  // all before the first link is opened
+  std::vector<Link> links;
   for (const auto& uri : options.links) {
     if (is_file(uri, options.file))
       throw Failure(hc::Error{hc::Code::Invalid, uri + " is the file that is written"});
-    uris.push_back(source_uri(uri, options.of));
+    links.push_back({uri, open_named(uri, options.of, options.limit)});
   }
-  std::vector<Link> links;
-  for (std::size_t i = 0; i < uris.size(); ++i)
-    links.push_back({options.links[i], open_source(uris[i], options.limit)});
   const auto output = open_output(options);
   Progress progress("hc record " + options.file);
   hc::Message message;

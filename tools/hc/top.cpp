@@ -64,11 +64,8 @@ class Bids {
  public:
   Bids(const RunningGraph& graph, const hc::GraphState& state) {
     for (const auto& [workspace, focus] : state.focus) try {
-        auto observation = make_observation(graph, workspace + ".standings");
-        auto source = open_source(observation.uri(), kDefaultLimit);
         all_.push_back({state.focus.size() > 1 ? workspace : "",
-                        std::move(observation),
-                        std::move(source),
+                        open_port(graph, workspace + ".standings"),
                         {}});
       } catch (const Failure&) {
         continue;  // it has no such output
@@ -78,8 +75,7 @@ class Bids {
   std::vector<Bid> take(const hc::GraphState& state) {
     std::vector<Bid> all;
     hc::Message message;
-    for (auto& [name, observation, source, bids] : all_) {
-      static_cast<void>(observation.renew());
+    for (auto& [name, source, bids] : all_) {
       for (auto got = source->take(message); got && *got == hc::Got::Message;
            got = source->take(message))
         if (auto rows = message.view<double>(); rows && rows->width() == 5)
@@ -92,7 +88,6 @@ class Bids {
  private:
   struct Workspace {
     std::string name;  // empty: the only one
-    Observation observation;
     std::unique_ptr<hc::Source> source;
     std::vector<Bid> bids;
   };

@@ -93,26 +93,25 @@ Collected collect(const TraceOptions& options) {
   const auto wanted = upstream_of(module_of(options.port), links);
   struct Watched {
     std::string module;
-    Observation observation;
     std::unique_ptr<hc::Source> source;  // null once it has ended
   };
   std::vector<Watched> watched;
   for (const auto& module : state->modules) {
     if (options.perfetto.empty() && !wanted.contains(module.name)) continue;
     if (module.status != hc::ModuleStatus::Running) continue;
-    auto made = Observation::make(graph, module.name + "." + hc::kTracePort, hc::stop_descriptor());
-    if (!made && made.error().code == hc::Code::Invalid) continue;  // it takes no commands
-    if (!made) throw Failure(made.error());
+    auto source =
+        hc::open_tap(graph, module.name + "." + hc::kTracePort, link_options(kDefaultLimit));
+    if (!source && source.error().code == hc::Code::Invalid) continue;  // it takes no commands
+    if (!source) throw Failure(source.error());
     collected.traced.events[module.name];
-    auto source = open_source(made->uri(), kDefaultLimit);
-    watched.push_back({module.name, std::move(*made), std::move(source)});
+    watched.push_back({module.name, std::move(*source)});
   }
   hc::WaitSet waits(hc::stop_descriptor());
   hc::Message message;
   const auto begin = MonotonicClock::now();
   const auto end = begin + hc::duration(options.duration) + kLast;
   Progress progress("hc trace");
-  for (auto renewed = begin; MonotonicClock::now() < end && !hc::stop_requested();) {
+  while (MonotonicClock::now() < end && !hc::stop_requested()) {
     std::vector<hc::Source*> open;
     for (auto& each : watched) {
       if (each.source == nullptr) continue;
@@ -125,11 +124,6 @@ Collected collect(const TraceOptions& options) {
         open.push_back(each.source.get());
     }
     if (open.empty()) break;
-    if (MonotonicClock::now() - renewed >= 1s) {
-      renewed = MonotonicClock::now();
-      for (auto& each : watched)
-        if (!each.observation.renew()) each.source.reset();
-    }
     progress.show((MonotonicClock::now() - begin) / std::chrono::duration<double>(end - begin),
                   hc::format("{} events", collected.events));
     static_cast<void>(waits.wait(open, {}, 100ms));

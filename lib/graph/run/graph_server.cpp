@@ -66,10 +66,13 @@ void GraphServer::log(const std::string& line) {
 
 void GraphServer::take_request(const Message& message) const {
   const auto request = read_request(message);
-  callbacks_.obey(request.lines, [to = request.reply](const GraphAnswer& answer) {
-    // A client that has left needs no answer.
-    if (!to.empty()) static_cast<void>(say_at_once(to, make_answer(answer)));
-  });
+  callbacks_.obey(request.lines,
+                  [to = request.reply, seq = message.header.seq](const auto& answer) {
+                    if (to.empty()) return;
+                    auto reply = make_answer(answer);
+                    reply.header.seq = seq;
+                    static_cast<void>(say_at_once(to, reply));  // a client that has left needs none
+                  });
 }
 
 }  // namespace hc::internal

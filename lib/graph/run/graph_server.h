@@ -9,10 +9,10 @@
 #include <vector>
 
 #include <graph/run/announcer.h>
-#include <graph/run/intake.h>
 #include <hc/contract/graph_command.h>
 #include <hc/contract/graph_state.h>
 #include <hc/contract/running_graph.h>
+#include <hc/link/intake.h>
 
 namespace hc::internal {
 

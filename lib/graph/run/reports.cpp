@@ -79,8 +79,11 @@ bool Reports::take(const Message& message, MonotonicTime now) {
 void Reports::take_counters(const std::vector<LinkCounters>& rows, MonotonicTime now) {
   if (rows.empty()) return;
   std::map<std::string, LinkCounters> sums;
-  for (std::size_t i = 0; i < std::min(rows.size(), order_.size()); ++i)
+  read_.clear();
+  for (std::size_t i = 0; i < std::min(rows.size(), order_.size()); ++i) {
     add(rows[i], sums[order_[i]]);
+    if (rows[i].readers > 0) read_.insert(order_[i]);
+  }
   for (auto& [key, counted] : ends_)
     if (auto sum = sums.find(key); sum != sums.end())
       count(counted, sum->second, key.starts_with("in "), now);
@@ -148,6 +151,10 @@ bool Reports::take_state(const StateReport& state) {
 std::string Reports::blocked_key() const {
   const auto row = static_cast<std::size_t>(state_.blocked_row);
   return state_.blocked_row <= 0 || row > order_.size() ? "" : order_[row - 1];
+}
+
+bool Reports::has_readers(const std::string& port, const std::string& uri) const {
+  return read_.contains(end_key(false, port, uri));
 }
 
 bool Reports::is_blocked_on(const PlannedLink& link) const {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ class Reports {
 
   /// Of an end; null where nothing has been reported of it.
   [[nodiscard]] const EndReport* find(const PlannedEnd& end) const;
+  /// Whether a reader is connected to a listening output, of the plan or not, as last reported.
+  [[nodiscard]] bool has_readers(const std::string& port, const std::string& uri) const;
   [[nodiscard]] const std::map<std::string, std::string>& parameters() const { return parameters_; }
   [[nodiscard]] const StateReport& state() const { return state_; }
   /// Whether a link, or one that has its sending end in common with it, is that for whose reader
@@ -68,6 +71,7 @@ class Reports {
   std::vector<std::string> order_;       // keys of ends, as the rows of counters come
   bool has_links_ = false;               // the module has reported them
   std::map<std::string, Counted> ends_;  // of the plan, by key
+  std::set<std::string> read_;           // ends with readers, of the plan or not, by key
   std::map<std::string, std::string> parameters_;
   StateReport state_;
 };

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include <graph/run/drain.h>
 #include <graph/run/lines.h>
 
 namespace hc::internal {

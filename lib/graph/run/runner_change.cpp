@@ -169,7 +169,7 @@ void Runner::begin_planning(std::function<Result<LoadedGraph>(int stop)> plan) {
   auto planning = run_aside(*loop_, std::move(plan),
                             [this](Result<LoadedGraph> loaded) { take_planned(loaded); });
   if (!planning) {
-    end_change({planning.error().text()});
+    end_change({false, {planning.error().text()}});
     return begin_changes();
   }
   planning_ = std::move(*planning);

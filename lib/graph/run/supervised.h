@@ -16,7 +16,6 @@
 #include <graph/run/announcer.h>
 #include <graph/run/change.h>
 #include <graph/run/held_names.h>
-#include <graph/run/intake.h>
 #include <graph/run/lines.h>
 #include <graph/run/log_limit.h>
 #include <graph/run/module_process.h>
@@ -24,6 +23,7 @@
 #include <graph/run/restarts.h>
 #include <hc/base/clock.h>
 #include <hc/contract/graph_state.h>
+#include <hc/link/intake.h>
 #include <hc/os/procfs.h>
 
 namespace hc::internal {
@@ -79,8 +79,8 @@ class Supervised {
   /// A module that it is linked to is interrupted. One without `control` takes that for the end of
   /// its work, and is restarted when it ends.
   void note_interruption();
-  /// Has it open an output for observers, under a name that no other link has, until it was not
-  /// asked for so long.
+  /// Has it open an output for clients, under a name that no other link has. It is closed when no
+  /// reader has been connected for kObserved.
   ///
   /// @returns  the URI that observers read. Errors: Closed (its host is not connected).
   Result<std::string> observe(const std::string& port, const std::string& name);
@@ -124,6 +124,7 @@ class Supervised {
     std::shared_ptr<const HeldPort> held = {};  // where it is read from another host
 
     [[nodiscard]] std::string command() const { return "link out " + text; }
+    [[nodiscard]] std::string uri_there() const { return text.substr(text.find('=') + 1); }
   };
 
   [[nodiscard]] std::shared_ptr<Host> host() const;

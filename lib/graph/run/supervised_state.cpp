@@ -57,6 +57,10 @@ Status Supervised::open_observed(Observed& observed, const std::string& port,
 }
 
 void Supervised::end_observations(MonotonicTime time) {
+  // Readers of a process that is being restarted wait for the next one.
+  for (auto& [port, observed] : observed_)
+    if (heard_ == MonotonicTime(0) || reports_.has_readers(port, observed.uri_there()))
+      observed.until = time + kObserved;
   std::erase_if(observed_, [&](const auto& entry) {
     const bool is_over = time >= entry.second.until;
     if (is_over) send_commands({"unlink out " + entry.second.text});

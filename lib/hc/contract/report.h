@@ -30,13 +30,14 @@ struct LinkCounters {
   std::uint64_t ignored = 0;  ///< messages that came and were not handled: not in focus
   Durations age{-1, -1, -1};  ///< of messages, from when they were sensed (R11)
   Durations gap{-1, -1, -1};  ///< from one message to the next
+  std::int64_t readers = -1;  ///< that are connected to a listening output; -1: it is none
 };
 
 /// The columns of Report::Counters, in this order.
 struct CounterColumn {
   std::string_view name, meaning;
 };
-constexpr std::array<CounterColumn, 16> kCounterColumns = {{
+constexpr std::array<CounterColumn, 17> kCounterColumns = {{
     {"messages", "messages that went over the link"},
     {"bytes", "their bytes"},
     {"throttled", "messages delayed by `rate`; they went later, or are among the dropped"},
@@ -53,6 +54,7 @@ constexpr std::array<CounterColumn, 16> kCounterColumns = {{
     {"gap_max", "its maximum [ns]"},
     {"timed_out", "dropped: the reader had taken nothing for too long (`timeout`)"},
     {"bad", "received and dropped: damaged, or not what the input takes"},
+    {"readers", "connected readers of an output that listens; -1: it does not"},
 }};
 
 /// A table of i64, a row for each link.

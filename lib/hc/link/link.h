@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -119,6 +120,10 @@ class Sink {
 
   /// What send() has taken so far; a message to several readers counts once.
   [[nodiscard]] virtual Traffic traffic() const = 0;
+
+  /// Lets readers in that wait to connect, and counts those that are connected; nothing where no
+  /// reader connects to this end. Not to be called within send().
+  virtual std::optional<std::size_t> readers() { return std::nullopt; }
 };
 
 /// How a link behaves, whatever carries it.

@@ -254,6 +254,10 @@ void Module::Loop::report() {
     report_state();
     report_links();
   }
+  for (const auto& link : sinks_) {  // not in report_counters(), which one of them may wait in
+    const auto readers = link->sink ? link->sink->readers() : std::nullopt;
+    link->readers = readers ? static_cast<std::int64_t>(*readers) : -1;
+  }
   report_counters();
 }
 
@@ -273,8 +277,11 @@ void Module::Loop::report_counters() {
       counters.traffic.superseded +=
           input.together->superseded + input.together->matcher.dropped(input.place).total();
   }
-  for (const auto& link : sinks_)
-    links.push_back({link->sink ? link->sink->traffic() : link->traffic});
+  for (const auto& link : sinks_) {
+    auto& counters = links.emplace_back();
+    counters.traffic = link->sink ? link->sink->traffic() : link->traffic;
+    counters.readers = link->readers;
+  }
   send(Report::Counters, make_counters(links));
 }
 

@@ -51,6 +51,10 @@ class ShmSink final : public Sink {
   Status close() override;
   void abandon() override { end(); }
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
+  std::optional<std::size_t> readers() override {
+    refresh();
+    return present_;
+  }
 
  private:
   void publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot);

@@ -102,6 +102,16 @@ class ListeningSink final : public Sink {
     return all;
   }
 
+  std::optional<std::size_t> readers() override {
+    let_in();
+    for (std::size_t i = peers_.size(); i-- > 0;) {
+      pollfd polled{peers_[i]->descriptor(), 0, 0};
+      ::poll(&polled, 1, 0);
+      if (peers_[i]->has_failed() || (polled.revents & (POLLERR | POLLHUP)) != 0) leave(i);
+    }
+    return peers_.size();
+  }
+
  private:
   /// Makes peers of those who wait outside, as far as there is room.
   void accept_all() {

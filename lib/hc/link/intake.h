@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Takes what comes over a link, as it comes, on the thread of a loop. Internal to graph.
+// Takes messages from a link as they come, on the thread of a loop. Internal.
 
 #include <functional>
 #include <memory>
@@ -11,12 +11,12 @@
 
 namespace hc::internal {
 
-/// Hands on all messages of a link until it ends; a link that never ends lets others have a turn.
+/// Hands on all messages of a link until it ends; a busy link leaves turns to others.
 class Intake {
  public:
   using Take = std::function<void(const Message& message)>;
 
-  /// @param is_limited  whoever sends more than kMostInATurn messages in kPause waits.
+  /// @param is_limited  a writer that sends more than kMostInATurn messages in kPause waits.
   /// Errors: as open_source(), System.
   static Result<std::unique_ptr<Intake>> make(Loop& loop, const std::string& uri, Take take,
                                               const LinkOptions& options = {},
@@ -24,6 +24,9 @@ class Intake {
 
   /// Takes what is there now.
   void take();
+  /// Has `end` called when the link has ended or failed, as the last act of this object, which it
+  /// may destroy.
+  void on_end(std::function<void()> end) { end_ = std::move(end); }
 
  private:
   static constexpr int kMostInATurn = 32;
@@ -39,17 +42,10 @@ class Intake {
   Loop& loop_;
   std::unique_ptr<Source> source_;
   Take take_;
+  std::function<void()> end_;
   const std::chrono::milliseconds pause_;
   bool is_paused_ = false;
   Loop::Handle watch_, woken_, again_;
 };
-
-/// What reads in the place of a module that reads no more, so that no writer waits for it.
-///
-/// @param reader_uri  the URI of its end; how long it was to wait plays no part, and it keeps no
-///     message from being overwritten.
-///
-/// Errors: as Intake::make.
-Result<std::unique_ptr<Intake>> make_drain(Loop& loop, const std::string& reader_uri);
 
 }  // namespace hc::internal

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <graph/run/intake.h>
-
-#include <algorithm>
-#include <array>
+#include <hc/link/intake.h>
 
 namespace hc::internal {
 
@@ -40,6 +37,7 @@ void Intake::take() {
       watch_.reset();
       woken_.reset();
       again_.reset();
+      if (const auto end = end_) end();
       return;
     }
     if (*got == Got::Message)
@@ -54,19 +52,6 @@ void Intake::take() {
     static_cast<void>(watch_.want(EPOLLIN));
     take();
   });
-}
-
-Result<std::unique_ptr<Intake>> make_drain(Loop& loop, const std::string& reader_uri) {
-  auto uri = parse_uri(reader_uri);
-  if (!uri) return uri.error();
-  constexpr std::array<std::string_view, 4> kWhoMay = {"same_user", "key", "peer", "interface"};
-  std::erase_if(uri->options, [&](const auto& option) {
-    return std::find(kWhoMay.begin(), kWhoMay.end(), option.first) == kWhoMay.end();
-  });
-  uri->options.emplace_back("reconnect", "86400");
-  if (uri->scheme == "shm" || uri->scheme == "dds") uri->options.emplace_back("keep", "latest");
-  return Intake::make(
-      loop, uri->text(), [](const Message&) {}, {}, false);
 }
 
 }  // namespace hc::internal

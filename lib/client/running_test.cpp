@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/observe/running.h>
+#include <client/running.h>
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+
+#include <client/graph_client.h>
+#include <client/tap.h>
 
 namespace hc {
 namespace {
@@ -33,24 +36,12 @@ TEST(Running, a_module_knows_its_graph) {
   EXPECT_FALSE(own_graph());
 }
 
-TEST(Running, sockets_with_any_other_name_are_no_graphs) {
-  // Anybody may bind a name, with bytes that a terminal obeys; and whoever asks a graph listens.
-  for (const std::string& name :
-       {std::string("a.b.7"), std::string("\x1b[2J.7"), std::string("å.7"), std::string(".7"),
-        std::string("a.-7"), std::string("a.0"), std::string("a."), std::string("a.7.ask"),
-        std::string(41, 'a') + ".7"})
-    EXPECT_TRUE(
-        find_running("0000: 00000002 00000000 00010000 0001 01 1 @hypercolumn." + name + "\n")
-            .empty())
-        << name;
-}
-
 TEST(Running, a_graph_that_has_ended_is_an_error) {
   const RunningGraph gone{"no_such_graph", 1};
   const auto answer = ask(gone, {"stop"});
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, Code::Closed);
-  EXPECT_FALSE(Observation::make(gone, "camera.left"));
+  EXPECT_FALSE(open_tap(gone, "camera.left"));
 }
 
 }  // namespace

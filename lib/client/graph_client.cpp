@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <client/graph_client.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <utility>
+
+#include <hc/base/format.h>
+#include <hc/mtp/rows.h>
+
+namespace hc {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using internal::Intake;
+
+constexpr std::size_t kMaxWaiting = 256;
+constexpr std::chrono::seconds kCheck{10};      // a graph speaks twice a second
+constexpr std::chrono::minutes kAnswerTime{2};  // it may have to wait for a slow program
+
+}  // namespace
+
+GraphClient::GraphClient(internal::Loop& loop, RunningGraph graph)
+    : loop_(loop), graph_(std::move(graph)) {}
+
+GraphClient::~GraphClient() {
+  if (commands_) commands_->abandon();
+}
+
+Status GraphClient::watch(Callbacks callbacks) {
+  callbacks_ = std::move(callbacks);
+  LinkOptions options;
+  options.limits.element_bytes = kMaxStateBytes;
+  auto states = Intake::make(
+      loop_, graph_.state_uri(), [this](const Message& message) { take(message); }, options);
+  if (!states) return states.error();
+  states_ = std::move(*states);
+  states_->on_end([this] { end(); });
+  return {};
+}
+
+void GraphClient::take(const Message& message) {
+  is_alive_ = true;
+  const auto text = message.characters();
+  if (message.header.src == static_cast<std::int32_t>(GraphReport::Log)) {
+    if (const auto rows = rows_of(message); !rows.empty()) callbacks_->log(rows.front());
+  } else if (message.header.src == static_cast<std::int32_t>(GraphReport::State)) {
+    if (const auto state = parse_graph_state(text)) callbacks_->state(*state, text);
+  }
+}
+
+void GraphClient::end() {
+  fail({Code::Closed, graph_.text() + " has ended"});
+  callbacks_->end();
+}
+
+/// Opens the links for commands and their answers.
+Status GraphClient::open() {
+  static std::atomic<unsigned> clients{0};
+  reply_ = hc::format("unix:@hypercolumn-answer.{}.{}", ::getpid(), clients++);
+  auto answers = Intake::make(loop_, "unix-listen" + reply_.substr(reply_.find(':')),
+                              [this](const Message& message) { take_answer(message); });
+  if (!answers) return answers.error();
+  auto uri = parse_uri(graph_.command_uri());
+  if (!uri) return uri.error();
+  uri->options = {{"keep", std::to_string(kMaxWaiting)}};  // so that nothing is waited for
+  auto commands = open_sink(*uri);
+  if (!commands) return commands.error();
+  answers_ = std::move(*answers);
+  commands_ = std::move(*commands);
+  return {};
+}
+
+void GraphClient::command(std::vector<std::string> lines, Answered answered) {
+  if (waiting_.size() >= kMaxWaiting)
+    return answered(
+        Error{Code::TooLarge,
+              hc::format("{} commands are waiting already; try again later", kMaxWaiting)});
+  if (!commands_)
+    if (auto opened = open(); !opened) return answered(opened.error());
+  auto message = make_request({reply_, std::move(lines)});
+  const auto number = message.header.seq = sent_++;
+  if (auto sent = commands_->send(message); !sent) {
+    commands_.reset();
+    return answered(sent.error());
+  }
+  waiting_[number] = {std::move(answered), Clock::now() + kAnswerTime};
+  if (!check_) check_ = loop_.call_at(Clock::now() + kCheck, [this] { check(); });
+}
+
+void GraphClient::take_answer(const Message& message) {
+  is_alive_ = true;
+  auto found = waiting_.extract(message.header.seq);
+  if (found) found.mapped().answered(read_answer(message));
+}
+
+/// Gives up a graph that does not answer: one that says nothing at all, or is slow beyond measure.
+void GraphClient::check() {
+  if (waiting_.empty()) return check_.reset();
+  const bool is_late = Clock::now() >= waiting_.begin()->second.until;
+  if (!std::exchange(is_alive_, false) && states_)
+    return fail({Code::Closed, graph_.text() + " does not answer"});
+  if (is_late) return fail({Code::Closed, graph_.text() + " has not answered for 2 minutes"});
+  if (!states_)
+    if (auto watched = watch({[](const auto&, auto) {}}); !watched)
+      return fail({Code::Closed, graph_.text() + " has ended"});
+  check_ = loop_.call_at(Clock::now() + kCheck, [this] { check(); });
+}
+
+void GraphClient::fail(const Error& error) {
+  check_.reset();
+  for (auto& [number, waiting] : std::exchange(waiting_, {})) waiting.answered(error);
+}
+
+Result<GraphAnswer> ask(const RunningGraph& graph, std::vector<std::string> commands, int stop) {
+  auto loop = internal::Loop::make();
+  if (!loop) return loop.error();
+  std::optional<Result<GraphAnswer>> answer;
+  internal::Loop::Handle stopped;
+  if (stop >= 0) {
+    auto watched = (*loop)->watch(stop, EPOLLIN, [&](auto) {
+      answer = Error{Code::Stopped, "asked to stop"};
+    });
+    if (!watched) return watched.error();
+    stopped = std::move(*watched);
+  }
+  GraphClient client(**loop, graph);
+  client.command(std::move(commands), [&](const auto& answered) { answer = answered; });
+  while (!answer)
+    if (auto turned = (*loop)->turn(); !turned) return turned.error();
+  return *answer;
+}
+
+}  // namespace hc

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <client/tap.h>
+
+#include <poll.h>
+#include <sched.h>
+#include <sys/epoll.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <client/graph_client.h>
+#include <client/running.h>
+
+namespace hc {
+namespace {
+
+using internal::Descriptor;
+
+/// A source that is at its end when the graph is: modules restart, so that a broken link is none.
+class TapSource final : public Source {
+ public:
+  static Result<std::unique_ptr<Source>> make(std::unique_ptr<Source> source, Descriptor graph) {
+    auto poll =
+        internal::system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+    if (!poll) return poll.error();
+    Descriptor both(*poll);
+    for (const auto& [number, events] :
+         {std::pair(source->descriptor(), EPOLLIN), {graph.get(), EPOLLRDHUP}}) {
+      epoll_event event{static_cast<std::uint32_t>(events), {}};
+      auto added = internal::system_call("epoll_ctl", "", [&, watched = number] {
+        return ::epoll_ctl(both.get(), EPOLL_CTL_ADD, watched, &event);
+      });
+      if (!added) return added.error();
+    }
+    return std::unique_ptr<Source>(
+        new TapSource(std::move(source), std::move(graph), std::move(both)));
+  }
+
+  Result<Got> take(Message& message) override {
+    auto got = source_->take(message);
+    return got && *got == Got::Nothing && has_ended() ? Got::End : got;
+  }
+  [[nodiscard]] int descriptor() const override { return both_.get(); }
+  [[nodiscard]] int wake_descriptor() const override { return source_->wake_descriptor(); }
+  bool prepare_wait() override { return source_->prepare_wait(); }
+  [[nodiscard]] Spin spin() const override { return source_->spin(); }
+  [[nodiscard]] Traffic traffic() const override { return source_->traffic(); }
+
+ private:
+  TapSource(std::unique_ptr<Source> source, Descriptor graph, Descriptor both)
+      : source_(std::move(source)), graph_(std::move(graph)), both_(std::move(both)) {}
+
+  [[nodiscard]] bool has_ended() const {
+    pollfd polled{graph_.get(), POLLRDHUP, 0};
+    return ::poll(&polled, 1, 0) > 0;
+  }
+
+  std::unique_ptr<Source> source_;
+  Descriptor graph_;  // a connection
+  Descriptor both_;
+};
+
+/// Has this thread yield the processor to the robot's modules. Where that is refused, it is only
+/// slower for them.
+void yield_to_robot() {
+  constexpr int kNice = 10;
+  static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNice));
+  const sched_param none{};
+  static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
+}
+
+}  // namespace
+
+Result<Uri> tap_uri(const RunningGraph& graph, const std::string& port, int stop) {
+  auto answer = ask(graph, {"observe " + port}, stop);
+  if (!answer) return answer.error();
+  if (!answer->is_ok || answer->rows.empty())
+    return Error{Code::Invalid, answer->is_ok ? "no URI in the answer" : answer->rows.back()};
+  return parse_uri(answer->rows.front());
+}
+
+Result<std::unique_ptr<Source>> open_tap(const RunningGraph& graph, const std::string& port,
+                                         const LinkOptions& options) {
+  auto connection = connect_to(graph);
+  if (!connection) return connection.error();
+  auto uri = tap_uri(graph, port, options.stop);
+  if (!uri) return uri.error();
+  uri->options.emplace_back("reconnect", "86400");
+  auto source = open_source(*uri, options);
+  if (!source) return source.error();
+  return TapSource::make(std::move(*source), std::move(*connection));
+}
+
+Tap::Tap(RunningGraph graph, std::string port, Callbacks callbacks)
+    : graph_(std::move(graph)),
+      port_(std::move(port)),
+      callbacks_(std::move(callbacks)),
+      thread_([this] { run(); }) {}
+
+Tap::~Tap() {
+  is_stopped_ = true;
+  wake_.raise();
+  thread_.join();
+}
+
+void Tap::wake() {
+  if (is_open_) wake_.raise();  // before, it would end the wait for the output
+}
+
+void Tap::run() {
+  yield_to_robot();
+  try {
+    read();
+  } catch (const std::exception& error) {  // of this client's: the others are served on
+    if (!is_stopped_) callbacks_.end(error.what(), true);
+  }
+}
+
+void Tap::read() {
+  auto end = [&](const std::string& why, bool is_error) {
+    if (!is_stopped_) callbacks_.end(why, is_error);
+  };
+  LinkOptions options;
+  options.stop = wake_.descriptor();
+  auto source = open_tap(graph_, port_, options);
+  if (!source) return end(source.error().detail, true);
+  is_open_ = true;
+  callbacks_.open();
+  Message message;
+  while (!is_stopped_) {
+    const auto got = (*source)->take(message);
+    if (!got) return end(got.error().detail, true);
+    if (*got == Got::End) return end("the graph has ended", false);
+    if (*got == Got::Message) {
+      callbacks_.message(message);
+      continue;  // a newer one may be there
+    }
+    message = {};
+    const auto next = callbacks_.idle();
+    const auto wait =
+        next == Clock::time_point::max()
+            ? std::chrono::milliseconds(-1)
+            : std::max(std::chrono::milliseconds(0),
+                       std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now()));
+    const auto waited = (*source)->wait(wake_.descriptor(), wait);
+    if (waited) continue;
+    if (waited.error().code != Code::Stopped) return end(waited.error().detail, true);
+    wake_.clear();
+  }
+}
+
+}  // namespace hc
