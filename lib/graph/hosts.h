@@ -16,16 +16,18 @@
 namespace hc {
 
 namespace internal {
+class Loop;
 class ModuleProcess;
-}
+}  // namespace internal
 
 /// A host that is connected, or is being connected to again.
 class Host {
  public:
   virtual ~Host() = default;
 
-  // For who plans: from any thread, waiting for the host until `stop` is readable. Errors: Closed
-  // (it is not connected), Stopped, and those of the functions of this host.
+  // For who plans: from other threads than the loop's, waiting for the host until `stop` is
+  // readable. Errors: Closed (it is not connected), Stopped, and those of the functions of this
+  // host.
 
   /// As find_program(), but a missing program is an error (NotFound).
   virtual Result<std::string> find_program(const std::string& name, int stop) = 0;
@@ -36,10 +38,10 @@ class Host {
                                                                       int stop) = 0;
   /// What the program that runs there says of its host (`hc doctor`); words of its own.
   virtual Result<std::string> examine(const std::string& question, int stop) = 0;
+
+  // For who runs the graph: on the loop's thread, at once.
+
   [[nodiscard]] virtual HostPlace place() const = 0;
-
-  // For who runs the graph: from any thread, at once.
-
   [[nodiscard]] virtual HostState state() const = 0;
   /// Starts a module there. It ends with status kHostLost when the connection does.
   virtual std::unique_ptr<internal::ModuleProcess> start(const PlannedModule& module) = 0;
@@ -56,15 +58,28 @@ class Host {
   static constexpr int kHostLost = 256;
 };
 
-/// All other hosts of a run.
+/// All other hosts of a run, and the connections to them, on the thread of a loop.
 class Hosts {
  public:
+  struct Connected {
+    std::shared_ptr<Host> host;
+    HostPlace place;
+  };
+
   virtual ~Hosts() = default;
+
+  /// The loop, to be turned as long as a host is connected: one that hears nothing for 3 s gives
+  /// us up.
+  [[nodiscard]] virtual internal::Loop& loop() = 0;
+  /// Does work that may wait for hosts, on another thread, while this one turns the loop. Errors:
+  /// System.
+  virtual Status serve(const std::function<void()>& work) = 0;
 
   /// The hosts of these declarations; those that are new are connected to, all at once. Errors: of
   /// each, Closed (it cannot be reached, or has no agent of ours; the detail says why), Stopped.
-  virtual std::vector<Result<std::shared_ptr<Host>>> connect(const std::vector<GraphHost>& declared,
-                                                             int stop) = 0;
+  /// From another thread than the loop's.
+  virtual std::vector<Result<Connected>> connect(const std::vector<GraphHost>& declared,
+                                                 int stop) = 0;
   /// A host that has been connected to; null: none has that name.
   [[nodiscard]] virtual std::shared_ptr<Host> find(const std::string& name) const = 0;
 

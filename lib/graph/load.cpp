@@ -130,6 +130,22 @@ class FileLoader : public GraphLoader {
   explicit FileLoader(LoadOptions options) : options_(std::move(options)) {}
 
   Result<LoadedGraph> load(const Plan* running, int stop) override {
+    if (running != nullptr || options_.hosts == nullptr) return read_and_plan(running, stop);
+    Result<LoadedGraph> loaded = Error{};
+    auto served = options_.hosts->serve([&] { loaded = read_and_plan(nullptr, stop); });
+    return served ? std::move(loaded) : served.error();
+  }
+
+  LoadedGraph plan(Graph graph, const Plan& running, int stop) override {
+    Problems problems(graph.files);
+    return planned(std::move(graph), problems, &running, stop);
+  }
+
+ private:
+  using Answers = std::map<std::pair<std::string, std::string>, Result<std::string>>;
+  using HostsByName = std::map<std::string, std::shared_ptr<Host>>;
+
+  Result<LoadedGraph> read_and_plan(const Plan* running, int stop) {
     // A graph that runs is read from files again: nobody writes into a pipe once more.
     auto text = running == nullptr ? read_text(options_.file) : read_file(options_.file);
     if (!text) return text.error();
@@ -145,18 +161,11 @@ class FileLoader : public GraphLoader {
     return planned(std::move(graph), problems, running, stop);
   }
 
-  LoadedGraph plan(Graph graph, const Plan& running, int stop) override {
-    Problems problems(graph.files);
-    return planned(std::move(graph), problems, &running, stop);
-  }
-
- private:
-  using Answers = std::map<std::pair<std::string, std::string>, Result<std::string>>;
-
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
     find_programs(graph, problems);
     Answers described;
-    const HostPlaces places = find_programs_elsewhere(graph, problems, described, stop);
+    HostsByName hosts;
+    const HostPlaces places = find_programs_elsewhere(graph, problems, hosts, described, stop);
     LoadedGraph loaded{graph, {}, {}, {}};
     const bool has_recorder = needs_recorder(graph);
     const std::string recorder = has_recorder ? find_program("recorder") : "";
@@ -165,12 +174,12 @@ class FileLoader : public GraphLoader {
                         const std::string& host) -> Result<std::string> {
       auto known = described.find({host, program});
       if (known == described.end()) {  // a failure is not tried twice
-        const auto there = host.empty() ? nullptr : options_.hosts->find(host);
-        known =
-            described
-                .emplace(std::pair(host, program), there ? there->describe_program(program, stop)
-                                                         : describe_once(program, stop))
-                .first;
+        const auto there = hosts.find(host);
+        known = described
+                    .emplace(std::pair(host, program),
+                             there == hosts.end() ? describe_once(program, stop)
+                                                  : there->second->describe_program(program, stop))
+                    .first;
       }
       if (program == recorder && host.empty() && !recorder.empty() && known->second)
         return with_inputs(*known->second, recorded);
@@ -185,8 +194,9 @@ class FileLoader : public GraphLoader {
       record_outputs(graph, traced_modules(graph, describe), options_.record);
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
-      const auto there = host.empty() ? nullptr : options_.hosts->find(host);
-      return there ? there->hold_port(is_for_others, stop) : internal::hold_port(is_for_others);
+      const auto there = hosts.find(host);
+      return there == hosts.end() ? internal::hold_port(is_for_others)
+                                  : there->second->hold_port(is_for_others, stop);
     };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? hold_port : HoldPort(), places);
@@ -208,15 +218,14 @@ class FileLoader : public GraphLoader {
 
   /// Connects to the hosts that modules run on, and asks each where its programs are and for their
   /// descriptions. Modules on a host that cannot be reached cause no further problems.
-  HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, Answers& described,
-                                     int stop) {
+  HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, HostsByName& hosts,
+                                     Answers& described, int stop) {
     std::vector<GraphHost> wanted;
     for (const auto& declared : graph.hosts)
       if (!declared.ssh.empty() &&
           std::any_of(graph.modules.begin(), graph.modules.end(),
                       [&](const auto& module) { return module.host.value == declared.name; }))
         wanted.push_back(declared);
-    std::map<std::string, std::shared_ptr<Host>> hosts;
     HostPlaces places;
     if (!wanted.empty() && options_.hosts == nullptr)
       problems.add(wanted.front().place, "this program runs graphs on one host alone");
@@ -225,8 +234,8 @@ class FileLoader : public GraphLoader {
       for (std::size_t i = 0; i < wanted.size(); ++i) {
         const auto& name = wanted[i].name;
         if (connected[i]) {
-          hosts[name] = *connected[i];
-          places[name] = hosts[name]->place();
+          hosts[name] = connected[i]->host;
+          places[name] = connected[i]->place;
         } else {
           problems.add(wanted[i].place, "host " + name + ": " + connected[i].error().detail);
         }
@@ -251,9 +260,8 @@ class FileLoader : public GraphLoader {
 
   /// Asks all hosts at the same time, each on a thread: where its programs are, by host and name,
   /// and what these say of themselves.
-  static Answers ask_all(const Graph& graph,
-                         const std::map<std::string, std::shared_ptr<Host>>& hosts,
-                         Answers& described, int stop) {
+  static Answers ask_all(const Graph& graph, const HostsByName& hosts, Answers& described,
+                         int stop) {
     struct Of {
       Answers found, described;
     };

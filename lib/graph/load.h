@@ -45,7 +45,8 @@ class GraphLoader {
 
   /// Reads the files of the graph as they are now, and plans it.
   ///
-  /// @param running  the plan by which it runs, whose numbers stay; null: it does not run.
+  /// @param running  the plan by which it runs, whose numbers stay; null: it does not run. Then
+  /// it is called on the thread of the hosts' loop and turns that; else on another one.
   /// @param stop  descriptor that is readable when no program is to be waited for any more.
   ///
   /// Errors: NotFound (the file). All else that is wrong is in LoadedGraph::problems.

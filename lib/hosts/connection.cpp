@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include <graph/held_port.h>
+#include <hc/base/clock.h>
 #include <hc/base/format.h>
+#include <hosts/answer.h>
 
 namespace hc::hosts {
 namespace {
@@ -18,7 +20,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kGreeting{20000};  // until ssh has connected and the agent has spoken
 constexpr milliseconds kAnswerTime{30000};
-constexpr milliseconds kFirstDelay{100}, kLongestDelay{5000};
 constexpr std::chrono::seconds kLasting{10};  // a connection that counts as one
 constexpr int kFirstExchanges = 8;            // of the clock, unless they take longer:
 constexpr milliseconds kLongestFirst{300};
@@ -105,8 +106,6 @@ class Connection::Process final : public internal::ModuleProcess {
   std::shared_ptr<RemoteModule> module_;
 };
 
-// From any thread.
-
 bool Connection::is_of(const GraphHost& declared) const {
   auto words = [](const GraphHost& host) {
     std::vector<std::string> list = {host.program.value, host.address.value};
@@ -116,55 +115,49 @@ bool Connection::is_of(const GraphHost& declared) const {
   return words(declared) == words(parts_.declared);
 }
 
-void Connection::open() {
-  worker_.post([self = shared_from_this()] { self->connect(); });
-}
-
-Status Connection::wait_until_open(int stop) {
-  const auto value = first_->wait(stop, milliseconds(-1));
-  return value ? Status() : value.error();
+void Connection::open(std::function<void(Status)> opened) {
+  opened_ = std::move(opened);
+  connect();
 }
 
 void Connection::close() {
-  worker_.post([self = shared_from_this()] {
-    self->is_closed_ = true;
-    if (self->conversation_) self->lose("closed");
-    self->again_.reset();
-    self->disconnect();
-  });
+  is_closed_ = true;
+  if (conversation_) lose("closed");
+  again_.reset();
+  disconnect();
 }
 
-void Connection::send(Json order) {
-  worker_.post([self = shared_from_this(), order = std::move(order)] {
-    if (self->conversation_) self->conversation_->say(make_order(order));
-  });
+void Connection::send(const Json& order) {
+  if (conversation_) conversation_->say(make_order(order));
 }
 
-Result<Json> Connection::ask(Json question, int stop) {
-  auto answer = std::make_shared<Answer>(internal::Event::make());
-  worker_.post([self = shared_from_this(), answer, question = std::move(question)]() mutable {
-    auto take = [answer](Result<Json> value) { answer->give(std::move(value)); };
-    if (!self->conversation_ || !self->is_open_) return take(not_connected());
-    question["id"] = ++self->asked_;
-    self->questions_[self->asked_] = std::move(take);
-    self->conversation_->say(make_order(question));
-  });
-  return answer->wait(stop, kAnswerTime);
+void Connection::ask(Json question, Answered answered) {
+  if (!state_.is_connected) return answered(not_connected());
+  question["id"] = ++asked_;
+  questions_[asked_] = std::move(answered);
+  send(question);
 }
+
+// For who plans, on another thread.
 
 Result<std::string> Connection::ask_text(const char* what, const std::string& subject, int stop) {
-  auto answer = ask({{"what", what}, {"subject", subject}}, stop);
-  const std::pair question(std::string(what), subject);
-  const std::lock_guard lock(mutex_);
-  if (!answer) {
-    // So that the rest of the graph can be changed while this host is away.
-    const auto known = answers_.find(question);
-    const bool is_known = answer.error().code == Code::Closed && known != answers_.end();
-    return is_known ? Result<std::string>(known->second) : answer.error();
-  }
-  const auto text = answer->find("text");
-  if (text == answer->end() || !text->is_string()) return Error{Code::Malformed, "no text"};
-  return answers_[question] = text->get<std::string>();
+  const Json question = {{"what", what}, {"subject", subject}};
+  auto answer = answer_of<Result<Json>>(
+      loop_, stop, kAnswerTime, [self = shared_from_this(), question](const auto& give) {
+        self->ask(question, [self, question, give](Result<Json> answered) {
+          auto& known = self->answers_[question.dump()];
+          if (answered) known = *answered;
+          // So that the rest of the graph can be changed while this host is away.
+          if (!answered && answered.error().code == Code::Closed && !known.is_null())
+            answered = known;
+          give(std::move(answered));
+        });
+      });
+  if (!answer) return answer.error();
+  if (!*answer) return answer->error();
+  const auto text = (*answer)->find("text");
+  if (text == (*answer)->end() || !text->is_string()) return Error{Code::Malformed, "no text"};
+  return text->get<std::string>();
 }
 
 Result<std::string> Connection::find_program(const std::string& name, int stop) {
@@ -179,105 +172,89 @@ Result<std::string> Connection::examine(const std::string& question, int stop) {
   return ask_text("examine", question, stop);
 }
 
+Result<std::shared_ptr<const internal::HeldPort>> Connection::hold_port(bool of_all_addresses,
+                                                                        int stop) {
+  using Held = Result<std::shared_ptr<const internal::HeldPort>>;
+  auto held = answer_of<Held>(
+      loop_, stop, kAnswerTime, [self = shared_from_this(), of_all_addresses](const auto& give) {
+        self->ask({{"what", "hold"}, {"of_all", of_all_addresses}, {"port", 0}},
+                  [self, of_all_addresses, give](const Result<Json>& answer) {
+                    const auto port = answer ? port_in(*answer) : std::uint16_t{0};
+                    if (!answer) return give(answer.error());
+                    if (port == 0) return give(Error{Code::Malformed, "no port"});
+                    give(self->held(port, of_all_addresses));
+                  });
+      });
+  return held ? *held : held.error();
+}
+
+// On the loop's thread.
+
+/// A port there, until nobody has it any more, on whichever thread that is.
 std::shared_ptr<const internal::HeldPort> Connection::held(std::uint16_t number, bool of_all) {
-  worker_.post([self = shared_from_this(), number, of_all] { self->ports_[number] = of_all; });
+  ports_[number] = of_all;
   return {new internal::HeldPort{internal::Descriptor(), number},
           [host = weak_from_this()](const internal::HeldPort* port) {
-            if (auto self = host.lock()) {
-              self->worker_.post([self, number = port->number] { self->ports_.erase(number); });
-              self->send({{"what", "release"}, {"port", port->number}});
-            }
+            if (auto self = host.lock())
+              self->loop_.post([self, held = port->number] {
+                self->ports_.erase(held);
+                self->send({{"what", "release"}, {"port", held}});
+              });
             delete port;
           }};
 }
 
-Result<std::shared_ptr<const internal::HeldPort>> Connection::hold_port(bool of_all_addresses,
-                                                                        int stop) {
-  auto answer = ask({{"what", "hold"}, {"of_all", of_all_addresses}, {"port", 0}}, stop);
-  if (!answer) return answer.error();
-  const auto port = port_in(*answer);
-  if (port == 0) return Error{Code::Malformed, "no port"};
-  return held(port, of_all_addresses);
-}
-
 Result<std::shared_ptr<const internal::HeldPort>> Connection::spare_port() {
-  const std::lock_guard lock(mutex_);
   if (spares_.empty()) return not_connected();
   const auto number = spares_.back();
   spares_.pop_back();
-  worker_.post([self = shared_from_this()] { self->want_spare(); });
+  want_spare();
   return held(number, true);
 }
 
-HostPlace Connection::place() const {
-  const std::lock_guard lock(mutex_);
-  return place_;
-}
-
-HostState Connection::state() const {
-  const std::lock_guard lock(mutex_);
-  return state_;
-}
-
-std::int64_t Connection::wall_offset() const {
-  const std::lock_guard lock(mutex_);
-  return wall_offset_;
-}
-
 std::unique_ptr<internal::ModuleProcess> Connection::start(const PlannedModule& module) {
-  const std::int64_t number = [&] {
-    const std::lock_guard lock(mutex_);
-    return ++numbered_;
-  }();
+  const auto number = ++numbered_;
   auto remote = RemoteModule::make(number, module.manage_uri, module.control_uri);
   if (!remote) return nullptr;
-  const Json order = {{"what", "start"},
-                      {"number", number},
-                      {"command", module.command()},
-                      {"manage", module.manage_uri},
-                      {"control", module.control_uri}};
-  worker_.post([self = shared_from_this(), remote = *remote, order] {
-    if (!self->conversation_ || !self->is_open_) return remote->ended(kHostLost);
-    self->modules_[remote->number()] = remote;
-    self->conversation_->say(make_order(order));
-  });
-  return std::make_unique<Process>(shared_from_this(), *remote);
+  auto process = std::make_unique<Process>(shared_from_this(), *remote);
+  if (!state_.is_connected) {
+    (*remote)->ended(kHostLost);
+    return process;
+  }
+  modules_[number] = *remote;
+  send({{"what", "start"},
+        {"number", number},
+        {"command", module.command()},
+        {"manage", module.manage_uri},
+        {"control", module.control_uri}});
+  return process;
 }
 
 std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {
-  const std::int64_t number = [&] {
-    const std::lock_guard lock(mutex_);
-    return ++numbered_;
-  }();
-  worker_.post([self = shared_from_this(), number, reader_uri] {
-    self->readers_[number] = reader_uri;
-    if (self->conversation_)
-      self->conversation_->say(
-          make_order({{"what", "read"}, {"number", number}, {"uri", reader_uri}}));
-  });
+  const auto number = ++numbered_;
+  readers_[number] = reader_uri;
+  send({{"what", "read"}, {"number", number}, {"uri", reader_uri}});
   // Only that it goes is of interest.
   return {this, [host = weak_from_this(), number](void*) {
             auto self = host.lock();
             if (!self) return;
-            self->worker_.post([self, number] { self->readers_.erase(number); });
+            self->readers_.erase(number);
             self->send({{"what", "leave"}, {"number", number}});
           }};
 }
 
-// On the worker's thread.
-
 void Connection::connect() {
   disconnect();
-  is_greeted_ = is_open_ = false;
+  is_greeted_ = false;
   error_text_.clear();
   auto ssh =
       internal::Process::start(ssh_command(parts_.declared), internal::Process::Capture::Both);
   if (!ssh) return lose(ssh.error().detail);
   ssh_.emplace(std::move(*ssh));
-  auto errors = worker_.loop().watch(ssh_->errors(), EPOLLIN, [this](auto) { read_ssh_errors(); });
+  auto errors = loop_.watch(ssh_->errors(), EPOLLIN, [this](auto) { read_ssh_errors(); });
   if (!errors) return lose(errors.error().detail);
   ssh_errors_ = std::move(*errors);
-  auto conversation = Conversation::make(worker_.loop(), ssh_->output(), ssh_->input(), kGreeting,
+  auto conversation = Conversation::make(loop_, ssh_->output(), ssh_->input(), kGreeting,
                                          {[this](const Message& message) { take(message); },
                                           [this](const std::string& why) { lose(why); }});
   if (!conversation) return lose(conversation.error().detail);
@@ -328,7 +305,7 @@ void Connection::obey(const Json& order) try {
   const auto module = found->second;
   if (what == "started") module->started(order.at("process"));
   if (what == "listens")
-    module->listens(worker_.loop(), [this, number = module->number()](const Message& command) {
+    module->listens(loop_, [this, number = module->number()](const Message& command) {
       Message handed_on = command;
       handed_on.header.src = Commands;
       handed_on.header.dst = static_cast<std::int32_t>(number);
@@ -351,14 +328,11 @@ void Connection::greet(const Json& hello) {
   if (version != parts_.version)
     return lose("it has hc " + version + ", and this is hc " + parts_.version +
                 ": install the same");
-  {
-    const std::lock_guard lock(mutex_);
-    place_.address = parts_.declared.address.value;
-    if (place_.address.empty()) place_.address = address_in(hello, "address");
-    place_.runner = address_in(hello, "runner");
-    place_.fingerprint = parts_.fingerprint;
-  }
-  conversation_->say(make_order({{"what", "key"}, {"key", parts_.key}}));
+  place_.address = parts_.declared.address.value;
+  if (place_.address.empty()) place_.address = address_in(hello, "address");
+  place_.runner = address_in(hello, "runner");
+  place_.fingerprint = parts_.fingerprint;
+  send({{"what", "key"}, {"key", parts_.key}});
   estimate_ = {};
   there_to_wall_.reset();
   first_exchanges_ = 0;
@@ -375,35 +349,36 @@ void Connection::take_heartbeat(const Message& message, std::int64_t received) {
   look_at_clock(there);
   if (moments[0] == 0) return;
   estimate_.add({moments[0], moments[1], moments[2], received});
-  if (!is_open_ && ++first_exchanges_ < kFirstExchanges && Clock::now() < greeted_ + kLongestFirst)
+  if (!state_.is_connected && ++first_exchanges_ < kFirstExchanges &&
+      Clock::now() < greeted_ + kLongestFirst)
     return ask_time();
   const auto here = monotonic_to_wall(), now = monotonic_now();
-  const bool is_new = [&] {
-    const std::lock_guard lock(mutex_);
-    wall_offset_ = here - estimate_.offset(now);
-    constexpr double kSeconds = 1e-9;
-    state_.offset = static_cast<double>(estimate_.offset(now) + there - here) * kSeconds;
-    state_.error = static_cast<double>(estimate_.error(now)) * kSeconds;
-    state_.drift = estimate_.drift();
-    state_.latency = static_cast<double>(estimate_.delay()) * kSeconds;
-    return !std::exchange(state_.is_connected, true);
-  }();
-  if (!is_new) return;
+  wall_offset_ = here - estimate_.offset(now);
+  state_.offset = seconds(estimate_.offset(now) + there - here);
+  state_.error = seconds(estimate_.error(now));
+  state_.drift = estimate_.drift();
+  state_.latency = seconds(estimate_.delay());
+  if (!std::exchange(state_.is_connected, true)) begin_work();
+}
+
+/// The host is connected: what ran over an earlier connection, and goes on, is asked for again.
+void Connection::begin_work() {
   connected_ = Clock::now();
-  {
-    const std::lock_guard lock(mutex_);
-    state_.detail.clear();
-  }
-  is_open_ = true;
-  hold_again();
+  state_.detail.clear();
+  for (const auto& each : ports_)
+    ask({{"what", "hold"}, {"of_all", each.second}, {"port", each.first}},
+        [this, number = each.first](const Result<Json>& answer) {
+          if (!answer)
+            parts_.log(hc::format("host {}: port {} is lost: {}", parts_.declared.name, number,
+                                  answer.error().detail));
+        });
   for (const auto& [number, uri] : readers_)
-    conversation_->say(make_order({{"what", "read"}, {"number", number}, {"uri", uri}}));
+    send({{"what", "read"}, {"number", number}, {"uri", uri}});
   for (std::size_t i = 0; i < kSpares; ++i) want_spare();
-  if (std::exchange(is_first_, false)) {
-    first_->give(Json());
-  } else {
+  if (const auto opened = std::exchange(opened_, {}))
+    opened({});
+  else
     parts_.log("host " + parts_.declared.name + ": connected again");
-  }
   parts_.changed();
 }
 
@@ -416,30 +391,11 @@ void Connection::look_at_clock(std::int64_t there_to_wall) {
   there_to_wall_ = there_to_wall;
 }
 
-/// Ports that links have stay theirs.
-void Connection::hold_again() {
-  for (const auto& [number, of_all] : ports_) {
-    const auto id = ++asked_;
-    questions_[id] = [this, number = number](const Result<Json>& answer) {
-      if (!answer)
-        parts_.log(hc::format("host {}: port {} is lost: {}", parts_.declared.name, number,
-                              answer.error().detail));
-    };
-    conversation_->say(
-        make_order({{"what", "hold"}, {"id", id}, {"of_all", of_all}, {"port", number}}));
-  }
-}
-
 void Connection::want_spare() {
-  if (!conversation_) return;
-  const auto id = ++asked_;
-  questions_[id] = [this](const Result<Json>& answer) {
-    const auto port = answer ? port_in(*answer) : std::uint16_t{0};
-    if (port == 0) return;
-    const std::lock_guard lock(mutex_);
-    spares_.push_back(port);
-  };
-  conversation_->say(make_order({{"what", "hold"}, {"id", id}, {"of_all", true}, {"port", 0}}));
+  ask({{"what", "hold"}, {"of_all", true}, {"port", 0}}, [this](const Result<Json>& answer) {
+    if (const auto port = answer ? port_in(*answer) : std::uint16_t{0}; port != 0)
+      spares_.push_back(port);
+  });
 }
 
 void Connection::take_usage(const Message& message) {
@@ -461,7 +417,7 @@ void Connection::ask_time() {
 void Connection::send_heartbeat() {
   if (!conversation_) return;
   ask_time();
-  heartbeat_ = worker_.loop().call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
+  heartbeat_ = loop_.call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
 }
 
 /// Why the connection is lost: what ssh says, and else what was noticed here.
@@ -481,33 +437,28 @@ std::string Connection::reason_of(const std::string& noticed) const {
 void Connection::lose(const std::string& why) {
   if (ssh_) read_ssh_errors();
   const std::string reason = reason_of(why);
-  bool was_connected = false;
-  {
-    const std::lock_guard lock(mutex_);
-    was_connected = std::exchange(state_.is_connected, false);
-    state_.detail = reason;
-    state_.offset = state_.error = state_.drift = state_.latency = {};
-    spares_.clear();
-  }
+  const bool was_connected = std::exchange(state_.is_connected, false);
+  state_.detail = reason;
+  state_.offset = state_.error = state_.drift = state_.latency = {};
+  spares_.clear();
   for (const auto& [number, module] : std::exchange(modules_, {})) module->ended(kHostLost);
-  for (const auto& [id, answer] : std::exchange(questions_, {})) answer(not_connected());
+  for (const auto& [id, answered] : std::exchange(questions_, {})) answered(not_connected());
   heartbeat_.reset();
   // What calls this may be the conversation, which must not be destroyed then.
   if (conversation_) conversation_->close();
-  again_ = worker_.loop().call_at(Clock::now(), [this] { disconnect(); });
-  if (std::exchange(is_first_, false)) {
+  again_ = loop_.call_at(Clock::now(), [this] { disconnect(); });
+  if (const auto opened = std::exchange(opened_, {})) {
     is_closed_ = true;
-    return first_->give(Error{Code::Closed, reason});
+    return opened(Error{Code::Closed, reason});
   }
   if (is_closed_) return;
-  if (was_connected && Clock::now() - connected_ > kLasting) delay_ = {};
-  delay_ = std::clamp(2 * delay_, kFirstDelay, kLongestDelay);
+  if (was_connected && Clock::now() - connected_ > kLasting) pause_.reset();
   if (was_connected)
     parts_.log("host " + parts_.declared.name + ": lost: " + reason + "; connecting again");
   parts_.changed();
-  again_ = worker_.loop().call_at(Clock::now(), [this] {
+  again_ = loop_.call_at(Clock::now(), [this] {
     disconnect();
-    again_ = worker_.loop().call_at(Clock::now() + delay_, [this] { connect(); });
+    again_ = loop_.call_at(Clock::now() + pause_.next(), [this] { connect(); });
   });
 }
 

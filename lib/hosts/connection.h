@@ -2,45 +2,42 @@
 #pragma once
 // One other host: ssh to it, its agent, and what runs there. Internal.
 
-#include <array>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <graph/hosts.h>
 #include <graph/run/process.h>
-#include <hc/os/wait_readable.h>
+#include <hc/base/backoff.h>
 #include <hosts/clock_estimate.h>
 #include <hosts/conversation.h>
 #include <hosts/remote_module.h>
-#include <hosts/worker.h>
 
 namespace hc::hosts {
 
-/// A host as the graph has it. Its conversation is on the worker's thread; the connection is made
-/// again whenever it is lost.
+/// A host as the graph has it; the connection is made again whenever it is lost. On the thread of a
+/// loop, but for what Host offers to who plans.
 class Connection final : public Host, public std::enable_shared_from_this<Connection> {
  public:
   struct Parts {
     GraphHost declared;
     std::string version;
-    std::string key, fingerprint;                      ///< of that host: PEM
-    std::function<void(const std::string& line)> log;  ///< from the worker's thread
-    std::function<void()> changed;                     ///< the same
+    std::string key, fingerprint;  ///< of that host: PEM
+    std::function<void(const std::string& line)> log;
+    std::function<void()> changed;
   };
 
-  Connection(Worker& worker, Parts parts) : worker_(worker), parts_(std::move(parts)) {
+  Connection(internal::Loop& loop, Parts parts) : loop_(loop), parts_(std::move(parts)) {
     state_.name = parts_.declared.name;
   }
 
   /// Connects for the first time; a failure is the end of it.
-  void open();
-  /// What came of that. Errors: Closed, Stopped.
-  Status wait_until_open(int stop);
+  /// @param opened  gets what came of it. Errors: Closed.
+  void open(std::function<void(Status)> opened);
   /// Ends all there is.
   void close();
 
@@ -51,101 +48,69 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   Result<std::string> examine(const std::string& question, int stop) override;
   Result<std::shared_ptr<const internal::HeldPort>> hold_port(bool of_all_addresses,
                                                               int stop) override;
-  [[nodiscard]] HostPlace place() const override;
-  [[nodiscard]] HostState state() const override;
+  [[nodiscard]] HostPlace place() const override { return place_; }
+  [[nodiscard]] HostState state() const override { return state_; }
   std::unique_ptr<internal::ModuleProcess> start(const PlannedModule& module) override;
   void let_go(const PlannedModule& module) override {
     send({{"what", "over"}, {"manage", module.manage_uri}});
   }
   std::shared_ptr<void> read_in_place(const std::string& reader_uri) override;
   Result<std::shared_ptr<const internal::HeldPort>> spare_port() override;
-  [[nodiscard]] std::int64_t wall_offset() const override;
-
-  /// Sends an order to the agent, if it is connected. From any thread.
-  void send(Json order);
+  [[nodiscard]] std::int64_t wall_offset() const override { return wall_offset_; }
 
  private:
   class Process;
-  /// That somebody on another thread waits for.
-  class Answer {
-   public:
-    explicit Answer(Result<internal::Event> event) {
-      if (event)
-        event_ = std::move(*event);
-      else
-        value_ = event.error();
-    }
-    void give(Result<Json> value) {
-      const std::lock_guard lock(mutex_);
-      value_ = std::move(value);
-      event_.raise();
-    }
-    Result<Json> wait(int stop, std::chrono::milliseconds timeout) const {
-      if (event_.descriptor() < 0) return value_;
-      const std::array<int, 1> wanted = {event_.descriptor()};
-      auto ready = wait_readable(wanted, stop, timeout);
-      if (!ready) return ready.error();
-      const std::lock_guard lock(mutex_);
-      return value_;
-    }
+  using Answered = std::function<void(Result<Json>)>;
 
-   private:
-    internal::Event event_;  // none where there was no descriptor for it
-    mutable std::mutex mutex_;
-    Result<Json> value_ = Error{Code::Closed, "no answer for 30 s"};
-  };
-
-  Result<Json> ask(Json question, int stop);
+  /// Sends an order to the agent, if it is connected.
+  void send(const Json& order);
+  void ask(Json question, Answered answered);
   Result<std::string> ask_text(const char* what, const std::string& subject, int stop);
-  std::shared_ptr<const internal::HeldPort> held(std::uint16_t number, bool of_all_addresses);
+  std::shared_ptr<const internal::HeldPort> held(std::uint16_t number, bool of_all);
 
-  // On the worker's thread.
   void connect();
   void read_ssh_errors();
   void take(const Message& message);
   void obey(const Json& order);
   void greet(const Json& hello);
-  void hold_again();
-  void want_spare();
   void take_heartbeat(const Message& message, std::int64_t received);
+  void begin_work();
   void look_at_clock(std::int64_t there_to_wall);
   void take_usage(const Message& message);
+  void want_spare();
   void ask_time();
   void send_heartbeat();
   void lose(const std::string& why);
   [[nodiscard]] std::string reason_of(const std::string& noticed) const;
   void disconnect();
 
-  Worker& worker_;
+  internal::Loop& loop_;
   const Parts parts_;
-  std::shared_ptr<Answer> first_ =
-      std::make_shared<Answer>(internal::Event::make());  // whether it has been connected
+  std::function<void(Status)> opened_;  // until it is known whether it can be connected to
+  bool is_closed_ = false;
+  HostState state_;
+  HostPlace place_;
 
-  // On the worker's thread.
+  // While ssh runs.
   std::optional<internal::Process> ssh_;
   std::unique_ptr<Conversation> conversation_;
   internal::Loop::Handle ssh_errors_, heartbeat_, again_;
   std::string error_text_;  // what ssh has written to its standard error
-  bool is_greeted_ = false, is_open_ = false, is_closed_ = false;
-  std::chrono::milliseconds delay_{0};  // before it is tried again
+  bool is_greeted_ = false;
+  Backoff pause_{std::chrono::milliseconds(100), std::chrono::seconds(5)};
   std::chrono::steady_clock::time_point connected_, greeted_;
   int first_exchanges_ = 0;  // of the clock
-  std::int64_t asked_ = 0;
-  std::map<std::int64_t, std::function<void(Result<Json>)>> questions_;
+  ClockEstimate estimate_;
+  std::optional<std::int64_t> there_to_wall_;
+  std::int64_t wall_offset_ = 0;
+  std::vector<std::uint16_t> spares_;
+
+  std::int64_t asked_ = 0, numbered_ = 0;
+  std::map<std::int64_t, Answered> questions_;
+  std::map<std::string, Json> answers_;  // to questions of ask_text()
   std::map<std::int64_t, std::shared_ptr<RemoteModule>> modules_;
   std::map<std::int64_t, std::string> readers_;  // in place of those that are over
   std::map<std::uint16_t, bool> ports_;          // and whether they are of all addresses
-  bool is_first_ = true;                         // nothing has come of the first time yet
-  ClockEstimate estimate_;
-  std::optional<std::int64_t> there_to_wall_;
-
-  mutable std::mutex mutex_;  // of the rest
-  HostState state_;
-  HostPlace place_;
-  std::int64_t wall_offset_ = 0;
-  std::vector<std::uint16_t> spares_;
-  std::map<std::pair<std::string, std::string>, std::string> answers_;  ///< to ask_text()
-  std::int64_t numbered_ = 0;
 };
 
 }  // namespace hc::hosts

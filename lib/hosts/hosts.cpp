@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <map>
-#include <mutex>
+#include <set>
 
+#include <hc/base/clock.h>
 #include <hc/base/format.h>
+#include <hosts/answer.h>
 #include <hosts/connection.h>
 #include <hosts/key_file.h>
 #include <tls/key.h>
@@ -15,12 +17,13 @@ namespace {
 
 class AllHosts final : public Hosts {
  public:
-  explicit AllHosts(std::string version) : version_(std::move(version)) {}
+  AllHosts(std::string version, std::unique_ptr<internal::Loop> loop)
+      : version_(std::move(version)), loop_(std::move(loop)) {}
   AllHosts(const AllHosts&) = delete;
   AllHosts& operator=(const AllHosts&) = delete;
   ~AllHosts() override {
+    close_those_not_open();
     for (const auto& [name, host] : hosts_) host->close();
-    if (worker_) worker_->post([this] { clock_.reset(); });
   }
 
   /// Before anything else: the key is every module's, of whose links any may be to a host that is
@@ -37,79 +40,93 @@ class AllHosts final : public Hosts {
     return {};
   }
 
-  /// Begins with the first host.
-  Status begin() {
-    if (worker_) return {};
-    auto worker = Worker::make();
-    if (!worker) return worker.error();
-    worker_ = std::move(*worker);
-    worker_->post([this] { look_at_clock(); });
+  std::vector<Result<Connected>> connect(const std::vector<GraphHost>& declared,
+                                         int stop) override {
+    auto connected = answer_of<std::vector<Result<Connected>>>(
+        *loop_, stop, std::chrono::hours(1), [this, declared](const auto& give) {
+          auto begun = std::make_shared<Begun>(Begun{{}, declared.size(), give});
+          for (std::size_t i = 0; i < declared.size(); ++i)
+            begun->connected.emplace_back(Error{Code::Closed, "not connected"});
+          for (std::size_t i = 0; i < declared.size(); ++i) begin_connecting(declared[i], i, begun);
+          if (declared.empty()) give({});
+        });
+    if (connected) return *connected;
+    loop_->post([this] { close_those_not_open(); });
+    return {declared.size(), connected.error()};
+  }
+  Status serve(const std::function<void()>& work) override {
+    bool is_done = false;
+    auto aside = internal::run_aside(
+        *loop_,
+        [&work](int) {
+          work();
+          return true;
+        },
+        [&](bool) { is_done = true; });
+    if (!aside) return aside.error();
+    while (!is_done)
+      if (auto turned = loop_->turn(); !turned) return turned;
     return {};
   }
 
-  std::vector<Result<std::shared_ptr<Host>>> connect(const std::vector<GraphHost>& declared,
-                                                     int stop) override {
-    std::vector<Result<std::shared_ptr<Connection>>> begun;
-    begun.reserve(declared.size());
-    for (const auto& each : declared) begun.push_back(begin_connecting(each));
-    std::vector<Result<std::shared_ptr<Host>>> hosts;
-    for (std::size_t i = 0; i < declared.size(); ++i)
-      hosts.push_back(wait(begun[i], declared[i], stop));
-    return hosts;
-  }
-
   [[nodiscard]] std::shared_ptr<Host> find(const std::string& name) const override {
-    return find_connection(name);
+    const auto found = hosts_.find(name);
+    return found == hosts_.end() ? nullptr : found->second;
   }
+  [[nodiscard]] internal::Loop& loop() override { return *loop_; }
   [[nodiscard]] std::string fingerprint() const override { return fingerprint_; }
   [[nodiscard]] int key() const override { return key_.get(); }
   [[nodiscard]] int descriptor() const override { return changed_.descriptor(); }
   std::vector<std::string> take_events() override {
     changed_.clear();
-    const std::lock_guard lock(mutex_);
     return std::exchange(events_, {});
   }
 
  private:
-  Result<std::shared_ptr<Connection>> begin_connecting(const GraphHost& declared) {
-    if (auto there = find_connection(declared.name); there && there->is_of(declared)) return there;
-    if (auto begun = begin(); !begun) return begun.error();
-    auto key = tls::make_key_text();
-    if (!key) return key.error();
-    auto fingerprint = tls::fingerprint_of_text(*key);
-    if (!fingerprint) return fingerprint.error();
-    auto host = std::make_shared<Connection>(
-        *worker_, Connection::Parts{declared, version_, *key, *fingerprint,
-                                    [this](const std::string& line) { log(line); },
-                                    [this] { changed_.raise(); }});
-    host->open();
-    return host;
-  }
+  struct Begun {
+    std::vector<Result<Connected>> connected;
+    std::size_t missing;
+    Give<std::vector<Result<Connected>>> give;
 
-  Result<std::shared_ptr<Host>> wait(const Result<std::shared_ptr<Connection>>& begun,
-                                     const GraphHost& declared, int stop) {
-    if (!begun) return begun.error();
-    if (find_connection(declared.name) == *begun) return std::shared_ptr<Host>(*begun);
-    if (auto opened = (*begun)->wait_until_open(stop); !opened) {
-      (*begun)->close();
-      return opened.error();
+    void note(std::size_t index, Result<Connected> one) {
+      connected[index] = std::move(one);
+      if (--missing == 0) give(std::move(connected));
     }
-    const std::lock_guard lock(mutex_);
-    auto& entry = hosts_[declared.name];
-    if (entry) entry->close();  // the file says something else of it now
-    entry = *begun;
-    return std::shared_ptr<Host>(*begun);
+  };
+
+  void begin_connecting(const GraphHost& declared, std::size_t index,
+                        const std::shared_ptr<Begun>& begun) {
+    if (!clock_) look_at_clock();  // with the first host
+    const auto known = hosts_.find(declared.name);
+    if (known != hosts_.end() && known->second->is_of(declared))
+      return begun->note(index, Connected{known->second, known->second->place()});
+    auto key = tls::make_key_text();
+    if (!key) return begun->note(index, key.error());
+    auto fingerprint = tls::fingerprint_of_text(*key);
+    if (!fingerprint) return begun->note(index, fingerprint.error());
+    const auto host = std::make_shared<Connection>(
+        *loop_, Connection::Parts{declared, version_, *key, *fingerprint,
+                                  [this](const std::string& line) { log(line); },
+                                  [this] { changed_.raise(); }});
+    opening_.insert(host);
+    host->open([this, index, begun, name = declared.name,
+                opening = std::weak_ptr(host)](const Status& opened) {
+      const auto self = opening.lock();
+      opening_.erase(self);
+      if (!opened) return begun->note(index, opened.error());
+      auto& entry = hosts_[name];
+      if (entry) entry->close();  // the file says something else of it now
+      entry = self;
+      begun->note(index, Connected{self, self->place()});
+    });
   }
 
-  [[nodiscard]] std::shared_ptr<Connection> find_connection(const std::string& name) const {
-    const std::lock_guard lock(mutex_);
-    auto found = hosts_.find(name);
-    return found == hosts_.end() ? nullptr : found->second;
+  void close_those_not_open() {
+    for (const auto& host : std::exchange(opening_, {})) host->close();
   }
 
   void log(const std::string& line) {
     constexpr std::size_t kMost = 1000;
-    const std::lock_guard lock(mutex_);
     if (events_.size() < kMost) events_.push_back(line);
     changed_.raise();
   }
@@ -119,28 +136,30 @@ class AllHosts final : public Hosts {
     const auto wall_offset = monotonic_to_wall();
     if (wall_offset_ && std::abs(wall_offset - *wall_offset_) > kClockSet)
       log(hc::format("graph: the clock of this host was set by {:.3f} s",
-                     static_cast<double>(wall_offset - *wall_offset_) * 1e-9));
+                     seconds(wall_offset - *wall_offset_)));
     wall_offset_ = wall_offset;
-    clock_ = worker_->loop().call_at(std::chrono::steady_clock::now() + kHeartbeat,
-                                     [this] { look_at_clock(); });
+    clock_ =
+        loop_->call_at(std::chrono::steady_clock::now() + kHeartbeat, [this] { look_at_clock(); });
   }
 
   const std::string version_;
   std::string fingerprint_;
   internal::Descriptor key_;
+  const std::unique_ptr<internal::Loop> loop_;
   internal::Event changed_ = internal::Event::must_make();
-  mutable std::mutex mutex_;
   std::vector<std::string> events_;
   std::map<std::string, std::shared_ptr<Connection>> hosts_;
+  std::set<std::shared_ptr<Connection>> opening_;
   std::optional<std::int64_t> wall_offset_;
   internal::Loop::Handle clock_;
-  std::unique_ptr<Worker> worker_;  // ends first
 };
 
 }  // namespace
 
 Result<std::unique_ptr<Hosts>> make_hosts(std::string version) {
-  auto hosts = std::make_unique<AllHosts>(std::move(version));
+  auto loop = internal::Loop::make();
+  if (!loop) return loop.error();
+  auto hosts = std::make_unique<AllHosts>(std::move(version), std::move(*loop));
   if (auto made = hosts->make_key(); !made) return made.error();
   return std::unique_ptr<Hosts>(std::move(hosts));
 }

@@ -3,20 +3,18 @@
 // A module on another host, seen from this one: what it says comes out of a pipe, what it reports
 // goes to who listens to it here, and what that has to say goes there. Internal.
 
-#include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include <graph/run/module_process.h>
 #include <hc/link/intake.h>
 #include <hc/link/link.h>
-#include <hosts/worker.h>
+#include <hc/os/event.h>
+#include <hc/os/loop.h>
 
 namespace hc::hosts {
 
-/// What the worker and the runner share of it.
 class RemoteModule {
  public:
   /// @param manage, control  URIs where it is listened to here; `control` may be empty.
@@ -24,34 +22,23 @@ class RemoteModule {
   static Result<std::shared_ptr<RemoteModule>> make(std::int64_t number, const std::string& manage,
                                                     const std::string& control);
 
-  // On the worker's thread.
-
   void said(std::string_view bytes) const;
   void reported(const Message& message);
   /// It listens to commands: what comes is handed to `command`.
   void listens(internal::Loop& loop, std::function<void(const Message& message)> command);
   void started(pid_t process) { process_ = process; }
-  void used(const internal::Usage& usage) {
-    const std::lock_guard lock(mutex_);
-    usage_ = usage;
-  }
+  void used(const internal::Usage& usage) { usage_ = usage; }
   /// Once; what it has reported has been taken then.
   void ended(int status);
-
-  // On any thread.
 
   [[nodiscard]] std::int64_t number() const { return number_; }
   [[nodiscard]] pid_t process() const { return process_; }
   [[nodiscard]] int output() const { return output_.get(); }
   [[nodiscard]] int has_ended() const { return has_ended_.descriptor(); }
   [[nodiscard]] std::optional<int> status() const {
-    const int status = status_;
-    return status < 0 ? std::optional<int>() : status;
+    return status_ < 0 ? std::optional<int>() : status_;
   }
-  [[nodiscard]] internal::Usage usage() const {
-    const std::lock_guard lock(mutex_);
-    return usage_;
-  }
+  [[nodiscard]] internal::Usage usage() const { return usage_; }
 
  private:
   explicit RemoteModule(std::int64_t number) : number_(number) {}
@@ -60,9 +47,8 @@ class RemoteModule {
   internal::Descriptor output_, says_;  // a pipe
   internal::Event has_ended_;
   std::string control_;
-  std::atomic<int> status_ = -1;
-  std::atomic<pid_t> process_ = 0;
-  mutable std::mutex mutex_;
+  int status_ = -1;
+  pid_t process_ = 0;
   internal::Usage usage_;
   std::unique_ptr<Sink> reports_;
   std::unique_ptr<internal::Intake> commands_;

@@ -53,8 +53,11 @@ std::vector<Finding> diagnose(const hc::Plan& plan, hc::Hosts& hosts) {
   for (const auto& name : names) {
     const auto needs = needs_of(part_of(plan, name));
     const auto host = hosts.find(name);
-    auto answer = host ? host->examine(question_of(needs), hc::stop_descriptor())
-                       : hc::Error{hc::Code::Closed, "it is not connected"};
+    hc::Result<std::string> answer = hc::Error{hc::Code::Closed, "it is not connected"};
+    const auto served = hosts.serve([&] {
+      if (host) answer = host->examine(question_of(needs), hc::stop_descriptor());
+    });
+    if (!served) answer = served.error();
     auto facts = answer ? facts_of(*answer) : answer.error();
     const std::string what = "host " + name;
     if (!facts) {

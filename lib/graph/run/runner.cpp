@@ -44,9 +44,12 @@ Result<RunReport> Runner::run() {
 
 Status Runner::begin() {
   begun_ = now();
-  auto loop = Loop::make();
-  if (!loop) return loop.error();
-  loop_ = std::move(*loop);
+  if (options_.hosts == nullptr) {
+    auto loop = Loop::make();
+    if (!loop) return loop.error();
+    own_loop_ = std::move(*loop);
+  }
+  loop_ = own_loop_ ? own_loop_.get() : &options_.hosts->loop();
   if (!options_.name.empty()) {
     auto server =
         GraphServer::make(*loop_, {options_.name, ::getpid()},
