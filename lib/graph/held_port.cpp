@@ -7,23 +7,23 @@
 
 #include <hc/os/socket.h>
 
-namespace hc::internal {
+namespace hc {
 
 Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, std::uint16_t number) {
   sockaddr_in place{};
   place.sin_family = AF_INET;
   place.sin_port = htons(number);
   place.sin_addr.s_addr = htonl(of_all_addresses ? INADDR_ANY : INADDR_LOOPBACK);
-  const Address address(&place, sizeof place);
-  auto socket =
-      bind_socket(address, (of_all_addresses ? "0.0.0.0:" : "127.0.0.1:") + std::to_string(number));
+  const internal::Address address(&place, sizeof place);
+  auto socket = internal::bind_socket(
+      address, (of_all_addresses ? "0.0.0.0:" : "127.0.0.1:") + std::to_string(number));
   if (!socket) return socket.error();
   socklen_t size = sizeof place;
-  auto named = system_call("getsockname", "", [&] {
+  auto named = internal::system_call("getsockname", "", [&] {
     return ::getsockname(socket->get(), reinterpret_cast<sockaddr*>(&place), &size);
   });
   if (!named) return named.error();
   return std::make_shared<const HeldPort>(HeldPort{std::move(*socket), ntohs(place.sin_port)});
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -17,8 +17,9 @@ namespace hc {
 
 namespace internal {
 class Loop;
+}
 class ModuleProcess;
-}  // namespace internal
+struct ModuleCallbacks;
 
 /// A host that is connected, or is being connected to again.
 class Host {
@@ -33,9 +34,8 @@ class Host {
   virtual Result<std::string> find_program(const std::string& name, int stop) = 0;
   /// As describe_program().
   virtual Result<std::string> describe_program(const std::string& program, int stop) = 0;
-  /// As internal::hold_port(): for as long as the result, also when it is connected to again.
-  virtual Result<std::shared_ptr<const internal::HeldPort>> hold_port(bool of_all_addresses,
-                                                                      int stop) = 0;
+  /// As hc::hold_port(): for as long as the result, also when it is connected to again.
+  virtual Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, int stop) = 0;
   /// What the program that runs there says of its host (`hc doctor`); words of its own.
   virtual Result<std::string> examine(const std::string& question, int stop) = 0;
 
@@ -43,14 +43,14 @@ class Host {
 
   [[nodiscard]] virtual HostPlace place() const = 0;
   [[nodiscard]] virtual HostState state() const = 0;
-  /// Starts a module there. It ends with status kHostLost when the connection does.
-  virtual std::unique_ptr<internal::ModuleProcess> start(const PlannedModule& module) = 0;
-  /// No process of a module will follow there: the names that it listened at are let go of.
-  virtual void let_go(const PlannedModule& module) = 0;
+  /// Processes of a module there. One that runs ends with status kHostLost when the connection
+  /// does.
+  virtual std::unique_ptr<ModuleProcess> make_process(const PlannedModule& module,
+                                                      ModuleCallbacks callbacks) = 0;
   /// Has a reader there take the place of one that has ended, as long as the result.
   virtual std::shared_ptr<void> read_in_place(const std::string& reader_uri) = 0;
   /// A port of all addresses for who observes, where one is at hand. Errors: Closed.
-  virtual Result<std::shared_ptr<const internal::HeldPort>> spare_port() = 0;
+  virtual Result<std::shared_ptr<const HeldPort>> spare_port() = 0;
   /// What added to its monotonic clock gives the wall clock here [ns].
   [[nodiscard]] virtual std::int64_t wall_offset() const = 0;
 

@@ -195,7 +195,7 @@ class FileLoader : public GraphLoader {
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
       const auto there = hosts.find(host);
-      return there == hosts.end() ? internal::hold_port(is_for_others)
+      return there == hosts.end() ? hc::hold_port(is_for_others)
                                   : there->second->hold_port(is_for_others, stop);
     };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,

@@ -19,9 +19,7 @@
 
 namespace hc {
 
-namespace internal {
 struct HeldPort;
-}
 
 /// One end of a link, as a module gets it.
 struct PlannedEnd {
@@ -89,7 +87,7 @@ struct Plan {
   std::vector<std::string> unlinked;              ///< outputs without a link, "MODULE.PORT"
   std::vector<std::string> warnings;              ///< what may not be meant, as Problems::lines()
   /// Of links over TCP, by their names: the port is theirs for as long as a plan has it.
-  std::map<std::string, std::shared_ptr<const internal::HeldPort>> ports;
+  std::map<std::string, std::shared_ptr<const HeldPort>> ports;
   std::string frames;  ///< as text (G31), by the names of the file
 };
 
@@ -99,8 +97,8 @@ using Describe =
 
 /// Gives a link over TCP its port on the host of its writer, of 127.0.0.1, or of all addresses for
 /// readers on other hosts.
-using HoldPort = std::function<Result<std::shared_ptr<const internal::HeldPort>>(
-    const std::string& host, bool is_for_others)>;
+using HoldPort = std::function<Result<std::shared_ptr<const HeldPort>>(const std::string& host,
+                                                                       bool is_for_others)>;
 
 /// What links to and from another host need.
 struct HostPlace {

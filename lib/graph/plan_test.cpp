@@ -102,7 +102,7 @@ TEST(Plan, AnInputSaysHowManyMessagesItsLinksKeep) {
 TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
   const std::string text = "[modules.source]\n[modules.java]\ninputs.in = \"source.left\"\n" +
                            link_text("java.out", "filter.in") + "[modules.filter]\n";
-  auto hold = [](const std::string&, bool of_all) { return internal::hold_port(of_all); };
+  auto hold = [](const std::string&, bool of_all) { return hc::hold_port(of_all); };
   auto looked_at = plan(text);
   ASSERT_TRUE(looked_at) << looked_at.error().detail;
   EXPECT_EQ(looked_at->links[0].reader_uri, "tcp:127.0.0.1:0?wait=60&same_user=1");

@@ -8,14 +8,13 @@
 #include <chrono>
 #include <cstdlib>
 
-#include <graph/run/process.h>
+#include <graph/process.h>
 #include <hc/link/link.h>
 #include <hc/os/wait_readable.h>
 
 namespace hc {
 
 namespace fs = std::filesystem;
-using internal::Process;
 using std::chrono::milliseconds;
 using MonotonicClock = std::chrono::steady_clock;
 

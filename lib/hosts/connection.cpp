@@ -82,30 +82,6 @@ constexpr std::string_view kHowToInstall =
 
 }  // namespace
 
-/// A module there, as who supervises it here has it.
-class Connection::Process final : public internal::ModuleProcess {
- public:
-  Process(std::shared_ptr<Connection> host, std::shared_ptr<RemoteModule> module)
-      : host_(std::move(host)), module_(std::move(module)) {}
-  ~Process() override { kill(); }
-
-  [[nodiscard]] pid_t number() const override { return module_->process(); }
-  [[nodiscard]] int output() const override { return module_->output(); }
-  [[nodiscard]] int ended() const override { return module_->has_ended(); }
-  std::optional<int> poll_status() override { return module_->status(); }
-  void ask_to_end() override { send("end"); }
-  void kill() override {
-    if (!module_->status()) send("kill");
-  }
-  internal::Usage usage(bool) override { return module_->usage(); }
-
- private:
-  void send(const char* what) { host_->send({{"what", what}, {"number", module_->number()}}); }
-
-  std::shared_ptr<Connection> host_;
-  std::shared_ptr<RemoteModule> module_;
-};
-
 bool Connection::is_of(const GraphHost& declared) const {
   auto words = [](const GraphHost& host) {
     std::vector<std::string> list = {host.program.value, host.address.value};
@@ -125,10 +101,6 @@ void Connection::close() {
   if (conversation_) lose("closed");
   again_.reset();
   disconnect();
-}
-
-void Connection::send(const Json& order) {
-  if (conversation_) conversation_->say(make_order(order));
 }
 
 void Connection::ask(Json question, Answered answered) {
@@ -172,9 +144,8 @@ Result<std::string> Connection::examine(const std::string& question, int stop) {
   return ask_text("examine", question, stop);
 }
 
-Result<std::shared_ptr<const internal::HeldPort>> Connection::hold_port(bool of_all_addresses,
-                                                                        int stop) {
-  using Held = Result<std::shared_ptr<const internal::HeldPort>>;
+Result<std::shared_ptr<const HeldPort>> Connection::hold_port(bool of_all_addresses, int stop) {
+  using Held = Result<std::shared_ptr<const HeldPort>>;
   auto held = answer_of<Held>(
       loop_, stop, kAnswerTime, [self = shared_from_this(), of_all_addresses](const auto& give) {
         self->ask({{"what", "hold"}, {"of_all", of_all_addresses}, {"port", 0}},
@@ -191,10 +162,10 @@ Result<std::shared_ptr<const internal::HeldPort>> Connection::hold_port(bool of_
 // On the loop's thread.
 
 /// A port there, until nobody has it any more, on whichever thread that is.
-std::shared_ptr<const internal::HeldPort> Connection::held(std::uint16_t number, bool of_all) {
+std::shared_ptr<const HeldPort> Connection::held(std::uint16_t number, bool of_all) {
   ports_[number] = of_all;
-  return {new internal::HeldPort{internal::Descriptor(), number},
-          [host = weak_from_this()](const internal::HeldPort* port) {
+  return {new HeldPort{internal::Descriptor(), number},
+          [host = weak_from_this()](const HeldPort* port) {
             if (auto self = host.lock())
               self->loop_.post([self, held = port->number] {
                 self->ports_.erase(held);
@@ -204,7 +175,7 @@ std::shared_ptr<const internal::HeldPort> Connection::held(std::uint16_t number,
           }};
 }
 
-Result<std::shared_ptr<const internal::HeldPort>> Connection::spare_port() {
+Result<std::shared_ptr<const HeldPort>> Connection::spare_port() {
   if (spares_.empty()) return not_connected();
   const auto number = spares_.back();
   spares_.pop_back();
@@ -212,22 +183,10 @@ Result<std::shared_ptr<const internal::HeldPort>> Connection::spare_port() {
   return held(number, true);
 }
 
-std::unique_ptr<internal::ModuleProcess> Connection::start(const PlannedModule& module) {
-  const auto number = ++numbered_;
-  auto remote = RemoteModule::make(number, module.manage_uri, module.control_uri);
-  if (!remote) return nullptr;
-  auto process = std::make_unique<Process>(shared_from_this(), *remote);
-  if (!state_.is_connected) {
-    (*remote)->ended(kHostLost);
-    return process;
-  }
-  modules_[number] = *remote;
-  send({{"what", "start"},
-        {"number", number},
-        {"command", module.command()},
-        {"manage", module.manage_uri},
-        {"control", module.control_uri}});
-  return process;
+std::unique_ptr<ModuleProcess> Connection::make_process(const PlannedModule& module,
+                                                        ModuleCallbacks callbacks) {
+  return std::make_unique<RemoteModule>(shared_from_this(), ++numbered_, module.manage_uri,
+                                        std::move(callbacks));
 }
 
 std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {
@@ -247,8 +206,7 @@ void Connection::connect() {
   disconnect();
   is_greeted_ = false;
   error_text_.clear();
-  auto ssh =
-      internal::Process::start(ssh_command(parts_.declared), internal::Process::Capture::Both);
+  auto ssh = Process::start(ssh_command(parts_.declared), Process::Capture::Both);
   if (!ssh) return lose(ssh.error().detail);
   ssh_.emplace(std::move(*ssh));
   auto errors = loop_.watch(ssh_->errors(), EPOLLIN, [this](auto) { read_ssh_errors(); });
@@ -302,19 +260,12 @@ void Connection::obey(const Json& order) try {
   }
   const auto found = modules_.find(order.value("number", std::int64_t{0}));
   if (found == modules_.end()) return;
-  const auto module = found->second;
-  if (what == "started") module->started(order.at("process"));
-  if (what == "listens")
-    module->listens(loop_, [this, number = module->number()](const Message& command) {
-      Message handed_on = command;
-      handed_on.header.src = Commands;
-      handed_on.header.dst = static_cast<std::int32_t>(number);
-      if (conversation_) conversation_->say(handed_on);
-    });
+  auto& module = *found->second;
+  if (what == "started") module.started(order.at("process"));
+  if (what == "listens") module.listens();
   if (what == "ended") {
-    if (order.contains("error")) module->said(order.at("error").get<std::string>() + "\n");
-    modules_.erase(found);
-    module->ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
+    if (order.contains("error")) module.said(order.at("error").get<std::string>() + "\n");
+    module.ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
   }
 } catch (const Json::exception& error) {
   lose(std::string("what it says is wrong: ") + error.what());
@@ -441,7 +392,10 @@ void Connection::lose(const std::string& why) {
   state_.detail = reason;
   state_.offset = state_.error = state_.drift = state_.latency = {};
   spares_.clear();
-  for (const auto& [number, module] : std::exchange(modules_, {})) module->ended(kHostLost);
+  // They may come and go meanwhile.
+  for (const auto& [number, known] : std::map(modules_))
+    if (const auto module = modules_.find(number); module != modules_.end())
+      module->second->ended(kHostLost);
   for (const auto& [id, answered] : std::exchange(questions_, {})) answered(not_connected());
   heartbeat_.reset();
   // What calls this may be the conversation, which must not be destroyed then.

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <graph/hosts.h>
-#include <graph/run/process.h>
+#include <graph/process.h>
 #include <hc/base/backoff.h>
 #include <hosts/clock_estimate.h>
 #include <hosts/conversation.h>
@@ -46,27 +46,31 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   Result<std::string> find_program(const std::string& name, int stop) override;
   Result<std::string> describe_program(const std::string& program, int stop) override;
   Result<std::string> examine(const std::string& question, int stop) override;
-  Result<std::shared_ptr<const internal::HeldPort>> hold_port(bool of_all_addresses,
-                                                              int stop) override;
+  Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, int stop) override;
   [[nodiscard]] HostPlace place() const override { return place_; }
   [[nodiscard]] HostState state() const override { return state_; }
-  std::unique_ptr<internal::ModuleProcess> start(const PlannedModule& module) override;
-  void let_go(const PlannedModule& module) override {
-    send({{"what", "over"}, {"manage", module.manage_uri}});
-  }
+  std::unique_ptr<ModuleProcess> make_process(const PlannedModule& module,
+                                              ModuleCallbacks callbacks) override;
   std::shared_ptr<void> read_in_place(const std::string& reader_uri) override;
-  Result<std::shared_ptr<const internal::HeldPort>> spare_port() override;
+  Result<std::shared_ptr<const HeldPort>> spare_port() override;
   [[nodiscard]] std::int64_t wall_offset() const override { return wall_offset_; }
 
+  // For modules.
+
+  /// Sends to the agent, if there is a connection.
+  void send(const Json& order) { say(make_order(order)); }
+  void say(const Message& message) {
+    if (conversation_) conversation_->say(message);
+  }
+  void add(std::int64_t number, RemoteModule& module) { modules_[number] = &module; }
+  void remove(std::int64_t number) { modules_.erase(number); }
+
  private:
-  class Process;
   using Answered = std::function<void(Result<Json>)>;
 
-  /// Sends an order to the agent, if it is connected.
-  void send(const Json& order);
   void ask(Json question, Answered answered);
   Result<std::string> ask_text(const char* what, const std::string& subject, int stop);
-  std::shared_ptr<const internal::HeldPort> held(std::uint16_t number, bool of_all);
+  std::shared_ptr<const HeldPort> held(std::uint16_t number, bool of_all);
 
   void connect();
   void read_ssh_errors();
@@ -92,7 +96,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   HostPlace place_;
 
   // While ssh runs.
-  std::optional<internal::Process> ssh_;
+  std::optional<Process> ssh_;
   std::unique_ptr<Conversation> conversation_;
   internal::Loop::Handle ssh_errors_, heartbeat_, again_;
   std::string error_text_;  // what ssh has written to its standard error
@@ -108,7 +112,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   std::int64_t asked_ = 0, numbered_ = 0;
   std::map<std::int64_t, Answered> questions_;
   std::map<std::string, Json> answers_;  // to questions of ask_text()
-  std::map<std::int64_t, std::shared_ptr<RemoteModule>> modules_;
+  std::map<std::int64_t, RemoteModule*> modules_;
   std::map<std::int64_t, std::string> readers_;  // in place of those that are over
   std::map<std::uint16_t, bool> ports_;          // and whether they are of all addresses
 };

@@ -1,57 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A module on another host, seen from this one: what it says comes out of a pipe, what it reports
-// goes to who listens to it here, and what that has to say goes there. Internal.
+// The processes of a module on another host, seen from this one. Internal.
 
-#include <functional>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include <graph/run/module_process.h>
-#include <hc/link/intake.h>
-#include <hc/link/link.h>
-#include <hc/os/event.h>
-#include <hc/os/loop.h>
+#include <graph/module_process.h>
 
 namespace hc::hosts {
 
-class RemoteModule {
- public:
-  /// @param manage, control  URIs where it is listened to here; `control` may be empty.
-  /// Errors: System.
-  static Result<std::shared_ptr<RemoteModule>> make(std::int64_t number, const std::string& manage,
-                                                    const std::string& control);
+class Connection;
 
-  void said(std::string_view bytes) const;
-  void reported(const Message& message);
-  /// It listens to commands: what comes is handed to `command`.
-  void listens(internal::Loop& loop, std::function<void(const Message& message)> command);
+class RemoteModule final : public ModuleProcess {
+ public:
+  /// @param number  of the module, in the conversation.
+  RemoteModule(std::shared_ptr<Connection> host, std::int64_t number, std::string manage_uri,
+               ModuleCallbacks callbacks);
+  ~RemoteModule() override;
+
+  Status start(const std::vector<std::string>& command, const std::string& control_uri) override;
+  [[nodiscard]] bool runs() const override { return runs_; }
+  void ask_to_end() override { send("end"); }
+  void kill() override { send("kill"); }
+  void look() override {}  // its end comes over the connection
+  void let_names_go() override { send("over"); }
+  [[nodiscard]] bool is_listening() const override { return is_listening_; }
+  bool send(const Message& command) override;
+  [[nodiscard]] pid_t number() const override { return process_; }
+  internal::Usage usage(bool) override { return usage_; }
+
+  // For the connection: what the agent says of it.
+
+  void said(std::string_view bytes) const { callbacks_.said(bytes); }
+  void reported(const Message& report) const { callbacks_.reported(report); }
+  void listens();
   void started(pid_t process) { process_ = process; }
   void used(const internal::Usage& usage) { usage_ = usage; }
-  /// Once; what it has reported has been taken then.
   void ended(int status);
 
-  [[nodiscard]] std::int64_t number() const { return number_; }
-  [[nodiscard]] pid_t process() const { return process_; }
-  [[nodiscard]] int output() const { return output_.get(); }
-  [[nodiscard]] int has_ended() const { return has_ended_.descriptor(); }
-  [[nodiscard]] std::optional<int> status() const {
-    return status_ < 0 ? std::optional<int>() : status_;
-  }
-  [[nodiscard]] internal::Usage usage() const { return usage_; }
-
  private:
-  explicit RemoteModule(std::int64_t number) : number_(number) {}
+  void send(const char* what) const;
 
+  const std::shared_ptr<Connection> host_;
   const std::int64_t number_;
-  internal::Descriptor output_, says_;  // a pipe
-  internal::Event has_ended_;
-  std::string control_;
-  int status_ = -1;
+  const std::string manage_uri_;
+  const ModuleCallbacks callbacks_;
+  bool runs_ = false, is_listening_ = false;
   pid_t process_ = 0;
   internal::Usage usage_;
-  std::unique_ptr<Sink> reports_;
-  std::unique_ptr<internal::Intake> commands_;
 };
 
 }  // namespace hc::hosts

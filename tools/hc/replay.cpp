@@ -16,7 +16,7 @@
 #include <span>
 #include <tuple>
 
-#include <graph/run/process.h>
+#include <graph/process.h>
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
@@ -340,7 +340,7 @@ class Replay {
   }
 
   void run_module(const hc::PlannedModule& module) {
-    using hc::internal::Process;
+    using hc::Process;
     const auto command = command_of(module);
     auto process = value_or_fail(Process::start(command, Process::Capture::Errors), module.name);
     const auto end = std::chrono::steady_clock::now() + hc::duration(options_.timeout);

@@ -28,9 +28,9 @@ std::string far(const std::string& name, const std::string& host, const std::str
 Result<Plan> plan_hosts(const std::string& text, const HostPlaces& places = kPlaces) {
   auto number = std::make_shared<std::uint16_t>(7000);
   auto hold = [number](const std::string&, bool) {
-    return Result<std::shared_ptr<const internal::HeldPort>>(
-        std::make_shared<const internal::HeldPort>(
-            internal::HeldPort{internal::Descriptor(), ++*number}));
+    return Result<std::shared_ptr<const HeldPort>>(
+        std::make_shared<const HeldPort>(
+            HeldPort{internal::Descriptor(), ++*number}));
   };
   return plan(kHosts + text, {}, nullptr, hold, places);
 }

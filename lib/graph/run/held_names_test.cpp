@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <graph/plan.h>
-#include <graph/run/process.h>
+#include <graph/process.h>
 #include <hc/base/uri.h>
 #include <hc/link/link.h>
 #include <hc/link/stream/ends.h>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <csignal>
 
-#include <graph/run/process.h>
+#include <graph/process.h>
 #include <hc/link/link.h>
 #include <hc/os/wait_readable.h>
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include <graph/run/drain.h>
 #include <graph/run/lines.h>
 
 namespace hc::internal {
@@ -249,7 +248,7 @@ void Runner::settle() {
 void Runner::settle_failures() {
   // A copy, since what is noted may add to them; and behind the others, so that none is blamed for
   // our own signal.
-  for (auto& [name, module] : modules_) module->note_end();
+  for (auto& [name, module] : modules_) module->look_for_end();
   auto cause = std::find_if(failures_.begin(), failures_.end(),
                             [](const Failure& each) { return each.status > kSignal; });
   if (cause == failures_.end()) cause = failures_.begin();
@@ -295,13 +294,7 @@ Result<std::shared_ptr<void>> Runner::drain_for(const PlannedModule& reader,
                                                 const std::string& uri) const {
   if (!reader.host.empty() && options_.hosts != nullptr)
     if (auto host = options_.hosts->find(reader.host)) return host->read_in_place(uri);
-  // Modules find the key of this host at another descriptor.
-  std::string ours = uri;
-  if (const auto key = ours.find(kKeyFile); key != std::string::npos && options_.hosts != nullptr)
-    ours.replace(key, kKeyFile.size(), "/proc/self/fd/" + std::to_string(options_.hosts->key()));
-  auto intake = make_drain(*loop_, ours);
-  if (!intake) return intake.error();
-  return std::shared_ptr<void>(std::move(*intake));
+  return read_in_place_here(*loop_, uri, options_.hosts == nullptr ? -1 : options_.hosts->key());
 }
 
 /// A module all of whose readers have done their work has nothing left to do.

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include <graph/run/process.h>
+#include <graph/process.h>
 #include <hc/base/check.h>
 #include <hc/contract/command.h>
 #include <hc/mtp/rows.h>
@@ -17,10 +17,8 @@ namespace {
 
 using MonotonicClock = std::chrono::steady_clock;
 
-constexpr int kLastPieces = 16;  // a pipe can be made to hold a MiB; source: man 7 pipe
-constexpr int kCutOff = 1;       // a failure, as far as restarts go
+constexpr int kCutOff = 1;                             // a failure, as far as restarts go
 constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
-constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
 
 std::string seconds_in_words(std::chrono::nanoseconds time) {
   char text[32];
@@ -59,44 +57,46 @@ Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule p
                                                      Callbacks callbacks, Hosts* hosts) {
   std::unique_ptr<Supervised> module(
       new Supervised(loop, std::move(plan), limits, std::move(callbacks), hosts));
-  auto& self = *module;
-  LinkOptions options;
-  options.limits.element_bytes = kMostReported;
-  auto manage = Intake::make(
-      loop, self.plan_.manage_uri, [&self](const Message& message) { self.take_report(message); },
-      options);
-  if (!manage) return manage.error();
-  self.manage_ = std::move(*manage);
-  if (auto opened = self.open_control(); !opened) return opened.error();
+  if (auto made = module->make_process(); !made) return made.error();
   return module;
 }
 
-/// Listens for the module to connect, if the plan says that it takes commands.
-Status Supervised::open_control() {
-  if (plan_.control_uri.empty()) control_.reset();
-  if (plan_.control_uri.empty() || control_) return {};
-  auto control = Announcer::make(loop_, plan_.control_uri, [this] {
-    std::vector<Message> messages;
-    for (const auto& command : catch_up()) messages.push_back(command_message(command));
-    return messages;
-  });
-  if (!control) return control.error();
-  control_ = std::move(*control);
+/// Listens to the processes that it will have on the host of its plan.
+Status Supervised::make_process() {
+  const auto there = host();
+  HC_CHECK(there != nullptr || plan_.host.empty(), plan_.name, plan_.host);
+  if (process_ && there == process_host_) return {};
+  ModuleCallbacks callbacks{[this](std::string_view text) { return take_text(text); },
+                            [this](const Message& report) { take_report(report); },
+                            [this] { return catch_up(); },
+                            [this](int status) { note_end(status); }};
+  std::unique_ptr<ModuleProcess> made;
+  if (there) {
+    made = there->make_process(plan_, std::move(callbacks));
+  } else {
+    auto here = make_process_here(loop_, plan_.manage_uri, hosts_ == nullptr ? -1 : hosts_->key(),
+                                  std::move(callbacks));
+    if (!here) return here.error();
+    made = std::move(*here);
+  }
+  // The end of the one before, on another host, may be what calls this.
+  if (process_) loop_.post([before = std::shared_ptr(std::move(process_))] {});
+  process_ = std::move(made);
+  process_host_ = there;
   return {};
 }
 
 /// The commands for a process that has just connected: what has changed since it was started.
-std::vector<std::string> Supervised::catch_up() {
+std::vector<Message> Supervised::catch_up() {
   const auto change = change_between(told_, plan_);
-  std::vector<std::string> commands;
+  std::vector<Message> commands;
+  auto add = [&](const std::string& command) { commands.push_back(command_message(command)); };
   for (const auto* some : {&change.unlinks, &change.outputs, &change.inputs})
-    commands.insert(commands.end(), some->begin(), some->end());
-  for (const auto& input : finished_)
-    commands.push_back(text({ModuleCommand::Verb::Finish, true, input, {}}));
-  for (const auto& [port, observed] : observed_) commands.push_back(observed.command());
+    for (const auto& command : *some) add(command);
+  for (const auto& input : finished_) add(text({ModuleCommand::Verb::Finish, true, input, {}}));
+  for (const auto& [port, observed] : observed_) add(observed.command());
   if (wall_offset_ != 0)
-    commands.push_back(
-        text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset_), {}}));
+    add(text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset_), {}}));
   set_told();
   return commands;
 }
@@ -114,13 +114,8 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
   if (status_ == status && detail_ == detail) return;
   status_ = status;
   detail_ = detail;
-  if (is_over()) let_names_go();
+  if (is_over()) process_->let_names_go();
   callbacks_.changed();
-}
-
-void Supervised::let_names_go() {
-  names_.let_go();
-  if (const auto there = host()) there->let_go(plan_);
 }
 
 std::shared_ptr<Host> Supervised::host() const {
@@ -135,20 +130,20 @@ void Supervised::look_at_host() {
 /// Has a module on another host go by the time here.
 void Supervised::send_wall_offset() {
   constexpr std::int64_t kNear = 20'000;  // [ns]
-  const auto there = control_ && process_ ? host() : nullptr;
+  const auto there = takes_commands() && process_->runs() ? process_host_ : nullptr;
   if (!there || !there->state().is_connected) return;
   const auto wall_offset = there->wall_offset();
   if (std::abs(wall_offset - wall_offset_) < kNear) return;
   wall_offset_ = wall_offset;
-  if (is_heard())
+  if (process_->is_listening())
     send_commands({text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset), {}})});
 }
 
 Status Supervised::start() {
   timer_.reset();
   wish_ = Wish::None;
-  const auto there = host();
-  HC_CHECK(there != nullptr || plan_.host.empty(), plan_.name, plan_.host);
+  if (auto made = make_process(); !made) return made;
+  const auto& there = process_host_;
   awaits_host_ = there && !there->state().is_connected;
   if (awaits_host_) {
     change(ModuleStatus::Waiting, "host " + plan_.host + " is not connected");
@@ -158,35 +153,19 @@ Status Supervised::start() {
   hung_.clear();
   finished_.clear();
   lines_.forget();
-  if (auto opened = open_control(); !opened) return opened;
   restarts_.started(now());
   ++starts_;
-  wall_offset_ = there && control_ ? there->wall_offset() : 0;
+  wall_offset_ = there && takes_commands() ? there->wall_offset() : 0;
   PlannedModule plan = plan_;
   // One that decides on the focus begins with the stops that its last process knew of.
   if (const auto& stops = reports_.state().stops; !stops.empty() && plan.known.contains(kStops))
     plan.parameters.try_emplace(kStops, stops_text(stops));
-  if (there) {
-    if (control_) plan.add_option("--wall_offset", std::to_string(wall_offset_));
-    process_ = there->start(plan);
-    if (!process_) return Error{Code::System, plan_.name + ": it cannot be listened to"};
-  } else {
-    const auto command = plan.command();
-    if (auto held = names_.hold(command); !held) return held;
-    auto process =
-        start_here(command, {hosts_ == nullptr ? -1 : hosts_->key(), names_.descriptors()});
-    if (!process) return Error{process.error().code, plan_.name + ": " + process.error().detail};
-    process_ = std::move(*process);
-  }
+  if (there && takes_commands()) plan.add_option("--wall_offset", std::to_string(wall_offset_));
+  if (auto started = process_->start(plan.command(), plan.control_uri); !started)
+    return Error{started.error().code, plan_.name + ": " + started.error().detail};
   told_ = plan_;
-  auto said = loop_.watch(process_->output(), EPOLLIN, [this](auto) { read_lines(); });
-  if (!said) return said.error();
-  said_ = std::move(*said);
-  auto ended = loop_.watch(process_->ended(), EPOLLIN, [this](auto) { note_end(); });
-  if (!ended) return ended.error();
-  ended_ = std::move(*ended);
   callbacks_.event("started");
-  change(control_ ? ModuleStatus::Starting : ModuleStatus::Running);
+  change(takes_commands() ? ModuleStatus::Starting : ModuleStatus::Running);
   return {};
 }
 
@@ -212,7 +191,7 @@ void Supervised::dismiss() {
 
 void Supervised::restart() {
   restarts_.reset();
-  if (!process_) return start_again();
+  if (!process_->runs()) return start_again();
   wish_ = Wish::Restart;
   callbacks_.interrupted();
   ask_to_end();
@@ -220,7 +199,7 @@ void Supervised::restart() {
 
 /// Of one without a process, what follows its end follows at once.
 void Supervised::ask_to_end() {
-  if (!process_) {
+  if (!process_->runs()) {
     timer_.reset();
     awaits_cause_ = awaits_host_ = false;
     change(ModuleStatus::Ended);
@@ -236,34 +215,31 @@ void Supervised::ask_to_end() {
 ModuleChange Supervised::adopt(PlannedModule plan) {
   // A connected one has got all commands so far; another catches up, and only this plan's part is
   // new.
-  auto change = change_between(is_heard() ? told_ : plan_, plan);
+  auto change = change_between(process_->is_listening() ? told_ : plan_, plan);
   const bool needs_restart = change_between(told_, plan).needs_restart;
-  if (plan.host != plan_.host) let_names_go();
   plan_ = std::move(plan);
   reports_.set_ends(plan_.ends);
   restarts_.set_policy(plan_.restart);
   if (change.is_empty() && !needs_restart) return {};
   // A module that has done its work has more to do when it has something else to read.
   const bool is_at_rest = status_ == ModuleStatus::Ended && change.inputs.empty();
-  if (needs_restart || change.needs_restart || (!process_ && !is_at_rest)) {
+  if (needs_restart || change.needs_restart || (!process_->runs() && !is_at_rest)) {
     restart();
     ModuleChange restarted;
     restarted.needs_restart = true;
     return restarted;
   }
-  if (is_heard()) set_told();
+  if (process_->is_listening()) set_told();
   for (const auto& command : change.outputs)
     if (command.starts_with("set ")) callbacks_.event(command);
   return change;
 }
 
-bool Supervised::is_heard() const {
-  return process_ && control_ && control_->is_heard();
-}
-
 void Supervised::send_commands(const std::vector<std::string>& commands) {
   for (const auto& command : commands) {
-    if (!is_heard() || wish_ == Wish::Restart || control_->say(command_message(command))) continue;
+    if (!process_->is_listening() || wish_ == Wish::Restart ||
+        process_->send(command_message(command)))
+      continue;
     callbacks_.event("does not accept commands; restarting");
     restart();
   }
@@ -277,31 +253,20 @@ void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
     send_commands({text({ModuleCommand::Verb::Link, true, what, {}})});
 }
 
-void Supervised::note_end() {
-  if (!process_) return;
-  auto status = process_->poll_status();
-  if (!status) return;
-  manage_->take();  // accepts a connection that has just been made,
-  manage_->take();  // and reads what came on it
-  // Its last lines are in the pipe; who else still holds that open may do so for ever.
-  for (int piece = 0; piece < kLastPieces && said_; ++piece) read_lines();
+void Supervised::note_end(int status) {
   lines_.finish([this](const std::string& line) { take_line(line); });
   note_dropped_lines(now() + LogLimit::kPeriod);
   forget_process();
-  go_on(*status);
+  go_on(status);
 }
 
 void Supervised::forget_process() {
   reports_.end();
   heard_ = silence_ = blocked_ = MonotonicTime(0);
-  said_.reset();
-  ended_.reset();
   timer_.reset();
-  process_.reset();
   usage_ = {};
   measured_ = MonotonicTime(0);
   processor_ = 0;
-  if (control_) control_->leave_all();
 }
 
 /// Does what is to be done when a process has ended.
@@ -329,7 +294,8 @@ void Supervised::go_on(int status) {
   decide(status);
 }
 
-/// Restarts a process that has ended unasked, or gives it up.
+/// Restarts a process that has ended unasked, or gives it up: at once, or in a later turn when it
+/// is clear whether a link was cut.
 void Supervised::decide(int status) {
   awaits_cause_ = false;
   const auto words = why_ended(status);
@@ -369,7 +335,7 @@ bool Supervised::can_be_cut_off() const {
 void Supervised::note_interruption() {
   if (!can_be_cut_off()) return;
   is_interrupted_ = true;
-  if (awaits_cause_) decide(0);
+  if (awaits_cause_) timer_.call_at(MonotonicClock::now());
 }
 
 }  // namespace hc::internal

@@ -13,12 +13,10 @@
 
 #include <graph/hosts.h>
 #include <graph/limits.h>
-#include <graph/run/announcer.h>
+#include <graph/log_limit.h>
+#include <graph/module_process.h>
 #include <graph/run/change.h>
-#include <graph/run/held_names.h>
 #include <graph/run/lines.h>
-#include <graph/run/log_limit.h>
-#include <graph/run/module_process.h>
 #include <graph/run/reports.h>
 #include <graph/run/restarts.h>
 #include <hc/base/clock.h>
@@ -93,7 +91,7 @@ class Supervised {
   /// Takes stock of what its processes use.
   void measure(MonotonicTime now, bool with_memory);
   /// Looks whether its process has ended, without waiting for the event.
-  void note_end();
+  void look_for_end() { process_->look(); }
 
   [[nodiscard]] const PlannedModule& plan() const { return plan_; }
   [[nodiscard]] ModuleStatus status() const { return status_; }
@@ -128,22 +126,22 @@ class Supervised {
   };
 
   [[nodiscard]] std::shared_ptr<Host> host() const;
+  Status make_process();
   void send_wall_offset();
   Status open_observed(Observed& observed, const std::string& port, const std::string& name);
   void end_observations(MonotonicTime time);
-  Status open_control();
-  std::vector<std::string> catch_up();
+  std::vector<Message> catch_up();
   void set_told();
-  [[nodiscard]] bool is_heard() const;
-  void let_names_go();
+  [[nodiscard]] bool takes_commands() const { return !plan_.control_uri.empty(); }
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
-  void read_lines();
+  bool take_text(std::string_view text);
   void take_line(const std::string& line);
   void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);
   void look_at_silent();
   bool kill_if_hung(bool is_blocked);
+  void note_end(int status);
   void forget_process();
   void go_on(int status);
   void decide(int status);
@@ -181,11 +179,9 @@ class Supervised {
   double processor_ = 0;
   std::set<std::string> finished_;            // inputs it has to finish
   std::map<std::string, Observed> observed_;  // by output
-  std::unique_ptr<Intake> manage_;
-  std::unique_ptr<Announcer> control_;
-  HeldNames names_;
+  std::shared_ptr<Host> process_host_;        // null: this one
   std::unique_ptr<ModuleProcess> process_;
-  Loop::Handle said_, ended_, timer_;
+  Loop::Handle timer_;
 };
 
 }  // namespace hc::internal

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 
 #include <graph/held_port.h>
 #include <graph/run/supervised.h>
@@ -13,7 +12,6 @@ namespace hc::internal {
 namespace {
 
 constexpr int kMostResults = 100;  // that are never dropped; as many are printed at the end
-constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 // Observers never make a module wait: with or without one, it keeps a few messages for them.
 constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 
@@ -68,21 +66,11 @@ void Supervised::end_observations(MonotonicTime time) {
   });
 }
 
-/// Hands on what a module has said, until it says nothing more. One piece only: one who does not
-/// stop must not keep us from all else.
-void Supervised::read_lines() {
-  static thread_local std::array<char, kPiece> piece;
-  static_cast<void>(said_.want(EPOLLIN));
-  const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
-  if (size == 0) said_.reset();
-  if (size <= 0) return;
-  lines_.add({piece.data(), static_cast<std::size_t>(size)},
-             [this](const std::string& line) { take_line(line); });
+/// Whether more may come at once.
+bool Supervised::take_text(std::string_view text) {
+  lines_.add(text, [this](const std::string& line) { take_line(line); });
   said_at_ = now();
-  if (!log_limit_.is_over()) return;
-  // Who floods its log waits for us.
-  static_cast<void>(said_.want(0));
-  said_.call_at(std::chrono::steady_clock::now() + LogLimit::kPause);
+  return !log_limit_.is_over();
 }
 
 void Supervised::take_line(const std::string& line) {
@@ -120,7 +108,7 @@ void Supervised::look(MonotonicTime time) {
   note_dropped_lines(time);
   // A gap between two looks counts as a second at most: this process was stopped or starved itself.
   const auto before = std::exchange(looked_, time);
-  if (!process_) return;
+  if (!process_->runs()) return;
   if (before != MonotonicTime(0)) silence_ += std::min(time - before, kMostAtOnce);
   const bool is_silent = heard_ == MonotonicTime(0);
   if (is_silent) look_at_silent();
@@ -152,7 +140,7 @@ bool Supervised::kill_if_hung(bool is_blocked) {
   const auto usage = process_->usage(false);
   if (usage.is_traced || (is_blocked && !usage.is_stopped)) return false;
   if (heard_ == MonotonicTime(0) && !usage.is_stopped) {
-    if (!control_) return false;  // it may never report
+    if (!takes_commands()) return false;  // it may never report
     patience = std::max(patience, limits_.first_report);
     if (silence_ < patience) return false;
   }
@@ -166,7 +154,7 @@ bool Supervised::kill_if_hung(bool is_blocked) {
 /// when on.
 void Supervised::look_at_silent() {
   const bool is_stalled = status_ == ModuleStatus::Stalled;
-  const auto usual = control_ ? ModuleStatus::Starting : ModuleStatus::Running;
+  const auto usual = takes_commands() ? ModuleStatus::Starting : ModuleStatus::Running;
   if (status_ != usual && !is_stalled) return;
   const bool is_stopped = process_->usage(false).is_stopped;
   if (is_stopped == is_stalled) return;
@@ -176,10 +164,8 @@ void Supervised::look_at_silent() {
 }
 
 void Supervised::measure(MonotonicTime time, bool with_memory) {
-  if (!process_) return;
-  with_memory = with_memory || measured_ == MonotonicTime(0);
-  auto usage = process_->usage(with_memory);
-  if (!with_memory) usage.memory = usage_.memory;
+  if (!process_->runs()) return;
+  const auto usage = process_->usage(with_memory);
   if (measured_ != MonotonicTime(0) && time > measured_)
     processor_ = std::max(0.0, std::chrono::duration<double>(usage.processor - usage_.processor) /
                                    std::chrono::duration<double>(time - measured_));
@@ -209,7 +195,7 @@ ModuleState Supervised::state() const {
   state.program = plan_.program;
   state.group = plan_.group;
   state.host = plan_.host;
-  state.process = process_ ? process_->number() : 0;
+  state.process = process_->number();
   state.status = status_;
   state.detail = detail_;
   state.restarts = std::max(0, starts_ - 1);

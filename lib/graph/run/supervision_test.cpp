@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <graph/run/running_test.h>
+#include <hc/link/link.h>
 #include <hc/mtp/rows.h>
 
 namespace hc {

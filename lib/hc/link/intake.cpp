@@ -29,6 +29,14 @@ void Intake::take_unless_paused() {
   if (!is_paused_) take();
 }
 
+void Intake::take_rest() {
+  auto is_readable = [this] {
+    const auto ready = wait_for(source_->descriptor(), POLLIN, -1, Deadline::clock::now());
+    return ready && *ready;
+  };
+  for (int i = 0; i < kMostRests && watch_ && is_readable(); ++i) take();
+}
+
 void Intake::take() {
   Message message;
   for (int i = 0; i < kMostInATurn; ++i) {

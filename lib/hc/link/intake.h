@@ -22,14 +22,14 @@ class Intake {
                                               const LinkOptions& options = {},
                                               bool is_limited = true);
 
-  /// Takes what is there now.
-  void take();
+  /// Takes all that has been sent, also by a peer that has only just connected.
+  void take_rest();
   /// Has `end` called when the link has ended or failed, as the last act of this object, which it
   /// may destroy.
   void on_end(std::function<void()> end) { end_ = std::move(end); }
 
  private:
-  static constexpr int kMostInATurn = 32;
+  static constexpr int kMostInATurn = 32, kMostRests = 32;
   static constexpr std::chrono::milliseconds kPause{10};
 
   Intake(Loop& loop, std::unique_ptr<Source> source, Take take, bool is_limited)
@@ -37,6 +37,7 @@ class Intake {
         source_(std::move(source)),
         take_(std::move(take)),
         pause_(is_limited ? kPause : std::chrono::milliseconds(0)) {}
+  void take();
   void take_unless_paused();
 
   Loop& loop_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <graph/run/process.h>
+#include <graph/process.h>
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

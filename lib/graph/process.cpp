@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <graph/run/process.h>
+#include <graph/process.h>
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -14,7 +14,12 @@
 #include <graph/plan.h>
 #include <hc/link/stream/ends.h>
 
-namespace hc::internal {
+namespace hc {
+
+using internal::Descriptor;
+using internal::system_call;
+using internal::system_error;
+
 namespace {
 
 /// What a guard and its program get from us. Between fork and exec, and in a guard all its life,
@@ -132,7 +137,7 @@ std::vector<char*> pointers(const std::vector<std::string>& words) {
 
 /// Our environment, with the listeners in place of those that we were given ourselves.
 std::vector<std::string> environment_with(const std::vector<int>& listeners) {
-  const std::string prefix = std::string(kListeners) + "=";
+  const std::string prefix = std::string(internal::kListeners) + "=";
   std::vector<std::string> words;
   for (char** word = environ; *word != nullptr; ++word)
     if (!std::string_view(*word).starts_with(prefix)) words.emplace_back(*word);
@@ -237,4 +242,4 @@ void Process::ask_to_end() const {
   ::kill(-number_, SIGTERM);
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How much of what a process says is taken in a second. Pure: time is passed in. Internal to graph.
+// How much of what a process says is taken in a second. Pure: time is passed in.
 
 #include <chrono>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <hc/base/clock.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// Counts by seconds, each of which begins with the first line in it.
 class LogLimit {
@@ -52,4 +52,4 @@ class LogLimit {
   std::uint64_t lines_ = 0, bytes_ = 0, dropped_ = 0;
 };
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <graph/run/log_limit.h>
+#include <graph/log_limit.h>
 
 #include <gtest/gtest.h>
 

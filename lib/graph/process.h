@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Child processes, dead with all their descendants when we are. Internal to graph.
+// Child processes, dead with all their descendants when we are.
 //
 // Between us and a program is its guard: a fork of us that starts the program, adopts what the
 // program's processes leave behind (PR_SET_CHILD_SUBREAPER), and ends as the program did. It kills
@@ -20,7 +20,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// Status of a program that could not be executed, as shells have it.
 inline constexpr int kCannotExecute = 127;
@@ -73,10 +73,10 @@ class Process {
  private:
   Process() = default;
 
-  pid_t number_ = -1;  // of the guard, and its group
-  Descriptor handle_;  // a pidfd
-  Descriptor output_, errors_, input_;
-  Descriptor life_;  // closed: the guard is to kill
+  pid_t number_ = -1;            // of the guard, and its group
+  internal::Descriptor handle_;  // a pidfd
+  internal::Descriptor output_, errors_, input_;
+  internal::Descriptor life_;  // closed: the guard is to kill
   std::optional<int> status_;
   struct Owned {  // a moved-from process owns nothing
     bool flag = true;
@@ -89,4 +89,4 @@ class Process {
   } owned_;
 };
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <graph/log_limit.h>
+#include <graph/module_process.h>
+#include <graph/plan.h>
+#include <graph/process.h>
+#include <graph/run/announcer.h>
+#include <graph/run/held_names.h>
+#include <hc/link/intake.h>
+
+namespace hc {
+namespace {
+
+using internal::Announcer;
+using internal::Intake;
+using internal::Loop;
+
+constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
+constexpr int kLastPieces = 16;  // a pipe can be made to hold a MiB; source: man 7 pipe
+constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
+
+class ProcessHere final : public ModuleProcess {
+ public:
+  ProcessHere(Loop& loop, int key, ModuleCallbacks callbacks)
+      : loop_(loop), key_(key), callbacks_(std::move(callbacks)) {}
+
+  Status listen(const std::string& manage_uri) {
+    LinkOptions options;
+    options.limits.element_bytes = kMostReported;
+    auto reports = Intake::make(
+        loop_, manage_uri, [this](const Message& message) { callbacks_.reported(message); },
+        options);
+    if (!reports) return reports.error();
+    reports_ = std::move(*reports);
+    return {};
+  }
+
+  Status start(const std::vector<std::string>& command, const std::string& control_uri) override {
+    if (control_uri.empty()) commands_.reset();
+    if (!control_uri.empty() && !commands_) {
+      auto commands = Announcer::make(loop_, control_uri, [this] {
+        return process_ ? callbacks_.listens() : std::vector<Message>();
+      });
+      if (!commands) return commands.error();
+      commands_ = std::move(*commands);
+    }
+    if (auto held = names_.hold(command); !held) return held;
+    auto started = Process::start(command, Process::Capture::Errors, {key_, names_.descriptors()});
+    if (!started) return started.error();
+    auto said = loop_.watch(started->output(), EPOLLIN, [this](auto) { read(); });
+    if (!said) return said.error();
+    auto ended = loop_.watch(started->ended(), EPOLLIN, [this](auto) { look(); });
+    if (!ended) return ended.error();
+    process_.emplace(std::move(*started));
+    said_ = std::move(*said);
+    ended_ = std::move(*ended);
+    number_ = internal::first_child(process_->guard_number());
+    return {};
+  }
+
+  [[nodiscard]] bool runs() const override { return process_.has_value(); }
+  void ask_to_end() override {
+    if (process_) process_->ask_to_end();
+  }
+  void kill() override {
+    if (process_) process_->kill();
+  }
+
+  void look() override {
+    const auto status = process_ ? process_->poll_status() : std::nullopt;
+    if (!status) return;
+    reports_->take_rest();
+    // Its last lines are in the pipe; who else still holds that open may do so for ever.
+    for (int piece = 0; piece < kLastPieces && said_; ++piece) read();
+    said_.reset();
+    ended_.reset();
+    process_.reset();
+    processes_.clear();
+    memory_.reset();
+    number_ = 0;
+    if (commands_) commands_->leave_all();
+    callbacks_.ended(*status);
+  }
+
+  void let_names_go() override { names_.let_go(); }
+
+  [[nodiscard]] bool is_listening() const override {
+    return process_ && commands_ && commands_->is_heard();
+  }
+  bool send(const Message& command) override { return !commands_ || commands_->say(command); }
+
+  [[nodiscard]] pid_t number() const override { return number_; }
+  internal::Usage usage(bool with_memory) override {
+    if (!process_) return {};
+    with_memory = with_memory || !memory_;
+    if (with_memory) processes_ = internal::descendants(process_->guard_number());
+    auto usage = internal::usage_of(processes_, with_memory);
+    if (with_memory) memory_ = usage.memory;
+    usage.memory = *memory_;
+    return usage;
+  }
+
+ private:
+  /// Hands on what it has said. One piece only: one who does not stop must not keep us from all
+  /// else, and waits for us where that is too much.
+  void read() {
+    static thread_local std::array<char, kPiece> piece;
+    static_cast<void>(said_.want(EPOLLIN));
+    const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
+    if (size == 0) said_.reset();
+    if (size <= 0 || callbacks_.said({piece.data(), static_cast<std::size_t>(size)})) return;
+    static_cast<void>(said_.want(0));
+    said_.call_at(std::chrono::steady_clock::now() + LogLimit::kPause);
+  }
+
+  Loop& loop_;
+  const int key_;
+  const ModuleCallbacks callbacks_;
+  std::unique_ptr<Intake> reports_;
+  std::unique_ptr<Announcer> commands_;
+  internal::HeldNames names_;  // of all its processes
+  std::optional<Process> process_;
+  pid_t number_ = 0;
+  std::vector<pid_t> processes_;         // when they were last looked for,
+  std::optional<std::uint64_t> memory_;  // and this
+  Loop::Handle said_, ended_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ModuleProcess>> make_process_here(Loop& loop, const std::string& manage_uri,
+                                                         int key, ModuleCallbacks callbacks) {
+  auto made = std::make_unique<ProcessHere>(loop, key, std::move(callbacks));
+  if (auto listens = made->listen(manage_uri); !listens) return listens.error();
+  return std::unique_ptr<ModuleProcess>(std::move(made));
+}
+
+Result<std::shared_ptr<void>> read_in_place_here(Loop& loop, std::string reader_uri, int key) {
+  // Modules find the key at another descriptor.
+  if (const auto at = reader_uri.find(kKeyFile); at != std::string::npos && key >= 0)
+    reader_uri.replace(at, kKeyFile.size(), "/proc/self/fd/" + std::to_string(key));
+  auto uri = parse_uri(reader_uri);
+  if (!uri) return uri.error();
+  constexpr std::array<std::string_view, 4> kWhoMay = {"same_user", "key", "peer", "interface"};
+  std::erase_if(uri->options, [&](const auto& option) {
+    return std::find(kWhoMay.begin(), kWhoMay.end(), option.first) == kWhoMay.end();
+  });
+  uri->options.emplace_back("reconnect", "86400");
+  if (uri->scheme == "shm" || uri->scheme == "dds") uri->options.emplace_back("keep", "latest");
+  auto reader = Intake::make(
+      loop, uri->text(), [](const Message&) {}, {}, false);
+  if (!reader) return reader.error();
+  return std::shared_ptr<void>(std::move(*reader));
+}
+
+}  // namespace hc
