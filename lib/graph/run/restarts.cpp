@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/run/restarts.h>
 
-#include <algorithm>
-
 namespace hc::internal {
 
 void Restarts::started(MonotonicTime now) {
@@ -17,10 +15,8 @@ Restarts::Decision Restarts::ended(int status, MonotonicTime now) {
   std::erase_if(starts_, [&](MonotonicTime start) { return now - start >= limits_.window; });
   if (delayed_ == 0 && starts_.size() < limits_.starts_at_once) return {Next::Again, {}};
   if (delayed_ == limits_.delayed_starts) return {Next::GiveUp, {}};
-  auto whole = limits_.first_delay;
-  for (int i = 0; i < delayed_ && whole < limits_.longest_delay; ++i) whole *= 2;
-  whole = std::min(whole, limits_.longest_delay);
   ++delayed_;
+  const auto whole = delay_.next();
   std::uniform_int_distribution<std::int64_t> within(whole.count() / 2, whole.count());
   return {Next::Again, std::chrono::nanoseconds(within(random_))};
 }
@@ -39,6 +35,7 @@ void Restarts::forget_after_long_run(MonotonicTime now) {
 void Restarts::reset() {
   starts_.clear();
   delayed_ = 0;
+  delay_.reset();
 }
 
 }  // namespace hc::internal

@@ -10,6 +10,7 @@
 
 #include <graph/limits.h>
 #include <graph/plan.h>
+#include <hc/base/backoff.h>
 #include <hc/base/clock.h>
 
 namespace hc::internal {
@@ -34,7 +35,10 @@ class Restarts {
   };
 
   Restarts(Restart policy, const RestartLimits& limits, std::uint32_t seed)
-      : policy_(policy), limits_(limits), random_(seed) {}
+      : policy_(policy),
+        limits_(limits),
+        random_(seed),
+        delay_(limits.first_delay, limits.longest_delay) {}
 
   /// Notes that the module has been started.
   void started(MonotonicTime now);
@@ -57,7 +61,8 @@ class Restarts {
   RestartLimits limits_;
   std::minstd_rand random_;
   std::vector<MonotonicTime> starts_;  // within the window
-  int delayed_ = 0;                    // starts that were put off
+  int delayed_ = 0;                    // starts that were put off,
+  Backoff delay_;                      // and for how long
 };
 
 }  // namespace hc::internal
