@@ -31,6 +31,7 @@ ALLOWED = {
     "mcap": {"base", "os", "mtp", "link", "ros"},
     "tls": {"base", "os", "link"},
     "dds": {"base", "os", "mtp", "link"},
+    "transports": {"tls", "dds"},
     "hosts": {"base", "os", "mtp", "contract", "link", "graph", "tls"},
     "drivers": {"base", "os"},
     "modules": {
@@ -44,6 +45,7 @@ ALLOWED = {
         "ros",
         "mcap",
         "dds",
+        "transports",
         "drivers",
     }
     | PACKAGES,
@@ -58,6 +60,7 @@ ALLOWED = {
         "module",
         "frames",
         "mcap",
+        "transports",
     },
     "tools": {
         "base",
@@ -71,6 +74,7 @@ ALLOWED = {
         "frames",
         "mcap",
         "tls",
+        "transports",
         "hosts",
     },
 }
@@ -99,7 +103,7 @@ def layer_of_include(name):
     if inner.startswith("dds/"):  # as Cyclone DDS has them too
         return "dds" if (pathlib.Path(__file__).parents[1] / "lib" / inner).exists() else None
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(client|graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|hosts|drivers)/", inner
+        r"(client|graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|transports|hosts|drivers)/", inner
     )
     return match[1] if match else None
 

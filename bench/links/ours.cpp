@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <hc/link/link.h>
+#include <transports/all.h>
 
 #include "harness.h"
 
@@ -114,5 +115,6 @@ class Subscriber final : public bench::Subscriber {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   return bench::run<Publisher, Subscriber>(argc, argv);
 }

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include <dds/stranger_test.h>
+#include <dds/transport.h>
 
 namespace hc::testing {
 namespace {
@@ -486,6 +487,7 @@ TEST(Dds, APlaceIsChecked) {
 }  // namespace
 
 int run(int count, char** words) {
+  dds::add_transport();
   if (count == 3 && std::string_view(words[1]) == "read") return Child::read(words[2]), 0;
   if (count == 3 && std::string_view(words[1]) == "write") return Child::write(words[2]), 0;
   ::testing::InitGoogleTest(&count, words);

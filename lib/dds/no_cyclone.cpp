@@ -1,27 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/transports.h>
+// In place of all else here where Cyclone DDS was not found.
+#include <dds/transport.h>
 
-extern "C" {
-extern const int kHcDdsTransport;
-const int kHcDdsTransport = 0;
-}
+namespace hc::dds {
 
-namespace hc::internal {
-namespace {
+void add_transport() {}
 
-Error no_cyclone() {
-  return {Code::Unsupported,
-          "dds: links need Cyclone DDS, which this program was built without; install "
-          "cyclonedds-dev and build it again"};
-}
-
-}  // namespace
-
-Result<std::unique_ptr<Source>> open_dds_source(const Uri&, const LinkOptions&) {
-  return no_cyclone();
-}
-Result<std::unique_ptr<Sink>> open_dds_sink(const Uri&, const LinkOptions&) {
-  return no_cyclone();
-}
-
-}  // namespace hc::internal
+}  // namespace hc::dds

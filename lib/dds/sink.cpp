@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <dds/sink.h>
+#include <dds/ends.h>
 
 #include <array>
 #include <condition_variable>
@@ -402,8 +402,9 @@ class DdsSink final : public Sink {
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_sink(const Place& place, const Uri& uri,
-                                        const LinkOptions& options) {
+Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
+  auto place = parse_place(uri);
+  if (!place) return place.error();
   constexpr std::int64_t kMostReaders = 1000;
   auto readers = number_option(uri, "readers", -1, {0, kMostReaders});
   if (!readers) return readers.error();
@@ -412,7 +413,7 @@ Result<std::unique_ptr<Sink>> make_sink(const Place& place, const Uri& uri,
   auto policy = internal::parse_policy(uri);
   if (!policy) return policy.error();
   auto sink = std::make_unique<DdsSink>(*policy, options, *readers, *stays == 1);
-  if (auto begun = sink->begin(place); !begun) return begun.error();
+  if (auto begun = sink->begin(*place); !begun) return begun.error();
   return std::unique_ptr<Sink>(std::move(sink));
 }
 

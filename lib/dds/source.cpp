@@ -9,8 +9,8 @@
 #include <dds/ddsc/dds_rhc.h>
 #include <dds/ddsi/ddsi_tkmap.h>
 
+#include <dds/ends.h>
 #include <dds/participant.h>
-#include <dds/source.h>
 #include <hc/link/link.h>
 #include <hc/link/paced_source.h>
 #include <hc/link/queue.h>
@@ -246,8 +246,9 @@ Cache::Cache(DdsSource& to) : dds_rhc{}, source(to) {
 
 }  // namespace
 
-Result<std::unique_ptr<Source>> make_source(const Place& place, const Uri& uri,
-                                            const LinkOptions& options) {
+Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
+  auto place = parse_place(uri);
+  if (!place) return place.error();
   auto policy = internal::parse_policy(uri);
   if (!policy) return policy.error();
   auto wait = number_option(uri, "wait", 0);
@@ -258,7 +259,7 @@ Result<std::unique_ptr<Source>> make_source(const Place& place, const Uri& uri,
   unpaced.rate = 0;
   auto source = std::make_unique<DdsSource>(unpaced, options, std::chrono::seconds(*wait),
                                             std::chrono::seconds(*reconnect));
-  if (auto begun = source->begin(place); !begun) return begun.error();
+  if (auto begun = source->begin(*place); !begun) return begun.error();
   return internal::make_paced(std::move(source), *policy);
 }
 

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// `dds:TOPIC`: between any number of writers and readers in a network, by Cyclone DDS.
-#include <dds/sink.h>
-#include <dds/source.h>
-#include <hc/link/transports.h>
+#include <dds/transport.h>
 
-extern "C" {
-extern const int kHcDdsTransport;
-const int kHcDdsTransport = 0;
+#include <dds/ends.h>
+#include <dds/place.h>
+#include <hc/link/transport.h>
+
+namespace hc::dds {
+
+void add_transport() {
+  hc::add_transport({"dds", "domain interface wait reconnect keep rate burst memory",
+                     "domain interface readers stay keep rate burst memory timeout", open_source,
+                     open_sink, [](const Uri& uri) {
+                       auto place = parse_place(uri);
+                       return place ? Status() : place.error();
+                     }});
 }
 
-namespace hc::internal {
-
-Result<std::unique_ptr<Source>> open_dds_source(const Uri& uri, const LinkOptions& options) {
-  auto place = dds::parse_place(uri);
-  return place ? dds::make_source(*place, uri, options) : place.error();
-}
-
-Result<std::unique_ptr<Sink>> open_dds_sink(const Uri& uri, const LinkOptions& options) {
-  auto place = dds::parse_place(uri);
-  return place ? dds::make_sink(*place, uri, options) : place.error();
-}
-
-}  // namespace hc::internal
+}  // namespace hc::dds

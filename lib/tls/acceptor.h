@@ -10,6 +10,7 @@
 #include <mutex>
 #include <string>
 
+#include <hc/link/stream/dialer.h>
 #include <hc/link/stream/remarks.h>
 #include <hc/os/loop.h>
 #include <hc/os/reactor.h>
@@ -66,5 +67,10 @@ class Acceptor {
   int event_ = -1;
   internal::Watch watch_;
 };
+
+/// Who listens at `tls:HOST:PORT`, and a socket that listens at `tls-listen:[HOST:]PORT`.
+/// Errors: Invalid, NotFound, System.
+Result<internal::Peer> find_peer(const Uri& uri);
+Result<internal::ListeningSocket> listen(const Uri& uri);
 
 }  // namespace hc::tls

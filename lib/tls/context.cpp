@@ -82,16 +82,19 @@ Result<File> open_file(const std::string& path) {
   return file;
 }
 
+Status check_keys(const Uri& uri) {
+  if (!uri.option("key", "").empty() && !uri.option("peer", "").empty()) return {};
+  return Error{
+      Code::Invalid,
+      uri.scheme + " needs the options key=FILE and peer=FINGERPRINT; hc key FILE makes a key"};
+}
+
 Result<std::shared_ptr<const Context>> Context::make(const Uri& uri) {
-  std::string key(uri.option("key", "")), peer(uri.option("peer", ""));
-  if (key.empty() || peer.empty())
-    return Error{Code::Invalid, uri.scheme +
-                                    " needs the options key=FILE and peer=FINGERPRINT; hc key FILE "
-                                    "makes a key"};
+  if (auto checked = check_keys(uri); !checked) return checked.error();
   std::shared_ptr<Context> made(new Context);
   if (auto done = made->set_up(); !done) return done.error();
-  if (auto done = made->use_key(key); !done) return done.error();
-  if (auto done = made->add_peers(peer); !done) return done.error();
+  if (auto done = made->use_key(std::string(uri.option("key", ""))); !done) return done.error();
+  if (auto done = made->add_peers(std::string(uri.option("peer", ""))); !done) return done.error();
   return std::shared_ptr<const Context>(made);
 }
 

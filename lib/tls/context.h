@@ -33,6 +33,9 @@ std::string fingerprint(const X509& certificate);
 /// Opens a file to be read. Errors: NotFound, System.
 Result<File> open_file(const std::string& path);
 
+/// Whether a URI has the options `key` and `peer`. Errors: Invalid.
+Status check_keys(const Uri& uri);
+
 /// An end's own key, and the fingerprints of the keys that it accepts.
 class Context {
  public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // TLS links do what all links do, and those of sockets.
 #include <hc/testing/reconnect.h>
+#include <tls/acceptor.h>
 #include <tls/peer_test.h>
 
 namespace hc::testing {
@@ -19,15 +20,10 @@ internal::Descriptor connect(const std::string& place) {
 
 /// Both ends have the same two keys, so that each lets the other in.
 const SocketScheme& scheme() {
-  static const SocketScheme kTls{"tls",
-                                 free_port,
-                                 "tls:",
-                                 "tls-listen:",
-                                 connect,
-                                 internal::tls_peer,
-                                 internal::listen_tls,
-                                 "?key=" + key_file("b") + "&peer=" + key_file("b"),
-                                 1000};
+  static const SocketScheme kTls{
+      "tls",   free_port,      "tls:",      "tls-listen:",
+      connect, tls::find_peer, tls::listen, "?key=" + key_file("b") + "&peer=" + key_file("b"),
+      1000};
   return kTls;
 }
 

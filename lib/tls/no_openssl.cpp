@@ -1,35 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/stream/ends.h>
+// In place of all else here where OpenSSL was not found.
 #include <tls/key.h>
+#include <tls/transport.h>
 
-extern "C" {
-extern const int kHcTlsTransport;
-const int kHcTlsTransport = 0;
-}
-
-namespace hc {
+namespace hc::tls {
 namespace {
 
 Error no_openssl() {
   return {Code::Unsupported,
-          "tls: links need OpenSSL, which this program was built without; install libssl-dev and "
-          "build it again"};
+          "keys need OpenSSL, which this program was built without; install libssl-dev and build "
+          "it again"};
 }
 
 }  // namespace
 
-namespace internal {
-
-Result<Peer> tls_peer(const Uri&) {
-  return no_openssl();
-}
-Result<ListeningSocket> listen_tls(const Uri&) {
-  return no_openssl();
-}
-
-}  // namespace internal
-
-namespace tls {
+void add_transports() {}
 
 Result<std::string> make_key_text() {
   return no_openssl();
@@ -44,5 +29,4 @@ Result<std::string> fingerprint_of(const std::string&) {
   return no_openssl();
 }
 
-}  // namespace tls
-}  // namespace hc
+}  // namespace hc::tls

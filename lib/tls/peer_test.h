@@ -24,8 +24,14 @@
 #include <hc/testing/loopback.h>
 #include <tls/context.h>
 #include <tls/key.h>
+#include <tls/transport.h>
 
 namespace hc::testing {
+
+inline const bool kHasTls = [] {
+  tls::add_transports();
+  return true;
+}();
 
 /// Keys in a folder of their own, each made when it is first asked for.
 class Keys {

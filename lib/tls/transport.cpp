@@ -1,41 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// `tls:HOST:PORT` and `tls-listen:[HOST:]PORT`: tcp links, encrypted, whose two ends know each
-// other's keys.
+#include <tls/transport.h>
+
 #include <hc/link/stream/ends.h>
 #include <tls/acceptor.h>
 #include <tls/channel.h>
 #include <tls/context.h>
 
-extern "C" {
-extern const int kHcTlsTransport;
-const int kHcTlsTransport = 0;
-}
+namespace hc::tls {
 
-namespace hc::internal {
-
-Result<Peer> tls_peer(const Uri& uri) {
-  auto context = tls::Context::make(uri);
+Result<internal::Peer> find_peer(const Uri& uri) {
+  auto context = Context::make(uri);
   if (!context) return context.error();
-  auto peer = tcp_peer(uri);
+  auto peer = internal::tcp_peer(uri);
   if (!peer) return peer;
   peer->secure = [own = *context](int socket) {
-    return std::make_unique<tls::TlsChannel>(own, socket, tls::TlsChannel::Side::Dials);
+    return std::make_unique<TlsChannel>(own, socket, TlsChannel::Side::Dials);
   };
   return peer;
 }
 
-Result<ListeningSocket> listen_tls(const Uri& uri) {
-  auto context = tls::Context::make(uri);
+Result<internal::ListeningSocket> listen(const Uri& uri) {
+  auto context = Context::make(uri);
   if (!context) return context.error();
-  auto listening = listen_tcp(uri);
+  auto listening = internal::listen_tcp(uri);
   if (!listening) return listening;
-  auto acceptor = std::make_shared<tls::Acceptor>(std::move(*listening), std::move(*context));
+  auto acceptor = std::make_shared<Acceptor>(std::move(*listening), std::move(*context));
   auto readable = acceptor->start();
   if (!readable) return readable.error();
-  ListeningSocket socket;
+  internal::ListeningSocket socket;
   socket.descriptor = std::move(*readable);
   socket.take_agreed = [acceptor](const LogSink& log) { return acceptor->take(log); };
   return socket;
 }
 
-}  // namespace hc::internal
+void add_transports() {
+  const auto check = [](const Uri& uri) {
+    auto place = internal::check_host_port(uri);
+    return place ? check_keys(uri) : place;
+  };
+  add_transport(internal::dialing<find_peer>("tls", "key peer", check));
+  add_transport(internal::listening<listen>("tls-listen", "key peer", check));
+}
+
+}  // namespace hc::tls

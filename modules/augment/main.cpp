@@ -9,6 +9,7 @@
 #include <frames/module_frames.h>
 #include <hc/contract/mode_names.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 
 #include "instruments.h"
@@ -28,6 +29,7 @@ hc::AnyKind image(std::int32_t rectified, std::int32_t raw) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"augment",
                     "Draws objects into the images of both eyes, hidden by what is "
                     "before them."};

@@ -11,6 +11,7 @@
 #include <frames/messages.h>
 #include <graphics/overlay.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 
 namespace {
@@ -53,6 +54,7 @@ std::optional<double> share_right(const cv::Mat& object, const cv::Mat& scene,
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   constexpr auto kWorldLeftEye = hc::transform_coord(Coord::kWorld, Coord::kLeftEye);
   constexpr auto kWorldRightEye = hc::transform_coord(Coord::kWorld, Coord::kRightEye);
   hc::Module module{"augment_score",

@@ -4,11 +4,13 @@
 
 #include <hc/base/format.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 
 #include "search.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{
       "blob",
       "Finds the blob of a colour in images, and follows it: round, large, near the last one."};

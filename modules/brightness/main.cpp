@@ -4,8 +4,10 @@
 #include <numeric>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"brightness", "Measures how bright images are."};
   auto image = module.input("image", hc::any_image(), "camera image");
   auto mean = module.output("mean", hc::table<double>(), "mean of all its numbers, 0 … 255");

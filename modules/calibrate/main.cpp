@@ -13,6 +13,7 @@
 #include <frames/module_frames.h>
 #include <hc/base/format.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 #include <opencv2/imgproc.hpp>
 
@@ -28,6 +29,7 @@ constexpr std::int64_t kRests = 300'000'000;     // it is at rest after this tim
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"calibrate", "Finds how a head's eyes are mounted, by turning it."};
   auto left = module.input("left", hc::rgb_image<std::uint8_t>().in(hc::Coord::kLeftImage),
                            "image of the left camera");

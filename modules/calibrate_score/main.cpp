@@ -4,8 +4,10 @@
 
 #include <hc/base/format.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"calibrate_score", "Compares a head's calibration with the truth."};
   auto result = module.input("result", hc::table<double>(), "result of calibrate");
   module.keep(result);

@@ -4,6 +4,7 @@
 #include "sequence.h"
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/image.h>
 #include <vision/messages.h>
 #include <opencv2/core/utils/logger.hpp>
@@ -20,6 +21,7 @@ void check(bool is_valid, const std::string& problem) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   using hc::Coord;
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we log the results
   hc::Module module{"camera", "Sends the images of a camera, a video or image files."};

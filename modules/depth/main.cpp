@@ -6,11 +6,13 @@
 
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 #include <vision/stereo/depth.h>
 #include <vision/stereo/matcher.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair."};
   auto left = module.input("left", hc::any_image(hc::Coord::kLeftRectified),
                            "rectified image of the left eye");

@@ -4,11 +4,13 @@
 #include <string>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 #include <vision/stereo/score.h>
 #include <opencv2/imgproc.hpp>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"depth_score", "Compares disparities with the true ones."};
   auto disparity =
       module.input("disparity", hc::intensity_image<float>(), "as found [px], 0 unknown");

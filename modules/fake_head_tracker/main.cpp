@@ -8,10 +8,12 @@
 #include <drivers/head_tracker/sender.h>
 #include <frames/messages.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 #include "nod.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"fake_head_tracker", "Simulated head tracker (opentrack protocol)."};
   auto address = module.input("address", hc::string(),
                               "where the head_tracker of its graph listens; nowhere when empty");

@@ -4,10 +4,12 @@
 #include <optional>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 #include "simulated_line.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"fake_pan_tilt", "A simulated pan-tilt unit on a pseudo-terminal."};
   auto motion = module.output("motion", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze),
                               "truth: 0, tilt, pan [rad]");

@@ -5,8 +5,10 @@
 #include <frames/messages.h>
 #include <gaze/follow_score.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   constexpr std::int32_t kGaze = hc::Coord::kGaze, kSupervisor = hc::Coord::kSupervisor;
   hc::Module module{"follow_score", "Compares the orientation of a head with its setpoints."};
   auto setpoint = module.input(

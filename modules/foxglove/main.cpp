@@ -6,6 +6,7 @@
 #include <frames/default_head.h>
 #include <hc/module/module.h>
 #include <ros/joints.h>
+#include <transports/all.h>
 #include <web/service.h>
 
 #include "bridge.h"
@@ -13,6 +14,7 @@
 namespace web = hc::web;
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"foxglove", "Shows the graph in Foxglove and Lichtblick, live."};
   auto poses =
       module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");

@@ -4,8 +4,10 @@
 #include "gateway.h"
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"gateway", "Passes messages from one graph to another, renumbered."};
   auto in = module.input("in", hc::anything(), "messages of this graph");
   auto out = module.output("out", hc::anything(),

@@ -11,6 +11,7 @@
 #include <hc/base/format.h>
 #include <hc/base/turn.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/marker.h>
 
 #include "controller.h"
@@ -38,6 +39,7 @@ std::int32_t frame_of_setpoint(std::int32_t coord) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"gaze",
                     "Turns the head to a target, and bids for the head while there is one."};
   auto target =

@@ -10,6 +10,7 @@
 #include <frames/messages.h>
 #include <hc/base/uri.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 namespace {
 
@@ -21,6 +22,7 @@ std::vector<std::string> words(const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"head_tracker", "Follows a person's head by an opentrack tracker."};
   auto centre = module.input("centre", hc::anything(), "makes the head's pose the new zero");
   auto rotation = module.output("rotation", hc::rotation<double>().in(hc::Coord::kSupervisor),

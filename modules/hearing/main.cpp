@@ -3,8 +3,10 @@
 #include <hc/module/module.h>
 #include <sound/direction.h>
 #include <sound/format.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"hearing", "Measures the level and the direction of stereo sound."};
   auto sound = module.input("sound", hc::sound<std::int16_t>(2), "left and right ear");
   module.keep(sound, 64);  // the eyes of a simulation must not wait for the ears

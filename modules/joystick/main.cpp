@@ -7,8 +7,10 @@
 #include <drivers/joystick/joystick.h>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"joystick", "Sends a game controller's sticks and buttons."};
   auto stick = module.output("stick", hc::table<double>().of(2, 1),
                              "left > 0, down > 0, each -1 to 1, of the left stick");

@@ -7,6 +7,7 @@
 
 #include <frames/messages.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/calibration.h>
 #include <vision/image.h>
 #include <vision/marker.h>
@@ -38,6 +39,7 @@ struct Found {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"marker",
                     "Finds ArUco, AprilTag and coloured square markers, and their poses."};
   auto image =

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ears: sound from a microphone or a WAV file.
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 #include "ears.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"microphone", "Sends the sound of a microphone or a WAV file."};
   auto mono = module.output("mono", hc::sound<std::int16_t>(1),
                             "pieces of 20 ms, where channels is 1; coord 20 … 24 by the rate");

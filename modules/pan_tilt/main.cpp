@@ -3,8 +3,10 @@
 #include <drivers/pan_tilt/neck.h>
 #include <frames/messages.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"pan_tilt", "Turns the head by a FLIR pan-tilt unit; reports where it looks."};
   auto command =
       module.input("command", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze).finite(),

@@ -4,10 +4,12 @@
 
 #include <frames/messages.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 #include "pusher.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"point_score", "Pushes a stick and measures when the head begins to move."};
   auto motion = module.input("motion", hc::rotation<double>().in(hc::Coord::kGaze),
                              "truth: roll, tilt, pan of the head [rad]");

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads letters in images, and says where they are.
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 
 #include "announcer.h"
 #include "block.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"read", "Reads lines of letters on an even ground, as on a board."};
   auto image = module.input("image", hc::any_image(), "image with letters");
   auto text = module.output("text", hc::string().in(hc::Coord::kText),

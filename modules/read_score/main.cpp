@@ -2,10 +2,12 @@
 // How well a robot reads aloud what is written before it.
 #include <hc/module/module.h>
 #include <sound/format.h>
+#include <transports/all.h>
 
 #include "read_score.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"read_score", "Writes texts for a robot to read aloud, and scores it."};
   auto text = module.input("text", hc::string().in(hc::Coord::kText),
                            "what was read, with the image's time");

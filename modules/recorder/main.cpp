@@ -10,6 +10,7 @@
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <hc/os/descriptor.h>
+#include <transports/all.h>
 
 #include "folder_recording.h"
 #include "mcap_recording.h"
@@ -61,6 +62,7 @@ std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"recorder",
                     "Records streams into a file of MCAP, which viewers read, or into a folder."};
   sigset_t saves;  // a signal that is read from a descriptor

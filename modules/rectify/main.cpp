@@ -8,11 +8,13 @@
 #include <frames/module_frames.h>
 #include <gaze/eyes.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/calibration.h>
 #include <vision/messages.h>
 #include <vision/rectifier.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   using hc::Coord, hc::vision::Eye, hc::vision::Rectifier;
   hc::Module module{"rectify", "Turns the images of two cameras into a rectified pair."};
   const auto image = hc::rgb_image<std::uint8_t>();

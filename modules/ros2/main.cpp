@@ -16,6 +16,7 @@
 #include <hc/os/loop.h>
 #include <ros/decode.h>
 #include <ros/joints.h>
+#include <transports/all.h>
 
 #include "mapping.h"
 #include "names.h"
@@ -81,6 +82,7 @@ class Outputs {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here."};
   auto poses =
       module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");

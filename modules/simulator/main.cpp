@@ -7,6 +7,7 @@
 #include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/messages.h>
 
 #include <room/ball.h>
@@ -37,6 +38,7 @@ struct Scene {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"simulator", "A robot head in a furnished room: eyes, ears and ground truth."};
   auto gaze = module.input("gaze", hc::rotation<double>().in(hc::Coord::kGaze),
                            "roll, tilt, pan of the pan-tilt unit [rad]; straight ahead without");

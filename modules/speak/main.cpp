@@ -6,6 +6,7 @@
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <hc/mtp/rows.h>
+#include <transports/all.h>
 
 #include "synthesis.h"
 #include "words.h"
@@ -18,6 +19,7 @@ constexpr std::chrono::milliseconds kLook{20};  // how much later than it could 
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"speak", "Speaks text aloud, by eSpeak NG."};
   auto text =
       module.input("text", hc::string(), "what to say; UTF-8, at most 2000 characters of it");

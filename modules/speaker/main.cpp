@@ -4,10 +4,12 @@
 #include <hc/module/module.h>
 #include <hc/os/program.h>
 #include <sound/messages.h>
+#include <transports/all.h>
 
 #include "player.h"
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"speaker", "Plays sound and writes it to a WAV file."};
   auto sound =
       module.input("sound", hc::audio::any_sound(), "of a rate, coord 20 … 24; f32 from -1 to 1");

@@ -5,10 +5,12 @@
 #include <utility>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 #include <vision/board_views.h>
 #include <vision/messages.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"stereo_calibration",
                     "Finds the geometry of two cameras from views of a chessboard."};
   auto left = module.input("left", hc::any_image(hc::Coord::kLeftImage), "image of the left eye");

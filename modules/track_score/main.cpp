@@ -6,8 +6,10 @@
 #include <frames/module_frames.h>
 #include <gaze/track_score.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   constexpr auto kWorldLeftEye = hc::transform_coord(hc::Coord::kWorld, hc::Coord::kLeftEye);
   hc::Module module{"track_score", "Compares where a head's eyes look with where a ball is."};
   auto eye = module.input("left_pose", hc::transformation<double>(4, 4).in(kWorldLeftEye),

@@ -11,6 +11,7 @@
 #include <hc/module/module.h>
 #include <hc/os/new_file.h>
 #include <hc/os/program.h>
+#include <transports/all.h>
 #include <vision/image.h>
 #include <vision/messages.h>
 #include <vision/stereo/display.h>
@@ -50,6 +51,7 @@ std::vector<std::string> layouts() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   namespace fs = std::filesystem;
   hc::Module module{"view", "Shows images in a window and saves them as PNG files."};
   auto image =

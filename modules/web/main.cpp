@@ -11,6 +11,7 @@
 #include <client/running.h>
 #include <hc/module/module.h>
 
+#include <transports/all.h>
 #include <web/qr.h>
 #include <web/service.h>
 #include "page.h"
@@ -34,6 +35,7 @@ void open_in_browser(const std::string& url) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat."};
   auto stopped = module.input("stopped", hc::table<std::uint8_t>().of(1, 1),
                               "from workspace: 1 while the robot is stopped");

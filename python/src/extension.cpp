@@ -4,11 +4,13 @@
 #include <utility>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 #include "python.h"
 
 PYBIND11_MODULE(_hypercolumn, extension) {
   using namespace python;
+  hc::add_all_transports();
   py::register_exception_translator([](std::exception_ptr thrown) {
     if (!thrown) return;
     try {

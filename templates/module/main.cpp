@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"@NAME@", "Multiplies numbers by a factor."};
   auto numbers = module.input("numbers", hc::table<double>(), "any numbers");
   auto product = module.output("product", hc::table<double>(), "the numbers, multiplied");

@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 namespace {
 
@@ -23,6 +24,7 @@ std::int64_t true_now() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"moments", "Sends the time, as it is and as its host has it."};
   auto in = module.input("in", hc::table<std::int64_t>(), "moments of another");
   auto moment = module.output("moment", hc::table<std::int64_t>(), "true time [ns]");

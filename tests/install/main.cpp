@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"twice", "Doubles tables."};
   auto in = module.input("in", hc::table<double>(), "numbers");
   auto out = module.output("out", hc::table<double>(), "twice the numbers");

@@ -4,8 +4,10 @@
 #include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"whereabouts", "Gives where a frame was at the times of messages."};
   auto when = module.input("when", hc::anything(), "messages whose times are asked for");
   auto target = module.parameter("target", "world", "", "the frame that points are wanted in");

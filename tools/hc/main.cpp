@@ -15,6 +15,7 @@
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/os/standard_descriptors.h>
+#include <transports/all.h>
 
 #include "common.h"
 #include "observer.h"
@@ -116,6 +117,7 @@ void become_module(const std::string& name, char** argv) {
 
 int main(int argc, char** argv) {
   hc::open_standard_descriptors();
+  hc::add_all_transports();
   CLI::App app{"Runs and inspects graphs of modules that send each other matrices.", "hc"};
   app.set_version_flag("--version", "hc " HC_VERSION);
   app.require_subcommand(1);

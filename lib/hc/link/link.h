@@ -204,7 +204,7 @@ Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& optio
 Status check_source(const Uri& uri);
 Status check_sink(const Uri& uri);
 
-/// The schemes that open_source() and open_sink() know.
+/// The schemes that open_source() and open_sink() know in this program; see transport.h.
 std::vector<std::string_view> transports();
 
 /// Takes the next message, waiting for it; false at the end.

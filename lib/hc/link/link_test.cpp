@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/link.h>
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
+#include <hc/link/stream/ends.h>
+#include <hc/link/transports.h>
 #include <hc/os/wait_readable.h>
 
 namespace hc {
@@ -13,17 +17,34 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, Code::Invalid);
   EXPECT_EQ(source.error().detail,
-            "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, tls, tls-listen, unix, "
-            "unix-listen, inproc, shm, dds");
+            "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, unix, unix-listen, "
+            "inproc, shm");
   EXPECT_FALSE(open_sink(*parse_uri("pigeon:home")));
 }
 
-TEST(Open, TlsNeedsALibraryOfItsOwn) {
-  for (const char* uri : {"tls:h:1?key=a&peer=b", "tls-listen:1?key=a&peer=b"}) {
-    EXPECT_EQ(open_source(*parse_uri(uri)).error().text(),
-              "Unsupported: tls: links need OpenSSL: this program is linked without lib/tls");
-    EXPECT_EQ(open_sink(*parse_uri(uri)).error().code, Code::Unsupported);
-  }
+TEST(Open, WhatAProgramDoesNotAddItDoesNotHave) {
+  for (const char* uri : {"tls:h:1?key=a&peer=b", "tls-listen:1?key=a&peer=b", "dds:topic"})
+    EXPECT_TRUE(open_source(*parse_uri(uri))
+                    .error()
+                    .detail.ends_with(
+                        "; tls and dds need OpenSSL and Cyclone DDS when a program is built, and "
+                        "hc::add_all_transports() in its main()"));
+}
+
+TEST(Open, WhatAProgramAddsItHas) {
+  const Transport file{"copy",
+                       "slow",
+                       "fast",
+                       internal::open_file_source,
+                       internal::open_file_sink,
+                       internal::check_host_port};
+  add_transport(file);
+  add_transport(file);
+  EXPECT_EQ(std::ranges::count(transports(), "copy"), 1);
+  EXPECT_EQ(open_source(*parse_uri("copy:/nowhere?slow=1")).error().code, Code::NotFound);
+  EXPECT_EQ(open_sink(*parse_uri("copy:/nowhere?slow=1")).error().detail,
+            "copy has no option \"slow\" here, only \"fast\"");
+  EXPECT_EQ(check_sink(*parse_uri("copy:/nowhere?fast=1")).error().code, Code::Invalid);
 }
 
 TEST(Open, OptionsAreChecked) {

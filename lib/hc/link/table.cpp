@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one table of transports: what the scheme of a URI opens.
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <sstream>
 #include <string>
@@ -16,79 +15,29 @@
 namespace hc {
 namespace {
 
-using Opened = Result<std::unique_ptr<Source>>;
-using OpenedSink = Result<std::unique_ptr<Sink>>;
-
-struct Transport {
-  std::string_view scheme;
-  std::string_view source_options, sink_options;  // names, with blanks between
-  Opened (*open_source)(const Uri&, const LinkOptions&);
-  OpenedSink (*open_sink)(const Uri&, const LinkOptions&);
-};
-
-/// Calls a function of a transport; null: it is in a library that this program is linked without.
-template <typename Function, typename... Options>
-auto call(Function* function, const Uri& uri, const Options&... options)
-    -> decltype(function(uri, options...)) {
-  if (function != nullptr) return function(uri, options...);
-  const bool is_tls = uri.scheme.starts_with("tls");
-  const std::string name = is_tls ? "tls" : "dds";
-  return Error{Code::Unsupported, name + ": links need " + (is_tls ? "OpenSSL" : "Cyclone DDS") +
-                                      ": this program is linked without lib/" + name};
+Status check_name(const Uri& uri) {
+  if (uri.rest.empty() || uri.rest == "@") return Error{Code::Invalid, "there is no name"};
+  return {};
 }
 
-// The ends of links between sockets that connect, and that listen.
-
-template <Result<internal::Peer> find(const Uri&)>
-Opened connect_source(const Uri& uri, const LinkOptions& options) {
-  auto peer = call(find, uri);
-  return peer ? internal::dial_source(*peer, uri, options) : peer.error();
+/// Every transport of this program; add_transport() adds more. The options of each end are listed
+/// here, so that a misspelt one is refused and not ignored.
+std::vector<Transport>& table() {
+  using namespace internal;
+  static std::vector<Transport> transports = {
+      {"-", "", kPolicyOptions, open_stdin, open_stdout, [](const Uri&) { return Status(); }},
+      {"file", "", std::string("append optional ") + kPolicyOptions, open_file_source,
+       open_file_sink, check_name},
+      dialing<tcp_peer>("tcp", "same_user", check_host_port),
+      listening<listen_tcp>("tcp-listen", "same_user", check_host_port),
+      dialing<unix_peer>("unix", "", check_name),
+      listening<listen_unix>("unix-listen", "", check_name),
+      {"inproc", "", kPolicyOptions, open_inproc_source, open_inproc_sink, check_name},
+      {"shm", "keep rate burst spin wait reconnect", "readers stay keep memory timeout",
+       open_shm_source, open_shm_sink, check_name},
+  };
+  return transports;
 }
-
-template <Result<internal::Peer> find(const Uri&)>
-OpenedSink connect_sink(const Uri& uri, const LinkOptions& options) {
-  auto peer = call(find, uri);
-  return peer ? internal::dial_sink(*peer, uri, options) : peer.error();
-}
-
-template <Result<internal::ListeningSocket> listen(const Uri&)>
-Opened listening_source(const Uri& uri, const LinkOptions& options) {
-  auto socket = call(listen, uri);
-  return socket ? internal::listening_source(std::move(*socket), options) : socket.error();
-}
-
-template <Result<internal::ListeningSocket> listen(const Uri&)>
-OpenedSink listening_sink(const Uri& uri, const LinkOptions& options) {
-  auto socket = call(listen, uri);
-  return socket ? internal::listening_sink(std::move(*socket), uri, options) : socket.error();
-}
-
-/// Every transport there is. The options of each end are listed here, so that a misspelt one is
-/// refused and not ignored.
-constexpr std::array<Transport, 11> kTransports = {{
-    {"-", "", "keep rate burst memory timeout", internal::open_stdin, internal::open_stdout},
-    {"file", "", "append optional keep rate burst memory timeout", internal::open_file_source,
-     internal::open_file_sink},
-    {"tcp", "wait reconnect same_user", "wait reconnect same_user keep rate burst memory timeout",
-     connect_source<internal::tcp_peer>, connect_sink<internal::tcp_peer>},
-    {"tcp-listen", "same_user", "readers stay same_user keep rate burst memory timeout",
-     listening_source<internal::listen_tcp>, listening_sink<internal::listen_tcp>},
-    {"tls", "key peer wait reconnect", "key peer wait reconnect keep rate burst memory timeout",
-     connect_source<internal::tls_peer>, connect_sink<internal::tls_peer>},
-    {"tls-listen", "key peer", "key peer readers stay keep rate burst memory timeout",
-     listening_source<internal::listen_tls>, listening_sink<internal::listen_tls>},
-    {"unix", "wait reconnect", "wait reconnect keep rate burst memory timeout",
-     connect_source<internal::unix_peer>, connect_sink<internal::unix_peer>},
-    {"unix-listen", "", "readers stay keep rate burst memory timeout",
-     listening_source<internal::listen_unix>, listening_sink<internal::listen_unix>},
-    {"inproc", "", "keep rate burst memory timeout", internal::open_inproc_source,
-     internal::open_inproc_sink},
-    {"shm", "keep rate burst spin wait reconnect", "readers stay keep memory timeout",
-     internal::open_shm_source, internal::open_shm_sink},
-    {"dds", "domain interface wait reconnect keep rate burst memory",
-     "domain interface readers stay keep rate burst memory timeout", internal::open_dds_source,
-     internal::open_dds_sink},
-}};
 
 std::vector<std::string> split(std::string_view words) {
   std::istringstream text{std::string(words)};
@@ -98,7 +47,7 @@ std::vector<std::string> split(std::string_view words) {
 /// Whether some end of some transport has an option of that name: then it is not misspelt.
 bool is_option(const std::string& key) {
   std::string all;
-  for (const Transport& transport : kTransports)
+  for (const Transport& transport : table())
     all.append(" ").append(transport.source_options).append(" ").append(transport.sink_options);
   auto words = split(all);
   return std::find(words.begin(), words.end(), key) != words.end();
@@ -106,11 +55,16 @@ bool is_option(const std::string& key) {
 
 Result<const Transport*> find_transport(const Uri& uri) {
   std::string known;
-  for (const Transport& transport : kTransports) {
+  for (const Transport& transport : table()) {
     if (transport.scheme == uri.scheme) return &transport;
     known.append(known.empty() ? "" : ", ").append(transport.scheme);
   }
-  return Error{Code::Invalid, "no transport \"" + uri.scheme + "\"; there are " + known};
+  const bool is_optional = uri.scheme == "tls" || uri.scheme == "tls-listen" || uri.scheme == "dds";
+  return Error{Code::Invalid,
+               "no transport \"" + uri.scheme + "\"; there are " + known +
+                   (is_optional ? "; tls and dds need OpenSSL and Cyclone DDS when a program is "
+                                  "built, and hc::add_all_transports() in its main()"
+                                : "")};
 }
 
 Status check_options(const Uri& uri, std::string_view allowed) {
@@ -128,20 +82,9 @@ Status check_options(const Uri& uri, std::string_view allowed) {
 }
 
 /// Whether an end can be where it says, and its options have values that they can have.
-Status check_end(const Uri& uri, std::string_view allowed) {
+Status check_end(const Transport& transport, const Uri& uri, std::string_view allowed) {
   if (auto checked = check_options(uri, allowed); !checked) return checked;
-  const bool is_tls = uri.scheme.starts_with("tls");
-  if (is_tls || uri.scheme.starts_with("tcp")) {
-    if (auto place = parse_host_port(uri.rest); !place) return place.error();
-    for (const char* key : {"key", "peer"})
-      if (is_tls && uri.option(key, "").empty())
-        return Error{
-            Code::Invalid,
-            uri.scheme +
-                " needs the options key=FILE and peer=FINGERPRINT; hc key FILE makes a key"};
-  } else if (uri.scheme != "-" && (uri.rest.empty() || uri.rest == "@")) {
-    return Error{Code::Invalid, "there is no name"};
-  }
+  if (auto checked = transport.check(uri); !checked) return checked;
   for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user", "domain",
                           "append", "optional"})
     if (auto number = number_option(uri, key, 0); !number) return number.error();
@@ -161,10 +104,25 @@ LinkOptions with_name(LinkOptions options, const Uri& uri) {
 
 }  // namespace
 
+namespace internal {
+
+Status check_host_port(const Uri& uri) {
+  auto place = parse_host_port(uri.rest);
+  return place ? Status() : place.error();
+}
+
+}  // namespace internal
+
+void add_transport(Transport transport) {
+  for (const Transport& each : table())
+    if (each.scheme == transport.scheme) return;
+  table().push_back(std::move(transport));
+}
+
 std::vector<std::string_view> transports() {
   std::vector<std::string_view> schemes;
-  schemes.reserve(kTransports.size());
-  for (const Transport& transport : kTransports) schemes.push_back(transport.scheme);
+  schemes.reserve(table().size());
+  for (const Transport& transport : table()) schemes.push_back(transport.scheme);
   return schemes;
 }
 
@@ -173,7 +131,7 @@ Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& o
   if (!transport) return transport.error();
   auto checked = check_options(uri, (*transport)->source_options);
   if (!checked) return checked.error();
-  return call((*transport)->open_source, uri, with_name(options, uri));
+  return (*transport)->open_source(uri, with_name(options, uri));
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
@@ -181,17 +139,17 @@ Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& optio
   if (!transport) return transport.error();
   auto checked = check_options(uri, (*transport)->sink_options);
   if (!checked) return checked.error();
-  return call((*transport)->open_sink, uri, with_name(options, uri));
+  return (*transport)->open_sink(uri, with_name(options, uri));
 }
 
 Status check_source(const Uri& uri) {
   auto transport = find_transport(uri);
-  return transport ? check_end(uri, (*transport)->source_options) : transport.error();
+  return transport ? check_end(**transport, uri, (*transport)->source_options) : transport.error();
 }
 
 Status check_sink(const Uri& uri) {
   auto transport = find_transport(uri);
-  return transport ? check_end(uri, (*transport)->sink_options) : transport.error();
+  return transport ? check_end(**transport, uri, (*transport)->sink_options) : transport.error();
 }
 
 }  // namespace hc

@@ -21,10 +21,6 @@ Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri&, const LinkOptions&);
 Result<std::unique_ptr<Source>> open_shm_source(const Uri&, const LinkOptions&);
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri&, const LinkOptions&);
 
-/// The ends of `dds:` links. They are in lib/dds, and null in programs that are linked without it.
-[[gnu::weak]] Result<std::unique_ptr<Source>> open_dds_source(const Uri&, const LinkOptions&);
-[[gnu::weak]] Result<std::unique_ptr<Sink>> open_dds_sink(const Uri&, const LinkOptions&);
-
 /// Whether a `memory` is enough for shm, where it is all there is. Errors: Invalid.
 Status check_shm_memory(const Uri& uri);
 

@@ -581,7 +581,7 @@ TEST(Module, DescribesItself) {
       R"("parameters":[{"name":"hue","type":"number","unit":"turn","default":0.5,"min":0,"max":1,)"
       R"("doc":"colour"},{"name":"how","type":"string","unit":"","default":"fast","choices":)"
       R"(["fast","good"],"doc":"way"}],)"
-      R"("transports":["-","file","tcp","tcp-listen","tls","tls-listen","unix","unix-listen","inproc","shm","dds"],"control":true,)"
+      R"("transports":["-","file","tcp","tcp-listen","unix","unix-listen","inproc","shm"],"control":true,)"
       R"("routes":false})");
   std::string help = internal::help(module);
   for (const char* part :

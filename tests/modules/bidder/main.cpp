@@ -4,8 +4,10 @@
 #include "bidder.h"
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"bidder", "Bids for the focus as a script says, and commands."};
   auto bid = module.output("bid", hc::table<double>(), "1 x 1: salience; 0 withdraws");
   auto command =

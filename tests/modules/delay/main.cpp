@@ -3,8 +3,10 @@
 #include <thread>
 
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"delay", "Multiplies numbers, and takes its time."};
   auto in = module.input("in", hc::table<double>(), "a number");
   auto out = module.output("out", hc::table<double>(), "the number times the factor");

@@ -2,6 +2,7 @@
 // Sends one stream of each sort, whose contents are known, so that a test can compare what is shown
 // of them; and hears words.
 #include <hc/module/module.h>
+#include <transports/all.h>
 
 #include <array>
 #include <cstdint>
@@ -53,6 +54,7 @@ std::vector<std::int16_t> samples() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"known", "Sends streams whose contents are known."};
   auto image = module.output("image", hc::rgb_image<std::uint8_t>(), "four colours");
   auto depth = module.output("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),

@@ -6,9 +6,12 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include <hc/link/link.h>
 #include <hc/link/stream/dialer.h>
+#include <hc/link/transport.h>
 #include <hc/os/socket.h>
 
 namespace hc::internal {
@@ -93,9 +96,46 @@ inline constexpr const char* kListeners = "HC_LISTENERS";
 /// A descriptor of its own for the one that listens at an address; none (-1): there is no such one.
 Descriptor held_for_us(const Address& address);
 
-/// The same of `tls:HOST:PORT` and `tls-listen:[HOST:]PORT`. They are in lib/tls, and null in
-/// programs that are linked without it.
-[[gnu::weak]] Result<Peer> tls_peer(const Uri& uri);
-[[gnu::weak]] Result<ListeningSocket> listen_tls(const Uri& uri);
+/// Errors: Invalid (not `[HOST:]PORT`).
+Status check_host_port(const Uri& uri);
+
+/// The options of a Policy, which every sink has.
+inline constexpr const char* kPolicyOptions = "keep rate burst memory timeout";
+
+/// The transport whose ends connect to the peer that `find` gives.
+/// @param options  that it has beside those of each such transport.
+template <Result<Peer> find(const Uri&)>
+Transport dialing(std::string scheme, const std::string& options, Status (*check)(const Uri&)) {
+  const std::string all = "wait reconnect " + options;
+  return {std::move(scheme),
+          all,
+          all + " " + kPolicyOptions,
+          [](const Uri& uri, const LinkOptions& link) -> Result<std::unique_ptr<Source>> {
+            auto peer = find(uri);
+            return peer ? dial_source(*peer, uri, link) : peer.error();
+          },
+          [](const Uri& uri, const LinkOptions& link) -> Result<std::unique_ptr<Sink>> {
+            auto peer = find(uri);
+            return peer ? dial_sink(*peer, uri, link) : peer.error();
+          },
+          check};
+}
+
+/// The transport whose ends listen with the socket that `listen` gives.
+template <Result<ListeningSocket> listen(const Uri&)>
+Transport listening(std::string scheme, const std::string& options, Status (*check)(const Uri&)) {
+  return {std::move(scheme),
+          options,
+          "readers stay " + options + " " + kPolicyOptions,
+          [](const Uri& uri, const LinkOptions& link) -> Result<std::unique_ptr<Source>> {
+            auto socket = listen(uri);
+            return socket ? listening_source(std::move(*socket), link) : socket.error();
+          },
+          [](const Uri& uri, const LinkOptions& link) -> Result<std::unique_ptr<Sink>> {
+            auto socket = listen(uri);
+            return socket ? listening_sink(std::move(*socket), uri, link) : socket.error();
+          },
+          check};
+}
 
 }  // namespace hc::internal
