@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <functional>
+#include <vector>
 
 #include <dds/stranger_test.h>
 #include <dds/transport.h>
@@ -88,20 +90,25 @@ TEST(Dds, AllReadersGetEachMessage) {
   sender.join();
 }
 
-/// A sink whose messages all wait for its thread, and so share samples, however fast they come.
-std::string shares(const std::string& uri) {
-  return uri + "&rate=1000000&burst=1000";
+/// Sends messages so close to one another that some share samples.
+void send_together(Sink& sink, int count, const std::function<std::int32_t(int)>& size,
+                   int src = 0) {
+  std::vector<Message> messages;
+  for (int i = 0; i < count; ++i) messages.push_back(numbered(i, size(i)));
+  for (auto& message : messages) message.header.src = src;
+  for (const auto& message : messages) ASSERT_TRUE(sink.send(message));
 }
 
 TEST(Dds, WhatSharesASampleArrivesThoughNoMoreFollows) {
   const auto uri = fresh_topic();
   const auto source = source_of(uri);
   SampleCounter samples(uri);
-  const auto sink = sink_of(shares(uri + "&readers=2"));
+  const auto sink = sink_of(uri + "&readers=2");
   Message message;
   int sent = 0;
   for (const int count : {1, 2, 10, 1000, 1}) {
-    for (int i = 0; i < count; ++i, ++sent) ASSERT_TRUE(sink->send(numbered(i, i % 500)));
+    send_together(*sink, count, [](int i) { return i % 500; });
+    sent += count;
     for (int i = 0; i < count; ++i) {
       ASSERT_TRUE(*receive(*source, message));
       EXPECT_EQ(message.header.seq, i);
@@ -121,9 +128,9 @@ TEST(Dds, ASharedSampleMayBeLargerThanTheLargestMessage) {
   options.limits.element_bytes = 100;
   const auto source = source_of(uri, options);
   SampleCounter samples(uri);
-  const auto sink = sink_of(shares(uri + "&readers=2"), options);
+  const auto sink = sink_of(uri + "&readers=2", options);
   std::thread sender([&] {
-    for (int i = 0; i < kCount; ++i) EXPECT_TRUE(sink->send(numbered(i, 100)));
+    send_together(*sink, kCount, [](int) { return 100; });
     EXPECT_TRUE(sink->close());
   });
   Message message;
@@ -139,8 +146,8 @@ TEST(Dds, OfASharedSampleWhoKeepsTheLatestGetsTheLast) {
   const auto uri = fresh_topic();
   const auto source = source_of(uri + "&keep=latest");
   SampleCounter samples(uri);
-  const auto sink = sink_of(shares(uri + "&readers=2"));
-  for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
+  const auto sink = sink_of(uri + "&readers=2");
+  send_together(*sink, kCount, [](int) { return 10; });
   ASSERT_TRUE(sink->close());
   const int count = samples.count();
   EXPECT_GE(count, 1);
@@ -165,12 +172,9 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
   });
   std::array<Traffic, kSinks> sent;
   for (std::size_t i = 0; i < kSinks; ++i) {
-    const auto sink = sink_of(shares(uri + "&readers=1"));
-    for (int k = 0; k < 900; ++k) {
-      Message message = numbered(k, 100);
-      message.header.src = static_cast<int>(i);
-      EXPECT_TRUE(sink->send(message));
-    }
+    const auto sink = sink_of(uri + "&readers=1");
+    send_together(
+        *sink, 900, [](int) { return 100; }, static_cast<int>(i));
     if (i > 0) sink->abandon();
     EXPECT_TRUE(sink->close());
     sent.at(i) = sink->traffic();

@@ -5,11 +5,14 @@
 #include <array>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <dds/byte_sample.h>
-#include <hc/mtp/decode.h>
+#include <hc/mtp/framing.h>
+#include <hc/mtp/stream_reader.h>
 
 namespace hc::dds {
 namespace {
@@ -128,6 +131,31 @@ Result<std::span<const std::byte>> sequence_of(const MessageSample& sample) {
   return std::span<const std::byte>(sample.bytes.get() + kPrelude, count);
 }
 
+/// The message that octets are, if they are one whose elements can be used where they are.
+std::optional<Message> view_one(std::span<const std::byte> octets, const Limits& limits,
+                                internal::HeaderMemo& memo) {
+  const std::string_view text(reinterpret_cast<const char*>(octets.data()), octets.size());
+  auto line = internal::read_header_line(text, limits, 0, memo);
+  if (!line || line->bytes == 0 || internal::has_rows(line->header)) return std::nullopt;
+  const Header& header = line->header;
+  std::size_t at = line->bytes;
+  std::uint64_t length = header.element_bytes();
+  if (internal::is_compressed(header)) {
+    auto part = internal::read_length_line(text.substr(at), limits, at);
+    if (!part || part->bytes == 0) return std::nullopt;
+    at += part->bytes;
+    length = part->length;
+  }
+  if (text.size() - at < length) return std::nullopt;
+  const auto rest = text.substr(at + length);
+  auto closing = internal::read_closing(header, rest, at + length);
+  if (!closing || *closing == 0 || *closing != rest.size()) return std::nullopt;
+  Message message{header, octets.subspan(at, length), nullptr, at};
+  const auto address = reinterpret_cast<std::uintptr_t>(message.elements.data());
+  if (message.plain() && address % size_of(header.info.scalar) != 0) return std::nullopt;
+  return message;
+}
+
 }  // namespace
 
 ddsi_sertype* make_type() {
@@ -156,14 +184,16 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
   return Sample(sample.release());
 }
 
-bool join(ddsi_serdata& sample, const ddsi_serdata& more) {
-  auto& first = static_cast<MessageSample&>(sample);
-  const auto& next = own(&more);
-  const bool are_copied = first.elements.empty() && next.elements.empty();
-  if (!are_copied || first.size + next.size > kMostJoined) return false;
-  first.begin.insert(first.begin.end(), next.begin.begin() + kPrelude, next.begin.end());
-  first.size = first.begin.size();
-  first.write_prelude();
+bool join(ddsi_serdata& sample, const Pieces& pieces) {
+  auto& joined = static_cast<MessageSample&>(sample);
+  const auto size = pieces[0].size() + pieces[1].size() + pieces[2].size();
+  const bool are_copied = joined.elements.empty() && pieces[1].size() <= kMostCopied;
+  if (!are_copied || joined.size + size > kMostJoined) return false;
+  joined.begin.reserve(kMostJoined);
+  for (const auto piece : pieces)
+    joined.begin.insert(joined.begin.end(), piece.begin(), piece.end());
+  joined.size = joined.begin.size();
+  joined.write_prelude();
   return true;
 }
 
@@ -185,20 +215,35 @@ Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::H
   const auto& sample = own(&data);
   auto octets = sequence_of(sample);
   if (!octets) return octets.error();
+  if (auto alone = view_one(*octets, limits, memo)) {
+    alone->owner = sample.bytes;
+    take(alone->keep(), octets->size());
+    return {};
+  }
   constexpr std::size_t kMost = 10'000;  // messages, that a sample of small ones fills no memory
+  StreamReader reader(limits);
+  Message message;
   std::size_t at = 0, count = 0;
-  do {
-    if (count++ == kMost)
-      return Error{Code::TooLarge, "it has more than " + std::to_string(kMost) + " messages"};
-    Message message;
-    auto used = internal::decode(octets->subspan(at), message, limits, at, memo);
-    if (!used) return used.error();
-    if (*used == 0) return Error{Code::Truncated, "it ends inside its message"};
-    at += *used;
-    if (message.owner == nullptr && *used == octets->size()) message.owner = sample.bytes;
-    take(message.keep(), *used);
-  } while (at < octets->size());
-  return {};
+  std::uint64_t taken = 0;
+  while (true) {
+    auto got = reader.next(message);
+    if (!got) return got.error();
+    if (*got) {
+      if (count++ == kMost)
+        return Error{Code::TooLarge, "it has more than " + std::to_string(kMost) + " messages"};
+      if (message.elements.size() <= kMostCopied) message.owner.reset();  // which all others share
+      take(message.keep(), reader.bytes() - std::exchange(taken, reader.bytes()));
+    } else if (at < octets->size()) {
+      const auto space = reader.space();
+      const auto part = octets->subspan(at, std::min(space.size(), octets->size() - at));
+      std::ranges::copy(part, space.begin());
+      reader.commit(part.size());
+      at += part.size();
+    } else {
+      if (reader.finish()) return {};
+      return Error{Code::Truncated, "it ends inside its message"};
+    }
+  }
 }
 
 }  // namespace hc::dds

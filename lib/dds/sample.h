@@ -41,9 +41,9 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
 /// A sample of several messages has at most so many bytes, whatever the largest message is. [byte]
 inline constexpr std::size_t kMostJoined = 16 << 10;
 
-/// Adds the messages of one sample to those of another, neither of which is sent yet; false if
-/// elements are not copied, or the sample would be larger than kMostJoined.
-bool join(ddsi_serdata& sample, const ddsi_serdata& more);
+/// Adds a message to a sample that is not sent yet; false if elements of either are not copied, or
+/// the sample would be larger than kMostJoined.
+bool join(ddsi_serdata& sample, const Pieces& pieces);
 
 /// A sample without octets: its writer has closed, and nothing more will come of it.
 Sample make_end(const ddsi_sertype& type);

@@ -22,6 +22,10 @@ class DdsSample : public ::testing::Test {
     return make_sample(*type_, encoder_.encode(message), message);
   }
 
+  bool add(ddsi_serdata& sample, const Message& message) {
+    return join(sample, encoder_.encode(message));
+  }
+
   /// All bytes of a sample, in words, as they go over the network in pieces.
   static std::string in_pieces(const ddsi_serdata& sample, std::size_t piece) {
     const std::size_t size = (ddsi_serdata_size(&sample) + 3) / 4 * 4;
@@ -163,7 +167,7 @@ TEST_F(DdsSample, MayHaveSeveralMessages) {
   sent.push_back(table.keep());
   for (int i = 0; i < 3; ++i) sent.push_back(testing::numbered(i, 3 * i));
   const auto joined = make(sent[0]);
-  for (std::size_t i = 1; i < sent.size(); ++i) ASSERT_TRUE(join(*joined, *make(sent[i])));
+  for (std::size_t i = 1; i < sent.size(); ++i) ASSERT_TRUE(add(*joined, sent[i]));
   for (const std::size_t piece : {4U, 1000U}) {
     const auto got = read_all(*come(in_pieces(*joined, piece), piece));
     ASSERT_EQ(got.size(), sent.size());
@@ -181,11 +185,12 @@ TEST_F(DdsSample, MayHaveSeveralMessages) {
 }
 
 TEST_F(DdsSample, GrowsByWhatIsSmall) {
-  const auto small = make(testing::numbered(0, 4000)), large = make(testing::numbered(1, 4097));
-  EXPECT_FALSE(join(*small, *large));
-  EXPECT_FALSE(join(*large, *small));
+  const Message kept = testing::numbered(1, 4097);
+  const auto small = make(testing::numbered(0, 4000)), large = make(kept);
+  EXPECT_FALSE(add(*small, kept));
+  EXPECT_FALSE(add(*large, testing::numbered(0, 4000)));
   int count = 0;
-  while (join(*small, *make(testing::numbered(count, 4000)))) ++count;
+  while (add(*small, testing::numbered(count, 4000))) ++count;
   EXPECT_EQ(count, 3);  // 16 KiB
   EXPECT_EQ(read_all(*come(in_pieces(*small, 1000))).size(), 4U);
 }

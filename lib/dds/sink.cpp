@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <dds/ends.h>
 
-#include <array>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include <dds/participant.h>
-#include <hc/base/backoff.h>
+#include <hc/link/audience.h>
 #include <hc/link/link.h>
 #include <hc/link/queue.h>
 #include <hc/os/event.h>
-#include <hc/os/wait_readable.h>
 
 namespace hc::dds {
 namespace {
 
+using internal::Audience;
 using internal::Policy;
 using internal::SendQueue;
 using internal::TimePoint;
 using std::chrono::steady_clock;
 
 constexpr std::size_t kCapacity = 1000;  // messages that wait before a sender that loses none does
+constexpr std::size_t kMostReaders = 1000;
 
 /// Messages follow one another when no more time has passed between them: sooner than any could be
 /// answered, or another be computed. From so many on they are gathered.
@@ -34,17 +34,15 @@ constexpr std::chrono::microseconds kGather{20};
 /// Writes at once where Cyclone DDS takes a message. Where it does not, since readers have not
 /// acknowledged what went before, or the pace says so, the message waits by the link's policy, and
 /// a thread writes it as soon as may be. So it is with small messages that follow one another: what
-/// comes while the thread writes goes together in the next sample.
+/// comes while the thread pauses goes together in the next sample.
 class DdsSink final : public Sink {
  public:
-  DdsSink(const Policy& policy, LinkOptions options, std::int64_t readers, bool stays)
+  DdsSink(const Policy& policy, const Audience& audience, LinkOptions options)
       : waits_(policy.writer_waits()),
         is_paced_(policy.is_paced()),
-        wanted_(readers),
-        stays_(stays),
         options_(std::move(options)),
-        patience_(policy.timeout, options_.awaits_reader),
-        absence_(policy.timeout),
+        patience_(policy.timeout, options_.awaits_reader, options_.log),
+        audience_(audience),
         queue_(policy) {}
 
   ~DdsSink() override { end(); }
@@ -80,27 +78,22 @@ class DdsSink final : public Sink {
     std::unique_lock lock(mutex_);
     while (true) {
       if (failed_) return *failed_;
-      if (has_ended_)
-        return Error{Code::Closed,
-                     has_lost_all_ ? "all readers disconnected" : "the link is closed"};
-      if (readers_ != 0) absence_.renew();
-      const bool goes_on = absence_.is_over() || (stays_ && !waits_);
-      const bool needs_none = wanted_ == 0 || (has_begun_ && goes_on);
-      if (readers_ == 0 && needs_none) {
-        has_begun_ = true;
-        ++messages_;
-        ++(absence_.is_over() ? losses_.timed_out : losses_.cut);
-        return {};
-      }
-      if (readers_ < needed()) {
+      if (has_ended_) return ended();
+      const auto fate = audience_.decide(readers_);
+      if (fate == Audience::Fate::End) return ended();
+      if (fate == Audience::Fate::Kept) {
         if (auto awaited = await_readers(lock); !awaited) return awaited;
         continue;
       }
-      has_begun_ = true;
-      if (!waits_ || (queue_.size() < kCapacity && queue_.has_memory(size))) break;
-      if (!has_patience()) {
-        ++messages_;
-        ++losses_.timed_out;
+      if (fate == Audience::Fate::Lost) {
+        audience_.count_lost(traffic_);
+        return {};
+      }
+      if (!waits_ || (queue_.messages() < kCapacity && queue_.has_memory(size))) break;
+      const auto taken = traffic_.messages - traffic_.timed_out - queue_.messages();
+      if (patience_.is_over(taken) || !patience_.waits(taken, steady_clock::now())) {
+        ++traffic_.messages;
+        ++traffic_.timed_out;
         return {};
       }
       if (auto waited = wait(lock, patience_.due()); !waited) {
@@ -109,17 +102,15 @@ class DdsSink final : public Sink {
       }
     }
     patience_.end();
-    auto sample = make_sample(participant_->type(), pieces, message);
     const bool follows = waits_ && size <= kMostCopied && steady_clock::now() - sent_ < kFollowTime;
     following_ = follows ? following_ + 1 : 0;
-    if (is_paced_ || following_ >= kFewest || !queue_.empty() || joined_ || !write(*sample)) {
+    const bool is_direct = !is_paced_ && following_ < kFewest && queue_.empty();
+    if (!is_direct || !write(*make_sample(participant_->type(), pieces, message))) {
       if (failed_) return *failed_;
-      queue_.push(std::move(sample), size, losses_);
-      if (!thread_.joinable()) thread_ = std::thread([this] { write_all(); });
-      changed_.notify_one();
+      put_in_queue(pieces, message, size);
     }
-    ++messages_;
-    bytes_ += size;
+    ++traffic_.messages;
+    traffic_.bytes += size;
     sent_ = steady_clock::now();
     return {};
   }
@@ -127,8 +118,8 @@ class DdsSink final : public Sink {
   Status close() override {
     Status outcome;
     std::unique_lock lock(mutex_);
-    if (wanted_ > 0 && !has_begun_ && !has_ended_) outcome = await_readers(lock);
-    while (outcome && (!queue_.empty() || joined_) && readers_ > 0 && !failed_ && !has_ended_)
+    if (audience_.is_awaited() && !has_ended_) outcome = await_readers(lock);
+    while (outcome && !queue_.empty() && readers_ > 0 && !failed_ && !has_ended_)
       outcome = wait(lock);
     lock.unlock();
     // Cyclone DDS throws away what its receiving thread holds while a reader has no room, when the
@@ -148,10 +139,7 @@ class DdsSink final : public Sink {
 
   [[nodiscard]] Traffic traffic() const override {
     const std::lock_guard lock(mutex_);
-    Traffic all = losses_;
-    all.messages = messages_;
-    all.bytes += bytes_;
-    return all;
+    return traffic_;
   }
 
  private:
@@ -163,20 +151,11 @@ class DdsSink final : public Sink {
     return kept == DDS_RETCODE_OK ? Status() : failed("writer of " + topic, kept);
   }
 
-  /// How many readers the next message wants.
-  [[nodiscard]] std::uint32_t needed() const {
-    if (has_begun_ || wanted_ < 0) return 1;
-    return static_cast<std::uint32_t>(wanted_);
-  }
-
   /// Called on a thread of Cyclone's.
   void count_readers(std::uint32_t count) {
     const std::lock_guard lock(mutex_);
     readers_ = count;
-    if (count == 0 && has_begun_ && wanted_ > 0 && !stays_) {
-      has_lost_all_ = true;
-      return give_up();
-    }
+    if (count == 0 && audience_.ends_with_readers()) return give_up();
     event_.raise();
     changed_.notify_one();
   }
@@ -184,75 +163,50 @@ class DdsSink final : public Sink {
   /// Sends no more. With the mutex.
   void give_up() {
     has_ended_ = true;
-    losses_.cut += queue_.clear(losses_);
-    if (!is_handing_over_) lose_joined();
+    traffic_.cut += queue_.clear(traffic_);
     event_.raise();
     changed_.notify_one();
   }
-  void lose_joined() {
-    losses_.cut += std::exchange(joined_messages_, 0);
-    losses_.bytes -= std::exchange(joined_bytes_, 0);
-  }
-
-  /// Whether the readers, of which there is one reckoning, are to be waited for. With the mutex.
-  bool has_patience() {
-    const auto taken = messages_ - losses_.timed_out - queue_.size() - joined_messages_;
-    const bool was_over = patience_.is_over();
-    if (patience_.is_over(taken)) return false;
-    if (was_over) log(internal::Patience::kAgain);
-    if (patience_.waits(taken, steady_clock::now())) return true;
-    log(patience_.line());
-    return false;
-  }
-  void log(std::string_view line) const {
-    if (options_.log) options_.log(Severity::Warning, line);
+  [[nodiscard]] Error ended() const {
+    const bool have_left = audience_.ends_with_readers() && readers_ == 0;
+    return {Code::Closed, have_left ? "all readers disconnected" : "the link is closed"};
   }
 
   /// Waits until something has changed, or for so long; the lock is free meanwhile.
   Status wait(std::unique_lock<std::mutex>& lock, TimePoint until = TimePoint::max()) {
     if (event_.clear()) return {};
     lock.unlock();
-    auto& [interrupter, call] = options_.interrupt;
-    auto timeout = std::chrono::milliseconds(-1);
-    if (until != TimePoint::max())
-      timeout = std::max(std::chrono::milliseconds(0),
-                         std::chrono::ceil<std::chrono::milliseconds>(until - steady_clock::now()));
-    auto ready =
-        wait_readable(std::array{event_.descriptor(), interrupter}, options_.stop, timeout);
-    if (ready && *ready == 1 && !call()) interrupter = -1;
+    auto waited = internal::wait_for_event(event_.descriptor(), options_, until);
     lock.lock();
-    return ready ? Status() : ready.error();
+    return waited;
   }
 
   Status await_readers(std::unique_lock<std::mutex>& lock) {
-    const auto say = [&](bool awaits) {
-      if (!options_.awaits_reader) return;
-      lock.unlock();
-      options_.awaits_reader(awaits);
-      lock.lock();
-    };
-    say(true);
-    Status outcome;
-    while (outcome && readers_ < needed() && !has_ended_) {
-      if (has_begun_ && !absence_.waits(0, steady_clock::now())) {
-        log(absence_.line());
-        break;
-      }
-      outcome = wait(lock, absence_.due());
-    }
-    absence_.end();
-    say(false);
-    return outcome;
+    lock.unlock();
+    auto awaited = audience_.await(event_.descriptor(), options_, [this]() -> Result<std::size_t> {
+      const std::lock_guard locked(mutex_);
+      event_.clear();
+      if (has_ended_) return ended();
+      return readers_;
+    });
+    lock.lock();
+    return awaited;
+  }
+
+  /// Where nothing is dropped or paced a small message joins the last sample. With the mutex.
+  void put_in_queue(const Pieces& pieces, const Message& message, std::uint64_t size) {
+    const bool may_join = waits_ && !is_paced_ && !queue_.empty();
+    if (may_join && join(*queue_.back(), pieces))
+      queue_.grow_last(size);
+    else
+      queue_.push(make_sample(participant_->type(), pieces, message), size, traffic_);
+    if (!thread_.joinable()) thread_ = std::thread([this] { write_all(); });
+    changed_.notify_one();
   }
 
   /// Hands a sample to Cyclone DDS; false where there is no room, or it has failed. With the mutex.
-  bool write(ddsi_serdata& sample) { return is_written(hand_over(sample)); }
-
-  dds_return_t hand_over(ddsi_serdata& sample) const {
-    return dds_writecdr(writer_.handle(), ddsi_serdata_ref(&sample));
-  }
-
-  bool is_written(dds_return_t written) {
+  bool write(ddsi_serdata& sample) {
+    const auto written = dds_writecdr(writer_.handle(), ddsi_serdata_ref(&sample));
     if (written != DDS_RETCODE_OK && written != DDS_RETCODE_TIMEOUT) {
       failed_ = failed("written", written);
       event_.raise();  // for a sender that waits
@@ -260,81 +214,33 @@ class DdsSink final : public Sink {
     return written == DDS_RETCODE_OK;
   }
 
-  /// Takes what is ready at the front of the queue as one sample, of which nothing is lost.
-  void join_first(TimePoint now) {
-    const auto take = [&] {
-      const auto before = queue_.bytes();
-      auto sample = queue_.pop(now);
-      ++joined_messages_;
-      joined_bytes_ += before - queue_.bytes();
-      return sample;
-    };
-    joined_ = take();
-    while (queue_.ready_at(now, losses_) <= now && join(*joined_, *queue_.front())) take();
-  }
-
-  /// Writes the first that waits; false where there is no room for it. The lock is free meanwhile
-  /// where nothing may be dropped.
-  bool write_first(std::unique_lock<std::mutex>& lock, TimePoint now) {
-    if (!waits_) {
-      if (!write(*queue_.front())) return false;
-      queue_.pop(now);
-      return true;
-    }
-    if (!joined_) join_first(now);
-    is_handing_over_ = true;
-    lock.unlock();
-    const auto written = hand_over(*joined_);
-    lock.lock();
-    is_handing_over_ = false;
-    if (!is_written(written)) {
-      if (has_ended_) lose_joined();
-      return false;
-    }
-    joined_.reset();
-    joined_messages_ = joined_bytes_ = 0;
-    return true;
-  }
-
   /// What the thread does: writes what waits.
   void write_all() {
     constexpr std::chrono::microseconds kShortest{100}, kLongest{10'000};
     auto pause = kShortest;
-    bool gathers = false;
     std::unique_lock lock(mutex_);
     while (!has_ended_ && !failed_) {
       const auto now = steady_clock::now();
-      if (queue_.empty() && std::exchange(gathers, false)) {
-        lock.unlock();
-        std::this_thread::sleep_for(kGather);
-        lock.lock();
-        continue;
-      }
-      if (const auto ready = queue_.ready_at(now, losses_); !joined_ && ready > now) {
-        if (ready == TimePoint::max())
-          changed_.wait(lock);
-        else
-          changed_.wait_until(lock, ready);
-        continue;
-      }
-      if (readers_ == 0 && waits_) {
+      const auto ready = queue_.ready_at(now, traffic_);
+      if (ready == TimePoint::max() || (readers_ == 0 && waits_)) {
         changed_.wait(lock);
-        continue;
-      }
-      if (readers_ == 0) {
-        losses_.cut += 1;
-        queue_.pop(now);
-      } else if (write_first(lock, now)) {
-        gathers = waits_;
-        pause = kShortest;
-      } else {
+      } else if (ready > now) {
+        changed_.wait_until(lock, ready);
+      } else if (readers_ > 0 && !write(*queue_.front())) {
         lock.unlock();
         dds_wait_for_acks(writer_.handle(), pause.count() * 1000);
         pause = std::min(2 * pause, kLongest);
         lock.lock();
-        continue;
+      } else {
+        if (readers_ == 0) ++traffic_.cut;
+        queue_.pop(now);
+        pause = kShortest;
+        event_.raise();
+        if (!waits_ || !queue_.empty()) continue;
+        lock.unlock();
+        std::this_thread::sleep_for(kGather);
+        lock.lock();
       }
-      event_.raise();
     }
   }
 
@@ -373,26 +279,20 @@ class DdsSink final : public Sink {
   }
 
   const bool waits_, is_paced_;
-  const std::int64_t wanted_;  // readers before the first message and the end; -1: one, none
-  const bool stays_;
   LinkOptions options_;
-  internal::Patience patience_, absence_;  // with readers; with all that have left
+  internal::Patience patience_;
   Encoder encoder_;
   internal::Event event_;  // readable when something has changed that is waited for
 
   mutable std::mutex mutex_;  // of what follows
+  Audience audience_;
   std::condition_variable changed_;
   SendQueue<Sample> queue_;
-  Sample joined_;  // taken out of the queue to be written, of so many messages and bytes
-  std::uint64_t joined_messages_ = 0, joined_bytes_ = 0;
-  bool is_handing_over_ = false;  // joined_; whether it is lost is not known yet
-  TimePoint sent_{};              // when the last message was
-  std::size_t following_ = 0;     // messages that have followed one another so far
-  Traffic losses_;
-  std::uint64_t messages_ = 0, bytes_ = 0;
+  TimePoint sent_{};           // when the last message was
+  std::size_t following_ = 0;  // messages that have followed one another so far
+  Traffic traffic_;
   std::uint32_t readers_ = 0;
-  bool has_begun_ = false;  // the readers that were to be waited for have come
-  bool has_ended_ = false, has_lost_all_ = false;
+  bool has_ended_ = false;
   std::optional<Error> failed_;
 
   std::thread thread_;
@@ -405,14 +305,11 @@ class DdsSink final : public Sink {
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
   auto place = parse_place(uri);
   if (!place) return place.error();
-  constexpr std::int64_t kMostReaders = 1000;
-  auto readers = number_option(uri, "readers", -1, {0, kMostReaders});
-  if (!readers) return readers.error();
-  auto stays = number_option(uri, "stay", 0, {0, 1});
-  if (!stays) return stays.error();
   auto policy = internal::parse_policy(uri);
   if (!policy) return policy.error();
-  auto sink = std::make_unique<DdsSink>(*policy, options, *readers, *stays == 1);
+  auto audience = Audience::make(uri, kMostReaders, *policy, options);
+  if (!audience) return audience.error();
+  auto sink = std::make_unique<DdsSink>(*policy, *audience, options);
   if (auto begun = sink->begin(*place); !begun) return begun.error();
   return std::unique_ptr<Sink>(std::move(sink));
 }

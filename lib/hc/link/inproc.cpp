@@ -108,7 +108,7 @@ class InprocSink final : public Sink {
       : channel_(std::move(channel)),
         waits_(policy.writer_waits()),
         options_(options),
-        patience_(policy.timeout, options.awaits_reader) {}
+        patience_(policy.timeout, options.awaits_reader, options.log) {}
   ~InprocSink() override { leave(); }
 
   Status send(const Message& message) override {
@@ -118,7 +118,7 @@ class InprocSink final : public Sink {
         if (channel_->source_left) return Error{Code::Closed, "the reader disconnected"};
         const auto& waiting = channel_->messages;
         if (!waits_ ||
-            (waiting.size() < kCapacity && waiting.has_memory(message.elements.size()))) {
+            (waiting.messages() < kCapacity && waiting.has_memory(message.elements.size()))) {
           channel_->messages.push(message.keep(), message.elements.size(), channel_->losses);
           channel_->readable.raise();
           ++messages_;
@@ -156,16 +156,10 @@ class InprocSink final : public Sink {
   }
 
  private:
+  /// Whether to wait for the source. With the mutex.
   bool has_patience() {
-    const bool was_over = patience_.is_over();
-    if (patience_.is_over(channel_->taken)) return false;
-    if (was_over) log(Patience::kAgain);
-    if (patience_.waits(channel_->taken, std::chrono::steady_clock::now())) return true;
-    log(patience_.line());
-    return false;
-  }
-  void log(std::string_view line) const {
-    if (options_.log) options_.log(Severity::Warning, line);
+    const auto taken = channel_->taken;
+    return !patience_.is_over(taken) && patience_.waits(taken, std::chrono::steady_clock::now());
   }
 
   void leave() {

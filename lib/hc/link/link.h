@@ -164,11 +164,11 @@ struct LinkOptions {
 ///   up once.
 /// - `readers=N` (listening sinks, shm sink): how many readers to wait for before the first message
 ///   and before the end; default: 1 before the first message, and none before the end. When as many
-///   as were counted have all left, the link is closed. 0: none, ever; what is sent without a
-///   reader is lost (Traffic::cut), and the link continues. For a program that must not wait for
-///   those who observe it.
-/// - `stay=1` (the same): who has left may come back, so the link is not closed then. With keep=all
-///   send() waits for the next reader; else what is sent meanwhile is lost (Traffic::cut).
+///   as were counted have all left, the link is closed; where none were counted it continues.
+///   0: none, ever. For a program that must not wait for those who observe it.
+/// - `stay=1` (the same): who has left may come back, so the link continues.
+///   Without a reader, send() of a link that continues waits for the next one if keep=all and
+///   readers is not 0; otherwise the message is lost (Traffic::cut).
 /// - `domain=N` (dds; default 0): the domain of DDS. `interface=ADDRESS,…` (dds): IPv4 addresses of
 ///   this host, whose networks it uses; default: loopback alone.
 /// - `spin=MICROSECONDS` (shm source; default 20): how long a reader that waits looks for the next

@@ -71,6 +71,10 @@ bool Patience::waits(std::uint64_t taken, TimePoint now) {
   if (timeout_.count() > 0 && now - *last_taken_ >= timeout_) {
     end();
     is_over_ = true;
+    if (log_)
+      log_(Severity::Warning, "the reader has taken nothing for " +
+                                  std::to_string(timeout_.count()) +
+                                  " s: messages to it are dropped until it does");
     return false;
   }
   if (tell_ && now - *began_ >= kLong && !std::exchange(is_told_, true)) tell_(true);
@@ -90,9 +94,11 @@ TimePoint Patience::due() const {
   return due;
 }
 
-std::string Patience::line() const {
-  return "the reader has taken nothing for " + std::to_string(timeout_.count()) +
-         " s: messages to it are dropped until it does";
+bool Patience::is_over(std::uint64_t taken) {
+  if (!is_over_ || taken == taken_) return is_over_;
+  is_over_ = false;
+  if (log_) log_(Severity::Warning, "the reader takes messages again");
+  return false;
 }
 
 }  // namespace hc::internal

@@ -10,9 +10,9 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
+#include <hc/base/log.h>
 #include <hc/base/result.h>
 #include <hc/base/uri.h>
 
@@ -76,8 +76,10 @@ class Patience {
 
   /// @param timeout  0: it is waited for as long as it takes.
   /// @param tell  called with true when a wait gets long, with false when it ends; may be empty.
-  explicit Patience(std::chrono::seconds timeout, std::function<void(bool)> tell = {})
-      : timeout_(timeout), tell_(std::move(tell)) {}
+  /// @param log  gets a line when the reader is given up, and when it takes messages again.
+  explicit Patience(std::chrono::seconds timeout, std::function<void(bool)> tell = {},
+                    LogSink log = {})
+      : timeout_(timeout), tell_(std::move(tell)), log_(std::move(log)) {}
 
   /// Looks at a reader before each wait for it, when it has `taken` so much, in whatever unit.
   /// @returns  whether to wait, until due() at most; if not, it has just been given up.
@@ -87,18 +89,15 @@ class Patience {
   [[nodiscard]] TimePoint due() const;
 
   /// Whether it is given up still; it is not when it has taken something since.
-  [[nodiscard]] bool is_over(std::uint64_t taken) { return is_over_ = is_over_ && taken == taken_; }
+  bool is_over(std::uint64_t taken);
   [[nodiscard]] bool is_over() const { return is_over_; }
   /// It is waited for again, whatever it has taken.
   void renew() { is_over_ = false; }
 
-  /// For the log, when it has been given up: "has taken nothing for 5 s: …".
-  [[nodiscard]] std::string line() const;
-  static constexpr std::string_view kAgain = "the reader takes messages again";
-
  private:
   std::chrono::seconds timeout_;
   std::function<void(bool)> tell_;
+  LogSink log_;
   std::uint64_t taken_ = 0;
   std::optional<TimePoint> began_, last_taken_;  // the wait, and the reader's last sign in it
   bool is_told_ = false, is_over_ = false;

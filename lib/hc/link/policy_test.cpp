@@ -148,6 +148,19 @@ std::vector<int> left_of(SendQueue<int>& queue, int count, std::uint64_t bytes, 
   return left;
 }
 
+TEST(SendQueue, CountsMessagesThatShareAnItem) {
+  Traffic traffic;
+  SendQueue<int> queue(*policy_of(""));
+  queue.push(0, 10, traffic);
+  queue.push(1, 10, traffic);
+  queue.grow_last(5);
+  EXPECT_EQ(queue.messages(), 3U);
+  EXPECT_EQ(queue.bytes(), 25U);
+  EXPECT_EQ(queue.pop(kBegin), 0);
+  EXPECT_EQ(queue.clear(traffic), 2U);
+  EXPECT_EQ(queue.messages(), 0U);
+}
+
 TEST(SendQueue, KeepsAllThatAreToBeKept) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of(""));
@@ -179,7 +192,7 @@ TEST(SendQueue, DropsNothingForMemoryWhereAllAreKept) {
   queue.push(0, 5000, traffic);
   EXPECT_FALSE(queue.has_memory(1));
   queue.push(1, 5000, traffic);
-  EXPECT_EQ(queue.size(), 2U);
+  EXPECT_EQ(queue.messages(), 2U);
   EXPECT_EQ(traffic.over_memory, 0U);
 }
 

@@ -24,9 +24,10 @@ class SendQueue {
       : keep_(policy.keep), memory_(policy.memory), pace_(policy.rate, policy.burst) {}
 
   [[nodiscard]] bool empty() const { return items_.empty(); }
-  [[nodiscard]] std::size_t size() const { return items_.size(); }
+  [[nodiscard]] std::size_t messages() const { return messages_; }
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] const Item& front() const { return items_.front().item; }
+  [[nodiscard]] Item& back() { return items_.back().item; }
 
   /// Whether there is memory for one more; always for the first.
   [[nodiscard]] bool has_memory(std::uint64_t bytes) const {
@@ -37,13 +38,22 @@ class SendQueue {
   void push(Item item, std::uint64_t bytes, Traffic& traffic) {
     // What is behind a message that is kept back is kept back too.
     bool held = !items_.empty() && items_.front().held;
-    items_.push_back({std::move(item), bytes, false});
+    items_.push_back({std::move(item), bytes, 1, false});
     bytes_ += bytes;
+    ++messages_;
     if (held) hold(items_.back(), traffic);
     if (keep_ == Policy::kAll) return;
     while (items_.size() > 1 && bytes_ > memory_) drop(traffic, traffic.over_memory);
     while (items_.size() > keep_)
       drop(traffic, items_.front().held ? traffic.over_rate : traffic.superseded);
+  }
+
+  /// Says that another message has been made part of the last one, where none is dropped or paced.
+  void grow_last(std::uint64_t bytes) {
+    ++items_.back().messages;
+    ++messages_;
+    items_.back().bytes += bytes;
+    bytes_ += bytes;
   }
 
   /// When the first message may go: `now` or later; for ever later where there is none.
@@ -72,21 +82,22 @@ class SendQueue {
   /// Takes the last message back, which has not been sent.
   void take_back() {
     bytes_ -= items_.back().bytes;
+    messages_ -= items_.back().messages;
     items_.pop_back();
   }
 
   /// Drops all, and takes their bytes off; gives their number.
   std::size_t clear(Traffic& traffic) {
     traffic.bytes -= std::exchange(bytes_, 0);
-    auto count = items_.size();
     items_.clear();
-    return count;
+    return std::exchange(messages_, 0);
   }
 
  private:
   struct Entry {
     Item item;
     std::uint64_t bytes;
+    std::size_t messages;
     bool held;  // back by the pace
   };
 
@@ -104,6 +115,7 @@ class SendQueue {
   Item remove_front() {
     Item item = std::move(items_.front().item);
     bytes_ -= items_.front().bytes;
+    messages_ -= items_.front().messages;
     items_.pop_front();
     return item;
   }
@@ -111,6 +123,7 @@ class SendQueue {
   std::size_t keep_;
   std::uint64_t memory_;
   std::uint64_t bytes_ = 0;
+  std::size_t messages_ = 0;
   TokenBucket pace_;
   std::deque<Entry> items_;
 };

@@ -172,10 +172,7 @@ void ShmReaders::refresh() {
 
 /// Whether a reader has been given up, and has taken nothing since.
 bool ShmReaders::is_given_up(ShmReader& reader, std::uint64_t published) {
-  if (!reader.patience.is_over()) return false;
-  if (reader.patience.is_over(reader.cursor(published))) return true;
-  remark(std::string(Patience::kAgain));
-  return false;
+  return reader.patience.is_over() && reader.patience.is_over(reader.cursor(published));
 }
 
 bool ShmReaders::have_given_up() const {

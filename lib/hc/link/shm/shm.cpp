@@ -57,20 +57,16 @@ Status check_shm_memory(const Uri& uri) {
 
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
   if (auto named = check_name(uri); !named) return named.error();
-  auto counted = number_option(uri, "readers", -1, {0, kMostReaders});
-  if (!counted) return counted.error();
-  auto stays = number_option(uri, "stay", 0, {0, 1});
-  if (!stays) return stays.error();
   if (auto enough = check_shm_memory(uri); !enough) return enough.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
+  auto audience = Audience::make(uri, kMostReaders, *policy, options);
+  if (!audience) return audience.error();
   auto socket = listen_unix(meeting_place(uri));
   if (!socket) return socket.error();
   auto memory = SharedMemory::make(policy->memory / kPageBytes * kPageBytes, kSlotsBegin);
   if (!memory) return memory.error();
-  auto sink = std::make_unique<ShmSink>(std::move(*memory), *counted, *stays == 1,
-                                        policy->writer_waits() ? 0 : policy->keep, policy->timeout,
-                                        options);
+  auto sink = std::make_unique<ShmSink>(std::move(*memory), *audience, *policy, options);
   if (auto begun = sink->begin(std::move(*socket)); !begun) return begun.error();
   return std::unique_ptr<Sink>(std::move(sink));
 }

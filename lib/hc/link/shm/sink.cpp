@@ -40,25 +40,14 @@ void copy_words(std::span<const std::byte> bytes, char* to) {
 Status ShmSink::send(const Message& message) {
   if (ended_) return abandoned();
   refresh();
-  if (!begun_)
-    if (auto came = await_readers(static_cast<std::size_t>(std::abs(counted_))); !came) return came;
-  begun_ = true;
-  if (present_ == 0) {
-    if (counted_ == 0) {
-      ++traffic_.messages;
-      ++traffic_.cut;
-      return {};
-    }
-    if (counted_ > 0 && !stays_) return Error{Code::Closed, "the readers disconnected"};
-    if (keep_ == 0 && !absence_.is_over())
-      if (auto came = await_readers(1); !came) return came;
-    if (present_ == 0 && (stays_ || absence_.is_over())) {
-      ++traffic_.messages;
-      ++(absence_.is_over() ? traffic_.timed_out : traffic_.cut);
-      return {};
-    }
+  auto fate = audience_.decide(present_);
+  for (; fate == Audience::Fate::Kept; fate = audience_.decide(present_))
+    if (auto came = await_readers(); !came) return came;
+  if (fate == Audience::Fate::End) return Error{Code::Closed, "the readers disconnected"};
+  if (fate == Audience::Fate::Lost) {
+    audience_.count_lost(traffic_);
+    return {};
   }
-  absence_.renew();
   // The header's line and the elements behind it, if they are small, in words.
   std::array<std::uint64_t, Cell::kWords + kMaxHeaderBytes / sizeof(std::uint64_t)> words;
   char* text = reinterpret_cast<char*>(words.data());
@@ -137,7 +126,7 @@ Draft ShmSink::loan(const Header& header) {
 
 Status ShmSink::close() {
   Status awaited;
-  if (!begun_ && counted_ > 0) awaited = await_readers(static_cast<std::size_t>(counted_));
+  if (audience_.is_awaited()) awaited = await_readers();
   if (readers_ != nullptr) refresh();  // which writes to the log
   end();
   return awaited;

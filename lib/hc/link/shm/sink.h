@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 
+#include <hc/link/audience.h>
 #include <hc/link/link.h>
 #include <hc/link/shm/readers.h>
 #include <hc/link/shm/slots.h>
@@ -18,29 +19,21 @@ namespace hc::internal {
 
 class ShmSink final : public Sink {
  public:
-  /// @param counted  readers that the first message waits for, which are all; below 0: one, and
-  ///     others may come; 0: nobody is ever waited for. @param stays  continues when all of those
-  ///     have left.
-  /// @param keep  newest messages that wait for a reader that does not say; 0: all, it is waited
-  ///     for, no longer than `timeout` says.
-  ShmSink(SharedMemory memory, std::int64_t counted, bool stays, std::uint64_t keep,
-          std::chrono::seconds timeout, LinkOptions options)
+  ShmSink(SharedMemory memory, const Audience& audience, const Policy& policy, LinkOptions options)
       : memory_(std::make_shared<SharedMemory>(std::move(memory))),
         head_(*reinterpret_cast<Head*>(memory_->data())),
         cells_(reinterpret_cast<Cell*>(memory_->data() + kRingBegin)),
         slots_(std::make_shared<SlotPool>(kSlotsBegin, memory_->size())),
-        counted_(counted),
-        stays_(stays),
-        keep_(keep),
-        timeout_(timeout),
-        options_(std::move(options)),
-        absence_(timeout) {}
+        audience_(audience),
+        keep_(policy.writer_waits() ? 0 : policy.keep),
+        timeout_(policy.timeout),
+        options_(std::move(options)) {}
   ~ShmSink() override { end(); }
 
   /// Lets readers in; before all else. Errors: System.
   Status begin(ListeningSocket socket) {
     auto readers = ShmReaders::make(std::move(socket), *memory_, keep_,
-                                    Patience(timeout_, options_.awaits_reader));
+                                    Patience(timeout_, options_.awaits_reader, options_.log));
     if (!readers) return readers.error();
     readers_ = std::move(*readers);
     return {};
@@ -67,8 +60,7 @@ class ShmSink final : public Sink {
   }
   void meet_readers();
   void refresh_for_sure();
-  Status wait(int descriptor, std::chrono::milliseconds timeout);
-  Status await_readers(std::size_t count);
+  Status await_readers();
   static Error abandoned() { return {Code::Closed, "the link was abandoned"}; }
 
   // Where there is room for a message (sink_room.cpp).
@@ -89,12 +81,10 @@ class ShmSink final : public Sink {
   Cell* cells_;
   std::shared_ptr<SlotPool> slots_;
   std::unique_ptr<ShmReaders> readers_;
-  std::int64_t counted_;
-  bool stays_;  // when all of them have left
-  std::uint64_t keep_;
+  Audience audience_;
+  std::uint64_t keep_;  // newest messages for a reader that does not say; 0: all, it is waited for
   std::chrono::seconds timeout_;
   LinkOptions options_;
-  Patience absence_;  // with all readers that have left
 
   std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
   std::array<Slot*, kCells> slot_of_cell_{};
@@ -104,7 +94,7 @@ class ShmSink final : public Sink {
   HeaderMemo memo_;
   Waker waker_{head_};
   std::size_t present_ = 0;  // readers that still take messages
-  bool begun_ = false, ended_ = false;
+  bool ended_ = false;
   Status host_;  // whether it had pages for the last slot
   Traffic traffic_;
 };

@@ -9,7 +9,6 @@
 
 #include <hc/link/shm/crash_point.h>
 #include <hc/link/stream/source.h>
-#include <hc/os/wait_readable.h>
 
 namespace hc::internal {
 namespace {
@@ -45,37 +44,12 @@ void ShmSink::refresh_for_sure() {
   refresh();
 }
 
-/// Waits for `descriptor`, or whoever interrupts.
-Status ShmSink::wait(int descriptor, std::chrono::milliseconds timeout) {
-  auto& [interrupter, call] = options_.interrupt;
-  auto ready = wait_readable(std::array{descriptor, interrupter}, options_.stop, timeout);
-  if (!ready) return ready.error();
-  if (*ready == 1 && !call()) interrupter = -1;
-  return ended_ ? abandoned() : Status();
-}
-
-Status ShmSink::await_readers(std::size_t count) {
-  refresh();
-  if (present_ >= count) return {};
-  if (options_.awaits_reader) options_.awaits_reader(true);
-  Status outcome;
-  while (outcome && present_ < count) {
-    const auto now = std::chrono::steady_clock::now();
-    auto timeout = std::chrono::milliseconds(-1);
-    if (begun_) {  // who has left is awaited no longer than the policy says
-      if (!absence_.waits(0, now)) {
-        if (options_.log) options_.log(Severity::Warning, absence_.line());
-        break;
-      }
-      if (absence_.due() != TimePoint::max())
-        timeout = std::chrono::ceil<std::chrono::milliseconds>(absence_.due() - now);
-    }
-    outcome = wait(readers_->event(), timeout);
-    if (outcome) refresh();
-  }
-  absence_.end();
-  if (options_.awaits_reader) options_.awaits_reader(false);
-  return outcome;
+Status ShmSink::await_readers() {
+  return audience_.await(readers_->event(), options_, [this]() -> Result<std::size_t> {
+    if (ended_) return abandoned();
+    refresh();
+    return present_;
+  });
 }
 
 /// Whether `bytes` more in slots are too many for the slowest of those that lose nothing. Cost: a
@@ -125,14 +99,12 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
                    "no room left: the host has no memory to share: " + host_.error().detail};
     if (reader == nullptr)
       return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
-    auto& patience = reader->patience;
-    if (!patience.waits(reader->cursor(published_), std::chrono::steady_clock::now())) {
-      if (options_.log) options_.log(Severity::Warning, patience.line());
-      continue;
-    }
+    const auto now = std::chrono::steady_clock::now();
+    if (!reader->patience.waits(reader->cursor(published_), now)) continue;
     HC_CRASH_POINT("publisher waits for room");
     futex_wait(reader->page().progress, progress, kStopCheckPeriod);
-    if (auto waited = wait(-1, std::chrono::milliseconds(0)); !waited) return waited;
+    if (auto waited = wait_for_event(-1, options_, now); !waited) return waited;
+    if (ended_) return abandoned();
   }
 }
 

@@ -294,16 +294,12 @@ void Connection::give_up_reader(Outgoing& message) {
   } else if (writer_.borrows()) {
     writer_.keep(message.kept());
   }
-  remark(patience_.line());
 }
 
 /// Drops a message where the reader that was given up has taken nothing since.
 bool Connection::drops_for_reader(const Outgoing& message, TimePoint now) {
   if (connected() && all_written()) patience_.renew();
-  if (!patience_.is_over(writer_.total())) {
-    remark(std::string(Patience::kAgain));
-    return false;
-  }
+  if (!patience_.is_over(writer_.total())) return false;
   ++losses_.timed_out;
   losses_.bytes -= message.size();
   arm(now);

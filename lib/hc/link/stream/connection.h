@@ -91,7 +91,6 @@ class Connection {
   /// Logs what has happened to the connection; on the thread that sends, which also hears
   /// of it while it waits in send() or close().
   void flush_log() { remarks_.flush(log_); }
-  void remark(std::string line) { remarks_.add(std::move(line)), flush_log(); }
   [[nodiscard]] int descriptor() const { return writer_.descriptor(); }
 
  private:
@@ -101,7 +100,7 @@ class Connection {
         log_(options.log),
         dialer_(std::move(dialer)),
         queue_(policy),
-        patience_(policy.timeout, options.awaits_reader) {
+        patience_(policy.timeout, options.awaits_reader, options.log) {
     if (dialer_ != nullptr)
       dialer_->log_to([this](std::string line) { remarks_.add(std::move(line)); });
   }

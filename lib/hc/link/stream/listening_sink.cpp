@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hc/base/backoff.h>
+#include <hc/link/audience.h>
 #include <hc/link/stream/connection.h>
 #include <hc/link/stream/ends.h>
 #include <hc/mtp/codec.h>
@@ -22,15 +23,13 @@ constexpr std::chrono::milliseconds kNewPeerPeriod{1};
 /// A connection for each reader; see listening_sink().
 class ListeningSink final : public Sink {
  public:
-  ListeningSink(ListeningSocket socket, std::unique_ptr<Loop> loop, std::int64_t readers,
-                bool stays, const Policy& policy, LinkOptions options)
+  ListeningSink(ListeningSocket socket, std::unique_ptr<Loop> loop, const Audience& audience,
+                const Policy& policy, LinkOptions options)
       : socket_(std::move(socket)),
         loop_(std::move(loop)),
-        readers_(readers),
-        stays_(stays),
+        audience_(audience),
         policy_(policy),
-        options_(std::move(options)),
-        absence_(policy.timeout) {}
+        options_(std::move(options)) {}
 
   Status begin() {
     auto watched = loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); });
@@ -42,24 +41,23 @@ class ListeningSink final : public Sink {
   Status send(const Message& message) override {
     Outgoing outgoing(encoder_.encode(message), message);
     while (true) {
-      if (begun_ && readers_ > 0 && !stays_ && peers_.empty())
-        return Error{Code::Closed, "all readers disconnected"};
-      if (peers_.empty() && !waits_for_peer()) {
-        let_in();
-        if (peers_.empty()) {
-          ++traffic_.messages;
-          ++(absence_.is_over() ? traffic_.timed_out : traffic_.cut);
-          return {};
-        }
-        absence_.renew();
-      }
+      auto fate = audience_.decide(peers_.size());
+      if (fate == Audience::Fate::End) return Error{Code::Closed, "all readers disconnected"};
       auto now = std::chrono::steady_clock::now();
-      bool follows = now - last_send_ < kFollowTime && now - last_look_ < kNewPeerPeriod;
-      if (!begun_ || peers_.empty() || !follows) {
-        if (auto awaited = await_readers(); !awaited) return awaited;
-        last_look_ = now = std::chrono::steady_clock::now();
+      const bool follows = now - last_send_ < kFollowTime && now - last_look_ < kNewPeerPeriod;
+      if (fate != Audience::Fate::Sent || !follows) {
+        let_in();
+        last_look_ = now;
+        fate = audience_.decide(peers_.size());
       }
-      begun_ = true;
+      if (fate == Audience::Fate::Lost) {
+        audience_.count_lost(traffic_);
+        return {};
+      }
+      if (fate == Audience::Fate::Kept) {
+        if (auto awaited = await_readers(); !awaited) return awaited;
+        continue;
+      }
       auto has = put_to_all(outgoing, now);
       if (has && !*has) has = has_reader();
       if (!has) return has.error();
@@ -73,7 +71,7 @@ class ListeningSink final : public Sink {
 
   Status close() override {
     Status awaited;
-    if (readers_ > 0 && !begun_) awaited = await_readers();
+    if (audience_.is_awaited()) awaited = await_readers();
     let_in();  // who has just come finds the end too
     bool patient = true;
     for (auto& peer : peers_) {
@@ -141,33 +139,11 @@ class ListeningSink final : public Sink {
     static_cast<void>(loop_->turn(std::chrono::milliseconds(0)));
   }
 
-  /// Whether a message without a reader waits for one.
-  [[nodiscard]] bool waits_for_peer() const {
-    if (readers_ == 0 || (begun_ && absence_.is_over())) return false;
-    return !begun_ || !stays_ || policy_.writer_waits();
-  }
-
-  /// Waits for those that the next message is for, or for all before the first one. Who has left
-  /// is awaited no longer than the policy says.
   Status await_readers() {
-    const bool any = begun_ ? readers_ != 0 : readers_ < 0;
-    const auto readers = any ? 1 : begun_ ? 0 : static_cast<std::size_t>(readers_);
-    let_in();
-    const bool awaits = peers_.size() < readers && options_.awaits_reader;
-    if (awaits) options_.awaits_reader(true);
-    Status outcome;
-    for (; outcome && peers_.size() < readers; let_in()) {
-      const auto now = std::chrono::steady_clock::now();
-      if (begun_ && !absence_.waits(0, now)) {
-        if (options_.log) options_.log(Severity::Warning, absence_.line());
-        break;
-      }
-      auto come = wait_for(loop_->descriptor(), POLLIN, options_.stop, absence_.due());
-      if (!come) outcome = come.error();
-    }
-    absence_.end();
-    if (awaits) options_.awaits_reader(false);
-    return outcome;
+    return audience_.await(loop_->descriptor(), options_, [this]() -> Result<std::size_t> {
+      let_in();
+      return peers_.size();
+    });
   }
 
   void leave(std::size_t peer) {
@@ -232,12 +208,9 @@ class ListeningSink final : public Sink {
   ListeningSocket socket_;
   std::unique_ptr<Loop> loop_;  // of the listening socket
   Loop::Handle listening_;
-  std::int64_t readers_;  // to wait for before the first message and before the end; -1: one, none
-  bool stays_;            // when all who were waited for have left
-  Policy policy_;         // of each peer
+  Audience audience_;
+  Policy policy_;  // of each peer
   LinkOptions options_;
-  Patience absence_;                 // with all peers that have left
-  bool begun_ = false;               // the readers that were to be waited for have come
   TimePoint last_send_, last_look_;  // the latter: who wants to be let in
   Encoder encoder_;
   std::vector<std::unique_ptr<Connection>> peers_;
@@ -248,16 +221,14 @@ class ListeningSink final : public Sink {
 
 Result<std::unique_ptr<Sink>> listening_sink(ListeningSocket socket, const Uri& uri,
                                              const LinkOptions& options) {
-  auto readers = number_option(uri, "readers", -1, {0, kMaxPeers});
-  if (!readers) return readers.error();
-  auto stays = number_option(uri, "stay", 0, {0, 1});
-  if (!stays) return stays.error();
   auto policy = parse_policy(uri);
   if (!policy) return policy.error();
+  auto audience = Audience::make(uri, kMaxPeers, *policy, options);
+  if (!audience) return audience.error();
   auto loop = Loop::make();
   if (!loop) return loop.error();
-  auto sink = std::make_unique<ListeningSink>(std::move(socket), std::move(*loop), *readers,
-                                              *stays == 1, *policy, options);
+  auto sink = std::make_unique<ListeningSink>(std::move(socket), std::move(*loop), *audience,
+                                              *policy, options);
   if (auto begun = sink->begin(); !begun) return begun.error();
   return std::unique_ptr<Sink>(std::move(sink));
 }

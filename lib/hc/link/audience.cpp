@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/link/audience.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <utility>
+
+#include <hc/os/wait_readable.h>
+
+namespace hc::internal {
+
+Status wait_for_event(int descriptor, LinkOptions& options, TimePoint until) {
+  auto& [interrupter, call] = options.interrupt;
+  auto timeout = std::chrono::milliseconds(-1);
+  if (until != TimePoint::max())
+    timeout = std::max(std::chrono::milliseconds(0), std::chrono::ceil<std::chrono::milliseconds>(
+                                                         until - std::chrono::steady_clock::now()));
+  auto ready = wait_readable(std::array{descriptor, interrupter}, options.stop, timeout);
+  if (!ready) return ready.error();
+  if (*ready == 1 && !call()) interrupter = -1;
+  return {};
+}
+
+Result<Audience> Audience::make(const Uri& uri, std::int64_t most, const Policy& policy,
+                                const LinkOptions& options) {
+  auto readers = number_option(uri, "readers", -1, {0, most});
+  if (!readers) return readers.error();
+  auto stays = number_option(uri, "stay", 0, {0, 1});
+  if (!stays) return stays.error();
+  return Audience(*readers, *stays == 1, policy, options);
+}
+
+Audience::Fate Audience::decide(std::size_t present) {
+  if (!has_begun_ && present < static_cast<std::size_t>(std::abs(readers_))) return Fate::Kept;
+  const bool was_begun = std::exchange(has_begun_, true);
+  if (present > 0) {
+    absence_.renew();
+    return Fate::Sent;
+  }
+  if (was_begun && ends_with_readers()) return Fate::End;
+  const bool goes_on = readers_ == 0 || absence_.is_over() || !writer_waits_;
+  return goes_on ? Fate::Lost : Fate::Kept;
+}
+
+void Audience::count_lost(Traffic& traffic) const {
+  ++traffic.messages;
+  ++(absence_.is_over() ? traffic.timed_out : traffic.cut);
+}
+
+Status Audience::await(int descriptor, LinkOptions& options,
+                       const std::function<Result<std::size_t>()>& present) {
+  const auto wanted = has_begun_ ? 1 : static_cast<std::size_t>(std::abs(readers_));
+  auto now_present = present();
+  const bool waits = now_present && *now_present < wanted;
+  if (waits && options.awaits_reader) options.awaits_reader(true);
+  Status outcome;
+  while (now_present && *now_present < wanted) {
+    if (has_begun_ && !absence_.waits(0, std::chrono::steady_clock::now())) break;
+    outcome = wait_for_event(descriptor, options, absence_.due());
+    if (!outcome) break;
+    now_present = present();
+  }
+  absence_.end();
+  if (waits && options.awaits_reader) options.awaits_reader(false);
+  if (!now_present) return now_present.error();
+  return outcome;
+}
+
+}  // namespace hc::internal
