@@ -66,16 +66,6 @@ TEST(Codec, AMillionRandomMessagesComeBackToTheBit) {
   }
 }
 
-TEST(Codec, ImagesAreDecodedInPlace) {
-  Draft draft = Draft::make({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 800, 600);
-  std::string bytes = encode(std::move(draft).finish());
-  Message image;
-  ASSERT_EQ(*decode(bytes_of(bytes), image), bytes.size());
-  auto* elements = reinterpret_cast<const char*>(image.elements.data());
-  EXPECT_TRUE(elements > bytes.data() && elements < bytes.data() + bytes.size());
-  EXPECT_EQ(image.owner, nullptr);
-}
-
 TEST(Codec, ElementsAreAlwaysAligned) {
   for (std::size_t shift = 0; shift < 8; ++shift) {
     std::string bytes =

@@ -85,6 +85,7 @@ Result<bool> StreamReader::read_head(Message& message) {
 
   if (internal::has_rows(header_)) {
     consume(line->bytes);
+    elements_begin_ = byte_;
     rows_ = TextRows(header_);
     prepare_body(header_.element_bytes());
     state_ = State::Rows;

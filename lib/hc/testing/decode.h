@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A second reader of messages, for bytes that are all in memory: tests and fuzzers compare it with
-// StreamReader.
+// One message out of bytes that are all in memory, for tests.
 
-#include <hc/mtp/decode.h>
+#include <algorithm>
+
+#include <hc/mtp/stream_reader.h>
 
 namespace hc {
 
-/// internal::decode() of one message, which a memo cannot help.
+/// Reads the first message in `bytes`; gives the bytes used, 0 when it is not complete yet.
+///
+/// Errors: those of StreamReader.
 inline Result<std::size_t> decode(std::span<const std::byte> bytes, Message& message,
-                                  const Limits& limits = {}, std::uint64_t byte = 0) {
-  internal::HeaderMemo memo;
-  return internal::decode(bytes, message, limits, byte, memo);
+                                  const Limits& limits = {}) {
+  StreamReader reader(limits);
+  while (true) {
+    auto got = reader.next(message);
+    if (!got) return got.error();
+    if (*got) return static_cast<std::size_t>(reader.bytes());
+    if (bytes.empty()) return std::size_t{0};
+    const auto space = reader.space();
+    const auto part = bytes.first(std::min(bytes.size(), space.size()));
+    std::ranges::copy(part, space.begin());
+    reader.commit(part.size());
+    bytes = bytes.subspan(part.size());
+  }
 }
 
 }  // namespace hc
