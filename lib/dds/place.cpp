@@ -15,7 +15,8 @@
 namespace hc::dds {
 namespace {
 
-constexpr std::int64_t kLastDomain = 232;   // whose ports there are
+constexpr std::int64_t kLastDomain = 232;  // whose ports there are
+constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::size_t kLongestTopic = 255;  // as discovery carries it [byte]
 
 bool is_topic(std::string_view text) {
@@ -54,7 +55,7 @@ Result<Place> parse_place(const Uri& uri) {
                    "option interface is an IPv4 address of this host, or several "
                    "with commas between, not \"" +
                        address + "\""};
-    place.addresses.push_back(address);
+    if (address != kLoopback) place.addresses.push_back(address);
   }
   return place;
 }
@@ -73,7 +74,7 @@ Result<std::vector<unsigned>> find_interfaces(const Place& place) {
     }
     return 0U;
   };
-  std::vector<unsigned> numbers = {number_of("127.0.0.1")};
+  std::vector<unsigned> numbers = {number_of(kLoopback)};
   for (const auto& address : place.addresses) {
     numbers.push_back(number_of(address));
     if (numbers.back() == 0)
@@ -86,7 +87,7 @@ Result<std::vector<unsigned>> find_interfaces(const Place& place) {
 std::string configuration(const Place& place, std::uint64_t max_bytes) {
   const bool is_loopback = place.addresses.empty();
   std::string interfaces;
-  for (const auto& address : is_loopback ? std::vector<std::string>{"127.0.0.1"} : place.addresses)
+  for (const auto& address : is_loopback ? std::vector<std::string>{kLoopback} : place.addresses)
     interfaces += "<NetworkInterface address=\"" + address + "\"/>";
   std::string general = element("Interfaces", interfaces);
   // Unless it is asked for, who dies without a word is noticed as late as that.

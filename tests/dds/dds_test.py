@@ -13,6 +13,7 @@ import tempfile
 import unittest
 
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+GRAPHS = pathlib.Path(__file__).resolve().parents[2] / "graphs"
 HC, PEER = BUILD / "bin/hc", BUILD / "tests/programs/dds_peer"
 WATCHDOG = 30  # [s]
 # Loopback alone, as dds: links have it.
@@ -40,9 +41,12 @@ class Dds(unittest.TestCase):
     def peer(self, *arguments):
         return [PEER, arguments[0], self.topic, *arguments[1:]]
 
-    def start(self, command):
-        environment = {**os.environ, "CYCLONEDDS_URI": LOOPBACK} if command[0] == PEER else None
-        process = subprocess.Popen(command, stdout=-1, stderr=-1, env=environment)
+    def start(self, command, folder=None, **environment):
+        if command[0] == PEER:
+            environment["CYCLONEDDS_URI"] = LOOPBACK
+        process = subprocess.Popen(
+            command, stdout=-1, stderr=-1, cwd=folder, env={**os.environ, **environment}
+        )
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
@@ -80,6 +84,24 @@ class Dds(unittest.TestCase):
             self.start([HC, "play", "--speed", "max", "--out", self.uri + "&readers=1", path])
         )
         self.assertEqual(self.output(reader), b"".join(MESSAGES))
+
+    def test_the_graphs_of_a_fleet_share_a_camera(self):
+        robot = "robot%d" % os.getpid()
+        words = {"HC_ROBOT": robot, "HC_DOMAIN": "96", "HC_KEEP": "all", "HC_WINDOW": "no"}
+        folders = [pathlib.Path(self.folder.name, name) for name in ("a", "b")]
+        watchers = []
+        for folder in folders:
+            folder.mkdir()
+            graph = GRAPHS / "fleet_watch.toml"
+            watchers.append(self.start([HC, "run", graph, "--links"], folder, **words))
+        graph = GRAPHS / "fleet_camera.toml"
+        count = ["--set", "camera.count=5"]
+        camera = self.start([HC, "run", graph, *count], HC_READERS="4", **words)
+        self.output(camera)
+        for folder, watcher in zip(folders, watchers):
+            out = self.output(watcher).decode()
+            self.assertRegex(out, r"ran for .*: 2 modules, 10 messages")
+            self.assertTrue((folder / (robot + ".png")).exists(), out)
 
 
 if __name__ == "__main__":
