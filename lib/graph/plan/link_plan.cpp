@@ -52,9 +52,8 @@ class LinkPlanner {
   void run() {
     find_routes();
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
-      const GraphLink& link = graph_.links[i];
-      if (!is_inside(link)) continue;
-      ++senders_[name_of(i)].readers;
+      names_.push_back(is_inside(graph_.links[i]) ? name_of(i) : "");
+      if (!names_[i].empty()) ++senders_[names_[i]].readers;
     }
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
       PlannedLink planned = is_inside(graph_.links[i]) ? plan_inside(i) : plan_outside(i);
@@ -171,7 +170,7 @@ class LinkPlanner {
   std::string keep_of_all(const std::string& name) const {
     std::uint64_t most = 1;
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
-      if (!is_inside(graph_.links[i]) || name_of(i) != name) continue;
+      if (names_[i] != name) continue;
       std::string keep = keep_of(graph_.links[i]);
       if (keep == "all") return keep;
       if (keep != "latest") most = std::max<std::uint64_t>(most, std::stoull(keep));
@@ -189,8 +188,7 @@ class LinkPlanner {
     };
     std::set<std::string> addresses;
     for (std::size_t i = 0; i < graph_.links.size(); ++i)
-      if (is_inside(graph_.links[i]) && name_of(i) == name &&
-          (of_writer || graph_.links[i].to.text() == own.to.text()))
+      if (names_[i] == name && (of_writer || graph_.links[i].to.text() == own.to.text()))
         addresses.insert(address_of(graph_.links[i]));
     std::string list;
     for (const auto& address : addresses) {
@@ -250,14 +248,43 @@ class LinkPlanner {
     return held == nullptr ? 0 : held->number;
   }
 
-  /// Where the writer of a link listens, where its reader connects to, and whom each lets in.
+  /// The URIs of a link's two ends, and what each has beside the options of every link in a graph.
   struct Ends {
-    std::string writer, reader, writer_trusts = {}, reader_trusts = {};
+    std::string writer, reader, writer_options, reader_options;
   };
 
-  Ends ends_of(const GraphLink& link, std::string_view transport, const std::string& name) {
-    if (transport == "shm") return {name, name};
-    if (transport == "unix") return {"@" + name, "@" + name};
+  /// The links of an output that share memory have one sending end in common, but for those that
+  /// have a bound or a route of their own, and each reader keeps its rate; every other link has a
+  /// socket. All links of an output by DDS have a topic in common, and each reader keeps its rate,
+  /// and drops by its own policy.
+  Ends ends_of(std::size_t number, const std::string& keep) {
+    const GraphLink& link = graph_.links[number];
+    const std::string transport(transport_of(planning_, link));
+    const std::string &name = names_[number], place = transport + ":" + name;
+    const auto and_keep = [](const std::string& kept) {
+      return kept == "all" ? "" : "&keep=" + kept;
+    };
+    const std::string timeout = options_of(link, kTimeout), pace = options_of(link, kPace);
+    if (transport == "shm")
+      return {place, place,
+              (is_common(number) ? "" : and_keep(keep)) + options_of(link, kOfSender) + timeout,
+              and_keep(keep) + pace};
+    if (transport == "dds")
+      return {place, place,
+              "&interface=" + interfaces_of(name, true, link) + and_keep(keep_of_all(name)) +
+                  options_of(link, kConversion) + timeout,
+              "&interface=" + interfaces_of(name, false, link) + and_keep(keep) +
+                  options_of(link, kOfTopicReader)};
+    Ends ends = sockets_of(link, transport, name);
+    ends.writer = transport + "-listen:" + ends.writer;
+    ends.reader = transport + ":" + ends.reader;
+    ends.writer_options += and_keep(keep) + options_of(link, kOfSender) + timeout + pace;
+    return ends;
+  }
+
+  /// Where the writer of a link listens, where its reader connects to, and whom each lets in.
+  Ends sockets_of(const GraphLink& link, std::string_view transport, const std::string& name) {
+    if (transport == "unix") return {"@" + name, "@" + name, "", ""};
     const std::string port = ":" + std::to_string(port_of(link, name));
     if (!planning_.is_between_hosts(link))
       return {"127.0.0.1" + port, "127.0.0.1" + port, "&same_user=1", "&same_user=1"};
@@ -276,11 +303,11 @@ class LinkPlanner {
                     " has no address that links can use: say address = \"…\" in its table");
     const bool is_v6 = address.find(':') != std::string::npos;
     if (is_v6) address = "[" + address + "]";
-    Ends ends{(is_v6 ? "[::]" : "0.0.0.0") + port, address + port};
+    Ends ends{(is_v6 ? "[::]" : "0.0.0.0") + port, address + port, "", ""};
     if (transport == "tls") {
       const std::string key = "&key=" + std::string(kKeyFile) + "&peer=";
-      ends.writer_trusts = key + place_of(to).fingerprint;
-      ends.reader_trusts = key + place_of(from).fingerprint;
+      ends.writer_options = key + place_of(to).fingerprint;
+      ends.reader_options = key + place_of(from).fingerprint;
     }
     return ends;
   }
@@ -290,51 +317,19 @@ class LinkPlanner {
     return found == planning_.places.end() ? HostPlace{} : found->second;
   }
 
-  /// All links of an output by DDS have a topic in common, and each reader keeps its rate, and
-  /// drops by its own policy.
-  PlannedLink plan_topic(std::size_t number) {
-    const GraphLink& link = graph_.links[number];
-    const std::string name = name_of(number), keep = keep_of(link), all = keep_of_all(name);
-    Sender& sender = senders_[name];
-    if (sender.uri.empty()) {
-      sender.uri = "dds:" + name + "?readers=" + std::to_string(sender.readers) +
-                   "&stay=1&interface=" + interfaces_of(name, true, link) +
-                   (all == "all" ? "" : "&keep=" + all) + options_of(link, kConversion) +
-                   options_of(link, kTimeout);
-      add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
-    }
-    const std::string reader_uri = "dds:" + name + (lasts(link) ? "?reconnect=86400" : "?wait=60") +
-                                   "&interface=" + interfaces_of(name, false, link) +
-                                   (keep == "all" ? "" : "&keep=" + keep) +
-                                   options_of(link, kOfTopicReader);
-    add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
-    return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
-  }
-
-  /// The links of an output that share memory have one sending end in common, but for those that
-  /// have a bound or a route of their own, and each reader keeps its rate; every other link has a
-  /// socket. Senders wait for their readers, so that it does not matter who starts first.
+  /// Senders wait for their readers, so that it does not matter who starts first.
   PlannedLink plan_inside(std::size_t number) {
     const GraphLink& link = graph_.links[number];
-    const std::string_view transport = transport_of(planning_, link);
-    if (transport == "dds") return plan_topic(number);
-    const bool by_memory = transport == "shm";
-    const std::string name = name_of(number), keep = keep_of(link);
-    const Ends ends = ends_of(link, transport, name);
-    const std::string scheme(transport);
-    const std::string and_keep = keep == "all" ? "" : "&keep=" + keep;
-    const std::string pace = options_of(link, kPace);
-    Sender& sender = senders_[name];
+    const std::string keep = keep_of(link);
+    const Ends ends = ends_of(number, keep);
+    Sender& sender = senders_[names_[number]];
     if (sender.uri.empty()) {
-      sender.uri = scheme + (by_memory ? ":" : "-listen:") + ends.writer +
-                   "?readers=" + std::to_string(sender.readers) + "&stay=1" + ends.writer_trusts +
-                   (is_common(number) ? "" : and_keep) + options_of(link, kOfSender) +
-                   options_of(link, kTimeout) + (by_memory ? "" : pace);
+      sender.uri = ends.writer + "?readers=" + std::to_string(sender.readers) + "&stay=1" +
+                   ends.writer_options;
       add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
     }
-    const std::string reader_uri = scheme + ":" + ends.reader +
-                                   (lasts(link) ? "?reconnect=86400" : "?wait=60") +
-                                   ends.reader_trusts + (by_memory ? and_keep + pace : "");
+    const std::string reader_uri =
+        ends.reader + (lasts(link) ? "?reconnect=86400" : "?wait=60") + ends.reader_options;
     add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
     return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
   }
@@ -369,6 +364,7 @@ class LinkPlanner {
   Planning& planning_;
   const Graph& graph_;
   std::vector<RouteWords> routes_;         // by number of a link
+  std::vector<std::string> names_;         // the same; of links inside the graph
   std::map<std::string, Sender> senders_;  // by name
 };
 
