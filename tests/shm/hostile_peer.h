@@ -193,7 +193,7 @@ inline internal::Descriptor connect_to_publisher(const std::string& name) {
   place.options.emplace_back("wait", "20");  // many at once do not fit into its backlog
   auto socket = internal::connect_now(*internal::unix_peer(place), place, {});
   EXPECT_TRUE(socket) << socket.error().text();
-  return std::move(*socket);
+  return std::move(socket->descriptor);
 }
 
 }  // namespace hc::testing

@@ -39,10 +39,10 @@ void Announcer::leave_idlest() {
 
 void Announcer::let_in() {
   auto has_room = [] { return true; };
-  socket_.accept_all(watch_, {}, has_room, [this](Descriptor accepted) -> Status {
+  socket_.accept_all(watch_, {}, has_room, [this](ConnectedSocket accepted) -> Status {
     if (peers_.size() >= kMostPeers) leave_idlest();
     auto peer = std::make_unique<Peer>();
-    peer->socket = std::move(accepted);
+    peer->socket = std::move(accepted.descriptor);
     auto watched = loop_.watch(peer->socket.get(), EPOLLIN,
                                [this, each = peer.get()](auto events) { serve(*each, events); });
     if (!watched) return watched.error();

@@ -126,10 +126,10 @@ Result<std::unique_ptr<Sink>> open_file_sink(const Uri& uri, const LinkOptions& 
   auto file = open_for_writing(uri, is_set("append"), options);
   if (!is_set("optional")) {
     if (!file) return file.error();
-    return make_stream_sink(std::move(*file), uri, options);
+    return make_stream_sink({std::move(*file)}, uri, options);
   }
   if (!file && file.error().code == Code::Stopped) return file.error();
-  auto sink = file ? make_stream_sink(std::move(*file), uri, options) : file.error();
+  auto sink = file ? make_stream_sink({std::move(*file)}, uri, options) : file.error();
   if (!sink && sink.error().code == Code::Invalid) return sink.error();
   return std::unique_ptr<Sink>(new OptionalFile(uri.rest, std::move(sink), options.log));
 }

@@ -151,47 +151,8 @@ struct LinkOptions {
 /// `unix-listen:PATH` wait for peers, `tls` and `tls-listen` are tcp encrypted (lib/tls),
 /// `shm:NAME` is memory that the sink's process shares with any number of sources of this host and
 /// user, `inproc:NAME` another thread of it, `dds:TOPIC` any number of writers and readers in a
-/// network, by Cyclone DDS (lib/dds). Listening is on loopback without HOST. Options:
-/// - `wait=SECONDS` (tcp, tls, unix, shm source): how long to try while nobody listens; default 0,
-///   which gives a host that does not answer 4 s. The answer of a publisher of shm that is there
-///   has 4 s in any case.
-/// - `reconnect=SECONDS` (tcp, tls, unix, shm source): the link is there at once, outlives its
-///   connection, and ends when it has had none for so long; default 0: it ends with its connection.
-///   If there never was a connection for so long, or for `wait` where it is given beside, take()
-///   and send() fail with NotFound. A message that a sink has begun on a lost connection is sent
-///   again, whole; whether those that the kernel had taken have arrived is unknown. A source cannot
-///   tell a peer's end from its death, so both lead to trying again. A name's addresses are looked
-///   up once.
-/// - `readers=N` (listening sinks, shm sink): how many readers to wait for before the first message
-///   and before the end; default: 1 before the first message, and none before the end. When as many
-///   as were counted have all left, the link is closed; where none were counted it continues.
-///   0: none, ever. For a program that must not wait for those who observe it.
-/// - `stay=1` (the same): who has left may come back, so the link continues.
-///   Without a reader, send() of a link that continues waits for the next one if keep=all and
-///   readers is not 0; otherwise the message is lost (Traffic::cut).
-/// - `domain=N` (dds; default 0): the domain of DDS. `interface=ADDRESS,…` (dds): IPv4 addresses of
-///   this host, whose networks it uses; default: loopback alone.
-/// - `spin=MICROSECONDS` (shm source; default 20): how long a reader that waits looks for the next
-///   message before it sleeps. It does so only while messages follow one another closely.
-///
-/// And of every sink; one that listens has them for each reader:
-/// - `keep=all|latest|N`: what to do while the reader is slow: wait for it (default), or keep the
-///   newest or so many messages that have not begun to go, and drop the oldest. What the kernel has
-///   taken, and small messages that are gathered to be written together, have begun. `latest` is 1.
-/// - `timeout=SECONDS` (default 0: none): how long a reader may hold the writer: with keep=all by
-///   taking nothing, and by having left where the next one is waited for. From then on messages are
-///   dropped (Traffic::timed_out), until it takes some again, or another has come. With dds they
-///   are dropped for all readers.
-/// - `rate=N` [message/s], `burst=N` (default 1): messages go no faster, but so many may follow at
-///   once. Where none is dropped the writer waits for its turn.
-/// - `memory=N` [byte] (default 64M): of messages that wait; the oldest make room. One alone may be
-///   larger, but not with shm, where it is all the memory that is shared.
-/// With dds a source may have all of these too: what it drops or keeps back is its own affair,
-/// while all readers share the pace of a sink. `wait`, `reconnect`, `readers` and `stay` are as
-/// above, but that a source awaits its first writer for ever unless `wait` says otherwise.
-/// With shm, `rate` and `burst` are options of the source, since all readers share one memory; it
-/// may also have a `keep` of its own, of which `all` makes no sink wait that drops.
-/// Bytes may be written with K, M or G (of 1024).
+/// network, by Cyclone DDS (lib/dds). What options each end has, and what they do: doc/modules.md,
+/// "Links".
 ///
 /// Errors: Invalid (no such scheme; an option that it does not have, or not with that value),
 /// NotFound (no such file or host), Closed (nobody listens), Stopped, System (name in use, …).

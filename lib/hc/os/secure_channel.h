@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <utility>
 
 #include <hc/base/result.h>
 #include <hc/os/descriptor.h>
@@ -41,11 +40,12 @@ class SecureChannel {
 };
 
 /// A socket that is connected, with its channel if it has one.
-struct ConnectedSocket : Descriptor {
-  std::unique_ptr<SecureChannel> channel;
+struct ConnectedSocket {
+  Descriptor descriptor;
+  std::unique_ptr<SecureChannel> channel = nullptr;
 
-  ConnectedSocket() = default;
-  ConnectedSocket(Descriptor socket) : Descriptor(std::move(socket)) {}
+  [[nodiscard]] int get() const { return descriptor.get(); }
+  explicit operator bool() const { return static_cast<bool>(descriptor); }
 };
 
 }  // namespace hc::internal

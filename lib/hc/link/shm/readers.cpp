@@ -59,7 +59,7 @@ void ShmReaders::remark(std::string line) {
 void ShmReaders::accept_all() {
   auto log = [this](Severity, std::string_view line) { remark(std::string(line)); };
   auto has_room = [] { return true; };
-  socket_.accept_all(watch_, log, has_room, [this](Descriptor peer) -> Status {
+  socket_.accept_all(watch_, log, has_room, [this](ConnectedSocket peer) -> Status {
     auto reader = std::make_shared<ShmReader>();
     auto started = reader->watch.start(peer.get(), [this, each = reader.get()](auto events) {
       if ((events & (EPOLLHUP | EPOLLERR)) != 0)
@@ -70,7 +70,7 @@ void ShmReaders::accept_all() {
         note_leaving(*each);
     });
     if (!started) return started;
-    reader->socket = std::move(peer);
+    reader->socket = std::move(peer.descriptor);
     reader->patience = patience_;
     std::shared_ptr<ShmReader> silent;
     {

@@ -89,8 +89,8 @@ Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOption
   auto peer = unix_peer(place);
   if (!peer) return peer.error();
   peer->name = uri.rest;
-  auto open = [wishes, options](Descriptor connection) {
-    return attach(std::move(connection), wishes, options);
+  auto open = [wishes, options](ConnectedSocket connection) {
+    return attach(std::move(connection.descriptor), wishes, options);
   };
   auto source = dial_source(*peer, uri, options, {open, wishes.wakes->get()});
   if (!source) return source.error();

@@ -20,7 +20,9 @@
 
 namespace hc::internal {
 
-/// Learns whether messages follow so close that it pays to gather them.
+/// Learns whether messages follow so close that it pays to gather them. Written one by one, 20 to
+/// 35 times fewer messages of 96 B a second go over a socket, and none arrives sooner (bench/links,
+/// unix, tcp and tls, messages and latency_96).
 ///
 /// Whether more will come nobody knows; but who answers a question sends nothing more either,
 /// though the question came right behind the last answer. So the more often it was in vain, the

@@ -83,7 +83,7 @@ void Dialer::try_next(TimePoint now) {
   const Address& address = peer_.addresses[turn_];
   auto socket = open_socket(address);
   if (!socket) return fail(errno, now);
-  attempt_ = std::move(*socket);
+  attempt_.descriptor = std::move(*socket);
   events_ = POLLOUT;
   const auto share = (give_up_ - now) / static_cast<std::int64_t>(peer_.addresses.size() - turn_);
   answer_due_ = now + std::min<std::chrono::nanoseconds>(kAnswer, share);

@@ -23,6 +23,11 @@ namespace hc::internal {
 /// Source: M. Brooker, Exponential Backoff And Jitter, AWS Architecture Blog, 2015.
 std::chrono::nanoseconds draw_pause(Backoff& backoff, std::minstd_rand& random);
 
+/// Whether a connection was lost because its peer sent something that is no message.
+inline bool is_bad(const Error& error) {
+  return error.code != Code::Truncated && error.code != Code::Closed && error.code != Code::System;
+}
+
 constexpr std::chrono::milliseconds kFirstPause{100}, kLongestPause{5000};  // at most
 
 /// Why a connection was lost, in words; what is not plainly Closed has its code.

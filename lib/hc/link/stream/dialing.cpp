@@ -41,11 +41,10 @@ class DialingSource final : public Source {
       auto got = source_->take(message);
       if (got && *got != Got::End) return got;
       if (!got && got.error().code == Code::System) return got;
-      const auto code = got ? Code::Closed : got.error().code;
-      if (code == Code::Truncated) ++past_.cut;
-      const bool is_bad = code != Code::Truncated && code != Code::Closed;
-      if (is_bad) ++past_.bad;
-      lose_connection(got ? "" : in_words(got.error()), is_bad);
+      if (!got && got.error().code == Code::Truncated) ++past_.cut;
+      const bool said_no_message = !got && is_bad(got.error());
+      if (said_no_message) ++past_.bad;
+      lose_connection(got ? "" : in_words(got.error()), said_no_message);
     }
     message = {};
     return ended_ ? Got::End : Got::Nothing;
@@ -89,15 +88,16 @@ class DialingSource final : public Source {
     return {};
   }
 
-  /// @param why  empty: the sender has closed. @param is_bad  it has said what is no message.
-  void lose_connection(const std::string& why, bool is_bad) {
+  /// @param why  empty: the sender has closed.
+  void lose_connection(const std::string& why, bool said_no_message) {
     const bool was_heard = source_->traffic().messages > 0;
     past_ += source_->traffic();
     watch_.reset();
     source_.reset();
     if (finishing_) return;
     auto now = std::chrono::steady_clock::now();
-    const bool was_of_use = !is_bad && was_heard && now - connected_at_ >= Dialer::kUseTime;
+    const bool was_of_use =
+        !said_no_message && was_heard && now - connected_at_ >= Dialer::kUseTime;
     if (why.empty())
       dialer_->lost(now, was_of_use, "sender closed", kLogAfter);
     else

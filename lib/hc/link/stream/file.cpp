@@ -60,13 +60,13 @@ Result<Descriptor> open_path(const Uri& uri, int flags, int stop) {
 Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions& options) {
   auto descriptor = reopen_without_waiting(STDIN_FILENO, O_RDONLY);
   if (!descriptor) return descriptor.error();
-  return std::unique_ptr<Source>(new StreamSource(std::move(*descriptor), options));
+  return std::unique_ptr<Source>(new StreamSource({std::move(*descriptor)}, options));
 }
 
 Result<std::unique_ptr<Sink>> open_stdout(const Uri& uri, const LinkOptions& options) {
   auto descriptor = reopen_without_waiting(STDOUT_FILENO, O_WRONLY);
   if (!descriptor) return descriptor.error();
-  return make_stream_sink(std::move(*descriptor), uri, options);
+  return make_stream_sink({std::move(*descriptor)}, uri, options);
 }
 
 Result<std::unique_ptr<Source>> open_file_source(const Uri& uri, const LinkOptions& options) {
@@ -75,7 +75,7 @@ Result<std::unique_ptr<Source>> open_file_source(const Uri& uri, const LinkOptio
   ::posix_fadvise(descriptor->get(), 0, 0, POSIX_FADV_SEQUENTIAL);
   struct stat status {};
   bool is_fifo = ::fstat(descriptor->get(), &status) == 0 && S_ISFIFO(status.st_mode);
-  return std::unique_ptr<Source>(new StreamSource(std::move(*descriptor), options, is_fifo));
+  return std::unique_ptr<Source>(new StreamSource({std::move(*descriptor)}, options, is_fifo));
 }
 
 }  // namespace hc::internal

@@ -41,9 +41,8 @@ class ListeningSource final : public Source {
       Peer& peer = *ready_[turn_];
       auto got = peer.source->take(message);
       if (!got || *got == Got::End) {
-        const bool is_bad = !got && got.error().code != Code::Truncated &&
-                            got.error().code != Code::Closed && got.error().code != Code::System;
-        leave(peer, got ? "" : "closed a connection: " + in_words(got.error()), is_bad);
+        if (!got && is_bad(got.error())) ++left_.bad;
+        leave(peer, got ? "" : "closed a connection: " + in_words(got.error()));
       } else if (*got == Got::Nothing) {
         peer.is_ready = false;
         std::erase(ready_, &peer);
@@ -125,10 +124,9 @@ class ListeningSource final : public Source {
     return idlest;
   }
 
-  void leave(const Peer& peer, std::string_view why, bool is_bad = false) {
+  void leave(const Peer& peer, std::string_view why) {
     if (!why.empty() && options_.log) options_.log(Severity::Warning, why);
     left_ += peer.source->traffic();
-    left_.bad += is_bad ? 1 : 0;
     std::erase(ready_, &peer);
     std::erase_if(peers_, [&](const auto& entry) { return entry.get() == &peer; });
   }
