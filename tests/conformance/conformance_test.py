@@ -32,27 +32,9 @@ COMPRESSED = [path for path in VALID if path.name.startswith(("zstd", "jpeg"))]
 IMAGES = sorted((HERE / "images").glob("*.jpg"))
 HC = "hc"
 SEEDS = (1, 2, 3)
-COUNT = 800
+COUNT = 400
 DAMAGED = ("R36", "R37")  # rules of compressed elements, behind which hc cat goes on
 REFUSED = re.compile(r": (R\d+) (\w+): .*, at byte (\d+)$")
-
-# What RFC 8878 and ITU-T T.81 forbid in compressed bytes, but the libraries behind hc may let pass.
-LET_PASS = re.compile(
-    "a block of .* bytes, most"
-    "|a bit stream is cut short"
-    "|a reserved bit of the modes"
-    "|a stream of literals does not come out even"
-    "|bits are left behind the sequences"
-    "|a block is too long"
-    "|a coefficient is out of range"
-    "|a component is missing"
-    "|a difference of too many bits"
-    "|a scan has bytes to spare"
-    "|neither sequential nor progressive Huffman"
-    "|no such Huffman table"
-)
-# What they forbid, and R37 does not.
-STRICTER = re.compile("unknown JFIF revision|Unknown Adobe color transform")
 
 
 def run(*command, data=b""):
@@ -78,10 +60,6 @@ class Report:
 
     def __repr__(self):
         return "%s %s ...%s" % (self.refusal, self.reason, self.text[-200:])
-
-
-def flat(item):
-    return [number for each in item for number in flat(each)] if isinstance(item, list) else [item]
 
 
 def reported_by_hc(data):
@@ -269,9 +247,9 @@ class RandomMessages(unittest.TestCase):
 
     def test_python_reads_what_hc_compresses(self):
         rng = random.Random(11)
-        for i in range(600):
+        for i in range(150):
             with self.subTest(i):
-                size = 150000 if i % 300 == 0 else rng.choice((0, 1, 9, 60, 400, 2500))
+                size = 150000 if i % 75 == 0 else rng.choice((0, 1, 9, 60, 400, 2500))
                 sent, data = send_table(rng, size)
                 (message,) = mtp1.read(data)
                 self.assertEqual(message.header, sent.header)
@@ -280,10 +258,10 @@ class RandomMessages(unittest.TestCase):
     def test_both_read_images_alike(self):
         rng = random.Random(13)
         images = [wrap(path.read_bytes()) for path in IMAGES]
-        images += [send_image(rng) for _ in range(200)]
+        images += [send_image(rng) for _ in range(60)]
         for i, image in enumerate(images):
             with self.subTest(i):
-                self.assertEqual(self.check_alike(image, by=2), {})
+                self.assertEqual(self.check_alike(image), {})
 
     def test_both_refuse_damaged_compressed_alike(self):
         rng = random.Random(17)
@@ -291,34 +269,20 @@ class RandomMessages(unittest.TestCase):
         whole += [wrap(path.read_bytes()) for path in IMAGES]
         whole += [send_table(rng, rng.choice((9, 60, 400)))[1] for _ in range(50)]
         whole += [send_image(rng) for _ in range(20)]
-        for i in range(800):
+        for i in range(200):
             (message,) = mtp1.read(rng.choice(whole), expand=False)
             message.compressed = mtp1_random.damage(rng, message.compressed) or b"?"
-            # Where a damaged image leaves its 8 bits far behind, decoders differ by any number.
             with self.subTest(i):
-                self.check_alike(mtp1.write(message), by=255 * (message.header.encoding == "jpeg"))
+                self.check_alike(mtp1.write(message))
 
-    def check_alike(self, data, by=0):
-        """Both refuse at the same rule and byte, or read the same; numbers differ at most `by`.
-
-        Returns the refusal of mtp1.py.
-        """
+    def check_alike(self, data):
+        """Both refuse at the same rule and byte, or read the same; gives the refusal of mtp1.py."""
         shown, read = reported_by_hc(data), reported_by_python(data)
         refusal = read.refusal
         if shown.refusal and refusal and refusal["rule"] in DAMAGED:
             self.assertTrue(shown.text.startswith(read.text))
             shown.text, shown.refusal["messages"] = read.text, refusal["messages"]
-        if LET_PASS.search(read.reason) and len(shown.text) > len(read.text):
-            self.assertTrue(shown.text.startswith(read.text))
-        elif STRICTER.search(shown.reason) and len(shown.text) < len(read.text):
-            self.assertTrue(read.text.startswith(shown.text))
-        elif by == 0 or shown.refusal or read.refusal:
-            self.assertEqual(shown, read)
-        else:
-            shown, read = json.loads(shown.text), json.loads(read.text)
-            pairs = zip(flat(shown.pop("elements")), flat(read.pop("elements")))
-            self.assertLessEqual(max(abs(a - b) for a, b in pairs), by)
-            self.assertEqual(shown, read)
+        self.assertEqual(shown, read)
         return refusal
 
 

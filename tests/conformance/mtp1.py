@@ -8,6 +8,7 @@
 
 It shares no line with the C++ library, so that where the two agree the specification is clear. It
 is plain, not fast: standard library only, one function a rule or two, the rule's number beside it.
+Compressed elements are expanded by the programs zstd and djpeg (R36, R37).
 On the command line (FILE is standard input when it is missing or `-`):
 
     mtp1.py json [--basic] [FILE]        one JSON line a message (section 8)
@@ -30,8 +31,7 @@ import struct
 import sys
 from dataclasses import astuple
 
-import mtp1_jpeg
-import mtp1_zstd
+from mtp1_expand import expand_jpeg, expand_zstd
 from mtp1_header import FIELDS, Message, Refused, judge_header, show
 from mtp1_number import FLOAT, FLOATS, INTEGER, nearest, spell
 from mtp1_random import loosen, random_message
@@ -242,11 +242,8 @@ def expanded(message):
     """The binary form of compressed elements; ValueError where they hold anything else."""
     header = message.header
     if header.encoding == "zstd":
-        elements = mtp1_zstd.decompress(message.compressed, header.size)
-        if len(elements) != header.size:
-            raise ValueError(f"zstd holds {len(elements)} bytes, not {header.size}")
-        return elements
-    return mtp1_jpeg.decode(message.compressed, header.width, header.height, header.components)
+        return expand_zstd(message.compressed, header.size)
+    return expand_jpeg(message.compressed, header.width, header.height, header.components)
 
 
 # ---------------------------------------------------------------------------------------- writing
