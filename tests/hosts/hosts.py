@@ -19,7 +19,7 @@ enter_own_network()
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "pipes"))
 
 from graphs import Graphs  # noqa: E402
-from harness import BUILD, DATA, ROOT, WATCHDOG, succeeds_once, wait_until  # noqa: E402, F401
+from harness import BUILD, DATA, ROOT, WATCHDOG, wait_until  # noqa: E402, F401
 
 HC = str(BUILD / "bin/hc")
 FULL = bool(os.environ.get("HC_FULL"))

@@ -22,7 +22,6 @@ PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
 WATCHDOG = 100  # seconds after which a program hangs
 LONGEST = 300  # a test, unless HC_FULL=1 [s]
 KILL = os.kill
-PRESSURE = pathlib.Path("/proc/pressure/cpu")
 
 
 def free_port():
@@ -60,33 +59,6 @@ def end_when_hung(test):
     signal.signal(signal.SIGALRM, fail)
     signal.alarm(0 if os.environ.get("HC_FULL") == "1" else LONGEST)
     test.addCleanup(signal.alarm, 0)
-
-
-def waited_for_processor():
-    """How long some process had to wait for a processor, since the machine started [s]; all of the
-    time on a kernel that does not count it."""
-    try:
-        return int(re.search(r"some .*total=(\d+)", PRESSURE.read_text())[1]) * 1e-6
-    except OSError:
-        return time.monotonic()
-
-
-def succeeds_once(attempt, times=5):
-    """Whether one of some attempts succeeds, of what is done in real time. A failed attempt is
-    printed, and repeated only if processes had to wait for a processor meanwhile."""
-    for number in range(1, times + 1):
-        begin, waited = time.monotonic(), waited_for_processor()
-        if attempt():
-            return True
-        share = (waited_for_processor() - waited) / (time.monotonic() - begin)
-        print(
-            "attempt %d of %d failed; processes waited for a processor %.0f %% of the time"
-            % (number, times, 100 * share),
-            flush=True,
-        )
-        if share < 0.05:
-            return False
-    return False
 
 
 def listens(port):
